@@ -1,0 +1,149 @@
+"""A relation graph as JSON, Turtle and DOT, and back from JSON."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from typing import Any
+from urllib.parse import quote
+
+from deixis.ontology.errors import GraphError
+from deixis.ontology.graph import Fact, RelationGraph
+from deixis.ontology.relation import Relation, Relations
+from deixis.ontology.source import Source
+from deixis.ontology.vocabulary import BASE, DX
+
+
+def fact_to_dict(fact: Fact) -> dict[str, Any]:
+    """A fact as the commands' JSON has it: relation, subject, object, and what qualifies it."""
+    entry: dict[str, Any] = {
+        "relation": " or ".join(relation.word for relation in fact.relations),
+        "subject": fact.subject,
+        "object": fact.object,
+        "reading": fact.relations[0].reading.value,
+        "relations": [relation.name for relation in fact.relations],
+        "positive": fact.positive,
+        "optional": fact.optional,
+        "weight": fact.weight,
+    }
+    if fact.source is not None:
+        entry |= {"file": fact.source.file, "line": fact.source.line, "column": fact.source.column}
+    return entry
+
+
+def graph_to_dict(graph: RelationGraph) -> dict[str, Any]:
+    """The graph as plain data, ready for ``json.dumps``."""
+    nodes: list[dict[str, Any]] = []
+    for i, name in enumerate(graph.nodes):
+        node: dict[str, Any] = {"id": name}
+        if graph.kinds and graph.kinds[i] is not None:
+            node["kind"] = graph.kinds[i]
+        if graph.boxes is not None:
+            node |= {"min": graph.boxes[i, 0].tolist(), "max": graph.boxes[i, 1].tolist()}
+        nodes.append(node)
+    return {"nodes": nodes, "facts": [_full(fact) for fact in graph.facts()]}
+
+
+def _full(fact: Fact) -> dict[str, Any]:
+    entry = fact_to_dict(fact)
+    if fact.source is not None:
+        entry |= {"end_line": fact.source.end_line, "end_column": fact.source.end_column}
+    return entry
+
+
+def graph_from_dict(data: Mapping[str, Any], vocabulary: Relations) -> RelationGraph:
+    """The graph that :func:`graph_to_dict` wrote; raises GraphError where ``data`` is no such thing."""
+    import numpy as np
+
+    try:
+        nodes = data["nodes"]
+        facts = [_fact_from_dict(entry, vocabulary) for entry in data["facts"]]
+        boxed = bool(nodes) and all("min" in node for node in nodes)
+        return RelationGraph.from_facts(
+            vocabulary,
+            [node["id"] for node in nodes],
+            facts,
+            kinds=[node.get("kind") for node in nodes] if any("kind" in node for node in nodes) else (),
+            boxes=np.array([[node["min"], node["max"]] for node in nodes], dtype=float) if boxed else None,
+        )
+    except (KeyError, TypeError, AttributeError) as error:
+        raise GraphError(f"this is no relation graph as Deixis writes it: {error}") from error
+
+
+def _fact_from_dict(entry: Mapping[str, Any], vocabulary: Relations) -> Fact:
+    source = None
+    if "line" in entry:
+        span = [int(entry[key]) for key in ("line", "column", "end_line", "end_column")]
+        source = Source(str(entry["file"]), *span)
+    relations = tuple(vocabulary[name] for name in entry["relations"])
+    return Fact(
+        str(entry["subject"]),
+        relations,
+        str(entry["object"]),
+        bool(entry.get("positive", True)),
+        bool(entry.get("optional", False)),
+        float(entry.get("weight", 1.0)),
+        source,
+    )
+
+
+PREFIXES = {
+    "dx": BASE,
+    "rdfs": "http://www.w3.org/2000/01/rdf-schema#",
+    "xsd": "http://www.w3.org/2001/XMLSchema#",
+}
+
+
+def graph_to_turtle(graph: RelationGraph, base: str = "urn:deixis:graph:") -> str:
+    """The graph as Turtle: each object under ``base``, each edge a ``dx:RelationStatement``.
+
+    Names become percent-encoded IRIs and escaped literals, so that no name can add a statement of its own.
+    """
+    lines = [f"@prefix {prefix}: <{iri}> ." for prefix, iri in PREFIXES.items()]
+    lines.append("")
+    for i, name in enumerate(graph.nodes):
+        kind = graph.kinds[i] if graph.kinds and graph.kinds[i] else DX.THING
+        lines.append(f"{_iri(base, name)} a <{kind}> ; rdfs:label {_literal(name)} .")
+    for number, fact in enumerate(graph.facts()):
+        lines.append("")
+        lines.append(f"{_iri(base, f'fact {number + 1}')} a {_dx(DX.RELATION_STATEMENT)} ;")
+        lines.append(f"    {_dx(DX.SUBJECT)} {_iri(base, fact.subject)} ;")
+        lines.append(f"    {_dx(DX.OBJECT)} {_iri(base, fact.object)} ;")
+        lines.append(f"    {_dx(DX.RELATION)} {', '.join(_relation(r) for r in fact.relations)} ;")
+        if fact.source is not None:
+            lines.append(f"    {_dx(DX.STATED_AT)} {_literal(str(fact.source))} ;")
+        lines.append(f"    {_dx(DX.OPTIONAL)} {str(fact.optional).lower()} ;")
+        lines.append(f"    {_dx(DX.POSITIVE)} {str(fact.positive).lower()} ;")
+        lines.append(f"    {_dx(DX.WEIGHT)} {fact.weight:.6f} .")
+    return "\n".join(lines) + "\n"
+
+
+def _dx(term: DX) -> str:
+    return "dx:" + term.removeprefix(BASE)
+
+
+def _relation(relation: Relation) -> str:
+    return "dx:" + relation.iri.removeprefix(BASE) if relation.iri.startswith(BASE) else f"<{relation.iri}>"
+
+
+def _iri(base: str, name: str) -> str:
+    return f"<{base}{quote(name, safe='')}>"
+
+
+def _literal(text: str) -> str:
+    return json.dumps(text, ensure_ascii=False)
+
+
+def graph_to_dot(graph: RelationGraph) -> str:
+    """The graph in Graphviz' language: denied facts dashed, optional ones dotted, hedged ones thinner."""
+    lines = ["digraph layout {", "    node [shape=box, style=rounded, fontname=Helvetica];"]
+    lines += [f"    {_literal(name)};" for name in graph.nodes]
+    for fact in graph.facts():
+        label = " or ".join(relation.phrase for relation in fact.relations)
+        style = "dotted" if fact.optional else "solid" if fact.positive else "dashed"
+        shown = _literal(label if fact.positive else f"not {label}")
+        lines.append(
+            f"    {_literal(fact.subject)} -> {_literal(fact.object)} "
+            f"[label={shown}, style={style}, penwidth={max(0.3, fact.weight):.2f}];"
+        )
+    return "\n".join([*lines, "}"]) + "\n"

@@ -1,0 +1,246 @@
+"""The relation graph: what language and perception both end in, and what grounding compares.
+
+A :class:`RelationGraph` is a weighted directed multigraph over objects. Its edges are numpy arrays; :class:`Fact` is
+one edge as an object. :class:`PaperGraph` is the paper's Definition 1: a directed graph with one label an edge.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.ontology.errors import GraphError
+from deixis.ontology.relation import Reading, Relation, Relations
+from deixis.ontology.source import Source
+
+if TYPE_CHECKING:
+    import networkx as nx
+
+
+@dataclass(frozen=True, slots=True)
+class Fact:
+    """The subject stands in one of the relations to the object, or, where not ``positive``, in none of them.
+
+    ``weight`` is above 0 and at most 1; an ``optional`` fact need not hold. ``source`` is where it was written.
+
+    >>> from deixis.ontology.tbox import default_ontology
+    >>> r = default_ontology().relations
+    >>> print(Fact("fork", (r["left"], r["top_left"]), "plate", weight=0.8))
+    left or top_left(fork, plate)
+    """
+
+    subject: str
+    relations: tuple[Relation, ...]
+    object: str
+    positive: bool = True
+    optional: bool = False
+    weight: float = 1.0
+    source: Source | None = None
+
+    def __str__(self) -> str:
+        names = " or ".join(relation.name for relation in self.relations)
+        return f"{'' if self.positive else 'not '}{names}({self.subject}, {self.object})"
+
+    @property
+    def plain(self) -> bool:
+        """One relation that is affirmed: what Definition 1 and equations 5-9 can see."""
+        return self.positive and len(self.relations) == 1
+
+    @property
+    def relation_set(self) -> int:
+        """The relations as a bit mask over their indices."""
+        mask = 0
+        for relation in self.relations:
+            mask |= relation.bit
+        return mask
+
+
+@dataclass(frozen=True, eq=False)
+class RelationGraph:
+    """A weighted directed multigraph over named objects (n nodes, m edges).
+
+    An edge holds a set of relations (several are a disjunction), a sign, an optional flag, a weight and its source.
+    Relations carry their reading, so wide and exact never mix by accident.
+    """
+
+    vocabulary: Relations
+    nodes: tuple[str, ...]
+    subjects: NDArray[np.int32]  # (m,) node indices
+    objects: NDArray[np.int32]  # (m,) node indices
+    relation_sets: NDArray[np.int64]  # (m,) bit masks over relation indices
+    positive: NDArray[np.bool_]  # (m,)
+    optional: NDArray[np.bool_]  # (m,)
+    weights: NDArray[np.float64]  # (m,)
+    sources: tuple[Source | None, ...] = ()  # (m,), or empty where no edge has one
+    kinds: tuple[str | None, ...] = ()  # (n,) class IRIs, or empty
+    boxes: NDArray[np.float64] | None = None  # (n, 2, d): least and greatest corner, metres
+    _index: dict[str, int] = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        index = {name: i for i, name in enumerate(self.nodes)}
+        if len(index) != len(self.nodes):
+            twice = next(name for i, name in enumerate(self.nodes) if index[name] != i)
+            raise GraphError(f"the object '{twice}' is in the graph twice")
+        object.__setattr__(self, "_index", index)
+        m = len(self.subjects)
+        arrays = (self.objects, self.relation_sets, self.positive, self.optional, self.weights)
+        if any(len(array) != m for array in arrays) or len(self.sources) not in (0, m):
+            raise GraphError("the edge arrays differ in length")
+        if len(self.kinds) not in (0, len(self.nodes)):
+            raise GraphError("there must be one kind a node, or none at all")
+        if self.boxes is not None and len(self.boxes) != len(self.nodes):
+            raise GraphError("there must be one box a node, or none at all")
+
+    @classmethod
+    def from_facts(
+        cls,
+        vocabulary: Relations,
+        nodes: Sequence[str],
+        facts: Iterable[Fact],
+        kinds: Sequence[str | None] = (),
+        boxes: NDArray[np.float64] | None = None,
+    ) -> RelationGraph:
+        """The graph of these facts; raises GraphError where one names an object that is no node."""
+        index = {name: i for i, name in enumerate(nodes)}
+        listed = list(facts)
+        for fact in listed:
+            for name in (fact.subject, fact.object):
+                if name not in index:
+                    raise GraphError(f"the fact {fact} names '{name}', which is no node of the graph")
+        return cls(
+            vocabulary=vocabulary,
+            nodes=tuple(nodes),
+            subjects=np.array([index[f.subject] for f in listed], dtype=np.int32),
+            objects=np.array([index[f.object] for f in listed], dtype=np.int32),
+            relation_sets=np.array([f.relation_set for f in listed], dtype=np.int64),
+            positive=np.array([f.positive for f in listed], dtype=np.bool_),
+            optional=np.array([f.optional for f in listed], dtype=np.bool_),
+            weights=np.array([f.weight for f in listed], dtype=np.float64),
+            sources=tuple(f.source for f in listed),
+            kinds=tuple(kinds),
+            boxes=boxes,
+        )
+
+    def __len__(self) -> int:
+        """The number of edges."""
+        return len(self.subjects)
+
+    def index(self, node: str) -> int:
+        """The position of a node; raises GraphError where there is none of that name."""
+        try:
+            return self._index[node]
+        except KeyError:
+            raise GraphError(f"the graph has no object '{node}'") from None
+
+    def fact(self, edge: int) -> Fact:
+        """One edge as an object."""
+        return Fact(
+            subject=self.nodes[self.subjects[edge]],
+            relations=self.vocabulary.members(int(self.relation_sets[edge])),
+            object=self.nodes[self.objects[edge]],
+            positive=bool(self.positive[edge]),
+            optional=bool(self.optional[edge]),
+            weight=float(self.weights[edge]),
+            source=self.sources[edge] if self.sources else None,
+        )
+
+    def facts(self) -> Iterator[Fact]:
+        """All edges as objects, in their order."""
+        return (self.fact(edge) for edge in range(len(self)))
+
+    def subgraph(self, nodes: Sequence[str]) -> RelationGraph:
+        """The graph that these nodes induce, in the order given."""
+        keep = np.array([self.index(name) for name in nodes], dtype=np.int64)
+        position = np.full(len(self.nodes), -1, dtype=np.int32)
+        position[keep] = np.arange(len(keep), dtype=np.int32)
+        edges = np.flatnonzero((position[self.subjects] >= 0) & (position[self.objects] >= 0))
+        return RelationGraph(
+            vocabulary=self.vocabulary,
+            nodes=tuple(nodes),
+            subjects=position[self.subjects[edges]],
+            objects=position[self.objects[edges]],
+            relation_sets=self.relation_sets[edges],
+            positive=self.positive[edges],
+            optional=self.optional[edges],
+            weights=self.weights[edges],
+            sources=tuple(self.sources[e] for e in edges) if self.sources else (),
+            kinds=tuple(self.kinds[i] for i in keep) if self.kinds else (),
+            boxes=None if self.boxes is None else self.boxes[keep],
+        )
+
+    def to_networkx(self) -> nx.MultiDiGraph[Any]:
+        """The graph as a ``networkx.MultiDiGraph``; edge attributes are the fields of :class:`Fact`."""
+        import networkx as nx
+
+        graph: nx.MultiDiGraph[Any] = nx.MultiDiGraph()
+        for i, name in enumerate(self.nodes):
+            box = None if self.boxes is None else self.boxes[i].tolist()
+            graph.add_node(name, kind=self.kinds[i] if self.kinds else None, box=box)
+        for fact in self.facts():
+            graph.add_edge(
+                fact.subject,
+                fact.object,
+                relations=tuple(relation.name for relation in fact.relations),
+                positive=fact.positive,
+                optional=fact.optional,
+                weight=fact.weight,
+                source=str(fact.source) if fact.source else None,
+            )
+        return graph
+
+    def paper_view(self) -> PaperGraph:
+        """The graph of Definition 1: one word an edge and one edge an ordered pair.
+
+        Facts that are no single affirmed relation do not enter it. Where several facts name one pair, the most
+        telling label stays: the one that implies the most others, the first stated among equals.
+        """
+        labels = tuple(r.word for r in self.vocabulary.of_reading(Reading.EXACT))
+        by_index = {r.index: (labels.index(r.word), len(r.broader)) for r in self.vocabulary.values()}
+        best: dict[tuple[int, int], tuple[int, int]] = {}
+        plain = self.positive & (np.bitwise_count(self.relation_sets) == 1)
+        for edge in np.flatnonzero(plain):
+            label, implied = by_index[int(self.relation_sets[edge]).bit_length() - 1]
+            pair = (int(self.subjects[edge]), int(self.objects[edge]))
+            if pair not in best or implied > best[pair][1]:
+                best[pair] = (label, implied)
+        return PaperGraph(
+            vertices=self.nodes,
+            vertex_labels=self.nodes,
+            edges=np.array(list(best), dtype=np.int32).reshape(-1, 2),
+            edge_labels=np.array([label for label, _ in best.values()], dtype=np.int8),
+            labels=labels,
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class PaperGraph:
+    """Definition 1: G = (V, E, lambda, alpha, L_V, L_E), a directed graph with labelled vertices and edges."""
+
+    vertices: tuple[str, ...]  # V
+    vertex_labels: tuple[str, ...]  # lambda, in the order of V; L_V is the set of them
+    edges: NDArray[np.int32]  # E, shape (m, 2): from, to
+    edge_labels: NDArray[np.int8]  # alpha, shape (m,): positions in ``labels``
+    labels: tuple[str, ...]  # L_E
+
+    def adjacency(self) -> NDArray[np.float64]:
+        """One 0/1 matrix a label, shape (labels, n, n), axis 1 from, axis 2 to."""
+        n = len(self.vertices)
+        matrices = np.zeros((len(self.labels), n, n))
+        matrices[self.edge_labels, self.edges[:, 0], self.edges[:, 1]] = 1.0
+        return matrices
+
+    def histograms(self) -> NDArray[np.int64]:
+        """Definition 2, the labelled edge histograms: shape (n, 2, labels), incoming first, then outgoing.
+
+        >>> graph = PaperGraph(("a", "b"), ("a", "b"), np.array([[0, 1]], np.int32), np.zeros(1, np.int8), ("left",))
+        >>> graph.histograms().tolist()
+        [[[0], [1]], [[1], [0]]]
+        """
+        counts = np.zeros((len(self.vertices), 2, len(self.labels)), dtype=np.int64)
+        np.add.at(counts, (self.edges[:, 1], 0, self.edge_labels), 1)
+        np.add.at(counts, (self.edges[:, 0], 1, self.edge_labels), 1)
+        return counts

@@ -1,0 +1,64 @@
+"""Kinds of things: the taxonomy of tableware, looked up by the words that people use."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+
+@dataclass(frozen=True, slots=True)
+class Kind:
+    """A class of the taxonomy: its words (label and synonyms, case-folded) and every broader class's IRI."""
+
+    iri: str
+    label: str
+    words: tuple[str, ...]
+    broader: frozenset[str]
+
+    @property
+    def name(self) -> str:
+        """The local name: ``DessertFork``."""
+        return self.iri.rsplit("#", 1)[-1]
+
+
+class Kinds:
+    """All kinds, by IRI and by word.
+
+    >>> from deixis.ontology.tbox import default_ontology
+    >>> kinds = default_ontology().kinds
+    >>> kinds.of_word("Dessert_Fork").name, kinds.of_word("serviette").name
+    ('DessertFork', 'Napkin')
+    >>> kinds.is_a(kinds.of_word("dessert fork"), kinds.of_word("cutlery"))
+    True
+    """
+
+    def __init__(self, kinds: tuple[Kind, ...]) -> None:
+        self._all = kinds
+        self._by_iri = {kind.iri: kind for kind in kinds}
+
+    def __iter__(self) -> Iterator[Kind]:
+        return iter(self._all)
+
+    def __len__(self) -> int:
+        return len(self._all)
+
+    def __getitem__(self, iri: str) -> Kind:
+        return self._by_iri[iri]
+
+    @cached_property
+    def words(self) -> dict[str, Kind]:
+        """Every word for a kind, spaces single, case-folded; where two kinds share a word the first one has it."""
+        words: dict[str, Kind] = {}
+        for kind in self._all:
+            for word in (*kind.words, kind.name.casefold()):
+                words.setdefault(word, kind)
+        return words
+
+    def of_word(self, word: str) -> Kind | None:
+        """The kind that a word or a name stands for; ``dinner_plate``, ``Dinner plate`` and ``DinnerPlate`` alike."""
+        return self.words.get(" ".join(word.casefold().replace("_", " ").replace("-", " ").split()))
+
+    def is_a(self, kind: Kind, broader: Kind) -> bool:
+        """Whether every ``kind`` is a ``broader``."""
+        return kind.iri == broader.iri or broader.iri in kind.broader

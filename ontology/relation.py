@@ -1,0 +1,218 @@
+"""Relation words and what they mean: a reading, an inverse, and the rectangle-algebra atoms that they admit."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.ontology.allen import SYMBOLS, Allen, allen_mask
+from deixis.ontology.errors import OntologyError, UnknownTermError
+from deixis.ontology.vocabulary import DX, W3C
+
+if TYPE_CHECKING:
+    from deixis.ontology.tbox import Triples
+
+
+class Reading(StrEnum):
+    """How a relation word is taken (DESIGN: the two readings of a word)."""
+
+    WIDE = "wide"  # in a script: constrains the axis it names, leaves the rest open
+    EXACT = "exact"  # between two boxes: one of ten names, of which every pair bears just one
+
+
+@dataclass(frozen=True, slots=True)
+class Relation:
+    """A relation word in one reading, as the TBox states it.
+
+    ``x_atoms`` and ``y_atoms`` are 13-bit masks of Allen relations (bit = code): the product of the two is the set
+    of rectangle-algebra atoms that the relation admits. ``z_atoms`` settle it where heights are known (0: they do
+    not). ``broader`` names the relations that follow from this one, ``index`` is its bit in a relation set.
+    """
+
+    name: str  # 'top_left', 'exactly_top_left'
+    word: str  # 'top_left' in both readings, as the paper writes it
+    iri: str
+    reading: Reading
+    index: int
+    inverse: str
+    transitive: bool
+    x_atoms: int
+    y_atoms: int
+    z_atoms: int
+    broader: frozenset[str]
+    phrase: str
+    words: tuple[str, ...]
+
+    def __str__(self) -> str:
+        return self.name
+
+    @property
+    def bit(self) -> int:
+        return 1 << self.index
+
+    def admits(self) -> NDArray[np.bool_]:
+        """The admitted atoms as a boolean array of shape (13, 13), axes x and y, indexed by Allen code."""
+        codes = np.arange(13)
+        return ((self.x_atoms >> codes & 1)[:, None] & (self.y_atoms >> codes & 1)[None, :]).astype(bool)
+
+
+class Relations(Mapping[str, Relation]):
+    """All relations by name, in the order of their indices; unknown names fail with the nearest known one.
+
+    >>> from deixis.ontology.tbox import default_ontology
+    >>> relations = default_ontology().relations
+    >>> relations["left"].inverse, relations["left"].transitive
+    ('right', True)
+    >>> relations["lefft"]
+    Traceback (most recent call last):
+        ...
+    deixis.ontology.errors.UnknownTermError: there is no relation 'lefft'; did you mean 'left'?
+    """
+
+    def __init__(self, relations: tuple[Relation, ...]) -> None:
+        self._all = relations
+        self._by_name = {relation.name: relation for relation in relations}
+        for relation in relations:
+            for other in (relation.inverse, *relation.broader):
+                if other not in self._by_name:
+                    raise OntologyError(f"relation '{relation.name}' refers to '{other}', which is none")
+
+    def __getitem__(self, name: str) -> Relation:
+        try:
+            return self._by_name[name]
+        except KeyError:
+            hint = nearest(name, self._by_name)
+            raise UnknownTermError(
+                f"there is no relation '{name}'" + (f"; did you mean '{hint}'?" if hint else "")
+            ) from None
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._by_name)
+
+    def __len__(self) -> int:
+        return len(self._all)
+
+    def of_reading(self, reading: Reading) -> tuple[Relation, ...]:
+        return tuple(relation for relation in self._all if relation.reading is reading)
+
+    def members(self, mask: int) -> tuple[Relation, ...]:
+        """The relations in a relation set, by index."""
+        return tuple(relation for relation in self._all if mask >> relation.index & 1)
+
+    @cached_property
+    def by_word(self) -> dict[str, Relation]:
+        """Every phrase that a script may use, case-folded, single-spaced, without articles."""
+        words: dict[str, Relation] = {}
+        for relation in self._all:
+            for word in relation.words:
+                plain = plain_phrase(word)
+                other = words.setdefault(plain, relation)
+                if other is not relation:
+                    raise OntologyError(f"the word '{plain}' stands for both '{other}' and '{relation}'")
+        return words
+
+    def wide(self, exact: Relation) -> Relation:
+        """The wide relation of the same word."""
+        return self._by_name[exact.word]
+
+    def exact(self, wide: Relation) -> Relation:
+        """The exact relation of the same word."""
+        return next(r for r in self._all if r.word == wide.word and r.reading is Reading.EXACT)
+
+    @cached_property
+    def degrees(self) -> NDArray[np.float64]:
+        """How far a relation holds of a pair that bears an exact name: shape (relations, relations).
+
+        ``degrees[stated, name]`` is 1 where they are the same word read exactly, 0.5 where the name only implies
+        the stated relation in its wide reading, else 0. Columns of wide relations are 0: no pair bears them as
+        its name. A relation stated in its exact reading holds exactly or not at all.
+        """
+        table = np.zeros((len(self._all), len(self._all)))
+        for name in self.of_reading(Reading.EXACT):
+            table[name.index, name.index] = 1.0
+            for broader in name.broader:
+                same_word = self._by_name[broader].word == name.word
+                table[self._by_name[broader].index, name.index] = 1.0 if same_word else 0.5
+        return table
+
+
+def plain_phrase(words: str) -> str:
+    """A phrase as scripts are matched against it: case-folded, articles dropped, underscores as spaces.
+
+    >>> plain_phrase("To the  Left_of")
+    'to left of'
+    """
+    return " ".join(w for w in words.casefold().replace("_", " ").split() if w not in ARTICLES)
+
+
+ARTICLES = frozenset({"the", "a", "an"})
+
+
+def nearest(word: str, known: Iterable[str]) -> str | None:
+    """The known word that looks most like ``word``, or None where none comes near.
+
+    >>> nearest("rihgt", ["left", "right"])
+    'right'
+    """
+    found = difflib.get_close_matches(word, sorted(known), n=1, cutoff=0.6)
+    return found[0] if found else None
+
+
+def relation_from_triples(iri: str, triples: Triples, index: int) -> Relation:
+    """Builds a relation from what the TBox says of ``iri``; raises OntologyError where something lacks."""
+    label = triples.value(iri, W3C.RDFS_LABEL)
+    reading = Reading.WIDE if triples.value(iri, DX.READING) == DX.WIDE else Reading.EXACT
+    broader = [
+        parent for parent in triples.ancestors(iri, W3C.RDFS_SUB_PROPERTY_OF) if triples.values(parent, DX.READING)
+    ]
+    phrase = triples.value(iri, DX.PHRASE)
+    name = _name(label)
+    return Relation(
+        name=name,
+        word=_word(iri, name, reading, broader, triples),
+        iri=iri,
+        reading=reading,
+        index=index,
+        inverse=_inverse(iri, triples),
+        transitive=W3C.OWL_TRANSITIVE_PROPERTY in triples.values(iri, W3C.RDF_TYPE),
+        x_atoms=_atoms(iri, DX.ADMITS_ON_X, triples),
+        y_atoms=_atoms(iri, DX.ADMITS_ON_Y, triples),
+        z_atoms=_atoms(iri, DX.DECIDED_ON_Z, triples),
+        broader=frozenset(_name(triples.value(parent, W3C.RDFS_LABEL)) for parent in broader),
+        phrase=phrase,
+        words=(label, phrase, *triples.values(iri, W3C.SKOS_ALT_LABEL)),
+    )
+
+
+def _name(label: str) -> str:
+    return label.replace(" ", "_")
+
+
+def _word(iri: str, name: str, reading: Reading, broader: list[str], triples: Triples) -> str:
+    """The wide relation's name for both: an exact relation's direct wide parent bears its word."""
+    if reading is Reading.WIDE:
+        return name
+    direct = [p for p in triples.values(iri, W3C.RDFS_SUB_PROPERTY_OF) if p in broader]
+    if len(direct) != 1:
+        raise OntologyError(f"the exact relation <{iri}> must be a sub-property of exactly one wide one")
+    return _name(triples.value(direct[0], W3C.RDFS_LABEL))
+
+
+def _inverse(iri: str, triples: Triples) -> str:
+    """OWL states an inverse from either side."""
+    stated = {*triples.values(iri, W3C.OWL_INVERSE_OF), *triples.subjects(W3C.OWL_INVERSE_OF, iri)}
+    if len(stated) != 1:
+        raise OntologyError(f"<{iri}> must have exactly one owl:inverseOf, and has {len(stated)}")
+    return _name(triples.value(stated.pop(), W3C.RDFS_LABEL))
+
+
+def _atoms(iri: str, prop: DX, triples: Triples) -> int:
+    symbols = [triples.value(allen, DX.ALLEN_SYMBOL) for allen in triples.values(iri, prop)]
+    return allen_mask(Allen(SYMBOLS.index(symbol)) for symbol in symbols)

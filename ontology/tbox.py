@@ -1,0 +1,137 @@
+"""Reads the TBox (``deixis.ttl``) and turns it into the names and meanings that the other rooms use."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+
+from deixis.ontology.errors import OntologyError
+from deixis.ontology.kinds import Kind, Kinds
+from deixis.ontology.relation import Relation, Relations, relation_from_triples
+from deixis.ontology.vocabulary import DX, W3C
+
+TBOX_FILE = Path(__file__).with_name("deixis.ttl")
+
+
+class Triples:
+    """An index over triples: what a subject says under a predicate, as plain strings, sorted."""
+
+    def __init__(self) -> None:
+        self._values: dict[tuple[str, str], list[str]] = defaultdict(list)
+        self._subjects: dict[tuple[str, str], list[str]] = defaultdict(list)
+
+    def add(self, subject: str, predicate: str, value: str) -> None:
+        self._values[subject, predicate].append(value)
+        self._subjects[predicate, value].append(subject)
+
+    def values(self, subject: str, predicate: str) -> list[str]:
+        return sorted(set(self._values.get((subject, predicate), ())))
+
+    def value(self, subject: str, predicate: str) -> str:
+        """The one value; raises OntologyError where there is none or more than one."""
+        found = self.values(subject, predicate)
+        if len(found) != 1:
+            raise OntologyError(f"<{subject}> must have exactly one <{predicate}>, and has {len(found)}")
+        return found[0]
+
+    def subjects(self, predicate: str, value: str) -> list[str]:
+        return sorted(set(self._subjects.get((predicate, value), ())))
+
+    def ancestors(self, subject: str, predicate: str) -> frozenset[str]:
+        """Everything reached from ``subject`` along ``predicate``, without itself; cycles do no harm."""
+        seen: set[str] = set()
+        todo = [subject]
+        while todo:
+            for parent in self.values(todo.pop(), predicate):
+                if parent not in seen:
+                    seen.add(parent)
+                    todo.append(parent)
+        return frozenset(seen - {subject})
+
+
+@dataclass(frozen=True)
+class Ontology:
+    """What the TBox says, ready for use: relations, kinds of things, and hedges with their weights."""
+
+    relations: Relations
+    kinds: Kinds
+    hedges: dict[str, float]
+
+
+def load_ontology(*extra: str) -> Ontology:
+    """The shipped TBox, with further Turtle texts merged into it.
+
+    A ``skos:altLabel`` in an extra text is enough for scripts to understand a new word for a relation:
+
+    >>> more = load_ontology('''@prefix dx: <https://w3id.org/deixis/onto#> .
+    ... @prefix skos: <http://www.w3.org/2004/02/skos/core#> .
+    ... dx:left skos:altLabel "port side of" .''')
+    >>> more.relations.by_word["port side of"].name
+    'left'
+
+    Raises OntologyError where a text is no Turtle or a relation lacks what code needs.
+    """
+    triples = Triples()
+    for text in (TBOX_FILE.read_text(encoding="utf-8"), *extra):
+        for subject, predicate, value in _parse(text):
+            triples.add(subject, predicate, value)
+    return Ontology(_relations(triples), _kinds(triples), _hedges(triples))
+
+
+@lru_cache(maxsize=1)
+def default_ontology() -> Ontology:
+    """The shipped ontology, read once."""
+    return load_ontology()
+
+
+def _parse(text: str) -> Iterator[tuple[str, str, str]]:
+    import pyoxigraph
+
+    try:
+        for quad in pyoxigraph.parse(text, format=pyoxigraph.RdfFormat.TURTLE):
+            value = quad.object
+            if isinstance(quad.subject, pyoxigraph.NamedNode) and not isinstance(value, pyoxigraph.BlankNode):
+                yield quad.subject.value, quad.predicate.value, getattr(value, "value", str(value))
+    except SyntaxError as error:
+        raise OntologyError(f"the ontology is no valid Turtle: {error}") from error
+
+
+def _relations(triples: Triples) -> Relations:
+    found: list[Relation] = []
+    for reading in (DX.WIDE, DX.EXACT):
+        for iri in triples.subjects(DX.READING, reading):
+            found.append(relation_from_triples(iri, triples, index=len(found)))
+    return Relations(tuple(found))
+
+
+def _words(triples: Triples, iri: str) -> tuple[str, ...]:
+    labels = [*triples.values(iri, W3C.RDFS_LABEL), *triples.values(iri, W3C.SKOS_ALT_LABEL)]
+    return tuple(dict.fromkeys(label.casefold() for label in labels))
+
+
+def _kinds(triples: Triples) -> Kinds:
+    kinds = []
+    for iri in triples.subjects(W3C.RDF_TYPE, W3C.OWL_CLASS):
+        broader = triples.ancestors(iri, W3C.RDFS_SUB_CLASS_OF)
+        if DX.THING in broader or iri == DX.THING:
+            kinds.append(
+                Kind(iri, triples.value(iri, W3C.RDFS_LABEL), _words(triples, iri), broader & _own(triples))
+            )
+    return Kinds(tuple(kinds))
+
+
+def _own(triples: Triples) -> frozenset[str]:
+    return frozenset(triples.subjects(W3C.RDF_TYPE, W3C.OWL_CLASS))
+
+
+def _hedges(triples: Triples) -> dict[str, float]:
+    weights = {}
+    for iri in triples.subjects(W3C.RDF_TYPE, DX.HEDGE):
+        weight = float(triples.value(iri, DX.HEDGE_WEIGHT))
+        if not 0 < weight <= 1:
+            raise OntologyError(f"<{iri}>: a hedge weighs above 0 and at most 1, not {weight}")
+        weights.update(dict.fromkeys(_words(triples, iri), weight))
+    return weights
