@@ -241,6 +241,7 @@ class PaperGraph:
         [[[0], [1]], [[1], [0]]]
         """
         counts = np.zeros((len(self.vertices), 2, len(self.labels)), dtype=np.int64)
-        np.add.at(counts, (self.edges[:, 1], 0, self.edge_labels), 1)
-        np.add.at(counts, (self.edges[:, 0], 1, self.edge_labels), 1)
+        for (start, end), label in zip(self.edges.tolist(), self.edge_labels.tolist(), strict=True):
+            counts[end, 0, label] += 1
+            counts[start, 1, label] += 1
         return counts

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import StrEnum
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -37,18 +37,18 @@ class Relation:
     """
 
     name: str  # 'top_left', 'exactly_top_left'
-    word: str  # 'top_left' in both readings, as the paper writes it
     iri: str
-    reading: Reading
     index: int
-    inverse: str
-    transitive: bool
-    x_atoms: int
-    y_atoms: int
-    z_atoms: int
-    broader: frozenset[str]
-    phrase: str
-    words: tuple[str, ...]
+    word: str = field(compare=False)  # 'top_left' in both readings, as the paper writes it
+    reading: Reading = field(compare=False)
+    inverse: str = field(compare=False)
+    transitive: bool = field(compare=False)
+    x_atoms: int = field(compare=False)
+    y_atoms: int = field(compare=False)
+    z_atoms: int = field(compare=False)
+    broader: frozenset[str] = field(compare=False)
+    phrase: str = field(compare=False)
+    words: tuple[str, ...] = field(compare=False)
 
     def __str__(self) -> str:
         return self.name

@@ -117,9 +117,7 @@ def _kinds(triples: Triples) -> Kinds:
     for iri in triples.subjects(W3C.RDF_TYPE, W3C.OWL_CLASS):
         broader = triples.ancestors(iri, W3C.RDFS_SUB_CLASS_OF)
         if DX.THING in broader or iri == DX.THING:
-            kinds.append(
-                Kind(iri, triples.value(iri, W3C.RDFS_LABEL), _words(triples, iri), broader & _own(triples))
-            )
+            kinds.append(Kind(iri, triples.value(iri, W3C.RDFS_LABEL), _words(triples, iri), broader & _own(triples)))
     return Kinds(tuple(kinds))
 
 

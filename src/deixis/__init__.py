@@ -1,0 +1,60 @@
+"""Deixis: words that get their meaning from the scene in front of you.
+
+Reads how a table is laid, looks at a laid table, and says which perceived thing each word means, what the evidence
+cannot tell apart, and what follows from the description.
+
+>>> import deixis
+>>> script = deixis.read_script(text="napkin on plate; fork left of plate; spoon right of plate")
+>>> scene = deixis.read_scene({"objects": [
+...     {"id": "o1", "min": [0.00, 0.00], "max": [0.27, 0.27]},
+...     {"id": "o2", "min": [0.30, 0.03], "max": [0.34, 0.23]},
+...     {"id": "o3", "min": [-0.05, 0.03], "max": [-0.02, 0.23]},
+...     {"id": "o4", "min": [0.08, 0.05], "max": [0.18, 0.22]}]})
+>>> found = deixis.ground(script, scene)
+>>> {name: match.perceived for name, match in found.matches.items()}
+{'napkin': 'o4', 'plate': 'o1', 'fork': 'o3', 'spoon': 'o2'}
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from deixis.grammar.format import format_script
+    from deixis.ontology.errors import DeixisError
+    from deixis.perception.scene_file import read_scene, write_scene
+    from deixis.session import ground, infer, read_script
+
+__version__ = "0.1.0"
+__all__ = [
+    "DeixisError",
+    "format_script",
+    "ground",
+    "infer",
+    "read_scene",
+    "read_script",
+    "write_scene",
+]
+
+_HOMES = {
+    "DeixisError": "deixis.ontology.errors",
+    "format_script": "deixis.grammar.format",
+    "ground": "deixis.session",
+    "infer": "deixis.session",
+    "read_scene": "deixis.perception.scene_file",
+    "read_script": "deixis.session",
+    "write_scene": "deixis.perception.scene_file",
+}
+
+
+def __getattr__(name: str) -> Any:
+    """Loads what is asked for only then, so that importing one room never pays for another."""
+    if name not in _HOMES:
+        raise AttributeError(f"module 'deixis' has no attribute '{name}'")
+    from importlib import import_module
+
+    return getattr(import_module(_HOMES[name]), name)
+
+
+def __dir__() -> list[str]:
+    return sorted([*__all__, "__version__"])

@@ -1,0 +1,97 @@
+"""The script that is being read: what the meaning of a statement depends on besides its own words."""
+
+from __future__ import annotations
+
+from contextvars import ContextVar
+from dataclasses import dataclass, field
+from functools import cached_property
+
+from deixis.grammar.errors import SHOWN, Problem, Refusal, shortened
+from deixis.grammar.names import NameBook
+from deixis.grammar.phrases import chains
+from deixis.grammar.script import Mention
+from deixis.ontology.kinds import Kind
+from deixis.ontology.relation import Relation, nearest, plain_phrase
+from deixis.ontology.source import Source
+from deixis.ontology.tbox import Ontology
+
+MOST_FACTS = 1_000_000  # of one script with all that it includes
+LONGEST_COMPARED = 40  # characters of a word for which the nearest known one is looked for
+
+
+@dataclass
+class Draft:
+    """What one script and all the files that it includes share while they are read."""
+
+    ontology: Ontology
+    problems: list[Problem] = field(default_factory=list)
+    book: NameBook = field(default_factory=NameBook)
+    viewpoint: str | None = None
+    size: int = 0  # facts and declared objects so far
+    declared: dict[str, list[Kind]] = field(default_factory=dict)
+    _relations: dict[str, Relation] = field(default_factory=dict)
+
+    def nearest(self, word: str, known: list[str]) -> str | None:
+        """The known word that looks most like this one; none once more problems were found than are shown."""
+        if len(self.problems) >= SHOWN or len(word) > LONGEST_COMPARED:
+            return None
+        return nearest(word.casefold(), known)
+
+    def relation(self, phrase: str) -> Relation:
+        """The relation that a phrase stands for; the lexer knows that there is one."""
+        found = self._relations.get(phrase)
+        if found is None:
+            found = self._relations[phrase] = self.ontology.relations.by_word[plain_phrase(phrase)]
+        return found
+
+    @cached_property
+    def chains(self) -> dict[str, Relation]:
+        """What may head a chain, without its colon."""
+        return chains(self.ontology)
+
+    @cached_property
+    def hedges(self) -> dict[str, float]:
+        """The weight of each hedge."""
+        return {plain_phrase(word): weight for word, weight in self.ontology.hedges.items()}
+
+    def grow(self, more: int, source: Source) -> None:
+        """Counts facts before they are made; raises Refusal beyond the limit."""
+        if self.size + more > MOST_FACTS:
+            raise Refusal(source, f"a script states at most {MOST_FACTS:,} facts, and with these it states more")
+        self.size += more
+
+    def kind(self, word: str, source: Source) -> Kind:
+        """The kind of thing that a word stands for, a plural's if need be; raises Refusal where there is none."""
+        kinds = self.ontology.kinds
+        for form in (word, word.removesuffix("s"), word.removesuffix("es")):
+            if form and (found := kinds.of_word(form)) is not None:
+                return found
+        near = self.nearest(word.replace("_", " "), list(kinds.words))
+        hint = f"did you mean '{near}'?" if near else None
+        raise Refusal(source, f"there is no kind of thing called '{shortened(word)}'", hint)
+
+    def declare(self, subjects: tuple[Mention, ...], kind: Kind) -> None:
+        """Notes a declaration; raises Refusal where an object was declared as something else before."""
+        kinds = self.ontology.kinds
+        for mention in subjects:
+            for name in mention.names:
+                before = self.declared.setdefault(name, [])
+                for other in before:
+                    if not (kinds.is_a(kind, other) or kinds.is_a(other, kind)):
+                        message = f"'{shortened(name)}' was declared as a {other.label}, and is no {kind.label}"
+                        raise Refusal(mention.source, message)
+                if kind not in before:
+                    before.append(kind)
+
+
+@dataclass
+class Place:
+    """Where reading is: in which file, in which statement, of which draft."""
+
+    draft: Draft
+    file: str
+    statement: Source
+
+
+place: ContextVar[Place] = ContextVar("place")
+"""Read by the tree builder, which lark makes once for all scripts; set for the time that one file is parsed."""

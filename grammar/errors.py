@@ -1,0 +1,91 @@
+"""What is wrong with a script: each problem with its place, the line and a caret under it."""
+
+from __future__ import annotations
+
+import unicodedata
+from dataclasses import dataclass
+
+from deixis.ontology.errors import DeixisError
+from deixis.ontology.source import Source
+
+SHOWN = 50  # problems that are shown in full
+WINDOW = 100  # characters of a long line that are shown
+
+
+@dataclass(frozen=True, slots=True)
+class Problem:
+    """One thing that is wrong, at one place.
+
+    >>> print(Problem(Source("t.layout", 1, 6, 1, 9), "what is this?", "fork lft plate", "did you mean 'left'?"))
+    t.layout:1:6: what is this?
+    fork lft plate
+         ^^^
+    did you mean 'left'?
+    """
+
+    source: Source
+    message: str
+    line_text: str
+    hint: str | None = None
+
+    def __str__(self) -> str:
+        line, caret = _pointed(self.line_text, self.source)
+        parts = [f"{self.source}: {self.message}", line, caret]
+        return "\n".join(parts if self.hint is None else [*parts, self.hint])
+
+
+def _pointed(line: str, source: Source) -> tuple[str, str]:
+    """The line, cut to a window where it is long, and carets under what is meant."""
+    start = source.column - 1
+    end = source.end_column - 1 if source.end_line == source.line else len(line)
+    left = 0 if len(line) <= WINDOW else max(0, min(start - WINDOW // 2, len(line) - WINDOW))
+    right = min(len(line), left + WINDOW)
+    before = ("…" if left else "") + line[left:start]
+    shown = ("…" if left else "") + line[left:right] + ("…" if right < len(line) else "")
+    carets = max(1, _width(line[start : min(end, right)]))
+    return _printable(shown), " " * _width(before) + "^" * carets
+
+
+def _printable(line: str) -> str:
+    return "".join(c if c.isprintable() else " " if c.isspace() else "\ufffd" for c in line)
+
+
+def _width(text: str) -> int:
+    """The columns that a text takes in a terminal."""
+    if text.isascii():
+        return len(text)
+    wide = sum(unicodedata.east_asian_width(c) in "WF" for c in text)
+    return len(text) + wide - sum(unicodedata.combining(c) != 0 for c in text)
+
+
+class ScriptError(DeixisError, ValueError):
+    """A script that cannot be read as it stands; ``problems`` are all that is wrong with it, in order."""
+
+    def __init__(self, problems: tuple[Problem, ...]) -> None:
+        super().__init__(problems)
+        self.problems = problems
+
+    def __str__(self) -> str:
+        shown = [str(problem) for problem in self.problems[:SHOWN]]
+        if len(self.problems) > SHOWN:
+            shown.append(f"… and {len(self.problems) - SHOWN} more")
+        return "\n".join(shown)
+
+
+class ScriptFileError(DeixisError, OSError):
+    """A script file that cannot be read: missing, no file, too large, or no UTF-8; one line that names it."""
+
+
+class Refusal(Exception):
+    """Raised while a statement is read: it ends with this problem, and reading goes on at the next one."""
+
+    def __init__(self, source: Source, message: str, hint: str | None = None) -> None:
+        super().__init__(message)
+        self.source = source
+        self.message = message
+        self.hint = hint
+
+
+def shortened(name: str, limit: int = 60) -> str:
+    """A name or phrase as messages show it."""
+    return name if len(name) <= limit else name[: limit - 1] + "…"

@@ -1,0 +1,84 @@
+"""Reading script files, and finding the ones that a script includes: bounded, and never outside its folder."""
+
+from __future__ import annotations
+
+import codecs
+import stat
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from deixis.grammar.errors import Refusal, ScriptFileError, shortened
+from deixis.ontology.source import Source
+
+LARGEST = 64 * 1024 * 1024  # bytes of one file
+DEEPEST = 32  # includes within includes
+MOST_FILES = 1_000  # included by one script
+
+
+def read_text(path: Path, shown: str) -> str:
+    """The text of a file; raises ScriptFileError, which names it as ``shown``, where it cannot be read."""
+    try:
+        status = path.stat()
+        if stat.S_ISDIR(status.st_mode):
+            raise ScriptFileError(f"{shown}: this is a directory, not a layout script")
+        if not stat.S_ISREG(status.st_mode):
+            raise ScriptFileError(f"{shown}: this is no regular file")
+        with path.open("rb") as file:
+            data = file.read(LARGEST + 1)
+    except FileNotFoundError:
+        raise ScriptFileError(f"{shown}: there is no such file") from None
+    except ScriptFileError:
+        raise
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        raise ScriptFileError(f"{shown}: this file cannot be read ({reason})") from None
+    if len(data) > LARGEST:
+        raise ScriptFileError(f"{shown}: this file is larger than {LARGEST // 1024**2} MB")
+    return _decoded(data, shown)
+
+
+def _decoded(data: bytes, shown: str) -> str:
+    if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        raise ScriptFileError(f"{shown}: this file is UTF-16, not UTF-8; save it as UTF-8")
+    try:
+        return data.decode("utf-8")
+    except UnicodeDecodeError as error:
+        line = data.count(b"\n", 0, error.start) + 1
+        raise ScriptFileError(f"{shown}: line {line} is not UTF-8; save the file as UTF-8") from None
+
+
+@dataclass
+class Includes:
+    """The files that were included so far, and those that are open right now."""
+
+    folder: Path  # real path of the outermost script's folder
+    open: list[Path]  # real paths, the outermost script first
+    seen: set[Path] = field(default_factory=set)
+
+    def find(self, path: str, beside: Path, source: Source) -> Path | None:
+        """The real path of an included file, None where it was read before; raises Refusal where it is out of bounds.
+
+        ``beside`` is the folder of the including file.
+        """
+        if not path.strip():
+            raise Refusal(source, "an include needs the name of a file")
+        try:
+            real = (beside / path).resolve()
+        except (OSError, ValueError, RuntimeError):
+            raise Refusal(source, f"'{shortened(path)}' cannot be a file's name") from None
+        if not real.is_relative_to(self.folder):
+            raise Refusal(source, f"'{shortened(path)}' is outside the folder of the script")
+        if real in self.open:
+            raise Refusal(source, f"'{shortened(path)}' includes itself", self._cycle(real))
+        if real in self.seen:
+            return None
+        if len(self.open) > DEEPEST:
+            raise Refusal(source, f"includes are nested deeper than {DEEPEST}")
+        if len(self.seen) >= MOST_FILES:
+            raise Refusal(source, f"more than {MOST_FILES:,} files are included")
+        self.seen.add(real)
+        return real
+
+    def _cycle(self, real: Path) -> str | None:
+        names = [path.name for path in self.open[self.open.index(real) :]]
+        return " includes ".join([*names, real.name]) if len(names) > 1 else None

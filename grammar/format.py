@@ -1,0 +1,148 @@
+"""The canonical form of a script: one statement a line, as a sentence, comments kept."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from deixis.grammar.script import (
+    Chain,
+    Comment,
+    Declaration,
+    Header,
+    Include,
+    Mention,
+    Modifiers,
+    Placement,
+    Script,
+    Statement,
+)
+from deixis.ontology.kinds import Kind
+from deixis.ontology.relation import Relation
+from deixis.ontology.tbox import Ontology
+
+
+def format_script(script: Script) -> str:
+    """The script's own statements in canonical form; formatting what this returns changes nothing.
+
+    >>> from deixis.grammar.parser import parse_script
+    >>> print(format_script(parse_script("left(salad fork, the plate); not on(napkin, plate)  # never")), end="")
+    salad_fork left of plate
+    napkin not on plate  # never
+    """
+    lines: list[str] = []
+    last_line = 0
+    writer = StatementWriter(script.ontology)
+    for block in _blocks(script):
+        if lines and block.first_line > last_line + 1:
+            lines.append("")
+        lines += [_comment(comment) for comment in block.above]
+        if block.statement is not None:
+            after = f"  {_comment(block.after)}" if block.after else ""
+            lines.append(writer.write(block.statement) + after)
+        last_line = block.last_line
+    return "".join(line + "\n" for line in lines)
+
+
+@dataclass(slots=True)
+class _Block:
+    """A statement with the comments inside it and the one behind it, or a comment that stands alone."""
+
+    above: list[Comment]
+    statement: Statement | None
+    after: Comment | None
+    first_line: int
+    last_line: int
+
+
+def _blocks(script: Script) -> Iterator[_Block]:
+    """The script cut into blocks, in order.
+
+    A comment inside a statement goes above it. One behind a statement, on the line where it ends, stays there, unless
+    a second statement follows on that line: then it belongs to that one.
+    """
+    comments = list(reversed(script.comments))
+    for i, statement in enumerate(script.statements):
+        start, end = statement.source.line, statement.source.end_line
+        place = (end, statement.source.end_column)
+        while comments and comments[-1].source.line < start:
+            yield _alone(comments.pop())
+        above = []
+        while comments and (comments[-1].source.line, comments[-1].source.column) < place:
+            above.append(comments.pop())
+        after = None
+        following = script.statements[i + 1].source.line if i + 1 < len(script.statements) else None
+        if comments and comments[-1].source.line == end and following != end:
+            after = comments.pop()
+        yield _Block(above, statement, after, start, end)
+    while comments:
+        yield _alone(comments.pop())
+
+
+def _alone(comment: Comment) -> _Block:
+    return _Block([comment], None, None, comment.source.line, comment.source.line)
+
+
+def _comment(comment: Comment) -> str:
+    return f"# {comment.text}" if comment.text else "#"
+
+
+class StatementWriter:
+    """Writes statements in the words of an ontology, and quotes the names that need it."""
+
+    def __init__(self, ontology: Ontology) -> None:
+        from deixis.grammar.language import language_of  # here, so that only who formats waits for lark
+
+        self._ontology = ontology
+        self._language = language_of(ontology)
+        self._written: dict[str, str] = {}
+
+    def write(self, statement: Statement) -> str:
+        """The statement on one line, without its end."""
+        match statement:
+            case Header(name, title, viewpoint):
+                view = f"seen from {self.name(viewpoint)}" if viewpoint else None
+                return " ".join(filter(None, ["layout", name, f'"{title}"' if title else None, view]))
+            case Include(path):
+                return f'include "{path}"'
+            case Declaration(subjects, kind):
+                return f"{self._list(subjects)} {self._is(subjects, kind)}"
+            case Chain(relation, objects, modifiers):
+                inverse = self._ontology.relations[relation.inverse]
+                head = f"{relation.word} to {inverse.word}".replace("_", " ")
+                return f"{_front(modifiers)}{head}: {self._list(objects)}"
+            case Placement(subjects, relations, objects, modifiers):
+                denied = "" if modifiers.positive else "not "
+                said = f"{denied}{_phrases(relations)}"
+                return f"{_front(modifiers)}{self._list(subjects)} {said} {self._list(objects)}"
+
+    def name(self, name: str) -> str:
+        """The name, quoted where it would not be read back as it is."""
+        written = self._written.get(name)
+        if written is None:
+            written = name if self._language.reads_as_name(name) else f'"{name}"'
+            self._written[name] = written
+        return written
+
+    def _list(self, mentions: tuple[Mention, ...]) -> str:
+        return ", ".join(self._mention(mention) for mention in mentions)
+
+    def _mention(self, mention: Mention) -> str:
+        counted = "" if mention.count is None else f"{mention.count} "
+        return counted + self.name(mention.name)
+
+    def _is(self, subjects: tuple[Mention, ...], kind: Kind) -> str:
+        kinds = self._ontology.kinds
+        word = next((w for w in (kind.name, *kind.words) if kinds.of_word(w) is kind), kind.name)
+        if len(subjects) > 1 or subjects[0].count is not None:
+            return f"are {self.name(word)}"
+        return f"is {'an' if word[0] in 'AEIOUaeiou' else 'a'} {self.name(word)}"
+
+
+def _front(modifiers: Modifiers) -> str:
+    optional = "optional " if modifiers.optional else ""
+    return optional + (f"{modifiers.hedge} " if modifiers.hedge else "")
+
+
+def _phrases(relations: tuple[Relation, ...]) -> str:
+    return " or ".join(relation.phrase for relation in relations)

@@ -1,0 +1,79 @@
+"""The grammar in ``layout.lark``, with the words of an ontology put into it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import lru_cache
+
+from lark import Lark, Token
+from lark.lark import PostLex
+from lark.lexer import PatternRE, TerminalDef
+
+from deixis.grammar.phrases import chains, phrase_pattern
+from deixis.grammar.tokens import HOMELESS, Scanner
+from deixis.grammar.tree import TreeBuilder
+from deixis.ontology.relation import plain_phrase
+from deixis.ontology.tbox import Ontology
+
+NOTHING = "(?!)"  # the pattern of a terminal for which the ontology has no word
+
+
+class KeepHomeless(PostLex):
+    """Keeps lark from dropping the terminals that no rule uses."""
+
+    always_accept = HOMELESS
+
+    def process(self, stream: Iterator[Token]) -> Iterator[Token]:
+        return stream
+
+
+@dataclass(frozen=True)
+class Language:
+    """The lexer and the parser for the words of one ontology."""
+
+    lark: Lark
+    scanner: Scanner
+
+    def reads_as_name(self, text: str) -> bool:
+        """Whether the text, unquoted, is read as a name that is spelled just so."""
+        found = list(self.scanner.tokens(text))
+        return len(found) == 1 and found[0].type == "NAME" and str(found[0]) == text
+
+
+def language_of(ontology: Ontology) -> Language:
+    """The language with the words of this ontology; built once for the same words."""
+    return _build(
+        tuple(ontology.relations.by_word),
+        tuple(plain_phrase(hedge) for hedge in ontology.hedges),
+        tuple(chains(ontology)),
+        tuple(word for word in ontology.kinds.words if " and " in word),
+    )
+
+
+@lru_cache(maxsize=8)
+def _build(
+    relations: tuple[str, ...], hedges: tuple[str, ...], chain_heads: tuple[str, ...], compounds: tuple[str, ...]
+) -> Language:
+    patterns = {
+        "RELATION": phrase_pattern(relations),
+        "HEDGE": phrase_pattern(hedges) if hedges else NOTHING,
+        "CHAIN": phrase_pattern(chain_heads) + r"[ \t]*:" if chain_heads else NOTHING,
+        "COMPOUND": phrase_pattern(compounds) if compounds else NOTHING,
+    }
+
+    def from_ontology(terminal: TerminalDef) -> None:
+        if terminal.name in patterns:
+            terminal.pattern = PatternRE(patterns[terminal.name], ("i",))
+
+    lark = Lark.open(
+        "layout.lark",
+        rel_to=__file__,
+        parser="lalr",
+        lexer="basic",
+        start="statement",
+        transformer=TreeBuilder(),
+        postlex=KeepHomeless(),
+        edit_terminals=from_ontology,
+    )
+    return Language(lark, Scanner(lark.terminals))

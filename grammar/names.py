@@ -1,0 +1,81 @@
+"""What the objects of a script are called: one spelling each, counted ones, and quoted ones."""
+
+from __future__ import annotations
+
+import unicodedata
+
+from deixis.grammar.errors import Refusal, shortened
+from deixis.grammar.script import Mention
+from deixis.ontology.source import Source
+
+MOST_OBJECTS = 1_000_000  # of one script with all that it includes
+JOINERS = "\u200c\u200d"  # invisible, but part of words in Persian and the scripts of India
+
+
+def key_of(name: str) -> str:
+    """What two spellings of one name have in common.
+
+    >>> key_of("Dinner_Plate") == key_of("dinner_plate")
+    True
+    """
+    return name.casefold() if name.isascii() else unicodedata.normalize("NFC", name.casefold())
+
+
+def unquoted(text: str, source: Source) -> str:
+    """The name that a quoted text stands for, blanks as underscores; raises Refusal where it is none."""
+    for i, character in enumerate(text):
+        if not character.isprintable() and not character.isspace() and character not in JOINERS:
+            place = Source(source.file, source.line, source.column + 1 + i, source.line, source.column + 2 + i)
+            raise Refusal(place, f"a control character (U+{ord(character):04X}) cannot be in a name")
+    name = "_".join(unicodedata.normalize("NFC", text).split())
+    if not name:
+        raise Refusal(source, "a name must not be empty")
+    return name
+
+
+class NameBook:
+    """The names that were mentioned so far, in a script and in what it includes."""
+
+    def __init__(self) -> None:
+        self._spelling: dict[str, str] = {}
+        self._counts: dict[str, int] = {}
+        self._names: dict[str, tuple[str, ...]] = {}
+
+    def mention(self, name: str, count: int | None, source: Source) -> Mention:
+        """The object or objects that a name means here; raises Refusal where it does not fit earlier ones."""
+        key = key_of(name)
+        if count is not None:
+            return self._several(name, key, count, source)
+        if key in self._counts:
+            raise Refusal(source, f"'{shortened(name)}' alone does not say which", self._which(key))
+        spelled = self._spelling.get(key)
+        if spelled is None:
+            self._make_room(1, source)
+            spelled = self._spelling[key] = name
+        return Mention(spelled, source, None, (spelled,))
+
+    def _several(self, name: str, key: str, count: int, source: Source) -> Mention:
+        known = self._counts.get(key)
+        if known is None and key in self._spelling:
+            hint = "a name is either counted wherever it stands, or nowhere"
+            raise Refusal(source, f"'{shortened(name)}' was one object before, and is {count} now", hint)
+        if known is not None and known != count:
+            message = f"there are {known} of '{shortened(name)}', not {count}"
+            raise Refusal(source, message, f"say `{known} {shortened(name)}`")
+        if known is None:
+            self._make_room(count, source)
+            self._counts[key] = count
+            self._spelling[key] = name
+            each = [f"{name}_{number}" for number in range(1, count + 1)]
+            self._names[key] = tuple(self._spelling.setdefault(key_of(one), one) for one in each)
+        return Mention(self._spelling[key], source, count, self._names[key])
+
+    def _make_room(self, more: int, source: Source) -> None:
+        if len(self._spelling) + more > MOST_OBJECTS:
+            raise Refusal(source, f"a script names at most {MOST_OBJECTS:,} objects, and here it names more")
+
+    def _which(self, key: str) -> str:
+        name, count = shortened(self._spelling[key]), self._counts[key]
+        each = [f"{name}_{number}" for number in range(1, count + 1)]
+        listed = ", ".join(each if count <= 3 else [each[0], "…", each[-1]])
+        return f"there are {count}: say {listed} or `{count} {name}`"

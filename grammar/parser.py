@@ -1,0 +1,192 @@
+"""Reads layout scripts: text to tree, statement by statement, with all that is wrong told at once."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+from lark import Token
+from lark.exceptions import UnexpectedToken
+
+from deixis.grammar.draft import Draft, Place, place
+from deixis.grammar.errors import SHOWN, Problem, Refusal, ScriptError, ScriptFileError
+from deixis.grammar.explain import bad_token, unexpected
+from deixis.grammar.files import Includes, read_text
+from deixis.grammar.language import Language, language_of
+from deixis.grammar.names import key_of
+from deixis.grammar.script import Comment, Header, Include, Script, Statement
+from deixis.grammar.tokens import HOMELESS
+from deixis.grammar.tree import span_of
+from deixis.ontology.source import Source
+from deixis.ontology.tbox import Ontology, default_ontology
+
+
+def parse_script(text: str, file: str = "<text>", ontology: Ontology | None = None) -> Script:
+    """The script that a text is; ``file`` is what its places are called.
+
+    Raises ScriptError with all problems of the text; an include is one, since a text lies in no folder.
+
+    >>> [str(fact) for fact in parse_script("the fork is to the left of the plate").facts]
+    ['left(fork, plate)']
+    >>> parse_script("fork lft of plate")
+    Traceback (most recent call last):
+        ...
+    deixis.grammar.errors.ScriptError: <text>:1:6: expected a relation, not 'lft of'
+    fork lft of plate
+         ^^^^^^
+    did you mean 'left of'?
+    """
+    ontology = ontology or default_ontology()
+    return _script(FileReader(text, file, Draft(ontology), language_of(ontology)))
+
+
+def read_script(path: str | Path, ontology: Ontology | None = None) -> Script:
+    """The script in a file, with the files that it includes.
+
+    Raises ScriptFileError where the file cannot be read, ScriptError with all problems of it and of what it includes.
+    """
+    ontology = ontology or default_ontology()
+    text = read_text(Path(path), str(path))
+    real = Path(path).resolve()
+    includes = Includes(real.parent, [real])
+    return _script(FileReader(text, str(path), Draft(ontology), language_of(ontology), includes))
+
+
+def _script(reader: FileReader) -> Script:
+    statements = tuple(reader.read())
+    if reader.draft.problems:
+        raise ScriptError(tuple(reader.draft.problems))
+    first = statements[0] if statements else None
+    header = first if isinstance(first, Header) else Header(None, None, None, Source(reader.file, 1, 1, 1, 1))
+    return Script(
+        file=reader.file,
+        name=header.name,
+        title=header.title,
+        viewpoint=header.viewpoint,
+        statements=statements,
+        comments=tuple(reader.comments),
+        ontology=reader.draft.ontology,
+    )
+
+
+@dataclass
+class FileReader:
+    """Reads one file of a script: the outermost one, or one that it includes."""
+
+    text: str
+    file: str
+    draft: Draft
+    language: Language
+    includes: Includes | None = None  # None where there is no folder to include from
+    comments: list[Comment] = field(default_factory=list)
+    _lines: list[str] | None = None
+
+    def __post_init__(self) -> None:
+        self.text = self.text.removeprefix("\ufeff").replace("\r\n", "\n")
+
+    def read(self) -> Iterator[Statement]:
+        """The statements that make sense; the problems of the others go to the draft."""
+        here = Place(self.draft, self.file, Source(self.file, 1, 1, 1, 1))
+        first = True
+        for tokens in self._statements():
+            previous = place.set(here)
+            try:
+                here.statement = span_of(tokens)
+                yield self._finished(self._parsed(tokens), first)
+            except Refusal as refusal:
+                self._report(refusal)
+            finally:
+                place.reset(previous)
+            first = False
+
+    def _statements(self) -> Iterator[list[Token]]:
+        """The tokens of each statement; comments are set aside, and a comma at a line's end joins the next line."""
+        statement: list[Token] = []
+        line = 0  # of the last token that is no comment
+        for token in self.language.scanner.tokens(self.text):
+            if token.type == "COMMENT":
+                self.comments.append(self._comment(token, own_line=token.line != line))
+                continue
+            line = token.end_line or 0
+            if token.type != "END":
+                statement.append(token)
+            elif token == "\n":
+                line = 0
+                if statement and statement[-1].type not in ("_COMMA", "_AND"):
+                    yield statement
+                    statement = []
+            elif statement:
+                yield statement
+                statement = []
+        if statement:
+            yield statement
+
+    def _comment(self, token: Token, own_line: bool) -> Comment:
+        assert token.line is not None
+        assert token.column is not None
+        source = Source(self.file, token.line, token.column, token.line, token.column + len(token))
+        return Comment(token[1:].strip(), source, own_line)
+
+    def _parsed(self, tokens: list[Token]) -> Statement:
+        for token in tokens:
+            if token.type in HOMELESS:
+                raise bad_token(token)
+        parser = self.language.lark.parse_interactive()
+        state = parser.parser_state
+        at = -1
+        try:
+            for at, token in enumerate(tokens):
+                state.feed_token(token)
+            at = len(tokens)
+            statement: Statement = parser.feed_eof(tokens[-1])
+        except UnexpectedToken as error:
+            many = len(self.draft.problems) >= SHOWN  # then what comes near enough will do
+            accepts = error.expected if many else parser.accepts()
+            raise unexpected(tokens, at, set(accepts), self.draft) from None
+        return statement
+
+    def _finished(self, statement: Statement, first: bool) -> Statement:
+        """The statement, with what depends on where it stands: the header's place, and an include's content."""
+        if isinstance(statement, Header):
+            if not first:
+                raise Refusal(statement.source, "the header must be the first statement, and there is only one")
+            self._look_from(statement)
+        if isinstance(statement, Include):
+            return replace(statement, statements=tuple(self._included(statement)))
+        return statement
+
+    def _look_from(self, header: Header) -> None:
+        if header.viewpoint is None:
+            return
+        seen_from = self.draft.viewpoint
+        if self.includes is None or len(self.includes.open) == 1:
+            self.draft.viewpoint = header.viewpoint
+        elif seen_from is not None and key_of(seen_from) != key_of(header.viewpoint):
+            message = f"this is seen from '{header.viewpoint}', but included where all is seen from '{seen_from}'"
+            raise Refusal(header.source, message)
+
+    def _included(self, include: Include) -> Iterator[Statement]:
+        if self.includes is None:
+            raise Refusal(include.source, "a text has no folder to include from; read the script from a file")
+        beside = self.includes.open[-1].parent
+        real = self.includes.find(include.path, beside, include.source)
+        if real is None:
+            return
+        shown = os.path.join(os.path.dirname(self.file), include.path)
+        try:
+            text = read_text(real, shown)
+        except ScriptFileError as error:
+            raise Refusal(include.source, str(error)) from None
+        self.includes.open.append(real)
+        yield from FileReader(text, shown, self.draft, self.language, self.includes).read()
+        self.includes.open.pop()
+
+    def _report(self, refusal: Refusal) -> None:
+        if self._lines is None:
+            self._lines = self.text.split("\n")
+        line = self._lines[refusal.source.line - 1]
+        self.draft.problems.append(Problem(refusal.source, refusal.message, line, refusal.hint))
+
+

@@ -1,0 +1,204 @@
+"""The tree of a layout script: what was stated, by whom it was named, and where it was written."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from functools import cached_property
+from itertools import chain, pairwise, product
+
+from deixis.ontology.graph import Fact, RelationGraph
+from deixis.ontology.kinds import Kind
+from deixis.ontology.relation import Relation
+from deixis.ontology.source import Source
+from deixis.ontology.tbox import Ontology
+
+
+@dataclass(frozen=True, slots=True)
+class Mention:
+    """An object, or with a ``count`` as many objects, named in a statement.
+
+    ``names`` are the objects that are meant: ``("wine_glass_1", "wine_glass_2")`` for ``2 wine_glass``.
+    """
+
+    name: str
+    source: Source
+    count: int | None
+    names: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Modifiers:
+    """What qualifies a statement: denied, optional, or hedged by a word and so weighing less than 1."""
+
+    positive: bool = True
+    optional: bool = False
+    hedge: str | None = None
+    weight: float = 1.0
+
+
+@dataclass(frozen=True, slots=True)
+class Comment:
+    """A comment, ``text`` without its ``#``; ``own_line`` where nothing but blanks stands before it."""
+
+    text: str
+    source: Source
+    own_line: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Header:
+    """``layout NAME "Title" seen from VIEWPOINT``."""
+
+    name: str | None
+    title: str | None
+    viewpoint: str | None
+    source: Source
+
+
+@dataclass(frozen=True, slots=True)
+class Include:
+    """``include "other.layout"``, with the statements that it stands for (none where they were included before)."""
+
+    path: str
+    source: Source
+    statements: tuple[Statement, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Declaration:
+    """``soup_spoon is a Spoon``."""
+
+    subjects: tuple[Mention, ...]
+    kind: Kind
+    source: Source
+
+
+@dataclass(frozen=True, slots=True)
+class Placement:
+    """Every subject stands in one of the relations to every object: ``fork left of plate``, ``left(fork, plate)``."""
+
+    subjects: tuple[Mention, ...]
+    relations: tuple[Relation, ...]
+    objects: tuple[Mention, ...]
+    modifiers: Modifiers
+    source: Source
+
+    def facts(self) -> Iterator[Fact]:
+        """Each subject with each object, in the order of writing."""
+        for subject, thing in product(_names(self.subjects), _names(self.objects)):
+            yield _fact(subject, self.relations, thing, self)
+
+
+@dataclass(frozen=True, slots=True)
+class Chain:
+    """``left to right: a, b, c``: each object stands in the relation to the next one."""
+
+    relation: Relation
+    objects: tuple[Mention, ...]
+    modifiers: Modifiers
+    source: Source
+
+    def facts(self) -> Iterator[Fact]:
+        """Each object with its neighbour, in the order of writing."""
+        relations = (self.relation,)
+        for subject, thing in pairwise(_names(self.objects)):
+            yield _fact(subject, relations, thing, self)
+
+
+Statement = Header | Include | Declaration | Placement | Chain
+
+
+def _names(mentions: tuple[Mention, ...]) -> Iterator[str]:
+    return chain.from_iterable(mention.names for mention in mentions)
+
+
+def _fact(subject: str, relations: tuple[Relation, ...], thing: str, statement: Placement | Chain) -> Fact:
+    how = statement.modifiers
+    return Fact(subject, relations, thing, how.positive, how.optional, how.weight, statement.source)
+
+
+@dataclass(frozen=True)
+class Script:
+    """A layout script that was read: its statements, and what follows from them without any inference.
+
+    >>> from deixis.grammar.parser import parse_script
+    >>> script = parse_script("soup_spoon is a Spoon; soup spoon right of the plate")
+    >>> script.objects
+    ('soup_spoon', 'plate')
+    >>> [str(fact) for fact in script.facts]
+    ['right(soup_spoon, plate)']
+    """
+
+    file: str
+    name: str | None
+    title: str | None
+    viewpoint: str | None
+    statements: tuple[Statement, ...]
+    comments: tuple[Comment, ...]
+    ontology: Ontology = field(repr=False, compare=False)
+
+    def all_statements(self) -> Iterator[Statement]:
+        """The statements in order, those of included files in the place of their include."""
+        return _flat(self.statements)
+
+    @cached_property
+    def objects(self) -> tuple[str, ...]:
+        """The objects in order of first mention, spelled as they were then."""
+        found: dict[str, None] = {}
+        for statement in self.all_statements():
+            for mention in _mentions(statement):
+                found.update(dict.fromkeys(mention.names))
+        return tuple(found)
+
+    @cached_property
+    def facts(self) -> tuple[Fact, ...]:
+        """All stated facts in order, each with its source."""
+        stating = (s for s in self.all_statements() if isinstance(s, Placement | Chain))
+        return tuple(chain.from_iterable(statement.facts() for statement in stating))
+
+    @cached_property
+    def kinds(self) -> dict[str, Kind]:
+        """The declared kind of each object that has one; of several declared kinds the narrowest."""
+        found: dict[str, Kind] = {}
+        for statement in self.all_statements():
+            if isinstance(statement, Declaration):
+                for name in _names(statement.subjects):
+                    if name not in found or self.ontology.kinds.is_a(statement.kind, found[name]):
+                        found[name] = statement.kind
+        return found
+
+    def graph(self) -> RelationGraph:
+        """The stated facts as a relation graph; a node's kind is the declared one, else the one its name stands for.
+
+        >>> from deixis.grammar.parser import parse_script
+        >>> graph = parse_script("2 wine_glass right of the thingummy").graph()
+        >>> [kind and kind.rpartition("#")[2] for kind in graph.kinds]
+        ['WineGlass', 'WineGlass', None]
+        """
+        kinds = [self._kind_of(name) for name in self.objects]
+        return RelationGraph.from_facts(self.ontology.relations, self.objects, self.facts, kinds=kinds)
+
+    def _kind_of(self, name: str) -> str | None:
+        kind = self.kinds.get(name) or self.ontology.kinds.of_word(re.sub(r"_\d+$", "", name))
+        return kind.iri if kind else None
+
+
+def _flat(statements: tuple[Statement, ...]) -> Iterator[Statement]:
+    for statement in statements:
+        yield statement
+        if isinstance(statement, Include):
+            yield from _flat(statement.statements)
+
+
+def _mentions(statement: Statement) -> tuple[Mention, ...]:
+    match statement:
+        case Declaration(subjects=subjects):
+            return subjects
+        case Placement(subjects=subjects, objects=objects):
+            return subjects + objects
+        case Chain(objects=objects):
+            return objects
+        case _:
+            return ()

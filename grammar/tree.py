@@ -1,0 +1,189 @@
+"""Builds the tree while the parser runs: a method a rule of ``layout.lark``."""
+
+from __future__ import annotations
+
+from lark import Token, Transformer, v_args
+
+from deixis.grammar.draft import place
+from deixis.grammar.errors import Refusal, shortened
+from deixis.grammar.names import unquoted
+from deixis.grammar.script import Chain, Declaration, Header, Include, Mention, Modifiers, Placement, Statement
+from deixis.grammar.words import NUMBERS
+from deixis.ontology.relation import Relation, plain_phrase
+from deixis.ontology.source import Source
+
+Pair = tuple[tuple[Relation, ...], Mention, Mention]
+
+
+def source_of(token: Token) -> Source:
+    """Where a token stands."""
+    return Source(place.get().file, token.line, token.column, token.end_line, token.end_column)  # type: ignore[arg-type]
+
+
+def span_of(tokens: list[Token]) -> Source:
+    """Where a run of tokens stands, from the start of the first to the end of the last."""
+    first, last = tokens[0], tokens[-1]
+    return Source(place.get().file, first.line, first.column, last.end_line, last.end_column)  # type: ignore[arg-type]
+
+
+def text_of(token: Token) -> str:
+    """The name that a NAME or a STRING stands for."""
+    return unquoted(token[1:-1], source_of(token)) if token.type == "STRING" else str(token)
+
+
+@v_args(inline=True)
+class TreeBuilder(Transformer[Token, Statement]):
+    """A method takes what its rule holds, and returns a node; what makes no sense raises Refusal."""
+
+    def header(self, name: Token, title: Token | None, viewpoint: Token | None) -> Header:
+        return self._header(str(name), title, viewpoint)
+
+    def title_header(self, title: Token, viewpoint: Token | None) -> Header:
+        return self._header(None, title, viewpoint)
+
+    def view_header(self, viewpoint: Token) -> Header:
+        return self._header(None, None, viewpoint)
+
+    def _header(self, name: str | None, title: Token | None, viewpoint: Token | None) -> Header:
+        shown = None
+        if title is not None:
+            shown = " ".join(title[1:-1].split())
+            unquoted(shown or "-", source_of(title))
+        return Header(name, shown or None, text_of(viewpoint) if viewpoint else None, place.get().statement)
+
+    def include(self, path: Token) -> Include:
+        return Include(path[1:-1], source_of(path))
+
+    def declaration(
+        self, modifiers: Modifiers | None, subjects: tuple[Mention, ...], _is: Token, kind: Token
+    ) -> Declaration:
+        here = place.get()
+        if modifiers is not None:
+            message = "what kind of thing an object is cannot be denied, optional or hedged"
+            raise Refusal(here.statement, message)
+        found = here.draft.kind(text_of(kind), source_of(kind))
+        here.draft.grow(_size(subjects), here.statement)
+        here.draft.declare(subjects, found)
+        return Declaration(subjects, found, here.statement)
+
+    def placement(
+        self,
+        modifiers: Modifiers | None,
+        subjects: tuple[Mention, ...],
+        link: Modifiers | None,
+        relations: tuple[Relation, ...],
+        objects: tuple[Mention, ...],
+    ) -> Placement:
+        here = place.get()
+        here.draft.grow(_size(subjects) * _size(objects), here.statement)
+        among = {name for mention in subjects for name in mention.names}
+        for mention in objects:
+            for name in mention.names:
+                if name in among:
+                    raise Refusal(mention.source, f"'{shortened(name)}' cannot be related to itself")
+        return Placement(subjects, relations, objects, _merged(modifiers, link), here.statement)
+
+    def pairs(self, modifiers: Modifiers | None, first: Pair, *others: Pair) -> Placement:
+        relations, subject, thing = first
+        how = modifiers or Modifiers()
+        for more, other_subject, other_thing in others:
+            if (other_subject.names, other_thing.names) != (subject.names, thing.names):
+                hint = "state each pair on its own, without 'or'"
+                raise Refusal(other_subject.source, "'or' must be between relations of one and the same pair", hint)
+            if not how.positive:
+                hint = "say `not left or right(a, b)` where neither holds"
+                raise Refusal(other_subject.source, "'not' before several pairs does not say which it denies", hint)
+            relations += more
+        one = _one_reading(relations, place.get().statement)
+        return self.placement(modifiers, (subject,), None, one, (thing,))
+
+    def pair(self, relations: tuple[Relation, ...], subject: Mention, thing: Mention) -> Pair:
+        return relations, subject, thing
+
+    def chain(self, modifiers: Modifiers | None, head: Token, objects: tuple[Mention, ...]) -> Chain:
+        here = place.get()
+        how = modifiers or Modifiers()
+        if not how.positive:
+            raise Refusal(here.statement, "a chain cannot be denied", "deny each pair on its own")
+        here.draft.grow(_size(objects), here.statement)
+        before = None
+        for mention in objects:
+            for name in mention.names:
+                if name == before:
+                    raise Refusal(mention.source, f"'{shortened(name)}' cannot be related to itself")
+                before = name
+        if _size(objects) < 2:
+            raise Refusal(objects[0].source, "a chain needs at least two objects")
+        start = here.draft.chains[plain_phrase(head.removesuffix(":"))]
+        return Chain(start, objects, how, here.statement)
+
+    def objects(self, *mentions: Mention) -> tuple[Mention, ...]:
+        return mentions
+
+    def object(self, count: Token | None, name: Token) -> Mention:
+        number = None if count is None else NUMBERS.get(count.casefold()) or int(count)
+        return place.get().draft.book.mention(text_of(name), number, source_of(name))
+
+    def relations(self, *phrases: Token) -> tuple[Relation, ...]:
+        draft = place.get().draft
+        if len(phrases) == 1:
+            return (draft.relation(phrases[0]),)
+        return _one_reading(tuple(draft.relation(phrase) for phrase in phrases), source_of(phrases[-1]))
+
+    def modifiers(self, *words: Token) -> Modifiers:
+        return _modifiers(words)
+
+    def link(self, *words: Token) -> Modifiers:
+        verbs = [word for word in words if word.type in ("IS", "VERB")]
+        for before, word in zip([None, *verbs], verbs, strict=False):
+            if before is not None and (before.type, word.type) != ("IS", "VERB"):
+                raise Refusal(source_of(word), f"'{word}' is one verb too many")
+        return _modifiers(tuple(word for word in words if word.type not in ("IS", "VERB")))
+
+
+def _modifiers(words: tuple[Token, ...]) -> Modifiers:
+    found: dict[str, Token] = {}
+    for word in words:
+        if word.type in found:
+            raise _twice(word.type, str(word), source_of(word))
+        found[word.type] = word
+    hedge = found.get("HEDGE")
+    plain = None if hedge is None else plain_phrase(hedge)
+    weight = 1.0 if plain is None else place.get().draft.hedges[plain]
+    return Modifiers("NOT" not in found, "OPTIONAL" in found, plain, weight)
+
+
+def _merged(front: Modifiers | None, link: Modifiers | None) -> Modifiers:
+    """The modifiers at the front and those at the verb, as one."""
+    if front is None or link is None:
+        return front or link or Modifiers()
+    where = place.get().statement
+    if front.hedge and link.hedge:
+        raise _twice("HEDGE", link.hedge, where)
+    if not front.positive and not link.positive:
+        raise _twice("NOT", "not", where)
+    if front.optional and link.optional:
+        raise _twice("OPTIONAL", "optional", where)
+    hedged = front if front.hedge else link
+    return Modifiers(
+        front.positive and link.positive, front.optional or link.optional, hedged.hedge, hedged.weight
+    )
+
+
+def _twice(modifier: str, word: str, where: Source) -> Refusal:
+    if modifier == "HEDGE":
+        return Refusal(where, f"one word such as 'usually' is enough: '{word}' is a second one")
+    return Refusal(where, f"'{word}' must not be said twice")
+
+
+def _one_reading(relations: tuple[Relation, ...], where: Source) -> tuple[Relation, ...]:
+    """The relations without repetition; raises Refusal where some are read widely and some exactly."""
+    if len({relation.reading for relation in relations}) > 1:
+        wide, exact = sorted({r.reading: r.phrase for r in relations}.values(), key=lambda p: "exactly" in p)
+        hint = "say 'exactly' with each of them, or with none"
+        raise Refusal(where, f"'or' cannot mix a wide relation ('{wide}') with an exact one ('{exact}')", hint)
+    return tuple(dict.fromkeys(relations))
+
+
+def _size(mentions: tuple[Mention, ...]) -> int:
+    return sum(len(mention.names) for mention in mentions)

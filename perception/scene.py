@@ -1,0 +1,98 @@
+"""A scene: what was seen at one time from one place, as boxes in a stated frame."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.ontology.graph import RelationGraph
+from deixis.ontology.relation import Relations
+from deixis.perception.errors import SceneError
+
+
+@dataclass(frozen=True, slots=True)
+class PerceivedObject:
+    """One thing that perception has singled out: an axis-aligned box, and what else is known of it.
+
+    ``minimum`` and ``maximum`` are its least and greatest corner in the scene's frame, 2 or 3 coordinates: x to the
+    viewer's right, y away from the viewer, z up; metres, unless the scene is in pixels. ``label`` is a name for it,
+    right with probability ``confidence``. ``cloud`` names the file of its points.
+    """
+
+    id: str
+    minimum: tuple[float, ...]
+    maximum: tuple[float, ...]
+    label: str | None = None
+    confidence: float = 1.0
+    cloud: str | None = None
+
+
+@dataclass(frozen=True)
+class Scene:
+    """Perceived objects in one frame, seen from one viewpoint.
+
+    ``unit`` is ``m``, or ``px`` for what was measured in an image; relations do not depend on it. Raises SceneError
+    where two objects share an id, a corner is not finite, a box is inside out, or some boxes are flat (2-D) and
+    others are not.
+    """
+
+    objects: tuple[PerceivedObject, ...]
+    frame: str = "table"
+    viewpoint: str = "chair"
+    unit: str = "m"
+    file: str = field(default="<scene>", compare=False)
+
+    def __post_init__(self) -> None:
+        seen: set[str] = set()
+        for thing in self.objects:
+            if thing.id in seen:
+                raise SceneError(f"{self.file}: the id '{thing.id}' is used twice; give every object an id of its own")
+            seen.add(thing.id)
+            _require_box(thing, self.file)
+        if len({len(thing.minimum) for thing in self.objects}) > 1:
+            raise SceneError(f"{self.file}: some boxes have heights and some have none; give all of them 2 or 3 axes")
+
+    @property
+    def ids(self) -> tuple[str, ...]:
+        return tuple(thing.id for thing in self.objects)
+
+    @cached_property
+    def boxes(self) -> NDArray[np.float64]:
+        """Shape (n, 2, d): least and greatest corner; d is 2 for an empty scene."""
+        if not self.objects:
+            return np.zeros((0, 2, 2))
+        return np.array([(thing.minimum, thing.maximum) for thing in self.objects], dtype=np.float64)
+
+    def __getitem__(self, id: str) -> PerceivedObject:
+        return next(thing for thing in self.objects if thing.id == id)
+
+    def graph(self, vocabulary: Relations, tolerance: float = 0.0) -> RelationGraph:
+        """The complete relation graph: for every ordered pair its exact name (see reasoning.rectangle)."""
+        from deixis.reasoning.rectangle import perceived_graph
+
+        return perceived_graph(self.ids, self.boxes, vocabulary, tolerance=tolerance)
+
+    def without_labels(self) -> Scene:
+        """The same scene with nothing named."""
+        return replace(self, objects=tuple(replace(thing, label=None, confidence=1.0) for thing in self.objects))
+
+    def reordered(self, order: Sequence[int]) -> Scene:
+        """The same scene with its objects listed in another order."""
+        return replace(self, objects=tuple(self.objects[i] for i in order))
+
+
+def _require_box(thing: PerceivedObject, file: str) -> None:
+    where = f"{file}: object '{thing.id}'"
+    if len(thing.minimum) != len(thing.maximum) or len(thing.minimum) not in (2, 3):
+        raise SceneError(f"{where}: 'min' and 'max' must both have 2 coordinates, or both 3")
+    if not np.isfinite([*thing.minimum, *thing.maximum]).all():
+        raise SceneError(f"{where}: a coordinate is not finite")
+    for axis, low, high in zip("xyz", thing.minimum, thing.maximum, strict=False):
+        if low > high:
+            raise SceneError(f"{where}: on {axis} its min {low:g} is above its max {high:g}; swap them")
+    if not 0 <= thing.confidence <= 1:
+        raise SceneError(f"{where}: a confidence lies between 0 and 1, not at {thing.confidence:g}")

@@ -1,0 +1,153 @@
+"""Scenes as files: ``.scene.json``, read with an error that names the place, and written."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from deixis.perception.errors import SceneError
+from deixis.perception.scene import PerceivedObject, Scene
+
+UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "px": 1.0}
+"""Accepted units, and how many metres one is; pixels stay pixels."""
+
+MAX_BYTES = 256 * 2**20
+_SCENE_KEYS = {"frame", "viewpoint", "unit", "objects"}
+_OBJECT_KEYS = {"id", "min", "max", "label", "confidence", "cloud"}
+
+
+def read_scene(source: str | Path | Mapping[str, Any]) -> Scene:
+    """Reads a scene from a ``.scene.json`` file, or takes one that is parsed already.
+
+    >>> scene = read_scene({"objects": [{"id": "o1", "min": [0, 0], "max": [20, 1]}], "unit": "cm"})
+    >>> scene.objects[0].maximum
+    (0.2, 0.01)
+
+    Raises SceneError, with the file and the place in it, where it is no such thing.
+    """
+    if isinstance(source, Mapping):
+        return scene_from_dict(source, "<scene>")
+    path = Path(source)
+    return scene_from_dict(_parsed(path), str(path))
+
+
+def _parsed(path: Path) -> Any:
+    try:
+        if path.is_dir():
+            raise SceneError(f"{path}: this is a folder, and a scene is a .scene.json file")
+        if path.stat().st_size > MAX_BYTES:
+            raise SceneError(f"{path}: the file is larger than {MAX_BYTES // 2**20} MiB")
+        text = path.read_text(encoding="utf-8-sig")
+    except OSError as error:
+        raise SceneError(f"{path}: cannot be read: {error.strerror}") from error
+    except UnicodeDecodeError as error:
+        raise SceneError(f"{path}: the file is not UTF-8 (byte {error.start})") from error
+    try:
+        return json.loads(text, parse_constant=_refuse_constant)
+    except json.JSONDecodeError as error:
+        raise SceneError(f"{path}:{error.lineno}:{error.colno}: this is no JSON: {error.msg}") from error
+    except (ValueError, RecursionError) as error:
+        raise SceneError(f"{path}: {error}") from error
+
+
+def _refuse_constant(name: str) -> float:
+    raise ValueError(f"{name} is no number that a coordinate can be; leave the object out")
+
+
+def scene_from_dict(data: Any, file: str) -> Scene:
+    """The scene that parsed JSON describes; unknown keys are errors, so that a misspelt one is not lost."""
+    scene = _mapping(data, file, _SCENE_KEYS)
+    if "objects" not in scene:
+        raise SceneError(f"{file}: 'objects' is missing: the list of what was seen")
+    if not isinstance(scene["objects"], list):
+        raise SceneError(f"{file}: 'objects' must be a list")
+    unit = _text(scene.get("unit", "m"), f"{file}: 'unit'")
+    if unit not in UNITS:
+        raise SceneError(f"{file}: the unit '{unit}' is not known; use one of {', '.join(UNITS)}")
+    return Scene(
+        objects=tuple(
+            _object(entry, f"{file}: objects[{number}]", UNITS[unit]) for number, entry in enumerate(scene["objects"])
+        ),
+        frame=_text(scene.get("frame", "table"), f"{file}: 'frame'"),
+        viewpoint=_text(scene.get("viewpoint", "chair"), f"{file}: 'viewpoint'"),
+        unit="px" if unit == "px" else "m",
+        file=file,
+    )
+
+
+def _object(data: Any, where: str, scale: float) -> PerceivedObject:
+    entry = _mapping(data, where, _OBJECT_KEYS)
+    missing = [key for key in ("id", "min", "max") if key not in entry]
+    if missing:
+        raise SceneError(f"{where}: '{missing[0]}' is missing")
+    label, confidence, cloud = entry.get("label"), entry.get("confidence", 1.0), entry.get("cloud")
+    return PerceivedObject(
+        id=_text(entry["id"], f"{where}: 'id'"),
+        minimum=_corner(entry["min"], f"{where}: 'min'", scale),
+        maximum=_corner(entry["max"], f"{where}: 'max'", scale),
+        label=None if label is None else _text(label, f"{where}: 'label'"),
+        confidence=1.0 if confidence is None else _number(confidence, f"{where}: 'confidence'"),
+        cloud=None if cloud is None else _text(cloud, f"{where}: 'cloud'"),
+    )
+
+
+def _mapping(data: Any, where: str, known: set[str]) -> Mapping[str, Any]:
+    if not isinstance(data, Mapping):
+        raise SceneError(f"{where}: an object {{…}} is expected here, not {_kind(data)}")
+    unknown = sorted(set(data) - known)
+    if unknown:
+        raise SceneError(f"{where}: '{unknown[0]}' is no key here; the keys are {', '.join(sorted(known))}")
+    return data
+
+
+def _corner(data: Any, where: str, scale: float) -> tuple[float, ...]:
+    if not isinstance(data, list | tuple) or len(data) not in (2, 3):
+        raise SceneError(f"{where} must be a list of 2 or 3 numbers")
+    return tuple(_number(value, where) * scale for value in data)
+
+
+def _number(data: Any, where: str) -> float:
+    if isinstance(data, bool) or not isinstance(data, int | float):
+        raise SceneError(f"{where}: a number is expected, not {_kind(data)}")
+    try:
+        return float(data)
+    except OverflowError:
+        raise SceneError(f"{where}: the number is too large") from None
+
+
+def _text(data: Any, where: str) -> str:
+    if not isinstance(data, str) or not data.strip():
+        raise SceneError(f"{where}: a text is expected, not {_kind(data)}")
+    return data
+
+
+def _kind(data: Any) -> str:
+    if data is None or isinstance(data, bool):
+        return {None: "null", True: "true", False: "false"}[data]
+    return {"str": "a text", "int": "a number", "float": "a number", "list": "a list"}.get(
+        type(data).__name__, "an object"
+    )
+
+
+def scene_to_dict(scene: Scene) -> dict[str, Any]:
+    """The scene as :func:`read_scene` takes it, coordinates in metres (or pixels)."""
+    objects = []
+    for thing in scene.objects:
+        entry: dict[str, Any] = {"id": thing.id, "min": list(thing.minimum), "max": list(thing.maximum)}
+        entry["label"] = thing.label
+        if thing.label is not None and thing.confidence < 1:
+            entry["confidence"] = thing.confidence
+        if thing.cloud is not None:
+            entry["cloud"] = thing.cloud
+        objects.append(entry)
+    return {"frame": scene.frame, "viewpoint": scene.viewpoint, "unit": scene.unit, "objects": objects}
+
+
+def write_scene(scene: Scene, path: str | Path) -> None:
+    """Writes a ``.scene.json``, an object a line."""
+    data = scene_to_dict(scene)
+    lines = ",\n".join("    " + json.dumps(entry, ensure_ascii=False) for entry in data.pop("objects"))
+    head = "".join(f'  "{key}": {json.dumps(value, ensure_ascii=False)},\n' for key, value in data.items())
+    Path(path).write_text(f'{{\n{head}  "objects": [\n{lines}\n  ]\n}}\n', encoding="utf-8")

@@ -1,0 +1,206 @@
+"""The engines that align a description with a scene, behind one small protocol.
+
+``similarity`` is the paper's: equations 5 to 9, the Hungarian method, and a choice among sub-graphs where one side has
+more objects. ``exact`` finds the alignment with the largest sum of degrees by branch and bound, the similarity
+breaking ties, and proves it the best. Both work on the evidence in the order in which they get it; whoever wants an
+answer that does not depend on that order goes through :func:`deixis.reasoning.grounding.ground`.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from enum import StrEnum
+from itertools import combinations, islice
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.ontology.errors import UnknownTermError
+from deixis.ontology.graph import PaperGraph, RelationGraph
+from deixis.reasoning.assignment import assign, graph_similarity
+from deixis.reasoning.conflict import find_conflict
+from deixis.reasoning.evidence import UNMATCHED, Evidence
+from deixis.reasoning.implications import Implications
+from deixis.reasoning.similarity import ITERATIONS, NodeSimilarity, node_similarity
+
+MAX_SUBGRAPHS = 5000
+"""Sub-graphs that are all tried; where there are more, a heuristic chooses, and the result says so."""
+
+_BLOCK = 500
+_WORK = 2e10
+"""Multiplications that the similarity may take before it stops unconverged."""
+
+
+class Select(StrEnum):
+    """What decides between sub-graphs."""
+
+    FACTS = "facts"  # the sum of degrees first, the graph similarity second
+    SIMILARITY = "similarity"  # the graph similarity alone, as in the paper
+
+
+@dataclass(frozen=True, eq=False)
+class Alignment:
+    """What an engine found: ``assignment`` (n1,) into the scene or ``UNMATCHED``, and how it came about."""
+
+    engine: str
+    assignment: NDArray[np.int64]
+    matrix: NDArray[np.float64]  # (n1, n2) node similarities, Frobenius norm 1, or 0
+    converged: bool
+    proved_best: bool
+    notes: tuple[str, ...] = ()
+    margins: NDArray[np.float64] | None = None  # (n1,) what the next best choice for each would lose; nan: not known
+    runners_up: NDArray[np.int64] | None = None  # (n1,) that choice, or UNMATCHED
+
+    @property
+    def graph_similarity(self) -> float:
+        return graph_similarity(self.matrix, self.assignment)
+
+
+class Engine(Protocol):
+    """Aligns the description with the scene until ``deadline`` (``time.perf_counter``)."""
+
+    def align(self, evidence: Evidence, deadline: float) -> Alignment: ...
+
+
+def engine_named(name: str, select: Select = Select.FACTS) -> Engine:
+    """The engine of that name: ``exact`` or ``similarity``; raises UnknownTermError for another."""
+    from deixis.reasoning.exact import ExactEngine
+
+    if name == "exact":
+        return ExactEngine()
+    if name == "similarity":
+        return SimilarityEngine(select)
+    raise UnknownTermError(f"there is no engine '{name}'; the engines are: exact, similarity")
+
+
+def described(description: RelationGraph) -> PaperGraph:
+    """The description as the paper's matcher sees it: with the inverses and transitive relations that it implies.
+
+    What follows from sub-properties is left out, since it names no exact relation. Facts that contradict each other
+    imply everything, so that from such a description nothing is inferred.
+    """
+    implied = Implications(description, sub_properties=False)
+    graph = description if find_conflict(implied) else implied.completed()
+    return graph.paper_view()
+
+
+def paper_similarity(evidence: Evidence, members: NDArray[np.bool_] | None = None) -> NodeSimilarity:
+    """Equations 5 to 9 for the evidence: certain labels forbid pairs, uncertain ones multiply equation 5."""
+    first, second = described(evidence.description), evidence.scene.paper_view()
+    prior = np.where(evidence.allowed, np.exp(evidence.bonus), 0.0)
+    return node_similarity(first, second, members, prior, iterations=_iterations(first, second))
+
+
+def _iterations(first: PaperGraph, second: PaperGraph) -> int:
+    n2 = len(second.vertices)
+    work = 2 * len(first.labels) * len(first.vertices) * n2 * n2 + 2000 * len(first.edges)
+    return int(np.clip(_WORK / max(work, 1), 5, ITERATIONS))
+
+
+@dataclass(frozen=True)
+class SimilarityEngine:
+    """The paper's matcher."""
+
+    select: Select = Select.FACTS
+
+    def align(self, evidence: Evidence, deadline: float) -> Alignment:
+        n1, n2 = evidence.allowed.shape
+        if n1 == n2 or not n1 or not n2:
+            return self._whole(evidence)
+        larger, smaller = max(n1, n2), min(n1, n2)
+        count = math.comb(larger, smaller)
+        if count > MAX_SUBGRAPHS:
+            return self._narrowed(evidence, count)
+        return self._all_subgraphs(evidence, larger, smaller)
+
+    def _whole(self, evidence: Evidence, notes: tuple[str, ...] = ()) -> Alignment:
+        found = paper_similarity(evidence)
+        matrix = found.matrices[0]
+        return self._alignment(evidence, matrix, assign(matrix, evidence.allowed), bool(found.converged[0]), notes)
+
+    def _all_subgraphs(self, evidence: Evidence, larger: int, smaller: int) -> Alignment:
+        """The best of all sub-graphs of the larger side that have as many objects as the smaller one."""
+        flipped = len(evidence.description.nodes) == smaller
+        prior = np.where(evidence.allowed, np.exp(evidence.bonus), 0.0)
+        first, second = described(evidence.description), evidence.scene.paper_view()
+        best: tuple[tuple[float, ...], Alignment] | None = None
+        for members in _blocks(larger, smaller):
+            if flipped:
+                found = node_similarity(second, first, members, prior.T)
+                matrices = found.matrices.transpose(0, 2, 1)
+            else:
+                found = node_similarity(first, second, members, prior)
+                matrices = found.matrices
+            for kept, matrix, converged in zip(members, matrices, found.converged, strict=True):
+                inside = kept[None, :] if flipped else kept[:, None]
+                assignment = assign(matrix, evidence.allowed & inside)
+                key = self._key(evidence, matrix, assignment)
+                if best is None or key > best[0]:
+                    best = key, self._alignment(evidence, matrix, assignment, bool(converged))
+        assert best is not None
+        return best[1]
+
+    def _narrowed(self, evidence: Evidence, count: int) -> Alignment:
+        """Too many sub-graphs: the assignment on the whole chooses one, and is repeated on it until it stays."""
+        found = paper_similarity(evidence)
+        assignment = assign(found.matrices[0], evidence.allowed)
+        note = f"{count} sub-graphs are too many to try all: the assignment on the whole graphs chose one (heuristic)"
+        if len(evidence.description.nodes) < len(evidence.scene.nodes):
+            return self._alignment(evidence, found.matrices[0], assignment, bool(found.converged[0]), (note,))
+        kept = assignment != UNMATCHED
+        again = paper_similarity(evidence, kept[None, :])
+        matrix = again.matrices[0]
+        assignment = assign(matrix, evidence.allowed & kept[:, None])
+        return self._alignment(evidence, matrix, assignment, bool(again.converged[0]), (note,))
+
+    def _key(
+        self, evidence: Evidence, matrix: NDArray[np.float64], assignment: NDArray[np.int64]
+    ) -> tuple[float, float]:
+        similarity = round(graph_similarity(matrix, assignment), 9)
+        return (
+            (similarity, 0.0)
+            if self.select is Select.SIMILARITY
+            else (
+                round(evidence.total(assignment), 9),
+                similarity,
+            )
+        )
+
+    def _alignment(
+        self,
+        evidence: Evidence,
+        matrix: NDArray[np.float64],
+        assignment: NDArray[np.int64],
+        converged: bool,
+        notes: tuple[str, ...] = (),
+    ) -> Alignment:
+        margins, runners_up = _similarity_margins(matrix, assignment, evidence.allowed)
+        return Alignment("similarity", assignment, matrix, converged, False, notes, margins, runners_up)
+
+
+def _blocks(n: int, k: int) -> list[NDArray[np.bool_]]:
+    """All choices of k of n as membership rows, in blocks."""
+    chosen = combinations(range(n), k)
+    blocks = []
+    while rows := list(islice(chosen, _BLOCK)):
+        members = np.zeros((len(rows), n), dtype=bool)
+        members[np.arange(len(rows))[:, None], np.array(rows, dtype=np.int64).reshape(len(rows), k)] = True
+        blocks.append(members)
+    return blocks
+
+
+def _similarity_margins(
+    matrix: NDArray[np.float64], assignment: NDArray[np.int64], allowed: NDArray[np.bool_]
+) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """By how much each match's similarity leads over the next best entry of its row."""
+    margins = np.full(len(assignment), np.nan)
+    runners_up = np.full(len(assignment), UNMATCHED, dtype=np.int64)
+    for i in np.flatnonzero(assignment != UNMATCHED):
+        others = np.where(allowed[i], matrix[i], -np.inf)
+        others[assignment[i]] = -np.inf
+        if np.isfinite(others).any():
+            runners_up[i] = int(others.argmax())
+            margins[i] = matrix[i, assignment[i]] - others.max()
+    return margins, runners_up

@@ -1,0 +1,9 @@
+"""The errors of this room."""
+
+from __future__ import annotations
+
+from deixis.ontology.errors import DeixisError
+
+
+class LimitError(DeixisError, OverflowError):
+    """A question that is larger than what can be answered in bounded time and memory; nothing was decided."""

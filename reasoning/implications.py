@@ -1,0 +1,272 @@
+"""What a relation graph implies, and why: inverses, sub-properties and transitivity, as the TBox declares them.
+
+Only firm facts are premises: affirmed, not optional, of weight 1, one relation each. Everything implied of a pair has
+a derivation down to stated facts, and the shortest one is given: a relation's facts, their inverses and what they are
+sub-properties of make a directed graph, in which a transitive conclusion is a path and its shortest derivation a
+shortest path.
+
+This is the seam for a full calculus: callers use :class:`Implications` and do not know how it closes the graph.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.ontology.graph import Fact, RelationGraph
+from deixis.ontology.relation import Relation, Relations
+from deixis.reasoning.errors import LimitError
+
+MAX_CONNECTED = 4000
+"""Objects that facts connect to one another, at the most: memory grows with the square of this."""
+
+FAR = np.iinfo(np.int32).max // 4
+"""A distance that says: there is no way."""
+
+
+class Rule(StrEnum):
+    """Why a fact holds."""
+
+    STATED = "stated"
+    INVERSE = "inverse"  # owl:inverseOf
+    SUB_PROPERTY = "sub-property"  # rdfs:subPropertyOf
+    TRANSITIVITY = "transitivity"  # owl:TransitiveProperty
+
+
+@dataclass(frozen=True)
+class Derivation:
+    """A fact, the rule that gives it, and the derivations of what the rule needs."""
+
+    fact: Fact
+    rule: Rule
+    premises: tuple[Derivation, ...] = ()
+
+    def stated(self) -> tuple[Fact, ...]:
+        """The stated facts that it rests on, without repetition, in the order of use."""
+        if self.rule is Rule.STATED:
+            return (self.fact,)
+        return tuple(dict.fromkeys(fact for premise in self.premises for fact in premise.stated()))
+
+    def lines(self, indent: str = "") -> Iterator[str]:
+        """The derivation as indented text, conclusion first."""
+        place = f"   [{self.fact.source}]" if self.rule is Rule.STATED and self.fact.source else ""
+        yield f"{indent}{self.fact}   by {self.rule}{place}"
+        for premise in self.premises:
+            yield from premise.lines(indent + "    ")
+
+
+class Implications:
+    """Everything that follows from a relation graph; built at once, explained on demand.
+
+    >>> from deixis.ontology.tbox import default_ontology
+    >>> r = default_ontology().relations
+    >>> facts = [Fact("a", (r["left"],), "b"), Fact("c", (r["right"],), "b")]
+    >>> implied = Implications(RelationGraph.from_facts(r, ["a", "b", "c"], facts))
+    >>> print(*implied.derive(r["left"], "a", "c").lines(), sep="\\n")
+    left(a, c)   by transitivity
+        left(a, b)   by stated
+        left(b, c)   by inverse
+            right(c, b)   by stated
+
+    Raises LimitError where facts connect more than ``MAX_CONNECTED`` objects to one another.
+    """
+
+    def __init__(self, graph: RelationGraph, sub_properties: bool = True) -> None:
+        self.graph = graph
+        self.vocabulary: Relations = graph.vocabulary
+        self._base = _base_edges(graph, sub_properties)
+        self._place, self._components = _components(graph, self._base)
+
+    def holds(self, relation: Relation, subject: str, object: str) -> bool:
+        """Whether the fact is stated or implied."""
+        part, s, o = self._locate(subject, object)
+        return part is not None and s != o and part.distance(relation)[s, o] < FAR
+
+    def derive(self, relation: Relation, subject: str, object: str) -> Derivation | None:
+        """The shortest derivation of a fact, or None where it does not follow."""
+        part, s, o = self._locate(subject, object)
+        if part is None or s == o or part.distance(relation)[s, o] >= FAR:
+            return None
+        path = part.path(relation, s, o)
+        steps = [self._explain_edge(relation, int(part.nodes[u]), int(part.nodes[v])) for u, v in pairwise(path)]
+        if len(steps) == 1:
+            return steps[0]
+        return Derivation(Fact(subject, (relation,), object), Rule.TRANSITIVITY, tuple(steps))
+
+    def triples(self) -> Iterator[tuple[Relation, str, str]]:
+        """Every fact that is stated or implied, by relation, subject and object in node order."""
+        for relation in self.vocabulary.values():
+            rows: list[tuple[int, int]] = []
+            for part in self._components:
+                s, o = np.nonzero((part.distance(relation) < FAR) & ~np.eye(len(part.nodes), dtype=bool))
+                rows += zip(part.nodes[s].tolist(), part.nodes[o].tolist(), strict=True)
+            for u, v in sorted(rows):
+                yield relation, self.graph.nodes[u], self.graph.nodes[v]
+
+    def inferred(self) -> Iterator[Derivation]:
+        """Every implied fact that is not stated itself, with its shortest derivation."""
+        for relation, subject, object in self.triples():
+            derivation = self.derive(relation, subject, object)
+            if derivation is not None and derivation.rule is not Rule.STATED:
+                yield derivation
+
+    def completed(self) -> RelationGraph:
+        """The graph with the implied facts as further edges, after the stated ones."""
+        return RelationGraph.from_facts(
+            self.vocabulary,
+            self.graph.nodes,
+            [*self.graph.facts(), *(derivation.fact for derivation in self.inferred())],
+            kinds=self.graph.kinds,
+            boxes=self.graph.boxes,
+        )
+
+    def parts(self) -> Sequence[Component]:
+        """The connected parts of the graph, each with its closed relations."""
+        return self._components
+
+    def _locate(self, subject: str, object: str) -> tuple[Component | None, int, int]:
+        s, o = self.graph.index(subject), self.graph.index(object)
+        if self._place[s, 0] != self._place[o, 0]:
+            return None, 0, 0
+        return self._components[self._place[s, 0]], int(self._place[s, 1]), int(self._place[o, 1])
+
+    def _explain_edge(self, relation: Relation, subject: int, object: int) -> Derivation:
+        """One edge of a relation's graph: stated, an inverse, a sub-property, or the last two in turn."""
+        stated = self.graph.fact(self._base[relation.index][subject, object])
+        derivation = Derivation(stated, Rule.STATED)
+        current = stated.relations[0]
+        s, o = self.graph.nodes[subject], self.graph.nodes[object]
+        if (stated.subject, stated.object) != (s, o):
+            current = self.vocabulary[current.inverse]
+            derivation = Derivation(Fact(s, (current,), o), Rule.INVERSE, (derivation,))
+        if current != relation:
+            derivation = Derivation(Fact(s, (relation,), o), Rule.SUB_PROPERTY, (derivation,))
+        return derivation
+
+
+_Edges = dict[int, dict[tuple[int, int], int]]
+"""By relation index, then by pair of nodes: the stated edge that gives it most directly."""
+
+
+def firm_edges(graph: RelationGraph) -> NDArray[np.int64]:
+    """The edges that inference may rest on: affirmed, not optional, of full weight, one relation."""
+    single = np.bitwise_count(graph.relation_sets) == 1
+    return np.flatnonzero(graph.positive & ~graph.optional & (graph.weights >= 1.0) & single)
+
+
+def _base_edges(graph: RelationGraph, sub_properties: bool) -> _Edges:
+    base: _Edges = {relation.index: {} for relation in graph.vocabulary.values()}
+    passes = _passes(graph.vocabulary, sub_properties)
+    firm = firm_edges(graph)
+    rows = list(
+        zip(
+            firm.tolist(),
+            graph.subjects[firm].tolist(),
+            graph.objects[firm].tolist(),
+            (int(mask).bit_length() - 1 for mask in graph.relation_sets[firm]),
+            strict=True,
+        )
+    )
+    for give in passes:
+        for edge, s, o, index in rows:
+            for target, reverse in give[index]:
+                base[target].setdefault((o, s) if reverse else (s, o), edge)
+    return base
+
+
+def _passes(vocabulary: Relations, sub_properties: bool) -> list[dict[int, list[tuple[int, bool]]]]:
+    """What a stated relation gives, the more direct way first: itself; its inverse; what either implies."""
+    relations = list(vocabulary.values())
+    passes: list[dict[int, list[tuple[int, bool]]]] = [
+        {r.index: [(r.index, False)] for r in relations},
+        {r.index: [(vocabulary[r.inverse].index, True)] for r in relations},
+    ]
+    if sub_properties:
+        passes.append({r.index: [(vocabulary[b].index, False) for b in sorted(r.broader)] for r in relations})
+        passes.append(
+            {r.index: [(vocabulary[b].index, True) for b in sorted(vocabulary[r.inverse].broader)] for r in relations}
+        )
+    return passes
+
+
+class Component:
+    """k objects that facts connect: per relation the steps from each to each, and the last stop before."""
+
+    def __init__(self, nodes: NDArray[np.int64], vocabulary: Relations) -> None:
+        self.nodes = nodes
+        self._vocabulary = vocabulary
+        self._edges: dict[int, list[tuple[int, int]]] = {}
+        self._closed: dict[int, tuple[NDArray[np.int32], NDArray[np.int32]]] = {}
+
+    def add(self, relation: int, subject: int, object: int) -> None:
+        self._edges.setdefault(relation, []).append((subject, object))
+
+    def has(self, relation: Relation) -> bool:
+        """Whether any fact of the relation is stated or implied here."""
+        return relation.index in self._edges
+
+    def distance(self, relation: Relation) -> NDArray[np.int32]:
+        """Steps from row to column, shape (k, k), ``FAR`` where there is no way."""
+        return self._close(relation)[0]
+
+    def path(self, relation: Relation, start: int, end: int) -> list[int]:
+        before = self._close(relation)[1]
+        path = [end]
+        while path[-1] != start:
+            path.append(int(before[start, path[-1]]))
+        return path[::-1]
+
+    def _close(self, relation: Relation) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
+        if relation.index not in self._closed:
+            self._closed[relation.index] = self._compute(relation)
+        return self._closed[relation.index]
+
+    def _compute(self, relation: Relation) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
+        from scipy.sparse import csr_array
+        from scipy.sparse.csgraph import shortest_path
+
+        k = len(self.nodes)
+        edges = np.array(self._edges.get(relation.index, ()), dtype=np.int64).reshape(-1, 2)
+        if relation.transitive and len(edges):
+            ones = np.ones(len(edges))
+            matrix = csr_array((ones, (edges[:, 0], edges[:, 1])), shape=(k, k))
+            steps, before = shortest_path(matrix, method="D", unweighted=True, return_predecessors=True)
+            return np.where(np.isfinite(steps), steps, FAR).astype(np.int32), before
+        distance = np.full((k, k), FAR, dtype=np.int32)
+        before = np.full((k, k), -1, dtype=np.int32)
+        distance[edges[:, 0], edges[:, 1]] = 1
+        before[edges[:, 0], edges[:, 1]] = edges[:, 0]
+        return distance, before
+
+
+def _components(graph: RelationGraph, base: _Edges) -> tuple[NDArray[np.int64], list[Component]]:
+    """The connected parts, and where each node is: shape (n, 2), component and position in it."""
+    from scipy.sparse import csr_array
+    from scipy.sparse.csgraph import connected_components
+
+    n = len(graph.nodes)
+    if n == 0:
+        return np.zeros((0, 2), dtype=np.int64), []
+    links = (np.ones(len(graph)), (graph.subjects, graph.objects))
+    count, labels = connected_components(csr_array(links, shape=(n, n)), directed=False)
+    place = np.zeros((n, 2), dtype=np.int64)
+    order = np.argsort(labels, kind="stable")
+    parts = []
+    for label, nodes in enumerate(np.split(order, np.cumsum(np.bincount(labels, minlength=count))[:-1])):
+        if len(nodes) > MAX_CONNECTED:
+            raise LimitError(
+                f"the facts connect {len(nodes)} objects to one another; what follows is worked out for up to "
+                f"{MAX_CONNECTED}: describe the table in parts"
+            )
+        place[nodes, 0] = label
+        place[nodes, 1] = np.arange(len(nodes))
+        parts.append(Component(nodes, graph.vocabulary))
+    for relation, pairs in base.items():
+        for s, o in pairs:
+            parts[place[s, 0]].add(relation, int(place[s, 1]), int(place[o, 1]))
+    return place, parts

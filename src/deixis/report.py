@@ -1,0 +1,95 @@
+"""Answers as plain data for JSON: the shapes that the commands promise."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from deixis.grammar.script import Script
+from deixis.ontology.export import fact_to_dict, graph_to_dict
+from deixis.reasoning.grounding import FactOutcome, Grounding, Outcome
+from deixis.reasoning.implications import Derivation
+from deixis.session import Inference
+
+
+def script_to_dict(script: Script) -> dict[str, Any]:
+    """A parsed script: its header, its objects with their kinds, and its facts with their places."""
+    graph = graph_to_dict(script.graph())
+    return {
+        "file": script.file,
+        "name": script.name,
+        "title": script.title,
+        "viewpoint": script.viewpoint,
+        "objects": graph["nodes"],
+        "facts": [fact_to_dict(fact) | {"status": "stated"} for fact in script.facts],
+    }
+
+
+def inference_to_dict(inference: Inference) -> dict[str, Any]:
+    """Stated and inferred facts, or the minimal conflict alone."""
+    if inference.conflict is not None:
+        facts = [fact_to_dict(fact) for fact in inference.conflict.facts]
+        return {"consistent": False, "conflict": {"reason": inference.conflict.reason, "facts": facts}}
+    stated = [fact_to_dict(fact) | {"status": "stated"} for fact in inference.stated]
+    inferred = [_inferred_to_dict(derivation) for derivation in inference.inferred()]
+    return {"consistent": True, "facts": stated + inferred}
+
+
+def _inferred_to_dict(derivation: Derivation) -> dict[str, Any]:
+    lines = sorted({fact.source.line for fact in derivation.stated() if fact.source})
+    return fact_to_dict(derivation.fact) | {"status": "inferred", "rule": derivation.rule.value, "lines": lines}
+
+
+def derivation_to_dict(derivation: Derivation) -> dict[str, Any]:
+    """A derivation, down to stated facts."""
+    premises = [derivation_to_dict(premise) for premise in derivation.premises]
+    return {"fact": fact_to_dict(derivation.fact), "rule": derivation.rule.value, "premises": premises}
+
+
+def grounding_to_dict(found: Grounding) -> dict[str, Any]:
+    """Who is who, and everything that qualifies it."""
+    return {
+        "engine": found.engine,
+        "matches": [
+            {
+                "object": match.object,
+                "perceived": match.perceived,
+                "score": round(match.score, 6),
+                "similarity": round(match.similarity, 6),
+                "decided": match.decided,
+                "alternatives": [
+                    {"perceived": other.perceived, "cost": round(other.cost, 6)} for other in match.alternatives
+                ],
+            }
+            for match in found.matches.values()
+        ],
+        "unmatched_objects": [left.name for left in found.unmatched_objects],
+        "unmatched_perceived": [left.name for left in found.unmatched_perceived],
+        "left_out": {left.name: left.reason for left in (*found.unmatched_objects, *found.unmatched_perceived)},
+        "interchangeable": [list(group) for group in found.interchangeable],
+        "graph_similarity": round(found.graph_similarity, 9),
+        "facts": {
+            "stated": len(found.outcomes),
+            "satisfied": len(found.satisfied),
+            "violated": [outcome_to_dict(entry) for entry in found.violated],
+            "waived": [outcome_to_dict(entry) for entry in found.of(Outcome.WAIVED)],
+            "open": [outcome_to_dict(entry) for entry in found.of(Outcome.OPEN)],
+        },
+        "proved_best": found.proved_best,
+        "converged": found.converged,
+        "notes": list(found.notes),
+        "seconds": round(found.seconds, 6),
+    }
+
+
+def outcome_to_dict(entry: FactOutcome) -> dict[str, Any]:
+    """A fact, its line, and what was perceived of its pair."""
+    perceived = None
+    if entry.perceived is not None and entry.seen is not None:
+        perceived = {
+            "relation": entry.seen.word,
+            "subject": entry.perceived[0],
+            "object": entry.perceived[1],
+            "reading": entry.seen.reading.value,
+        }
+    line = entry.fact.source.line if entry.fact.source else None
+    return {"fact": fact_to_dict(entry.fact), "line": line, "degree": entry.degree, "perceived": perceived}
