@@ -45,6 +45,11 @@ class Draft:
         return found
 
     @cached_property
+    def phrases(self) -> dict[str, str]:
+        """Every relation phrase as it is written, by its plain form."""
+        return {plain_phrase(word): word for r in self.ontology.relations.values() for word in r.words}
+
+    @cached_property
     def chains(self) -> dict[str, Relation]:
         """What may head a chain, without its colon."""
         return chains(self.ontology)

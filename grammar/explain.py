@@ -8,7 +8,7 @@ from difflib import SequenceMatcher
 from lark import Token
 
 from deixis.grammar.draft import Draft
-from deixis.grammar.errors import Refusal, shortened
+from deixis.grammar.errors import SHOWN, Refusal, shortened
 from deixis.grammar.tree import source_of, span_of
 from deixis.ontology.relation import plain_phrase
 from deixis.ontology.source import Source
@@ -109,9 +109,9 @@ def _bare(tokens: list[Token], draft: Draft) -> Refusal:
     message = f"nothing is said of '{shortened(name.strip(chr(34)))}'"
     if len(name) <= LONGEST_NAME_SEARCHED and listed[0].type == "NAME":
         for word in name.split("_")[1:-1]:
-            near = draft.nearest(word, list(_phrases(draft)))
+            near = draft.nearest(word, list(draft.phrases))
             if near is not None:
-                return Refusal(span_of(tokens), message, f"did you mean '{_phrases(draft)[near]}' by '{word}'?")
+                return Refusal(span_of(tokens), message, f"did you mean '{draft.phrases[near]}' by '{word}'?")
     return Refusal(span_of(tokens), message, A_RELATION)
 
 
@@ -134,8 +134,10 @@ def _no_relation(tokens: list[Token], at: int, accepts: set[str], draft: Draft) 
 
 def _meant(tokens: list[Token], at: int, draft: Draft) -> tuple[str, Source, str] | None:
     """What is said around token ``at``, where, and the relation phrase that looks most like it."""
-    phrases = _phrases(draft)
+    phrases = draft.phrases
     best, found = LIKE_ENOUGH, None
+    if len(draft.problems) >= SHOWN:
+        return None
     for start in (at - 1, at):
         if start < 0 or (start < at and tokens[start].type != "NAME"):
             continue
@@ -158,11 +160,6 @@ def _from_last_word(first: Token, last: Token) -> Source:
     start, end = source_of(first), source_of(last)
     column = start.end_column - len(first.rpartition("_")[2])
     return Source(start.file, start.end_line, column, end.end_line, end.end_column)
-
-
-def _phrases(draft: Draft) -> dict[str, str]:
-    """Every relation phrase as it is written, by its plain form."""
-    return {plain_phrase(word): word for r in draft.ontology.relations.values() for word in r.words}
 
 
 def _other(tokens: list[Token], at: int, accepts: set[str]) -> Refusal:

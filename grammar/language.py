@@ -34,9 +34,12 @@ class Language:
 
     lark: Lark
     scanner: Scanner
+    phrase_starts: frozenset[str]  # words with which a longer relation phrase begins: 'upper', 'to', 'in front'
 
     def reads_as_name(self, text: str) -> bool:
-        """Whether the text, unquoted, is read as a name that is spelled just so."""
+        """Whether the text, unquoted, is read as a name that is spelled just so, also before a relation."""
+        if plain_phrase(text) in self.phrase_starts:
+            return False
         found = list(self.scanner.tokens(text))
         return len(found) == 1 and found[0].type == "NAME" and str(found[0]) == text
 
@@ -76,4 +79,6 @@ def _build(
         postlex=KeepHomeless(),
         edit_terminals=from_ontology,
     )
-    return Language(lark, Scanner(lark.terminals))
+    split = [phrase.split() for phrase in relations]
+    starts = frozenset(" ".join(words[:end]) for words in split for end in range(1, len(words)))
+    return Language(lark, Scanner(lark.terminals), starts)

@@ -9,6 +9,7 @@ from deixis.grammar.script import Mention
 from deixis.ontology.source import Source
 
 MOST_OBJECTS = 1_000_000  # of one script with all that it includes
+BLANKS = "\t\u00a0\u2002\u2003\u2009\u202f\u3000"  # the space is printable as it is
 JOINERS = "\u200c\u200d"  # invisible, but part of words in Persian and the scripts of India
 
 
@@ -24,7 +25,7 @@ def key_of(name: str) -> str:
 def unquoted(text: str, source: Source) -> str:
     """The name that a quoted text stands for, blanks as underscores; raises Refusal where it is none."""
     for i, character in enumerate(text):
-        if not character.isprintable() and not character.isspace() and character not in JOINERS:
+        if not (character.isprintable() or character in BLANKS or character in JOINERS):
             place = Source(source.file, source.line, source.column + 1 + i, source.line, source.column + 2 + i)
             raise Refusal(place, f"a control character (U+{ord(character):04X}) cannot be in a name")
     name = "_".join(unicodedata.normalize("NFC", text).split())

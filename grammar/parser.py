@@ -89,16 +89,20 @@ class FileReader:
     def read(self) -> Iterator[Statement]:
         """The statements that make sense; the problems of the others go to the draft."""
         here = Place(self.draft, self.file, Source(self.file, 1, 1, 1, 1))
+        statement: Statement | None
         first = True
         for tokens in self._statements():
             previous = place.set(here)
             try:
                 here.statement = span_of(tokens)
-                yield self._finished(self._parsed(tokens), first)
+                statement = self._finished(self._parsed(tokens), first)
             except Refusal as refusal:
                 self._report(refusal)
+                statement = None
             finally:
                 place.reset(previous)
+            if statement is not None:
+                yield statement
             first = False
 
     def _statements(self) -> Iterator[list[Token]]:
@@ -137,13 +141,13 @@ class FileReader:
         state = parser.parser_state
         at = -1
         try:
-            for at, token in enumerate(tokens):
-                state.feed_token(token)
+            for at in range(len(tokens)):
+                state.feed_token(tokens[at])
             at = len(tokens)
-            statement: Statement = parser.feed_eof(tokens[-1])
+            statement: Statement = state.feed_token(Token.new_borrow_pos("$END", "", tokens[-1]), True)
         except UnexpectedToken as error:
             many = len(self.draft.problems) >= SHOWN  # then what comes near enough will do
-            accepts = error.expected if many else parser.accepts()
+            accepts = error.expected if many else parser.accepts()  # type: ignore[no-untyped-call]
             raise unexpected(tokens, at, set(accepts), self.draft) from None
         return statement
 
@@ -188,5 +192,3 @@ class FileReader:
             self._lines = self.text.split("\n")
         line = self._lines[refusal.source.line - 1]
         self.draft.problems.append(Problem(refusal.source, refusal.message, line, refusal.hint))
-
-

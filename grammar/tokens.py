@@ -88,9 +88,7 @@ def _name(words: list[Token], text: str) -> Token:
             return bad
     first, last = words[0], words[-1]
     value = unicodedata.normalize("NFC", "_".join(text.split()))
-    return Token(
-        "NAME", value, first.start_pos, first.line, first.column, last.end_line, last.end_column, last.end_pos
-    )
+    return Token("NAME", value, first.start_pos, first.line, first.column, last.end_line, last.end_column, last.end_pos)
 
 
 def _bad_character(word: Token) -> Token | None:

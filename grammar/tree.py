@@ -8,7 +8,7 @@ from deixis.grammar.draft import place
 from deixis.grammar.errors import Refusal, shortened
 from deixis.grammar.names import unquoted
 from deixis.grammar.script import Chain, Declaration, Header, Include, Mention, Modifiers, Placement, Statement
-from deixis.grammar.words import NUMBERS
+from deixis.grammar.words import NUMBERS, VERBS_OR_NOUNS
 from deixis.ontology.relation import Relation, plain_phrase
 from deixis.ontology.source import Source
 
@@ -70,18 +70,23 @@ class TreeBuilder(Transformer[Token, Statement]):
         self,
         modifiers: Modifiers | None,
         subjects: tuple[Mention, ...],
-        link: Modifiers | None,
+        link: tuple[Modifiers, Token | None] | None,
         relations: tuple[Relation, ...],
         objects: tuple[Mention, ...],
     ) -> Placement:
         here = place.get()
+        how, noun = link or (None, None)
+        if noun is not None and _size(subjects) == 1:
+            verb = f"is {noun}" if noun.casefold() in ("set", "put") else f"{noun}s"
+            hint = f"say '{verb}' for the verb; join the words of the name with '_', or quote it"
+            raise Refusal(source_of(noun), f"'{noun}' may be a verb here, or belong to the name", hint)
         here.draft.grow(_size(subjects) * _size(objects), here.statement)
         among = {name for mention in subjects for name in mention.names}
         for mention in objects:
             for name in mention.names:
                 if name in among:
                     raise Refusal(mention.source, f"'{shortened(name)}' cannot be related to itself")
-        return Placement(subjects, relations, objects, _merged(modifiers, link), here.statement)
+        return Placement(subjects, relations, objects, _merged(modifiers, how), here.statement)
 
     def pairs(self, modifiers: Modifiers | None, first: Pair, *others: Pair) -> Placement:
         relations, subject, thing = first
@@ -133,12 +138,14 @@ class TreeBuilder(Transformer[Token, Statement]):
     def modifiers(self, *words: Token) -> Modifiers:
         return _modifiers(words)
 
-    def link(self, *words: Token) -> Modifiers:
+    def link(self, *words: Token) -> tuple[Modifiers, Token | None]:
+        """What qualifies the relation, and a bare verb that may be a noun (a cake stand)."""
         verbs = [word for word in words if word.type in ("IS", "VERB")]
         for before, word in zip([None, *verbs], verbs, strict=False):
             if before is not None and (before.type, word.type) != ("IS", "VERB"):
                 raise Refusal(source_of(word), f"'{word}' is one verb too many")
-        return _modifiers(tuple(word for word in words if word.type not in ("IS", "VERB")))
+        noun = verbs[0] if verbs and verbs[0].casefold() in VERBS_OR_NOUNS else None
+        return _modifiers(tuple(word for word in words if word.type not in ("IS", "VERB"))), noun
 
 
 def _modifiers(words: tuple[Token, ...]) -> Modifiers:
@@ -165,9 +172,7 @@ def _merged(front: Modifiers | None, link: Modifiers | None) -> Modifiers:
     if front.optional and link.optional:
         raise _twice("OPTIONAL", "optional", where)
     hedged = front if front.hedge else link
-    return Modifiers(
-        front.positive and link.positive, front.optional or link.optional, hedged.hedge, hedged.weight
-    )
+    return Modifiers(front.positive and link.positive, front.optional or link.optional, hedged.hedge, hedged.weight)
 
 
 def _twice(modifier: str, word: str, where: Source) -> Refusal:
@@ -186,4 +191,4 @@ def _one_reading(relations: tuple[Relation, ...], where: Source) -> tuple[Relati
 
 
 def _size(mentions: tuple[Mention, ...]) -> int:
-    return sum(len(mention.names) for mention in mentions)
+    return len(mentions[0].names) if len(mentions) == 1 else sum(len(mention.names) for mention in mentions)

@@ -10,6 +10,7 @@ VERBS = (
     *("goes", "go", "lies", "lie", "sits", "sit", "stands", "stand", "belongs", "belong", "rests", "rest"),
     *("placed", "laid", "set", "put", "located", "situated", "positioned", "standing", "sitting"),
 )
+VERBS_OR_NOUNS = frozenset({"stand", "rest", "set", "put"})  # a cake stand, a knife rest, a tea set
 NUMBERS = {
     word: value
     for value, word in enumerate(
@@ -19,19 +20,17 @@ NUMBERS = {
 
 # Words that carry no name of a thing. One of them inside an unquoted name means that the sentence was not understood,
 # so they are refused there instead of becoming part of an object called "spoon to the".
-FUNCTION_WORDS = frozenset(
-    """
-    about across almost approximately close closer diagonally directly far farther further immediately nearer nearly
-    precisely roughly slightly
-    after against all along although am among any around as aside at because been before being beside
-    besides between both but by can could did do does down during each either else every exactly for had has have he
-    her here hers him his how i if in into it its itself just may me might mine must my near neither next no nobody
-    none nor nothing now of off once one only onto opposite other our out outside over per please rather relative
-    she should since so some such than that their them then there these they this those though through throughout
-    till to together too toward towards until up us very via was we were what when where whereas whether which while
-    who whom whose why will with without would yet you your
-    """.split()
-)
+_FUNCTION_WORDS = """
+about across after against all almost along although am among any approximately around as aside at because
+been before being beside besides between both but by can close closer could diagonally did directly do does
+down during each either else every exactly far farther for further had has have he her here hers him his how i
+if immediately in into it its itself just may me might mine must my near nearer nearly neither next no nobody
+none nor nothing now of off once one only onto opposite other our out outside over per please precisely rather
+relative roughly she should since slightly so some such than that their them then there these they this those
+though through throughout till to together too toward towards until up us very via was we were what when where
+whereas whether which while who whom whose why will with without would yet you your
+"""
+FUNCTION_WORDS = frozenset(_FUNCTION_WORDS.split())
 
 KEYWORDS: dict[str, str] = {
     **dict.fromkeys(FUNCTION_WORDS, "FUNCTION"),

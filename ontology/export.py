@@ -66,7 +66,9 @@ def graph_from_dict(data: Mapping[str, Any], vocabulary: Relations) -> RelationG
             kinds=[node.get("kind") for node in nodes] if any("kind" in node for node in nodes) else (),
             boxes=np.array([[node["min"], node["max"]] for node in nodes], dtype=float) if boxed else None,
         )
-    except (KeyError, TypeError, AttributeError) as error:
+    except GraphError:
+        raise
+    except (KeyError, TypeError, AttributeError, ValueError) as error:
         raise GraphError(f"this is no relation graph as Deixis writes it: {error}") from error
 
 
@@ -93,20 +95,24 @@ PREFIXES = {
     "xsd": "http://www.w3.org/2001/XMLSchema#",
 }
 
+IRI_SIGNS = ":/?#[]@!$&'()*+,;=%"
+"""What an IRI may have unescaped besides letters, digits and ``-._~``."""
+
 
 def graph_to_turtle(graph: RelationGraph, base: str = "urn:deixis:graph:") -> str:
-    """The graph as Turtle: each object under ``base``, each edge a ``dx:RelationStatement``.
+    """The graph as Turtle: each object under ``base``, each edge a ``dx:RelationStatement`` under ``base`` + ``fact/``.
 
-    Names become percent-encoded IRIs and escaped literals, so that no name can add a statement of its own.
+    Names become percent-encoded IRIs (so that none has a slash) and escaped literals: no name can add a statement of
+    its own, or be taken for one.
     """
     lines = [f"@prefix {prefix}: <{iri}> ." for prefix, iri in PREFIXES.items()]
     lines.append("")
     for i, name in enumerate(graph.nodes):
         kind = graph.kinds[i] if graph.kinds and graph.kinds[i] else DX.THING
-        lines.append(f"{_iri(base, name)} a <{kind}> ; rdfs:label {_literal(name)} .")
+        lines.append(f"{_iri(base, name)} a <{quote(kind, safe=IRI_SIGNS)}> ; rdfs:label {_literal(name)} .")
     for number, fact in enumerate(graph.facts()):
         lines.append("")
-        lines.append(f"{_iri(base, f'fact {number + 1}')} a {_dx(DX.RELATION_STATEMENT)} ;")
+        lines.append(f"<{base}fact/{number + 1}> a {_dx(DX.RELATION_STATEMENT)} ;")
         lines.append(f"    {_dx(DX.SUBJECT)} {_iri(base, fact.subject)} ;")
         lines.append(f"    {_dx(DX.OBJECT)} {_iri(base, fact.object)} ;")
         lines.append(f"    {_dx(DX.RELATION)} {', '.join(_relation(r) for r in fact.relations)} ;")

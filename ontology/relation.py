@@ -215,4 +215,7 @@ def _inverse(iri: str, triples: Triples) -> str:
 
 def _atoms(iri: str, prop: DX, triples: Triples) -> int:
     symbols = [triples.value(allen, DX.ALLEN_SYMBOL) for allen in triples.values(iri, prop)]
+    unknown = [symbol for symbol in symbols if symbol not in SYMBOLS]
+    if unknown:
+        raise OntologyError(f"<{iri}> admits '{unknown[0]}', which is the sign of no Allen relation")
     return allen_mask(Allen(SYMBOLS.index(symbol)) for symbol in symbols)

@@ -128,7 +128,11 @@ def _own(triples: Triples) -> frozenset[str]:
 def _hedges(triples: Triples) -> dict[str, float]:
     weights = {}
     for iri in triples.subjects(W3C.RDF_TYPE, DX.HEDGE):
-        weight = float(triples.value(iri, DX.HEDGE_WEIGHT))
+        text = triples.value(iri, DX.HEDGE_WEIGHT)
+        try:
+            weight = float(text)
+        except ValueError:
+            raise OntologyError(f"<{iri}>: a hedge weighs a number, not '{text}'") from None
         if not 0 < weight <= 1:
             raise OntologyError(f"<{iri}>: a hedge weighs above 0 and at most 1, not {weight}")
         weights.update(dict.fromkeys(_words(triples, iri), weight))

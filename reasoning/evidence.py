@@ -55,18 +55,27 @@ class Evidence:
         return np.concatenate([table, np.zeros((len(table), 1))], axis=1)
 
     def degrees(self, assignment: NDArray[np.int64]) -> NDArray[np.float64]:
-        """How far each comparable fact holds under an assignment (n1,), 0 where an object of it is unmatched."""
-        subjects = assignment[self.description.subjects[self.facts]]
-        objects = assignment[self.description.objects[self.facts]]
+        """How far each comparable fact holds, 0 where an object of it is unmatched.
+
+        ``assignment`` has shape (…, n1), the result (…, facts).
+        """
+        subjects = assignment[..., self.description.subjects[self.facts]]
+        objects = assignment[..., self.description.objects[self.facts]]
         matched = (subjects != UNMATCHED) & (objects != UNMATCHED)
         names = np.where(matched, self.names[subjects, objects], -1) if len(self.names) else subjects
-        return np.where(matched, self.degree_table[np.arange(len(self.facts)), names], 0.0)
+        degrees: NDArray[np.float64] = np.where(matched, self.degree_table[np.arange(len(self.facts)), names], 0.0)
+        return degrees
 
     def total(self, assignment: NDArray[np.int64]) -> float:
         """The sum of degrees times weights, plus the bonus of each match."""
-        rows = np.flatnonzero(assignment != UNMATCHED)
-        bonus = self.bonus[rows, assignment[rows]].sum()
-        return float(self.degrees(assignment) @ self.description.weights[self.facts] + bonus)
+        return float(self.totals(assignment[None])[0])
+
+    def totals(self, assignments: NDArray[np.int64]) -> NDArray[np.float64]:
+        """The total of each of k assignments (k, n1)."""
+        matched = assignments != UNMATCHED
+        bonus = self.bonus[np.arange(assignments.shape[1]), np.where(matched, assignments, 0)] if self.bonus.size else 0
+        totals: NDArray[np.float64] = self.degrees(assignments) @ self.description.weights[self.facts]
+        return totals + np.where(matched, bonus, 0.0).sum(axis=1)
 
     def reordered(self, rows: NDArray[np.int64], columns: NDArray[np.int64]) -> Evidence:
         """The same evidence with the objects and the perceived things in another order."""

@@ -53,84 +53,77 @@ def node_similarity(
     """
     kept = np.ones((1, len(first.vertices)), dtype=bool) if members is None else members
     step = _Step(first, second, kept)
-    base = step.degree_overlap() * (1.0 if prior is None else prior)
+    weight = np.ones((len(first.vertices), len(second.vertices))) if prior is None else prior
+    base = step.degree_overlap() * weight[:, None, :]
     matrices = _normalised(base)
     converged = np.zeros(len(kept), dtype=bool)
     done = 0
     while done < iterations and not converged.all():
         following = _normalised(step.neighbourhood(matrices) * base)
-        converged = np.abs(following - matrices).max(axis=(1, 2), initial=0.0) <= tolerance
+        converged = np.abs(following - matrices).max(axis=(0, 2), initial=0.0) <= tolerance
         matrices = following
         done += 1
-    return NodeSimilarity(matrices, converged, done)
+    return NodeSimilarity(matrices.transpose(1, 0, 2), converged, done)
 
 
 def _normalised(matrices: NDArray[np.float64]) -> NDArray[np.float64]:
     """Equation 9; a zero matrix stays zero."""
-    norms = np.sqrt((matrices**2).sum(axis=(1, 2), keepdims=True))
+    norms = np.sqrt(np.einsum("abc,abc->b", matrices, matrices))[None, :, None]
     normalised: NDArray[np.float64] = np.divide(matrices, norms, out=np.zeros_like(matrices), where=norms > 0)
     return normalised
 
 
 class _Step:
-    """Equations 5 to 7 on arrays: b sub-graphs of the first graph, n1 and n2 nodes, L shared labels."""
+    """Equations 5 to 7 on arrays of shape (n1, b, n2): b sub-graphs of the first graph, L shared labels.
+
+    Nodes of the first graph come first, so that what one of its edges carries is one product of matrices.
+    """
 
     def __init__(self, first: PaperGraph, second: PaperGraph, kept: NDArray[np.bool_]) -> None:
         shared = np.intersect1d(first.edge_labels, second.edge_labels)
-        self._kept = kept
+        self._kept = kept.T.copy()
         self._sizes = kept.sum(axis=1) * len(second.vertices)
         self._edges = _labelled_edges(first, shared)
-        self._second = second.adjacency()[shared]
+        adjacency = second.adjacency()[shared]
         self._in1, self._out1 = self._degrees(len(shared))
-        self._in2, self._out2 = self._second.sum(axis=1), self._second.sum(axis=2)
+        self._in2, self._out2 = adjacency.sum(axis=1), adjacency.sum(axis=2)
+        self._into = adjacency * _inverse(self._in2)[:, None, :]
+        self._out_of = (adjacency * _inverse(self._out2)[:, :, None]).transpose(0, 2, 1).copy()
+        self._in_scale, self._out_scale = _inverse(self._in1), _inverse(self._out1)
         self._both_zero = self._zero_pairs(self._in1, self._in2) + self._zero_pairs(self._out1, self._out2)
 
     def _degrees(self, labels: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """In- and out-degree by label in each sub-graph: shapes (b, L, n1)."""
-        shape = (len(self._kept), labels, self._kept.shape[1])
-        incoming, outgoing = np.zeros(shape), np.zeros(shape)
+        """In- and out-degree by label in each sub-graph: shapes (L, n1, b)."""
+        incoming, outgoing = np.zeros((2, labels, *self._kept.shape))
         for start, end, label in self._edges:
-            present = self._kept[:, start] & self._kept[:, end]
-            incoming[:, label, end] += present
-            outgoing[:, label, start] += present
+            present = self._kept[start] & self._kept[end]
+            incoming[label, end] += present
+            outgoing[label, start] += present
         return incoming, outgoing
 
     def _zero_pairs(self, degrees1: NDArray[np.float64], degrees2: NDArray[np.float64]) -> NDArray[np.float64]:
-        """For how many labels both degrees are zero, shape (b, n1, n2)."""
-        zero1 = (degrees1 == 0) & self._kept[:, None, :]
-        return np.einsum("bla,lc->bac", zero1.astype(float), (degrees2 == 0).astype(float))
+        """For how many labels both degrees are zero, shape (n1, b, n2)."""
+        zero1 = ((degrees1 == 0) & self._kept).astype(float)
+        pairs: NDArray[np.float64] = np.einsum("lab,lc->abc", zero1, (degrees2 == 0).astype(float))
+        return pairs
 
     def degree_overlap(self) -> NDArray[np.float64]:
-        """Equation 5, shape (b, n1, n2)."""
-        total: NDArray[np.float64] = np.zeros((*self._kept.shape, self._second.shape[1]))
+        """Equation 5, shape (n1, b, n2)."""
+        total: NDArray[np.float64] = np.zeros((*self._kept.shape, self._into.shape[1]))
         for degrees1, degrees2 in ((self._in1, self._in2), (self._out1, self._out2)):
-            for label in range(len(degrees2)):
-                total += np.minimum(degrees1[:, label, :, None], degrees2[label][None, None, :])
+            for one, two in zip(degrees1, degrees2, strict=True):
+                total += np.minimum(one[:, :, None], two)
         return total
 
     def neighbourhood(self, matrices: NDArray[np.float64]) -> NDArray[np.float64]:
-        """The mean of equations 6 and 7, shape (b, n1, n2)."""
-        mean = matrices.sum(axis=(1, 2)) / np.maximum(self._sizes, 1)
-        total: NDArray[np.float64] = mean[:, None, None] * self._both_zero
-        into = self._carried(matrices, self._second, self._in2)
-        out_of = self._carried(matrices, self._second.transpose(0, 2, 1), self._out2)
-        into_scale, out_scale = _inverse(self._in1), _inverse(self._out1)
+        """The mean of equations 6 and 7, shape (n1, b, n2)."""
+        mean = matrices.sum(axis=(0, 2)) / np.maximum(self._sizes, 1)
+        total: NDArray[np.float64] = mean[:, None] * self._both_zero
         for start, end, label in self._edges:
-            present = (self._kept[:, start] & self._kept[:, end]).astype(float)
-            total[:, end] += (present * into_scale[:, label, end])[:, None] * into[:, start, label]
-            total[:, start] += (present * out_scale[:, label, start])[:, None] * out_of[:, end, label]
+            total[end] += self._in_scale[label, end][:, None] * (matrices[start] @ self._into[label])
+            total[start] += self._out_scale[label, start][:, None] * (matrices[end] @ self._out_of[label])
         total /= 2
         return total
-
-    @staticmethod
-    def _carried(
-        matrices: NDArray[np.float64], adjacency: NDArray[np.float64], degrees: NDArray[np.float64]
-    ) -> NDArray[np.float64]:
-        """What a node's similarity gives to the second graph's neighbours by label, shape (b, n1, L, n2)."""
-        labels, n2, _ = adjacency.shape
-        scaled = adjacency * _inverse(degrees)[:, None, :]
-        flat: NDArray[np.float64] = matrices.reshape(-1, n2) @ scaled.transpose(1, 0, 2).reshape(n2, labels * n2)
-        return flat.reshape(*matrices.shape[:2], labels, n2)
 
 
 def _labelled_edges(graph: PaperGraph, shared: NDArray[np.int8]) -> list[tuple[int, int, int]]:

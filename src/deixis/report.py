@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from deixis.grammar.script import Script
 from deixis.ontology.export import fact_to_dict, graph_to_dict
-from deixis.reasoning.grounding import FactOutcome, Grounding, Outcome
-from deixis.reasoning.implications import Derivation
-from deixis.session import Inference
+
+if TYPE_CHECKING:
+    from deixis.grammar.script import Script
+    from deixis.reasoning.grounding import FactOutcome, Grounding
+    from deixis.reasoning.implications import Derivation
+    from deixis.session import Inference
 
 
 def script_to_dict(script: Script) -> dict[str, Any]:
@@ -47,6 +49,8 @@ def derivation_to_dict(derivation: Derivation) -> dict[str, Any]:
 
 def grounding_to_dict(found: Grounding) -> dict[str, Any]:
     """Who is who, and everything that qualifies it."""
+    from deixis.reasoning.grounding import Outcome
+
     return {
         "engine": found.engine,
         "matches": [

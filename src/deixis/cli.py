@@ -1,0 +1,249 @@
+"""The command line. Each command loads, calls and prints; everything heavy is imported by the command that needs it.
+
+Exit codes: 0 done, 1 the answer is no, 2 bad input, 3 undecided within the time limit.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+if TYPE_CHECKING:
+    from deixis.reasoning.grounding import Grounding
+    from deixis.session import Inference
+
+NO, BAD_INPUT, UNDECIDED = 1, 2, 3
+
+app = typer.Typer(
+    name="deixis",
+    help="Ground a description of a laid table in what is seen: who is who, what follows, what cannot be known.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    rich_markup_mode=None,
+)
+
+
+class GraphFormat(StrEnum):
+    TEXT = "text"
+    JSON = "json"
+    TURTLE = "turtle"
+    DOT = "dot"
+
+
+class EngineName(StrEnum):
+    EXACT = "exact"
+    SIMILARITY = "similarity"
+
+
+Script = Annotated[str, typer.Argument(metavar="SCRIPT", help="A layout script (.layout).")]
+AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
+
+
+@app.callback()
+def _root() -> None:
+    pass
+
+
+@app.command()
+def parse(
+    script: Script,
+    format: Annotated[GraphFormat, typer.Option("--format", help="How to print the facts.")] = GraphFormat.TEXT,
+    as_json: AsJson = False,
+) -> None:
+    """Print the facts of a script with their lines."""
+    from deixis.grammar.parser import read_script
+
+    parsed = read_script(script)
+    if as_json or format is GraphFormat.JSON:
+        from deixis.report import script_to_dict
+
+        _print_json(script_to_dict(parsed))
+    elif format is GraphFormat.TEXT:
+        from deixis.show import script_lines
+
+        _print_lines(script_lines(parsed))
+    else:
+        from deixis.ontology.export import graph_to_dot, graph_to_turtle
+
+        written = graph_to_turtle if format is GraphFormat.TURTLE else graph_to_dot
+        sys.stdout.write(written(parsed.graph()))
+
+
+@app.command()
+def fmt(
+    script: Script,
+    write: Annotated[bool, typer.Option("--write", "-w", help="Write the file instead of printing it.")] = False,
+    check: Annotated[bool, typer.Option("--check", help="Print nothing; exit 1 where the form differs.")] = False,
+    as_json: AsJson = False,
+) -> None:
+    """Print a script in its canonical form, comments kept."""
+    from deixis.grammar.format import format_script
+    from deixis.grammar.parser import read_script
+
+    formatted = format_script(read_script(script))
+    same = formatted == Path(script).read_bytes().decode("utf-8-sig")
+    if write and not same:
+        _replace(Path(script), formatted)
+    if as_json:
+        _print_json({"file": script, "canonical": same, "text": formatted})
+    elif not check and not write:
+        sys.stdout.write(formatted)
+    if check and not same:
+        raise typer.Exit(NO)
+
+
+@app.command()
+def infer(
+    script: Script,
+    explain: Annotated[str | None, typer.Option(help="Print why a fact holds: 'left(fork, plate)'.")] = None,
+    as_json: AsJson = False,
+) -> None:
+    """Print what a script states and implies, or the smallest contradiction in it (exit 1)."""
+    from deixis.report import inference_to_dict
+    from deixis.session import infer as run
+    from deixis.show import inference_lines
+
+    inference = run(script)
+    if explain is not None and inference.consistent:
+        _explain(inference, explain, as_json)
+        return
+    if as_json:
+        _print_json(inference_to_dict(inference))
+    else:
+        _print_lines(inference_lines(inference))
+    if not inference.consistent:
+        raise typer.Exit(NO)
+
+
+def _explain(inference: Inference, text: str, as_json: bool) -> None:
+    from deixis.ontology.errors import DeixisError
+    from deixis.report import derivation_to_dict
+    from deixis.session import read_script
+
+    facts = read_script(text=text).facts
+    if len(facts) != 1 or not facts[0].plain:
+        raise DeixisError(f"--explain: '{text}' is not one plain fact; write it like 'left(fork, plate)'")
+    fact = facts[0]
+    derivation = inference.implications.derive(fact.relations[0], fact.subject, fact.object)
+    if as_json:
+        _print_json({"fact": str(fact), "derivation": derivation and derivation_to_dict(derivation)})
+    elif derivation is None:
+        print(f"{fact} does not follow from the script.")
+    else:
+        _print_lines(list(derivation.lines()))
+    if derivation is None:
+        raise typer.Exit(NO)
+
+
+@app.command()
+def ground(
+    script: Script,
+    scene: Annotated[str, typer.Argument(metavar="SCENE", help="A scene (.scene.json).")],
+    engine: Annotated[EngineName, typer.Option(help="exact, or similarity: the paper's.")] = EngineName.EXACT,
+    plot: Annotated[Path | None, typer.Option(metavar="FILE", help="Draw the scene with the names found.")] = None,
+    time_limit: Annotated[float, typer.Option(min=0.0, metavar="SECONDS", help="Answer by then.")] = 10.0,
+    as_json: AsJson = False,
+) -> None:
+    """Work out which perceived thing each object of a script is."""
+    from deixis.report import grounding_to_dict
+    from deixis.session import ground as run
+    from deixis.session import read_scene, read_script
+    from deixis.show import grounding_lines
+
+    parsed, seen = read_script(script), read_scene(scene)
+    found = run(parsed, seen, engine=engine, time_limit=time_limit)
+    if plot is not None:
+        from deixis.plot import plot_grounding
+
+        plot_grounding(found, seen, plot, title=parsed.title or parsed.name)
+    if as_json:
+        _print_json(grounding_to_dict(found))
+    else:
+        _print_lines(grounding_lines(found))
+        if plot is not None:
+            print(f"\nThe picture is in {plot}.")
+    raise typer.Exit(_verdict(found))
+
+
+def _verdict(found: Grounding) -> int:
+    if not found.matches:
+        return NO
+    return UNDECIDED if found.engine == EngineName.EXACT and not found.proved_best else 0
+
+
+@app.command()
+def experiment(
+    name: Annotated[str, typer.Argument(help="figure6: the paper's Figure 6 again.")],
+    out: Annotated[Path, typer.Option("-o", "--out", metavar="DIR", help="Where pictures and figures go.")] = Path("out"),
+    variants: Annotated[int, typer.Option(min=1, help="Generated place settings.")] = 50,
+    orders: Annotated[int, typer.Option(min=1, help="Random node orders that an accuracy is a mean over.")] = 200,
+    seed: Annotated[int, typer.Option(help="Seed of everything random.")] = 1,
+    as_json: AsJson = False,
+) -> None:
+    """Run an experiment of the paper again."""
+    from deixis.experiments import run_experiment
+
+    result = run_experiment(name, out, variants=variants, orders=orders, seed=seed)
+    if as_json:
+        _print_json(result.to_dict())
+    else:
+        _print_lines(result.lines())
+
+
+@app.command()
+def demo(
+    out: Annotated[Path, typer.Option("-o", "--out", metavar="DIR", help="Where the pictures go.")] = Path("out"),
+) -> None:
+    """Tell the whole story on shipped data."""
+    from deixis.story import tell
+
+    tell(out)
+
+
+def _replace(path: Path, text: str) -> None:
+    """Writes a file in one step, so that a crash leaves the old one."""
+    draft = path.with_name(f".{path.name}.{os.getpid()}")
+    try:
+        draft.write_text(text, encoding="utf-8", newline="")
+        draft.replace(path)
+    finally:
+        draft.unlink(missing_ok=True)
+
+
+def _print_json(data: Any) -> None:
+    print(json.dumps(data, indent=2, ensure_ascii=False))
+
+
+def _print_lines(lines: list[str]) -> None:
+    print("\n".join(lines))
+
+
+def main() -> None:
+    """Runs the command line; errors of Deixis are one message and exit code 2, never a traceback."""
+    from deixis.ontology.errors import DeixisError
+
+    try:
+        app()
+    except DeixisError as error:
+        _fail(str(error))
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        sys.exit(0)
+    except OSError as error:
+        _fail(f"{error.filename or 'a file'}: {error.strerror or error}")
+
+
+def _fail(message: str) -> None:
+    print(f"deixis: {message}", file=sys.stderr)
+    sys.exit(BAD_INPUT)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,267 @@
+"""Figure 6 again: is graph similarity a good guide to correct matches?
+
+Each point is a sub-graph of the description, matched to the scene by equations 5 to 9 and the Hungarian method: its
+graph similarity against the share of its objects that are named right. (a) script1 by its sub-graphs of 4 to 12
+objects; (b) script2 by all its sub-graphs of 12 of its 15 objects. Both over the annotated place setting, and over
+generated variants of it, of which only figures are reported.
+
+Where the evidence leaves rows equal, the Hungarian method decides by node order; so every share is a mean over random
+node orders, and each accuracy is given with its spread over them, and up to interchangeability.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from itertools import combinations
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import linear_sum_assignment
+
+from deixis.examples_data import example
+from deixis.ontology.graph import PaperGraph, RelationGraph
+from deixis.ontology.tbox import default_ontology
+from deixis.perception.scene import Scene
+from deixis.perception.settings import formal_setting
+from deixis.reasoning.engines import described
+from deixis.reasoning.evidence import UNMATCHED, Evidence, no_unary_evidence
+from deixis.reasoning.similarity import node_similarity
+from deixis.reasoning.symmetry import interchangeable
+from deixis.session import read_scene, read_script
+
+SIZES = range(4, 13)
+PER_SIZE = 60
+"""Sub-graphs of one size at the most; more are sampled."""
+
+POINT_ORDERS = 10
+"""Node orders that one point's share is a mean over."""
+
+DISPLACEMENT = 0.01
+"""How far things are moved in the variants, metres."""
+
+
+@dataclass(frozen=True)
+class Spread:
+    """A figure over repetitions."""
+
+    mean: float
+    low: float  # 5th percentile
+    median: float
+    high: float  # 95th percentile
+
+    @classmethod
+    def of(cls, values: Sequence[float] | NDArray[np.float64]) -> Spread:
+        array = np.asarray(values, dtype=float)
+        low, median, high = np.percentile(array, [5, 50, 95])
+        return cls(float(array.mean()), float(low), float(median), float(high))
+
+    def __str__(self) -> str:
+        return f"{self.mean:.2f} (5 % {self.low:.2f}, median {self.median:.2f}, 95 % {self.high:.2f})"
+
+
+@dataclass(frozen=True, eq=False)
+class Points:
+    """One scene's sub-graphs: k of them, an entry each."""
+
+    similarity: NDArray[np.float64]
+    facts: NDArray[np.float64]  # sum of degrees of the alignment
+    right: NDArray[np.float64]  # share named right, mean over node orders
+
+    def rho(self, measure: NDArray[np.float64]) -> float:
+        """Spearman's rank correlation of a measure with the share named right; 0 where either is constant."""
+        from scipy.stats import spearmanr
+
+        if np.ptp(measure) == 0 or np.ptp(self.right) == 0:
+            return 0.0
+        return float(spearmanr(measure, self.right).statistic)
+
+
+@dataclass(frozen=True)
+class Panel:
+    """What one panel of the figure says."""
+
+    script: str
+    subgraphs: int
+    rho_similarity: float
+    rho_facts: float
+    variants_rho_similarity: Spread
+    variants_rho_facts: Spread
+    accuracy: dict[str, Spread]
+    variants_accuracy: dict[str, Spread]
+
+
+@dataclass(frozen=True)
+class Figure6:
+    """Both panels, and where the pictures are."""
+
+    a: Panel
+    b: Panel
+    variants: int
+    orders: int
+    seed: int
+    pictures: tuple[str, ...]
+
+    def to_dict(self) -> dict[str, Any]:
+        return asdict(self)
+
+    def lines(self) -> list[str]:
+        head = [f"Figure 6 again: {self.variants} variants, {self.orders} node orders, seed {self.seed}", ""]
+        return [*head, *_panel_lines("(a)", self.a), "", *_panel_lines("(b)", self.b), "", *self.pictures]
+
+
+def _panel_lines(name: str, panel: Panel) -> list[str]:
+    lines = [
+        f"{name} {panel.script}, {panel.subgraphs} sub-graphs of the annotated place setting",
+        f"    Spearman's rho with the share named right: similarity {panel.rho_similarity:.2f}, "
+        f"satisfied facts {panel.rho_facts:.2f}",
+        f"    over the variants: similarity {panel.variants_rho_similarity}",
+        f"                       satisfied facts {panel.variants_rho_facts}",
+    ]
+    for title, accuracy in (("annotated", panel.accuracy), ("variants", panel.variants_accuracy)):
+        lines += [f"    {title}, {what}: {spread}" for what, spread in accuracy.items()]
+    return lines
+
+
+def run(out: Path, variants: int = 50, orders: int = 200, seed: int = 1) -> Figure6:
+    """Runs both panels and writes ``figure6a.png`` and ``figure6b.png`` to ``out``."""
+    from deixis.experiments.figure6_plot import plot_points
+
+    annotated = read_scene(example("place_setting.labelled.scene.json"))
+    scenes = [formal_setting(seed * 1000 + i, DISPLACEMENT) for i in range(variants)]
+    panels: list[Panel] = []
+    pictures: list[str] = []
+    for letter, script in (("a", "script1"), ("b", "script2")):
+        trial = _Trial(script, np.random.default_rng(seed))
+        points, accuracy = trial.run(annotated, orders)
+        panels.append(_panel(trial, points, accuracy, [trial.run(scene, max(orders // 10, 1)) for scene in scenes]))
+        path = out / f"figure6{letter}.png"
+        plot_points(points, path, f"({letter}) {script}: {len(points.right)} sub-graphs", panels[-1].rho_similarity)
+        pictures.append(str(path))
+    return Figure6(panels[0], panels[1], variants, orders, seed, tuple(pictures))
+
+
+_Run = tuple[Points, dict[str, NDArray[np.float64]]]
+
+
+def _panel(trial: _Trial, points: Points, accuracy: dict[str, NDArray[np.float64]], varied: Sequence[_Run]) -> Panel:
+    return Panel(
+        script=trial.name,
+        subgraphs=len(points.right),
+        rho_similarity=points.rho(points.similarity),
+        rho_facts=points.rho(points.facts),
+        variants_rho_similarity=Spread.of([p.rho(p.similarity) for p, _ in varied]),
+        variants_rho_facts=Spread.of([p.rho(p.facts) for p, _ in varied]),
+        accuracy={what: Spread.of(values) for what, values in accuracy.items()},
+        variants_accuracy={what: Spread.of(np.concatenate([found[what] for _, found in varied])) for what in accuracy},
+    )
+
+
+class _Trial:
+    """One script against scenes whose truth is known by their labels."""
+
+    def __init__(self, name: str, rng: np.random.Generator) -> None:
+        self.name = name
+        self._rng = rng
+        self._description: RelationGraph = read_script(example(f"{name}.layout")).graph()
+        self._paper: PaperGraph = described(self._description)
+        self._members = self._choose(len(self._description.nodes))
+        groups = interchangeable(self._description, [0] * len(self._description.nodes))
+        self._group = {name: f"group {i}" for i, group in enumerate(groups) for name in group}
+
+    def _choose(self, n: int) -> NDArray[np.bool_]:
+        sizes = [12] if n > 12 else list(SIZES)
+        chosen: list[tuple[int, ...]] = []
+        for size in sizes:
+            every = list(combinations(range(n), size))
+            if n <= 12 and len(every) > PER_SIZE:
+                every = [every[i] for i in self._rng.choice(len(every), PER_SIZE, replace=False)]
+            chosen += every
+        members = np.zeros((len(chosen), n), dtype=bool)
+        for row, kept in enumerate(chosen):
+            members[row, list(kept)] = True
+        return members
+
+    def _evidence(self, scene: Scene) -> Evidence:
+        return no_unary_evidence(self._description, scene.without_labels().graph(default_ontology().relations))
+
+    def _matrices(self, evidence: Evidence) -> NDArray[np.float64]:
+        """Rounded, so that entries which are equal but for rounding do not settle what node order settles."""
+        return node_similarity(self._paper, evidence.scene.paper_view(), self._members).matrices.round(9)
+
+    def run(self, scene: Scene, orders: int) -> tuple[Points, dict[str, NDArray[np.float64]]]:
+        """The points of one scene, and the accuracies over node orders, by what chooses the sub-graph."""
+        evidence = self._evidence(scene)
+        matrices = self._matrices(evidence)
+        full = np.flatnonzero(self._members.sum(axis=1) == self._members.sum(axis=1).max())
+        few = _Measured.of(self._in_orders(matrices, self._members, POINT_ORDERS), matrices, evidence)
+        many = _Measured.of(self._in_orders(matrices[full], self._members[full], orders), matrices[full], evidence)
+        right = self._right(few.assignments, scene, exactly=True)
+        points = Points(few.similarity.mean(axis=1), few.facts.mean(axis=1), right.mean(axis=1))
+        return points, self._accuracies(many, scene)
+
+    def _accuracies(self, measured: _Measured, scene: Scene) -> dict[str, NDArray[np.float64]]:
+        result = {}
+        for choice, keys in (
+            ("facts decide", (measured.similarity, measured.facts)),
+            ("similarity decides", (measured.facts, measured.similarity)),
+        ):
+            chosen = measured.best(keys, self._rng)
+            result[f"right, {choice}"] = self._right(chosen, scene, exactly=True)
+            result[f"right up to interchangeability, {choice}"] = self._right(chosen, scene, exactly=False)
+            if len(measured.assignments) > 1:
+                result[f"exactly the absent dropped, {choice}"] = self._dropped_the_absent(chosen, scene)
+        return result
+
+    def _in_orders(
+        self, matrices: NDArray[np.float64], members: NDArray[np.bool_], orders: int
+    ) -> NDArray[np.int64]:
+        """The Hungarian assignments with both graphs' nodes in random orders: shape (sub-graphs, orders, n1)."""
+        found = np.full((len(matrices), orders, matrices.shape[1]), UNMATCHED, dtype=np.int64)
+        for matrix, kept, assignments in zip(matrices, members, found, strict=True):
+            present = np.flatnonzero(kept)
+            for assignment in assignments:
+                rows, columns = self._rng.permutation(present), self._rng.permutation(matrix.shape[1])
+                i, p = linear_sum_assignment(matrix[rows[:, None], columns], maximize=True)
+                assignment[rows[i]] = columns[p]
+        return found
+
+    def _right(self, assignments: NDArray[np.int64], scene: Scene, exactly: bool) -> NDArray[np.float64]:
+        """The share of the matched objects whose thing bears their name, or one they cannot be told from."""
+        names, labels = self._description.nodes, [thing.label or "" for thing in scene.objects]
+        group = {name: name if exactly else self._group.get(name, name) for name in (*names, *labels)}
+        same = np.array([[group[name] == group[label] for label in labels] for name in names])
+        matched = assignments != UNMATCHED
+        right = same[np.arange(len(names)), assignments] & matched
+        share: NDArray[np.float64] = right.sum(axis=-1) / np.maximum(matched.sum(axis=-1), 1)
+        return share
+
+    def _dropped_the_absent(self, assignments: NDArray[np.int64], scene: Scene) -> NDArray[np.float64]:
+        present = {thing.label for thing in scene.objects}
+        absent = np.array([name not in present for name in self._description.nodes])
+        return ((assignments == UNMATCHED) == absent).all(axis=-1).astype(float)
+
+
+@dataclass(frozen=True, eq=False)
+class _Measured:
+    """Assignments (sub-graphs, orders, n1) with their similarity and sum of degrees (sub-graphs, orders)."""
+
+    assignments: NDArray[np.int64]
+    similarity: NDArray[np.float64]
+    facts: NDArray[np.float64]
+
+    @classmethod
+    def of(cls, found: NDArray[np.int64], matrices: NDArray[np.float64], evidence: Evidence) -> _Measured:
+        matched = found != UNMATCHED
+        entries = np.take_along_axis(matrices[:, None], np.maximum(found, 0)[..., None], axis=3)[..., 0]
+        similarity = np.where(matched, entries, 0.0).sum(axis=-1) / np.sqrt(matched.sum(axis=-1))
+        facts = evidence.totals(found.reshape(-1, found.shape[-1])).reshape(found.shape[:2])
+        return cls(found, similarity.round(6), facts.round(6))
+
+    def best(self, keys: tuple[NDArray[np.float64], ...], rng: np.random.Generator) -> NDArray[np.int64]:
+        """For each order the assignment with the greatest key (the last one first), ties at random: (orders, n1)."""
+        ties = rng.random(self.similarity.shape)
+        winner = np.lexsort((ties, *keys), axis=0)[-1]
+        return self.assignments[winner, np.arange(self.assignments.shape[1])]

@@ -1,0 +1,106 @@
+"""Answers as lines of text for the terminal."""
+
+from __future__ import annotations
+
+from collections.abc import Sized
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from deixis.grammar.script import Script
+    from deixis.ontology.graph import Fact
+    from deixis.reasoning.grounding import FactOutcome, Grounding, Match
+    from deixis.reasoning.implications import Derivation
+    from deixis.session import Inference
+
+
+def script_lines(script: Script) -> list[str]:
+    """The header, then every fact with its line."""
+    title = f' "{script.title}"' if script.title else ""
+    viewpoint = f", seen from {script.viewpoint}" if script.viewpoint else ""
+    head = f"{script.name or script.file}{title}: {_count(script.objects, 'object')}, {_count(script.facts, 'fact')}"
+    kinds = [f"        {name} is a {kind.label}" for name, kind in script.kinds.items()]
+    return [f"{head}{viewpoint}", *(f"{_line(fact, script.file):>6}  {qualified(fact)}" for fact in script.facts), *kinds]
+
+
+def qualified(fact: Fact) -> str:
+    """A fact with what qualifies it."""
+    marks = [*(["optional"] if fact.optional else []), *([f"weight {fact.weight:g}"] if fact.weight != 1 else [])]
+    return str(fact) + (f"   [{', '.join(marks)}]" if marks else "")
+
+
+def _line(fact: Fact, file: str) -> str:
+    if fact.source is None:
+        return ""
+    return str(fact.source.line) if fact.source.file == file else f"{fact.source.file}:{fact.source.line}"
+
+
+def _count(things: Sized, noun: str) -> str:
+    number = len(things)
+    return f"{number} {noun}" + ("" if number == 1 else "s")
+
+
+def inference_lines(inference: Inference) -> list[str]:
+    """What is stated and what follows, each with its lines; of a contradiction only the minimal conflict."""
+    if inference.conflict is not None:
+        lines = [f"The script contradicts itself: {inference.conflict.reason}."]
+        lines += [f"    {fact.source}: {fact}" for fact in inference.conflict.facts]
+        return [*lines, "Leave out or change any one of these."]
+    inferred = inference.inferred()
+    lines = [f"Stated ({len(inference.stated)}):"]
+    lines += [f"    {qualified(fact)}   line {fact.source.line if fact.source else '?'}" for fact in inference.stated]
+    lines.append(f"Inferred ({len(inferred)}):")
+    return lines + [f"    {derivation.fact}   by {derivation.rule} from {_places(derivation)}" for derivation in inferred]
+
+
+def _places(derivation: Derivation) -> str:
+    lines = sorted({fact.source.line for fact in derivation.stated() if fact.source})
+    return ("line " if len(lines) == 1 else "lines ") + ", ".join(map(str, lines))
+
+
+def grounding_lines(found: Grounding) -> list[str]:
+    """Who is who, what cannot be told apart, which facts fail, what was left out, and what qualifies the answer."""
+    lines = [_match_line(match, found) for match in found.matches.values()]
+    groups = [group for group in found.interchangeable if any(name in found.matches for name in group)]
+    if groups:
+        lines += ["", "The description cannot tell these apart, so their names may be swapped:"]
+        lines += ["    " + ", ".join(group) for group in groups]
+    lines += ["", f"Facts: {len(found.outcomes)} stated, {len(found.satisfied)} satisfied" + _rest(found)]
+    lines += [f"    violated: {violation_text(entry)}" for entry in found.violated]
+    lines += [f"Left out: {left.name}: {left.reason}." for left in (*found.unmatched_objects, *found.unmatched_perceived)]
+    lines.append(f"Graph similarity {found.graph_similarity:.3f}; engine {found.engine}, {_standing(found)}.")
+    return lines + [f"Note: {note}." for note in found.notes]
+
+
+def _match_line(match: Match, found: Grounding) -> str:
+    name = f"{match.object:<24} {match.perceived:<10}"
+    if match.decided:
+        return name.rstrip()
+    equal = [other.perceived for other in match.alternatives if other.cost <= 1e-9]
+    return f"{name} or {', '.join(equal)}" if equal else f"{name} not proved: nothing else was ruled out"
+
+
+def _rest(found: Grounding) -> str:
+    from deixis.reasoning.grounding import Outcome
+
+    counts = {outcome: len(found.of(outcome)) for outcome in (Outcome.VIOLATED, Outcome.WAIVED, Outcome.OPEN)}
+    words = {
+        Outcome.VIOLATED: "violated",
+        Outcome.WAIVED: "optional and not so",
+        Outcome.OPEN: "about something left out",
+    }
+    return "".join(f", {number} {words[outcome]}" for outcome, number in counts.items() if number)
+
+
+def violation_text(entry: FactOutcome) -> str:
+    """A violated fact with its line and what was perceived instead."""
+    place = f" ({entry.fact.source})" if entry.fact.source else ""
+    if entry.perceived is None or entry.seen is None:
+        return f"{entry.fact}{place}"
+    subject, object = entry.perceived
+    return f"{entry.fact}{place}: perceived is {entry.seen.word}({subject}, {object})"
+
+
+def _standing(found: Grounding) -> str:
+    if found.proved_best:
+        return f"proved the best in {found.seconds:.2f} s"
+    return f"{found.seconds:.2f} s, not proved the best"

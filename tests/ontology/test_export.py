@@ -1,0 +1,238 @@
+"""JSON, Turtle and DOT: what goes out says the same as what went in, whatever the names are."""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+import subprocess
+from typing import Any
+
+import numpy as np
+import pyoxigraph
+import pytest
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+from rdflib import RDF, RDFS, Graph, Literal, URIRef
+
+from deixis.ontology.errors import GraphError
+from deixis.ontology.export import fact_to_dict, graph_from_dict, graph_to_dict, graph_to_dot, graph_to_turtle
+from deixis.ontology.graph import Fact, RelationGraph
+from deixis.ontology.source import Source
+from deixis.ontology.tbox import default_ontology
+from deixis.ontology.vocabulary import DX
+
+R = default_ontology().relations
+STATEMENT = URIRef(DX.RELATION_STATEMENT)
+
+ODD = [
+    'say "cheese"',
+    "line\nbreak",
+    "> . <urn:x> a <https://w3id.org/deixis/onto#RelationStatement> .",
+    '" . <urn:x> a <https://w3id.org/deixis/onto#RelationStatement> . "',
+    "🍴",
+    "back\\slash\\",
+    "%20",
+    "a b",
+    "a/../b",
+    "fact 1",
+    "fact%201",
+    "]; evil -> node; [",
+    "tab\tand\rreturn",
+    "bell\x07",
+    "nul\x00",
+    "\u2028\ufeff",
+    "",
+    ".",
+    "été",
+]
+
+names = st.text(max_size=12) | st.sampled_from(ODD)
+
+
+@st.composite
+def graphs(draw: st.DrawFn) -> RelationGraph:
+    nodes = draw(st.lists(names, min_size=2, max_size=5, unique=True))
+    file = draw(names)
+    facts = []
+    for number in range(draw(st.integers(0, 4))):
+        mask = draw(st.integers(1, 2 ** len(R) - 1))
+        source = Source(file, number + 1, 2, number + 1, 7) if draw(st.booleans()) else None
+        facts.append(
+            Fact(
+                draw(st.sampled_from(nodes)),
+                R.members(mask),
+                draw(st.sampled_from(nodes)),
+                draw(st.booleans()),
+                draw(st.booleans()),
+                draw(st.sampled_from([1.0, 0.8, 0.2])),
+                source,
+            )
+        )
+    boxes = np.arange(len(nodes) * 4.0).reshape(-1, 2, 2) if draw(st.booleans()) else None
+    kinds = [draw(st.sampled_from([None, "urn:k:Plate"])) for _ in nodes] if draw(st.booleans()) else []
+    return RelationGraph.from_facts(R, nodes, facts, kinds=kinds, boxes=boxes)
+
+
+def odd_graph() -> RelationGraph:
+    facts = [Fact(a, (R["left"],), b) for a, b in zip(ODD, ODD[1:], strict=False)]
+    return RelationGraph.from_facts(R, ODD, facts)
+
+
+@settings(max_examples=60, deadline=None)
+@given(graphs())
+def test_a_graph_comes_back_from_its_json(graph: RelationGraph) -> None:
+    again = graph_from_dict(json.loads(json.dumps(graph_to_dict(graph))), R)
+    assert again.nodes == graph.nodes
+    assert list(again.facts()) == list(graph.facts())
+    assert [k for k in again.kinds if k] == [k for k in graph.kinds if k]
+    if graph.boxes is None:
+        assert again.boxes is None
+    else:
+        np.testing.assert_array_equal(again.boxes, graph.boxes)
+
+
+def test_a_fact_says_in_json_what_qualifies_it() -> None:
+    fact = Fact("a", (R["exactly_left"],), "b", True, True, 0.8, Source("x.layout", 3, 1, 3, 9))
+    assert fact_to_dict(fact) == {
+        "relation": "left",
+        "subject": "a",
+        "object": "b",
+        "reading": "exact",
+        "relations": ["exactly_left"],
+        "positive": True,
+        "optional": True,
+        "weight": 0.8,
+        "file": "x.layout",
+        "line": 3,
+        "column": 1,
+    }
+
+
+def test_a_choice_is_one_text_in_json() -> None:
+    entry = fact_to_dict(Fact("a", (R["left"], R["top_left"]), "b"))
+    assert (entry["relation"], entry["relations"]) == ("left or top_left", ["left", "top_left"])
+    assert "line" not in entry
+
+
+FACT: dict[str, Any] = {"subject": "a", "object": "b", "relations": ["left"]}
+AB: list[dict[str, Any]] = [{"id": "a"}, {"id": "b"}]
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        {},
+        {"nodes": []},
+        {"facts": []},
+        [],
+        None,
+        {"nodes": [{}], "facts": []},
+        {"nodes": ["a"], "facts": []},
+        {"nodes": [{"id": ["a"]}], "facts": []},
+        {"nodes": AB, "facts": [{}]},
+        {"nodes": AB, "facts": ["left(a, b)"]},
+        {"nodes": AB, "facts": [{**FACT, "relations": ["lefft"]}]},
+        {"nodes": AB, "facts": [{**FACT, "relations": 3}]},
+        {"nodes": AB, "facts": [{**FACT, "subject": "z"}]},
+        {"nodes": [{"id": "a"}, {"id": "a"}], "facts": []},
+        {"nodes": AB, "facts": [{**FACT, "weight": "heavy"}]},
+        {"nodes": AB, "facts": [{**FACT, "line": 1}]},
+        {"nodes": AB, "facts": [{**FACT, "file": "x", "line": "one", "column": 1, "end_line": 1, "end_column": 1}]},
+        {"nodes": [{"id": "a", "min": [0, 0]}], "facts": []},
+        {"nodes": [{"id": "a", "min": [0, 0], "max": [1]}], "facts": []},
+        {"nodes": [{"id": "a", "min": ["x", 0], "max": [1, 1]}], "facts": []},
+    ],
+)
+def test_data_that_is_no_graph_is_a_graph_error(data: Any) -> None:
+    with pytest.raises(GraphError):
+        graph_from_dict(data, R)
+
+
+@settings(max_examples=60, deadline=None)
+@given(graphs())
+@example(odd_graph())
+def test_turtle_says_exactly_what_the_graph_says(graph: RelationGraph) -> None:
+    text = graph_to_turtle(graph)
+    read = Graph().parse(data=text, format="turtle")
+    statements = set(read.subjects(RDF.type, STATEMENT))
+    assert len(statements) == len(graph)
+    things = set(read.subjects(RDF.type)) - statements
+    assert len(things) == len(graph.nodes)
+    assert {str(o) for o in read.objects(None, RDFS.label)} == set(graph.nodes)
+    assert sorted(str(o) for s in statements for o in read.objects(s, URIRef(DX.RELATION))) == sorted(
+        relation.iri for fact in graph.facts() for relation in fact.relations
+    )
+    quads = list(pyoxigraph.parse(text, format=pyoxigraph.RdfFormat.TURTLE))
+    assert len({str(quad.triple) for quad in quads}) == len(read)
+    labels = [q.object.value for q in quads if q.predicate.value == str(RDFS.label) and hasattr(q.object, "value")]
+    assert sorted(labels) == sorted(graph.nodes)
+
+
+def test_turtle_states_what_qualifies_a_fact() -> None:
+    fact = Fact("a", (R["left"],), "b", False, True, 0.8, Source('odd".layout', 3, 1, 3, 9))
+    read = Graph().parse(data=graph_to_turtle(RelationGraph.from_facts(R, ["a", "b"], [fact])), format="turtle")
+    (statement,) = read.subjects(RDF.type, STATEMENT)
+    said = {str(p): o for p, o in read.predicate_objects(statement)}
+    assert said[DX.RELATION] == URIRef(R["left"].iri)
+    assert said[DX.POSITIVE] == Literal(False)
+    assert said[DX.OPTIONAL] == Literal(True)
+    assert str(said[DX.STATED_AT]) == 'odd".layout:3:1'
+    assert float(str(said[DX.WEIGHT])) == 0.8
+    assert read.value(said[DX.SUBJECT], RDFS.label) == Literal("a")
+    assert read.value(said[DX.OBJECT], RDFS.label) == Literal("b")
+
+
+def test_turtle_gives_an_object_its_kind_and_a_thing_otherwise() -> None:
+    graph = RelationGraph.from_facts(R, ["a", "b"], [], kinds=["urn:k:Plate", None])
+    read = Graph().parse(data=graph_to_turtle(graph), format="turtle")
+    assert {str(o) for o in read.objects(None, RDF.type)} == {"urn:k:Plate", DX.THING.value}
+
+
+def test_no_kind_can_add_a_statement_of_its_own() -> None:
+    kind = f"urn:k> . <urn:x> a <{DX.RELATION_STATEMENT}> . <urn:y> a <urn:z"
+    read = Graph().parse(data=graph_to_turtle(RelationGraph.from_facts(R, ["a"], [], kinds=[kind])), format="turtle")
+    assert len(read) == 2
+
+
+def test_an_empty_graph_is_turtle_without_triples() -> None:
+    assert len(Graph().parse(data=graph_to_turtle(RelationGraph.from_facts(R, [], [])), format="turtle")) == 0
+
+
+STRING = re.compile(r'"(?:[^"\\]|\\.)*"', re.DOTALL)
+
+
+@settings(max_examples=60, deadline=None)
+@given(graphs())
+@example(odd_graph())
+def test_dot_has_one_line_a_node_and_one_an_edge_outside_of_its_strings(graph: RelationGraph) -> None:
+    bare = STRING.sub("S", graph_to_dot(graph))
+    assert '"' not in bare
+    lines = bare.splitlines()
+    assert (lines[0], lines[-1]) == ("digraph layout {", "}")
+    assert lines.count("    S;") == len(graph.nodes)
+    edge = re.compile(r"    S -> S \[label=S, style=(solid|dashed|dotted), penwidth=\d\.\d\d\];")
+    assert sum(bool(edge.fullmatch(line)) for line in lines) == len(graph)
+    assert len(lines) == 3 + len(graph.nodes) + len(graph)
+
+
+def test_dot_shows_denials_options_and_hedges() -> None:
+    facts = [
+        Fact("a", (R["left"], R["top"]), "b"),
+        Fact("a", (R["on"],), "b", positive=False),
+        Fact("a", (R["on"],), "b", optional=True, weight=0.2),
+    ]
+    lines = graph_to_dot(RelationGraph.from_facts(R, ["a", "b"], facts)).splitlines()[-4:-1]
+    assert lines == [
+        '    "a" -> "b" [label="left of or above", style=solid, penwidth=1.00];',
+        '    "a" -> "b" [label="not on", style=dashed, penwidth=1.00];',
+        '    "a" -> "b" [label="on", style=dotted, penwidth=0.30];',
+    ]
+
+
+@pytest.mark.skipif(shutil.which("dot") is None, reason="Graphviz is not installed")
+def test_graphviz_reads_the_dot_of_odd_names() -> None:
+    names = [name for name in ODD if "\x00" not in name]
+    graph = RelationGraph.from_facts(R, names, [Fact(names[0], (R["left"],), names[1])])
+    done = subprocess.run(["dot", "-Tplain"], input=graph_to_dot(graph), capture_output=True, text=True, check=True)
+    assert sum(line.startswith("node ") for line in done.stdout.splitlines()) == len(names)

@@ -1,0 +1,264 @@
+"""The relation graph: facts in and out, sub-graphs, views, Definitions 1 and 2 of the paper."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import networkx as nx
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from deixis.ontology.errors import DeixisError, GraphError
+from deixis.ontology.graph import Fact, RelationGraph
+from deixis.ontology.source import Source
+from deixis.ontology.tbox import default_ontology
+
+R = default_ontology().relations
+NODES = ["a", "b", "c", "d"]
+
+sources = st.none() | st.builds(lambda line: Source("x.layout", line, 1, line, 9), st.integers(1, 99))
+relation_sets = st.integers(1, 2 ** len(R) - 1).map(R.members)
+facts = st.builds(
+    Fact,
+    st.sampled_from(NODES),
+    relation_sets,
+    st.sampled_from(NODES),
+    st.booleans(),
+    st.booleans(),
+    st.floats(0.01, 1.0),
+    sources,
+)
+
+
+def fact(relations: str, subject: str, object: str, **qualified: Any) -> Fact:
+    return Fact(subject, tuple(R[name] for name in relations.split(" or ")), object, **qualified)
+
+
+def graph(nodes: str, *stated: Fact) -> RelationGraph:
+    return RelationGraph.from_facts(R, nodes.split(), stated)
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.lists(facts, max_size=8))
+def test_the_facts_of_a_graph_are_those_it_was_made_of(stated: list[Fact]) -> None:
+    made = RelationGraph.from_facts(R, NODES, stated)
+    assert list(made.facts()) == stated
+    assert len(made) == len(stated)
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.lists(facts, max_size=8), st.permutations(NODES), st.integers(0, 4))
+def test_a_subgraph_has_the_facts_among_its_nodes_in_their_order(stated: list[Fact], order: list[str], k: int) -> None:
+    made = RelationGraph.from_facts(
+        R, NODES, stated, kinds=["urn:k:" + n for n in NODES], boxes=np.arange(16.0).reshape(4, 2, 2)
+    )
+    kept = order[:k]
+    part = made.subgraph(kept)
+    assert part.nodes == tuple(kept)
+    assert list(part.facts()) == [f for f in stated if f.subject in kept and f.object in kept]
+    assert part.kinds == tuple("urn:k:" + n for n in kept)
+    assert part.boxes is not None
+    assert made.boxes is not None
+    np.testing.assert_array_equal(part.boxes, made.boxes[[NODES.index(n) for n in kept]])
+
+
+def test_a_fact_is_written_as_the_paper_writes_it() -> None:
+    assert str(fact("left", "fork", "plate")) == "left(fork, plate)"
+    assert str(fact("left or top_left", "fork", "plate")) == "left or top_left(fork, plate)"
+    assert str(fact("on", "cup", "mat", positive=False)) == "not on(cup, mat)"
+
+
+def test_only_one_affirmed_relation_is_plain() -> None:
+    assert fact("left", "a", "b", optional=True, weight=0.2).plain
+    assert not fact("left", "a", "b", positive=False).plain
+    assert not fact("left or right", "a", "b").plain
+
+
+def test_the_order_of_alternatives_does_not_matter_to_a_relation_set() -> None:
+    assert fact("left or on", "a", "b").relation_set == fact("on or left", "a", "b").relation_set
+    assert fact("left", "a", "b").relation_set != fact("exactly_left", "a", "b").relation_set
+
+
+def test_an_object_that_is_in_the_graph_twice_is_an_error() -> None:
+    with pytest.raises(GraphError, match="'a' is in the graph twice") as caught:
+        graph("a b a")
+    assert isinstance(caught.value, DeixisError)
+    assert isinstance(caught.value, ValueError)
+
+
+def test_a_fact_about_no_node_is_an_error_that_names_both() -> None:
+    with pytest.raises(GraphError, match=r"left\(a, z\) names 'z', which is no node"):
+        graph("a b", fact("left", "a", "z"))
+
+
+def test_an_unknown_node_is_an_error() -> None:
+    with pytest.raises(GraphError, match="no object 'z'"):
+        graph("a b").index("z")
+    with pytest.raises(GraphError, match="no object 'z'"):
+        graph("a b").subgraph(["a", "z"])
+
+
+def test_a_node_that_a_subgraph_names_twice_is_an_error() -> None:
+    with pytest.raises(GraphError, match="twice"):
+        graph("a b").subgraph(["a", "a"])
+
+
+@pytest.mark.parametrize("short", ["subjects", "objects", "relation_sets", "positive", "optional", "weights"])
+def test_edge_arrays_of_different_lengths_are_an_error(short: str) -> None:
+    arrays: dict[str, Any] = {
+        "subjects": np.zeros(2, np.int32),
+        "objects": np.ones(2, np.int32),
+        "relation_sets": np.ones(2, np.int64),
+        "positive": np.ones(2, bool),
+        "optional": np.zeros(2, bool),
+        "weights": np.ones(2),
+    }
+    arrays[short] = arrays[short][:1]
+    with pytest.raises(GraphError, match="differ in length"):
+        RelationGraph(vocabulary=R, nodes=("a", "b"), **arrays)
+
+
+def test_too_few_sources_kinds_or_boxes_are_errors() -> None:
+    whole = graph("a b", fact("left", "a", "b"), fact("left", "b", "a"))
+    fields = ("subjects", "objects", "relation_sets", "positive", "optional", "weights")
+    arrays = {name: getattr(whole, name) for name in fields}
+    with pytest.raises(GraphError, match="differ in length"):
+        RelationGraph(R, ("a", "b"), **arrays, sources=(None,))
+    with pytest.raises(GraphError, match="one kind a node"):
+        RelationGraph(R, ("a", "b"), **arrays, kinds=("urn:k",))
+    with pytest.raises(GraphError, match="one box a node"):
+        RelationGraph(R, ("a", "b"), **arrays, boxes=np.zeros((1, 2, 2)))
+
+
+def test_the_networkx_view_has_every_node_and_parallel_edges_with_their_attributes() -> None:
+    stated = [
+        fact("left or right", "a", "b", weight=0.8, source=Source("x.layout", 3, 1, 3, 9)),
+        fact("on", "a", "b", positive=False, optional=True),
+    ]
+    made = RelationGraph.from_facts(R, ["a", "b", "c"], stated, kinds=["urn:k", None, None])
+    view = made.to_networkx()
+    assert isinstance(view, nx.MultiDiGraph)
+    assert list(view.nodes) == ["a", "b", "c"]
+    assert view.nodes["a"] == {"kind": "urn:k", "box": None}
+    first, second = (data for _, _, data in view.edges(data=True))
+    assert first == {
+        "relations": ("left", "right"),
+        "positive": True,
+        "optional": False,
+        "weight": 0.8,
+        "source": "x.layout:3:1",
+    }
+    assert (second["relations"], second["positive"], second["optional"]) == (("on",), False, True)
+    assert second["source"] is None
+
+
+def test_the_networkx_view_carries_boxes() -> None:
+    made = RelationGraph.from_facts(R, ["a"], [], boxes=np.array([[[0.0, 1.0], [2.0, 3.0]]]))
+    assert made.to_networkx().nodes["a"]["box"] == [[0.0, 1.0], [2.0, 3.0]]
+
+
+def labelled(made: RelationGraph) -> dict[tuple[str, str], str]:
+    """Definition 1's alpha as a dictionary."""
+    view = made.paper_view()
+    return {
+        (view.vertices[s], view.vertices[o]): view.labels[label]
+        for (s, o), label in zip(view.edges.tolist(), view.edge_labels.tolist(), strict=True)
+    }
+
+
+def test_definition_1_has_the_ten_words_as_labels_and_names_as_vertex_labels() -> None:
+    view = graph("a b").paper_view()
+    assert len(view.labels) == len(set(view.labels)) == 10
+    assert {"left", "bottom_right", "on"} <= set(view.labels)
+    assert view.vertex_labels == view.vertices == ("a", "b")
+    assert view.edges.shape == (0, 2)
+    assert view.adjacency().shape == (10, 2, 2)
+
+
+def test_both_readings_of_a_word_are_one_label() -> None:
+    made = graph("a b c", fact("left", "a", "b"), fact("exactly_left", "b", "c"))
+    assert labelled(made) == {("a", "b"): "left", ("b", "c"): "left"}
+
+
+def test_denials_and_choices_do_not_enter_definition_1_and_optional_facts_do() -> None:
+    made = graph(
+        "a b c d",
+        fact("left", "a", "b", positive=False),
+        fact("left or right", "b", "c"),
+        fact("on", "c", "d", optional=True),
+        fact("top", "d", "a", weight=0.2),
+    )
+    assert labelled(made) == {("c", "d"): "on", ("d", "a"): "top"}
+
+
+@pytest.mark.parametrize(
+    ("stated", "label"),
+    [
+        (["left", "top_left"], "top_left"),
+        (["top_left", "left"], "top_left"),
+        (["left", "top"], "left"),
+        (["top", "left"], "top"),
+        (["top_left", "exactly_left"], "top_left"),
+        (["left", "exactly_left"], "left"),
+        (["left", "exactly_top_left", "bottom_left"], "top_left"),
+    ],
+)
+def test_the_most_telling_label_of_a_pair_stays_and_the_first_among_equals(stated: list[str], label: str) -> None:
+    assert labelled(graph("a b", *(fact(name, "a", "b") for name in stated))) == {("a", "b"): label}
+
+
+def test_a_pair_has_one_label_in_each_direction() -> None:
+    made = graph("a b", fact("left", "a", "b"), fact("right", "b", "a"))
+    assert labelled(made) == {("a", "b"): "left", ("b", "a"): "right"}
+
+
+def test_the_adjacency_has_one_matrix_a_label() -> None:
+    view = graph("a b c", fact("left", "a", "b"), fact("on", "c", "b")).paper_view()
+    expected = np.zeros((10, 3, 3))
+    expected[view.labels.index("left"), 0, 1] = 1
+    expected[view.labels.index("on"), 2, 1] = 1
+    np.testing.assert_array_equal(view.adjacency(), expected)
+
+
+def test_definition_2_for_the_plate_of_figure_7_counted_by_hand() -> None:
+    """Into the plate: right three times (glass, two knives), on, top left, left twice, top twice; nothing goes out."""
+    stated = [
+        fact("right", "water_glass", "dinner_plate"),
+        fact("on", "napkin", "dinner_plate"),
+        fact("top_left", "bread_plate", "dinner_plate"),
+        fact("on", "butter_knife", "bread_plate"),
+        fact("left", "salad_fork", "dinner_plate"),
+        fact("left", "dinner_fork", "dinner_plate"),
+        fact("top", "dessert_fork", "dinner_plate"),
+        fact("top", "dessert_spoon", "dinner_plate"),
+        fact("right", "dinner_knife", "dinner_plate"),
+        fact("right", "fish_knife", "dinner_plate"),
+        fact("right", "soup_spoon", "fish_knife"),
+    ]
+    names = list(dict.fromkeys(n for f in stated for n in (f.subject, f.object)))
+    view = RelationGraph.from_facts(R, names, stated).paper_view()
+    counts = view.histograms()
+    assert counts.shape == (12, 2, 10)
+
+    def buckets(name: str, direction: int) -> dict[str, int]:
+        row = counts[names.index(name), direction]
+        return {view.labels[i]: int(row[i]) for i in np.flatnonzero(row)}
+
+    assert buckets("dinner_plate", 0) == {"right": 3, "on": 1, "top_left": 1, "left": 2, "top": 2}
+    assert buckets("dinner_plate", 1) == {}
+    assert buckets("bread_plate", 0) == {"on": 1}
+    assert buckets("bread_plate", 1) == {"top_left": 1}
+    assert buckets("fish_knife", 0) == {"right": 1}
+    assert buckets("fish_knife", 1) == {"right": 1}
+    assert counts.sum() == 22
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.lists(facts, max_size=10))
+def test_the_histograms_are_the_degrees_of_the_adjacency(stated: list[Fact]) -> None:
+    view = RelationGraph.from_facts(R, NODES, stated).paper_view()
+    matrices, counts = view.adjacency(), view.histograms()
+    np.testing.assert_array_equal(counts[:, 0], matrices.sum(axis=1).T)
+    np.testing.assert_array_equal(counts[:, 1], matrices.sum(axis=2).T)

@@ -1,0 +1,207 @@
+"""What the relation words mean: inverses, admitted atoms, degrees, words."""
+
+from __future__ import annotations
+
+from itertools import combinations
+
+import numpy as np
+import pytest
+
+from deixis.ontology.allen import ALL_ALLEN, SYMBOLS, Allen, allen_mask, mask_array, members
+from deixis.ontology.errors import DeixisError, OntologyError, UnknownTermError
+from deixis.ontology.relation import Reading, Relation, Relations, nearest, plain_phrase
+from deixis.ontology.tbox import default_ontology
+
+R = default_ontology().relations
+WIDE = R.of_reading(Reading.WIDE)
+EXACT = R.of_reading(Reading.EXACT)
+WORDS = ["left", "right", "top", "bottom", "top_left", "top_right", "bottom_left", "bottom_right", "on", "under"]
+DIRECTIONS = WORDS[:8]
+
+
+def by_name(relation: Relation) -> str:
+    return relation.name
+
+
+def test_there_are_ten_words_in_two_readings() -> None:
+    assert sorted(r.name for r in WIDE) == sorted(WORDS)
+    assert sorted(r.name for r in EXACT) == sorted("exactly_" + word for word in WORDS)
+    assert [r.index for r in R.values()] == list(range(20))
+
+
+@pytest.mark.parametrize("relation", R.values(), ids=by_name)
+def test_the_inverse_of_an_inverse_is_the_relation_itself(relation: Relation) -> None:
+    inverse = R[relation.inverse]
+    assert inverse.inverse == relation.name
+    assert inverse.reading is relation.reading
+    assert inverse != relation
+
+
+def test_the_inverses_are_those_that_everybody_expects() -> None:
+    pairs = [("left", "right"), ("top", "bottom"), ("top_left", "bottom_right"), ("top_right", "bottom_left")]
+    assert all(R[a].inverse == b for a, b in [*pairs, ("on", "under")])
+
+
+@pytest.mark.parametrize("relation", R.values(), ids=by_name)
+def test_the_inverse_admits_the_converse_of_every_atom(relation: Relation) -> None:
+    np.testing.assert_array_equal(R[relation.inverse].admits()[::-1, ::-1], relation.admits())
+    converse = allen_mask(a.converse for a in members(R[relation.inverse].z_atoms))
+    assert converse == relation.z_atoms
+
+
+@pytest.mark.parametrize("word", DIRECTIONS)
+def test_a_wide_direction_admits_what_its_exact_sub_properties_admit(word: str) -> None:
+    parts = [r.admits() for r in EXACT if word in r.broader]
+    assert len(parts) == (3 if word in ("left", "right", "top", "bottom") else 1)
+    np.testing.assert_array_equal(np.logical_or.reduce(parts), R[word].admits())
+
+
+def test_the_ten_exact_relations_share_no_atom_but_that_of_equal_boxes() -> None:
+    for a, b in combinations(EXACT, 2):
+        shared = set(zip(*(axis.tolist() for axis in np.nonzero(a.admits() & b.admits())), strict=True))
+        expected = {(6, 6)} if {a.word, b.word} == {"on", "under"} else set()
+        assert shared == expected, (a, b)
+
+
+def test_what_no_exact_relation_admits_overlaps_on_both_axes_and_neither_contains_the_other() -> None:
+    """13 x 13 atoms; those left over: 9 x 9 overlapping ones without the 4 x 4 of on, of under, and their one shared."""
+    admitted = np.logical_or.reduce([r.admits() for r in EXACT])
+    assert admitted.sum() == 169 - (81 - 16 - 16 + 1)
+    x, y = np.nonzero(~admitted)
+    assert x.min() > Allen.MEETS
+    assert x.max() < Allen.MET_BY
+    assert y.min() > Allen.MEETS
+    assert y.max() < Allen.MET_BY
+
+
+def test_the_atoms_of_left_are_golden() -> None:
+    assert R["left"].x_atoms == 0b11
+    assert R["left"].y_atoms == ALL_ALLEN
+    assert [SYMBOLS[a] for a in members(R["exactly_left"].y_atoms)] == ["o", "fi", "di", "s", "=", "si", "d", "f", "oi"]
+    assert [SYMBOLS[a] for a in members(R["on"].x_atoms)] == ["s", "=", "d", "f"]
+    assert [SYMBOLS[a] for a in members(R["on"].z_atoms)] == ["oi", "mi", ">"]
+    assert R["left"].z_atoms == 0
+
+
+def test_only_the_wide_relations_are_transitive() -> None:
+    assert all(r.transitive for r in WIDE)
+    assert not any(r.transitive for r in EXACT)
+
+
+def test_what_a_relation_implies_is_golden() -> None:
+    assert R["left"].broader == frozenset()
+    assert R["top_left"].broader == {"top", "left"}
+    assert R["exactly_left"].broader == {"left"}
+    assert R["exactly_top_left"].broader == {"top_left", "top", "left"}
+    assert R["exactly_on"].broader == {"on"}
+
+
+def test_both_readings_bear_the_same_word_and_lead_to_each_other() -> None:
+    for exact in EXACT:
+        assert R.wide(exact).word == exact.word
+        assert R.exact(R.wide(exact)) == exact
+
+
+@pytest.mark.parametrize(
+    ("stated", "name", "degree"),
+    [
+        ("left", "exactly_left", 1.0),
+        ("left", "exactly_top_left", 0.5),
+        ("left", "exactly_bottom_left", 0.5),
+        ("top", "exactly_top_left", 0.5),
+        ("top_left", "exactly_top_left", 1.0),
+        ("top_left", "exactly_left", 0.0),
+        ("top_left", "exactly_top", 0.0),
+        ("left", "exactly_right", 0.0),
+        ("left", "exactly_on", 0.0),
+        ("on", "exactly_on", 1.0),
+        ("on", "exactly_under", 0.0),
+        ("exactly_left", "exactly_left", 1.0),
+        ("exactly_left", "exactly_top_left", 0.0),
+        ("left", "left", 0.0),
+        ("left", "top_left", 0.0),
+    ],
+)
+def test_degrees_are_golden(stated: str, name: str, degree: float) -> None:
+    assert R.degrees[R[stated].index, R[name].index] == degree
+
+
+def test_the_degrees_table_has_nothing_but_what_the_golden_rows_say() -> None:
+    """Ten words exactly, ten widely at 1, and each of the four corners widely at 0.5 for its two sides."""
+    values, counts = np.unique(R.degrees, return_counts=True)
+    assert dict(zip(values.tolist(), counts.tolist(), strict=True)) == {0.0: 400 - 28, 0.5: 8, 1.0: 20}
+
+
+@pytest.mark.parametrize(
+    ("wrong", "right"), [("rihgt", "right"), ("topleft", "top_left"), ("exactly_lft", "exactly_left")]
+)
+def test_a_misspelt_name_is_an_error_with_a_suggestion(wrong: str, right: str) -> None:
+    with pytest.raises(UnknownTermError) as caught:
+        R[wrong]
+    assert str(caught.value) == f"there is no relation '{wrong}'; did you mean '{right}'?"
+    assert isinstance(caught.value, KeyError)
+    assert isinstance(caught.value, DeixisError)
+
+
+def test_a_name_like_no_other_is_an_error_without_a_suggestion() -> None:
+    with pytest.raises(UnknownTermError) as caught:
+        R["zzzzzz"]
+    assert str(caught.value) == "there is no relation 'zzzzzz'"
+
+
+def test_a_mapping_answers_about_unknown_names_without_raising() -> None:
+    assert "nothing" not in R
+    assert R.get("nothing") is None
+    assert len(R) == 20
+
+
+def test_members_are_in_the_order_of_their_bits() -> None:
+    assert R.members(R["right"].bit | R["left"].bit) == tuple(sorted((R["left"], R["right"]), key=lambda r: r.index))
+    assert R.members(0) == ()
+
+
+@pytest.mark.parametrize(
+    ("phrase", "name"),
+    [("left of", "left"), ("above", "top"), ("in front of", "bottom"), ("on top of", "on"), ("beneath", "under")]
+    + [("above and to left of", "top_left"), ("directly left of", "exactly_left")],
+)
+def test_the_words_of_scripts_lead_to_relations(phrase: str, name: str) -> None:
+    assert R.by_word[phrase].name == name
+
+
+def test_every_relation_is_found_by_its_label_and_by_its_phrase() -> None:
+    for relation in R.values():
+        assert R.by_word[plain_phrase(relation.name)] == relation
+        assert R.by_word[plain_phrase(relation.phrase)] == relation
+
+
+def test_a_relation_that_refers_to_none_is_refused() -> None:
+    with pytest.raises(OntologyError, match="refers to 'right'"):
+        Relations((R["left"],))
+
+
+def test_a_phrase_is_compared_without_case_articles_and_underscores() -> None:
+    assert plain_phrase("  To THE left_of  a ") == "to left of"
+    assert plain_phrase("the") == ""
+
+
+def test_the_nearest_word_is_none_where_nothing_comes_near() -> None:
+    assert nearest("xyz", ["left", "right"]) is None
+    assert nearest("lefft", []) is None
+
+
+@pytest.mark.parametrize("relation", Allen)
+def test_the_converse_of_a_converse_is_the_allen_relation_itself(relation: Allen) -> None:
+    assert relation.converse.converse is relation
+    assert (relation.converse is relation) == (relation is Allen.EQUALS)
+
+
+def test_the_signs_of_converses_are_those_of_the_literature() -> None:
+    pairs = {"<": ">", "m": "mi", "o": "oi", "fi": "f", "di": "d", "s": "si", "=": "="}
+    assert {r.symbol: r.converse.symbol for r in Allen if r <= 6} == pairs
+
+
+def test_a_mask_and_its_members_are_each_others_inverse() -> None:
+    for mask in (0, 1, 0b1010101010101, ALL_ALLEN):
+        assert allen_mask(members(mask)) == mask
+        assert [Allen(i) for i in np.flatnonzero(mask_array(mask))] == list(members(mask))
