@@ -108,7 +108,7 @@ def graph_to_turtle(graph: RelationGraph, base: str = "urn:deixis:graph:") -> st
     lines = [f"@prefix {prefix}: <{iri}> ." for prefix, iri in PREFIXES.items()]
     lines.append("")
     for i, name in enumerate(graph.nodes):
-        kind = graph.kinds[i] if graph.kinds and graph.kinds[i] else DX.THING
+        kind = (graph.kinds[i] if graph.kinds else None) or DX.THING
         lines.append(f"{_iri(base, name)} a <{quote(kind, safe=IRI_SIGNS)}> ; rdfs:label {_literal(name)} .")
     for number, fact in enumerate(graph.facts()):
         lines.append("")

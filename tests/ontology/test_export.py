@@ -6,6 +6,7 @@ import json
 import re
 import shutil
 import subprocess
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -75,7 +76,7 @@ def graphs(draw: st.DrawFn) -> RelationGraph:
 
 
 def odd_graph() -> RelationGraph:
-    facts = [Fact(a, (R["left"],), b) for a, b in zip(ODD, ODD[1:], strict=False)]
+    facts = [Fact(a, (R["left"],), b) for a, b in pairwise(ODD)]
     return RelationGraph.from_facts(R, ODD, facts)
 
 

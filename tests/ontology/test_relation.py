@@ -64,7 +64,7 @@ def test_the_ten_exact_relations_share_no_atom_but_that_of_equal_boxes() -> None
 
 
 def test_what_no_exact_relation_admits_overlaps_on_both_axes_and_neither_contains_the_other() -> None:
-    """13 x 13 atoms; those left over: 9 x 9 overlapping ones without the 4 x 4 of on, of under, and their one shared."""
+    """Of the 9 x 9 atoms that overlap, 4 x 4 are those of on, 4 x 4 those of under, and one is both."""
     admitted = np.logical_or.reduce([r.admits() for r in EXACT])
     assert admitted.sum() == 169 - (81 - 16 - 16 + 1)
     x, y = np.nonzero(~admitted)
@@ -162,8 +162,15 @@ def test_members_are_in_the_order_of_their_bits() -> None:
 
 @pytest.mark.parametrize(
     ("phrase", "name"),
-    [("left of", "left"), ("above", "top"), ("in front of", "bottom"), ("on top of", "on"), ("beneath", "under")]
-    + [("above and to left of", "top_left"), ("directly left of", "exactly_left")],
+    [
+        ("left of", "left"),
+        ("above", "top"),
+        ("in front of", "bottom"),
+        ("on top of", "on"),
+        ("beneath", "under"),
+        ("above and to left of", "top_left"),
+        ("directly left of", "exactly_left"),
+    ],
 )
 def test_the_words_of_scripts_lead_to_relations(phrase: str, name: str) -> None:
     assert R.by_word[phrase].name == name
@@ -204,4 +211,4 @@ def test_the_signs_of_converses_are_those_of_the_literature() -> None:
 def test_a_mask_and_its_members_are_each_others_inverse() -> None:
     for mask in (0, 1, 0b1010101010101, ALL_ALLEN):
         assert allen_mask(members(mask)) == mask
-        assert [Allen(i) for i in np.flatnonzero(mask_array(mask))] == list(members(mask))
+        assert [Allen(int(i)) for i in np.flatnonzero(mask_array(mask))] == list(members(mask))

@@ -46,7 +46,7 @@ def ntriples() -> bytes:
 def members(graph: Graph, class_of_axiom: URIRef) -> Iterator[set[URIRef]]:
     for axiom in graph.subjects(RDF.type, class_of_axiom):
         for head in graph.objects(axiom, OWL.members):
-            yield {item for item in graph.items(head) if isinstance(item, URIRef)}  # type: ignore[no-untyped-call]
+            yield {item for item in graph.items(head) if isinstance(item, URIRef)}
 
 
 def inverses(graph: Graph, prop: URIRef) -> set[URIRef]:
@@ -196,7 +196,7 @@ def test_a_synonym_for_a_kind_in_an_extra_text_is_understood() -> None:
 
 def test_a_word_for_two_relations_is_an_error_that_names_both() -> None:
     clashing = load_ontology(PREFIXES + 'dx:left skos:altLabel "right of"@en .')
-    with pytest.raises(OntologyError, match=r"'right of' stands for both '.*left.*' and '.*right.*'|'right.*' and '"):
+    with pytest.raises(OntologyError, match="'right of' stands for both 'left' and 'right'"):
         _ = clashing.relations.by_word
 
 

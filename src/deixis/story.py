@@ -1,0 +1,83 @@
+"""The demo: the whole story on shipped data, told in the terminal."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from deixis.examples_data import example
+from deixis.plot import plot_grounding
+from deixis.reasoning.grounding import Grounding
+from deixis.session import ground, infer, read_scene, read_script
+from deixis.show import grounding_lines, inference_lines, script_lines
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+
+def tell(out: Path) -> None:
+    """Tells the story and leaves its pictures in ``out``."""
+    from rich.console import Console
+
+    console = Console(highlight=False, soft_wrap=True)
+    script1, scene = read_script(example("script1.layout")), read_scene(example("place_setting.scene.json"))
+
+    _chapter(console, 1, "Somebody says how a table is laid")
+    _listing(console, script_lines(script1))
+
+    _chapter(console, 2, "The robot looks at a table and can name nothing on it")
+    _say(console, f"It sees {len(scene.objects)} boxes, from the {scene.viewpoint}: {', '.join(scene.ids)}.")
+
+    _chapter(console, 3, "Who is who?")
+    found = ground(script1, scene)
+    _listing(console, grounding_lines(found))
+    _say(console, *_ambiguity(found))
+
+    _chapter(console, 4, "A fuller script settles it")
+    full = read_script(example("formal_dinner.layout"))
+    _listing(console, full_text("formal_dinner.layout"))
+    settled = ground(full, scene)
+    _listing(console, grounding_lines(settled))
+
+    _chapter(console, 5, "What the script implies without saying so")
+    implied = infer(full).implications
+    fact = implied.derive(full.ontology.relations["left"], "salad_fork", "soup_spoon")
+    if fact is not None:
+        _listing(console, list(fact.lines()))
+
+    _chapter(console, 6, "A script that cannot be laid")
+    _listing(console, inference_lines(infer(example("contradiction.layout"))))
+
+    _chapter(console, 7, "The pictures")
+    pictures = [(found, script1.title, "script1.png"), (settled, full.title, "formal_dinner.png")]
+    for grounding, title, name in pictures:
+        plot_grounding(grounding, scene, out / name, title)
+        _say(console, f"{out / name}")
+
+
+def full_text(name: str) -> list[str]:
+    """A shipped script as it stands."""
+    return example(name).read_text(encoding="utf-8").splitlines()
+
+
+def _ambiguity(found: Grounding) -> list[str]:
+    open_names = [match.object for match in found.matches.values() if not match.decided]
+    return [
+        f"All {len(found.satisfied)} facts hold, and still {len(open_names)} of {len(found.matches)} names are not settled:",
+        "the words never say which fork is nearer to the plate, or which of two things lies farther back.",
+        "Deixis says so, instead of passing off a lucky order as knowledge.",
+    ]
+
+
+def _chapter(console: Console, number: int, title: str) -> None:
+    console.print(f"\n[bold]{number}. {title}[/bold]")
+
+
+def _say(console: Console, *lines: str) -> None:
+    for line in lines:
+        console.print(f"   {line}", markup=False)
+
+
+def _listing(console: Console, lines: list[str]) -> None:
+    for line in lines:
+        console.print(f"   [dim]│[/dim] {line}" if "[" not in line else f"   │ {line}", markup="[" not in line)
