@@ -15,6 +15,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from deixis.ontology.graph import Fact, RelationGraph
+from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.evidence import UNMATCHED, Evidence
 
 CHUNK = 100_000
@@ -94,6 +96,21 @@ class Search:
         state = _State(self, allowed, value, best)
         proved = state.run(deadline)
         return Optimum(best, float(state.value[0]), proved)
+
+
+def warm() -> None:
+    """Compiles the search, or loads it compiled: seconds the first time, later a fraction of one."""
+    evidence = Evidence(*_tiny())
+    search = Search(evidence, np.ones((2, 2)))
+    search.solve(search.improve(np.array([1, 0])), time.perf_counter() + 1.0)
+
+
+def _tiny() -> tuple[RelationGraph, RelationGraph, NDArray[np.bool_], NDArray[np.float64]]:
+    relations = default_ontology().relations
+    exact = relations["exactly_left"]
+    facts = [Fact("a", (exact,), "b"), Fact("b", (relations[exact.inverse],), "a")]
+    graph = RelationGraph.from_facts(relations, ["a", "b"], facts)
+    return graph, graph, np.ones((2, 2), dtype=bool), np.zeros((2, 2))
 
 
 class _State:

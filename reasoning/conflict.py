@@ -120,7 +120,7 @@ def _exhausted(implied: Implications) -> Iterator[tuple[tuple[Fact, ...], str]]:
     """Disjunctions none of whose alternatives is left."""
     denied: dict[tuple[str, str, int], Fact] = {}
     for fact in _firm(implied.graph, positive=False):
-        for relation in fact.relations:
+        for relation in _with_narrower(fact.relations, implied.vocabulary):
             inverse = implied.vocabulary[relation.inverse]
             denied.setdefault((fact.subject, fact.object, relation.index), fact)
             denied.setdefault((fact.object, fact.subject, inverse.index), fact)
@@ -132,6 +132,12 @@ def _exhausted(implied: Implications) -> Iterator[tuple[tuple[Fact, ...], str]]:
             used = dict.fromkeys(f for facts in against if facts for f in facts)
             names = " nor ".join(relation.phrase for relation in fact.relations)
             yield (*used, fact), f"'{fact.subject}' can be neither {names} '{fact.object}'"
+
+
+def _with_narrower(relations: Sequence[Relation], vocabulary: Relations) -> list[Relation]:
+    """The relations and all that imply one of them: what is denied when they are."""
+    names = {relation.name for relation in relations}
+    return [other for other in vocabulary.values() if other.name in names or other.broader & names]
 
 
 def _against(

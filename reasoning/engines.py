@@ -66,9 +66,11 @@ class Engine(Protocol):
 
 def engine_named(name: str, select: Select = Select.FACTS) -> Engine:
     """The engine of that name: ``exact`` or ``similarity``; raises UnknownTermError for another."""
-    from deixis.reasoning.exact import ExactEngine
-
     if name == "exact":
+        from deixis.reasoning.branch_and_bound import warm
+        from deixis.reasoning.exact import ExactEngine
+
+        warm()  # so that a time limit is spent on searching, not on compiling
         return ExactEngine()
     if name == "similarity":
         return SimilarityEngine(select)
