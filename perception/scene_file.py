@@ -44,6 +44,8 @@ def _parsed(path: Path) -> Any:
         raise SceneError(f"{path}: cannot be read: {error.strerror}") from error
     except UnicodeDecodeError as error:
         raise SceneError(f"{path}: the file is not UTF-8 (byte {error.start})") from error
+    except ValueError as error:
+        raise SceneError(f"{path}: cannot be read: {error}") from error
     try:
         return json.loads(text, parse_constant=_refuse_constant)
     except json.JSONDecodeError as error:
@@ -96,7 +98,7 @@ def _object(data: Any, where: str, scale: float) -> PerceivedObject:
 def _mapping(data: Any, where: str, known: set[str]) -> Mapping[str, Any]:
     if not isinstance(data, Mapping):
         raise SceneError(f"{where}: an object {{…}} is expected here, not {_kind(data)}")
-    unknown = sorted(set(data) - known)
+    unknown = sorted(set(data) - known, key=str)
     if unknown:
         raise SceneError(f"{where}: '{unknown[0]}' is no key here; the keys are {', '.join(sorted(known))}")
     return data
@@ -118,8 +120,12 @@ def _number(data: Any, where: str) -> float:
 
 
 def _text(data: Any, where: str) -> str:
-    if not isinstance(data, str) or not data.strip():
+    if not isinstance(data, str):
         raise SceneError(f"{where}: a text is expected, not {_kind(data)}")
+    if not data.strip():
+        raise SceneError(f"{where}: a text is expected, and this one is blank")
+    if any("\ud800" <= character <= "\udfff" for character in data):
+        raise SceneError(f"{where}: the text has half a character in it, and cannot be written")
     return data
 
 

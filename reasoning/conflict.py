@@ -64,7 +64,8 @@ def _candidates(implied: Implications) -> Iterator[tuple[tuple[Fact, ...], str]]
 
 
 def _self_relations(graph: RelationGraph) -> Iterator[tuple[tuple[Fact, ...], str]]:
-    for edge in np.flatnonzero((graph.subjects == graph.objects) & graph.positive & ~graph.optional):
+    firm = graph.positive & ~graph.optional & (graph.weights >= 1.0)
+    for edge in np.flatnonzero((graph.subjects == graph.objects) & firm):
         fact = graph.fact(int(edge))
         yield (fact,), f"nothing can be related to itself, and '{fact.subject}' is"
 

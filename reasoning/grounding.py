@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from types import MappingProxyType
 
@@ -106,14 +106,14 @@ def ground(
     """Aligns, and says what the alignment rests on.
 
     The evidence is first put in the order of its names, so that the answer does not depend on the order in which
-    objects were stated or perceived: where the evidence leaves several answers, names decide, and the result says so
+    objects and facts were stated or things perceived: where the evidence leaves several answers, names decide, and the result says so
     (``interchangeable``, ``decided``).
     """
     started = time.perf_counter()
     rows = np.array(sorted(range(len(evidence.description.nodes)), key=lambda i: evidence.description.nodes[i]), int)
     columns = np.array(sorted(range(len(evidence.scene.nodes)), key=lambda i: evidence.scene.nodes[i]), int)
     ordered = evidence.reordered(rows, columns)
-    alignment = engine.align(ordered, started + time_limit)
+    alignment = engine.align(_facts_in_order(ordered), started + time_limit)
     groups = _groups(ordered)
     outcomes = _outcomes(ordered, alignment)
     matches = _matches(ordered, alignment, outcomes, groups)
@@ -131,6 +131,24 @@ def ground(
         notes=notes + _notes(ordered, alignment),
         seconds=time.perf_counter() - started,
     )
+
+
+def _facts_in_order(evidence: Evidence) -> Evidence:
+    """The same evidence with its facts by what they say: sums in another order could break a tie by rounding."""
+    graph = evidence.description
+    keys = (graph.weights, graph.optional, graph.positive, graph.relation_sets, graph.objects, graph.subjects)
+    order = np.lexsort(keys)
+    description = replace(
+        graph,
+        subjects=graph.subjects[order],
+        objects=graph.objects[order],
+        relation_sets=graph.relation_sets[order],
+        positive=graph.positive[order],
+        optional=graph.optional[order],
+        weights=graph.weights[order],
+        sources=tuple(graph.sources[edge] for edge in order) if graph.sources else (),
+    )
+    return replace(evidence, description=description)
 
 
 def _groups(evidence: Evidence) -> tuple[tuple[str, ...], ...]:

@@ -55,7 +55,9 @@ def test_a_contradiction_is_found_exactly_where_the_order_on_an_axis_is_cyclic(s
 anything = st.builds(
     Fact,
     st.sampled_from(NODES),
-    st.sets(st.sampled_from(list(R.values())), min_size=1, max_size=2).map(lambda s: tuple(sorted(s, key=lambda r: r.index))),
+    st.sets(st.sampled_from(list(R.values())), min_size=1, max_size=2).map(
+        lambda s: tuple(sorted(s, key=lambda r: r.index))
+    ),
     st.sampled_from(NODES),
     st.sampled_from([True, True, False]),
     st.sampled_from([False, False, False, True]),
@@ -87,7 +89,11 @@ def test_what_contradicts_itself_still_does_when_more_is_said(stated: list[Fact]
 @pytest.mark.parametrize(
     ("sentences", "conflict", "reason"),
     [
-        (["left(a, b)", "left(b, a)", "on(c, b)"], ["left(a, b)", "left(b, a)"], "'a' cannot be both left of and right"),
+        (
+            ["left(a, b)", "left(b, a)", "on(c, b)"],
+            ["left(a, b)", "left(b, a)"],
+            "'a' cannot be both left of and right",
+        ),
         (["left(a, b)", "left(b, c)", "left(c, a)"], ["left(a, b)", "left(b, c)", "left(c, a)"], "cannot be both"),
         (["top_left(a, b)", "left(b, a)"], ["top_left(a, b)", "left(b, a)"], "cannot be both"),
         (["left(a, b)", "on(a, b)"], ["left(a, b)", "on(a, b)"], "'a' cannot be both left of and on 'b'"),
@@ -103,7 +109,11 @@ def test_what_contradicts_itself_still_does_when_more_is_said(stated: list[Fact]
             ["left(a, b)", "left(b, c)", "not right(c, a)"],
             "'c' is right of 'a', and that is denied",
         ),
-        (["left or top_left(a, b)", "right(a, b)"], ["left or top_left(a, b)", "right(a, b)"], "neither left of nor top"),
+        (
+            ["left or top_left(a, b)", "right(a, b)"],
+            ["left or top_left(a, b)", "right(a, b)"],
+            "neither left of nor top",
+        ),
         (["left or top(a, b)", "not top(a, b)", "right(a, b)"], None, "neither left of nor above 'b'"),
         (["left or top(a, b)", "not left(a, b)", "not top(a, b)"], None, "neither left of nor above 'b'"),
         (["left or top(a, b)", "not right(b, a)", "not top(a, b)"], None, "neither left of nor above 'b'"),
@@ -111,9 +121,7 @@ def test_what_contradicts_itself_still_does_when_more_is_said(stated: list[Fact]
         (["right or top_left(a, b)", "not left(a, b)", "not right(a, b)"], None, "neither right of nor top left of"),
     ],
 )
-def test_conflicts_by_hand(
-    sentences: list[str], conflict: list[str] | None, reason: str, graph_of: MakeGraph
-) -> None:
+def test_conflicts_by_hand(sentences: list[str], conflict: list[str] | None, reason: str, graph_of: MakeGraph) -> None:
     found = conflict_of(graph_of(*sentences))
     assert found is not None
     assert [str(fact) for fact in found.facts] == (sentences if conflict is None else conflict)
@@ -129,7 +137,7 @@ def test_conflicts_by_hand(
         ["left(a, b)", "optional left(b, a)"],
         ["left(a, b)", "optional not left(a, b)"],
         ["left(a, b)", "0.5 not left(a, b)"],
-        ["0.9 left(a, a)", "left(a, b)"][1:],
+        ["0.9 left(a, a)", "left(a, b)"],
         ["left or right(a, b)", "left(b, a)"],
         ["left or right(a, b)", "not left(a, b)"],
         ["left or right(a, b)", "not left(a, b)", "0.5 not right(a, b)"],

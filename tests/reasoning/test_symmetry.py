@@ -57,7 +57,9 @@ def orbits(graph: RelationGraph, colours: list[int]) -> list[tuple[str, ...]]:
     for image in permutations(range(n)):
         if any(colours[i] != colours[image[i]] for i in range(n)):
             continue
-        if Counter((image[s], image[o], *rest) for s, o, *rest in edges) == Counter((s, o, *rest) for s, o, *rest in edges):
+        if Counter((image[s], image[o], *rest) for s, o, *rest in edges) == Counter(
+            (s, o, *rest) for s, o, *rest in edges
+        ):
             for i in range(n):
                 images[i].add(image[i])
     groups = {tuple(sorted(group)) for group in images if len(group) > 1}

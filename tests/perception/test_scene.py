@@ -1,0 +1,92 @@
+"""A scene as a value: what it refuses, its boxes, its graph."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from deixis.ontology.tbox import default_ontology
+from deixis.perception.errors import SceneError
+from deixis.perception.scene import PerceivedObject, Scene
+
+R = default_ontology().relations
+
+FORK = PerceivedObject("fork", (0.0, 0.0), (0.02, 0.2), label="fork", confidence=0.8)
+PLATE = PerceivedObject("plate", (0.05, -0.02), (0.32, 0.25), label="plate")
+
+
+def test_the_boxes_are_one_array() -> None:
+    boxes = Scene((FORK, PLATE)).boxes
+    assert boxes.shape == (2, 2, 2)
+    np.testing.assert_array_equal(boxes[0], [[0, 0], [0.02, 0.2]])
+
+
+def test_an_empty_scene_has_no_boxes_and_no_relations() -> None:
+    assert Scene(()).boxes.shape == (0, 2, 2)
+    assert len(Scene(()).graph(R)) == 0
+
+
+def test_objects_are_found_by_id() -> None:
+    scene = Scene((FORK, PLATE))
+    assert scene.ids == ("fork", "plate")
+    assert scene["plate"] is PLATE
+
+
+def test_the_graph_names_every_ordered_pair() -> None:
+    graph = Scene((FORK, PLATE)).graph(R)
+    assert [str(fact) for fact in graph.facts()] == ["exactly_left(fork, plate)", "exactly_right(plate, fork)"]
+
+
+def test_the_tolerance_reaches_the_graph() -> None:
+    """A fork whose corner overlaps the plate's by a millimetre lies top left of it, to the centimetre."""
+    scene = Scene((PerceivedObject("fork", (0.0, 0.249), (0.051, 0.5)), PLATE))
+    names = [str(next(scene.graph(R, tolerance).facts())) for tolerance in (0.0, 0.01)]
+    assert names == ["exactly_top(fork, plate)", "exactly_top_left(fork, plate)"]
+
+
+def test_without_labels_nothing_is_named_and_all_else_is_the_same() -> None:
+    plain = Scene((FORK, PLATE), frame="tray").without_labels()
+    assert [(thing.label, thing.confidence) for thing in plain.objects] == [(None, 1.0)] * 2
+    assert plain.frame == "tray"
+    np.testing.assert_array_equal(plain.boxes, Scene((FORK, PLATE)).boxes)
+
+
+def test_a_reordered_scene_lists_its_objects_in_that_order() -> None:
+    assert Scene((FORK, PLATE)).reordered([1, 0]).objects == (PLATE, FORK)
+
+
+def test_scenes_from_different_files_may_be_equal() -> None:
+    assert Scene((FORK,), file="a") == Scene((FORK,), file="b")
+    assert Scene((FORK,), viewpoint="door") != Scene((FORK,))
+
+
+@pytest.mark.parametrize(
+    ("minimum", "maximum", "message"),
+    [
+        ((0.0, math.nan), (1.0, 1.0), "not finite"),
+        ((0.0, 0.0), (math.inf, 1.0), "not finite"),
+        ((0.0,), (1.0,), "2 coordinates, or both 3"),
+        ((0.0, 0.0), (1.0, 1.0, 1.0), "2 coordinates, or both 3"),
+        ((0.0, 2.0), (1.0, 1.0), "on y its min 2 is above its max 1"),
+    ],
+)
+def test_a_box_that_is_none_is_refused(minimum: tuple[float, ...], maximum: tuple[float, ...], message: str) -> None:
+    with pytest.raises(SceneError, match=message):
+        Scene((PerceivedObject("o", minimum, maximum),))
+
+
+@pytest.mark.parametrize("confidence", [-0.5, 1.01, math.nan])
+def test_a_confidence_that_is_no_probability_is_refused(confidence: float) -> None:
+    with pytest.raises(SceneError, match="between 0 and 1"):
+        Scene((PerceivedObject("o", (0.0, 0.0), (1.0, 1.0), label="x", confidence=confidence),))
+
+
+def test_a_point_is_a_box() -> None:
+    assert Scene((PerceivedObject("o", (1.0, 1.0), (1.0, 1.0)),)).ids == ("o",)
+
+
+def test_two_objects_of_one_id_are_refused() -> None:
+    with pytest.raises(SceneError, match="the id 'fork' is used twice"):
+        Scene((FORK, FORK))

@@ -1,0 +1,243 @@
+"""Scene files: what is written comes back, units, and a catalogue of malformed scenes with their exact messages."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import deixis.perception.scene_file as module
+from deixis.ontology.errors import DeixisError
+from deixis.perception.errors import SceneError
+from deixis.perception.scene import PerceivedObject, Scene
+from deixis.perception.scene_file import read_scene, scene_to_dict, write_scene
+
+BOX: dict[str, Any] = {"id": "o1", "min": [0, 0], "max": [1, 1]}
+
+texts = st.text(min_size=1, max_size=8).filter(lambda text: bool(text.strip()))
+coordinates = st.floats(-1e6, 1e6)
+
+
+@st.composite
+def objects(draw: st.DrawFn, id: str, axes: int) -> PerceivedObject:
+    corners = [sorted((draw(coordinates), draw(coordinates))) for _ in range(axes)]
+    label = draw(st.none() | texts)
+    return PerceivedObject(
+        id,
+        tuple(low for low, _ in corners),
+        tuple(high for _, high in corners),
+        label=label,
+        confidence=1.0 if label is None else draw(st.floats(0, 1)),
+        cloud=draw(st.none() | texts),
+    )
+
+
+@st.composite
+def scenes(draw: st.DrawFn) -> Scene:
+    axes = draw(st.sampled_from([2, 3]))
+    ids = draw(st.lists(texts, max_size=4, unique=True))
+    return Scene(
+        tuple(draw(objects(id, axes)) for id in ids),
+        frame=draw(texts),
+        viewpoint=draw(texts),
+        unit=draw(st.sampled_from(["m", "px"])),
+    )
+
+
+@settings(max_examples=60, deadline=None)
+@given(scenes())
+def test_a_scene_comes_back_from_its_dictionary(scene: Scene) -> None:
+    assert read_scene(json.loads(json.dumps(scene_to_dict(scene)))) == scene
+
+
+@settings(max_examples=40, deadline=None)
+@given(scene=scenes())
+def test_a_scene_comes_back_from_its_file(scene: Scene, tmp_path_factory: pytest.TempPathFactory) -> None:
+    path = tmp_path_factory.getbasetemp() / "written.scene.json"
+    write_scene(scene, path)
+    assert read_scene(path) == scene
+    assert read_scene(str(path)).file == str(path)
+
+
+def test_a_written_scene_has_a_line_for_every_object(tmp_path: Path) -> None:
+    things = tuple(PerceivedObject(f"o{i}", (0.0, 0.0), (1.0, 1.0), label="café") for i in range(3))
+    write_scene(Scene(things), tmp_path / "a.scene.json")
+    lines = (tmp_path / "a.scene.json").read_text(encoding="utf-8").splitlines()
+    assert sum('"id"' in line for line in lines) == 3
+    assert sum("café" in line for line in lines) == 3
+
+
+@pytest.mark.parametrize(("unit", "metres"), [("m", 20.0), ("cm", 0.2), ("mm", 0.02), ("px", 20.0)])
+def test_coordinates_are_taken_to_metres_and_pixels_stay(unit: str, metres: float) -> None:
+    scene = read_scene({"unit": unit, "objects": [{"id": "o1", "min": [0, 0, 0], "max": [20, 1, 2]}]})
+    assert scene.objects[0].maximum[0] == pytest.approx(metres)
+    assert scene.unit == ("px" if unit == "px" else "m")
+
+
+def test_what_is_not_given_is_the_usual() -> None:
+    scene = read_scene({"objects": [BOX]})
+    assert (scene.frame, scene.viewpoint, scene.unit, scene.file) == ("table", "chair", "m", "<scene>")
+    assert scene.objects == (PerceivedObject("o1", (0.0, 0.0), (1.0, 1.0)),)
+
+
+def test_null_stands_for_what_is_not_given() -> None:
+    assert read_scene({"objects": [{**BOX, "label": None, "confidence": None, "cloud": None}]}) == read_scene(
+        {"objects": [BOX]}
+    )
+
+
+def test_a_scene_may_be_empty() -> None:
+    assert read_scene({"objects": []}).ids == ()
+
+
+def test_a_file_may_begin_with_a_byte_order_mark(tmp_path: Path) -> None:
+    path = tmp_path / "a.scene.json"
+    path.write_bytes(b"\xef\xbb\xbf" + json.dumps({"objects": [BOX]}).encode())
+    assert read_scene(path).ids == ("o1",)
+
+
+def one(**changes: Any) -> dict[str, Any]:
+    return {"objects": [{**BOX, **changes}]}
+
+
+def without(key: str) -> dict[str, Any]:
+    return {"objects": [{k: v for k, v in BOX.items() if k != key}]}
+
+
+KEYS = "cloud, confidence, id, label, max, min"
+
+CATALOGUE: list[tuple[Any, str]] = [
+    ([], "an object {…} is expected here, not a list"),
+    (None, "an object {…} is expected here, not null"),
+    (3, "an object {…} is expected here, not a number"),
+    ("scene", "an object {…} is expected here, not a text"),
+    (True, "an object {…} is expected here, not true"),
+    ({}, "'objects' is missing: the list of what was seen"),
+    ({"objects": None}, "'objects' must be a list"),
+    ({"objects": {}}, "'objects' must be a list"),
+    ({"object": []}, "'object' is no key here; the keys are frame, objects, unit, viewpoint"),
+    ({"objects": [], "Frame": "x"}, "'Frame' is no key here; the keys are frame, objects, unit, viewpoint"),
+    ({"objects": [], "unit": "inch"}, "the unit 'inch' is not known; use one of m, cm, mm, px"),
+    ({"objects": [], "unit": 1}, "'unit': a text is expected, not a number"),
+    ({"objects": [], "unit": None}, "'unit': a text is expected, not null"),
+    ({"objects": [], "frame": ["table"]}, "'frame': a text is expected, not a list"),
+    ({"objects": [], "frame": "  "}, "'frame': a text is expected, and this one is blank"),
+    ({"objects": [], "viewpoint": {}}, "'viewpoint': a text is expected, not an object"),
+    ({"objects": [BOX, 7]}, "objects[1]: an object {…} is expected here, not a number"),
+    ({"objects": [None]}, "objects[0]: an object {…} is expected here, not null"),
+    (without("id"), "objects[0]: 'id' is missing"),
+    (without("min"), "objects[0]: 'min' is missing"),
+    (without("max"), "objects[0]: 'max' is missing"),
+    (one(lable="fork"), f"objects[0]: 'lable' is no key here; the keys are {KEYS}"),
+    (one(id=5), "objects[0]: 'id': a text is expected, not a number"),
+    (one(id=""), "objects[0]: 'id': a text is expected, and this one is blank"),
+    (one(id="\ud800"), "objects[0]: 'id': the text has half a character in it, and cannot be written"),
+    (one(label=False), "objects[0]: 'label': a text is expected, not false"),
+    (one(label=" "), "objects[0]: 'label': a text is expected, and this one is blank"),
+    (one(cloud=1.5), "objects[0]: 'cloud': a text is expected, not a number"),
+    (one(min=[0]), "objects[0]: 'min' must be a list of 2 or 3 numbers"),
+    (one(min=[0, 0, 0, 0]), "objects[0]: 'min' must be a list of 2 or 3 numbers"),
+    (one(max="1, 1"), "objects[0]: 'max' must be a list of 2 or 3 numbers"),
+    (one(max={"x": 1, "y": 1}), "objects[0]: 'max' must be a list of 2 or 3 numbers"),
+    (one(max=[1, "1"]), "objects[0]: 'max': a number is expected, not a text"),
+    (one(max=[1, None]), "objects[0]: 'max': a number is expected, not null"),
+    (one(max=[1, True]), "objects[0]: 'max': a number is expected, not true"),
+    (one(max=[1, [1]]), "objects[0]: 'max': a number is expected, not a list"),
+    (one(max=[1, 10**400]), "objects[0]: 'max': the number is too large"),
+    (one(max=[1, 1, 1]), "object 'o1': 'min' and 'max' must both have 2 coordinates, or both 3"),
+    (one(min=[2, 0]), "object 'o1': on x its min 2 is above its max 1; swap them"),
+    (one(min=[0, 1.5]), "object 'o1': on y its min 1.5 is above its max 1; swap them"),
+    (
+        one(min=[0, 0, 2], max=[1, 1, 1]),
+        "object 'o1': on z its min 2 is above its max 1; swap them",
+    ),
+    (one(label="fork", confidence=1.5), "object 'o1': a confidence lies between 0 and 1, not at 1.5"),
+    (one(label="fork", confidence=-0.1), "object 'o1': a confidence lies between 0 and 1, not at -0.1"),
+    (one(label="fork", confidence="sure"), "objects[0]: 'confidence': a number is expected, not a text"),
+    ({"objects": [BOX, BOX]}, "the id 'o1' is used twice; give every object an id of its own"),
+    (
+        {"objects": [BOX, {"id": "o2", "min": [0, 0, 0], "max": [1, 1, 1]}]},
+        "some boxes have heights and some have none; give all of them 2 or 3 axes",
+    ),
+]
+
+
+@pytest.mark.parametrize(("data", "message"), CATALOGUE, ids=range(len(CATALOGUE)))
+def test_a_malformed_scene_is_refused_with_the_place_and_the_reason(data: Any, message: str, tmp_path: Path) -> None:
+    path = tmp_path / "bad.scene.json"
+    path.write_text(json.dumps(data), encoding="utf-8")
+    with pytest.raises(SceneError) as caught:
+        read_scene(path)
+    assert str(caught.value) == f"{path}: {message}"
+    assert isinstance(caught.value, DeixisError)
+    assert isinstance(caught.value, ValueError)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("", ":1:1: this is no JSON: Expecting value"),
+        ("{", ":1:2: this is no JSON: "),
+        ('{"objects": [],}', ": this is no JSON: "),
+        ('{\n  "objects": [}\n', ":2:15: this is no JSON: Expecting value"),
+        ('{"objects": []} x', ":1:17: this is no JSON: Extra data"),
+        ("{'objects': []}", ":1:2: this is no JSON: "),
+        ('{"objects": [{"id": "o1", "min": [0, NaN], "max": [1, 1]}]}', ": NaN is no number that a coordinate can be"),
+        ('{"objects": [{"id": "o1", "min": [0, 0], "max": [Infinity, 1]}]}', ": Infinity is no number"),
+        ('{"objects": [{"id": "o1", "min": [-Infinity, 0], "max": [1, 1]}]}', ": -Infinity is no number"),
+        ('{"objects": [{"id": "o1", "min": [0, 0], "max": [1e999, 1]}]}', ": object 'o1': a coordinate is not finite"),
+        ('{"objects": [{"id": "o1", "min": [-1e999, 0], "max": [1, 1]}]}', ": object 'o1': a coordinate is not finite"),
+        ('{"objects": [{"id": "o1", "min": [0, 0], "max": [' + "9" * 5000 + ", 1]}]}", ": "),
+        ("[" * 200_000, ": "),
+        ('{"objects": ' * 100_000, ": "),
+        ("nul\x00", ": this is no JSON: "),
+    ],
+    ids=range(15),
+)
+def test_a_text_that_is_no_scene_is_refused_with_its_file(text: str, message: str, tmp_path: Path) -> None:
+    path = tmp_path / "bad.scene.json"
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(SceneError) as caught:
+        read_scene(path)
+    assert str(caught.value).startswith(str(path))
+    assert message in str(caught.value)
+    assert len(str(caught.value)) < len(str(path)) + 200
+
+
+def test_a_file_that_is_not_utf_8_is_refused_with_the_byte(tmp_path: Path) -> None:
+    path = tmp_path / "latin.scene.json"
+    path.write_bytes('{"objects": [], "frame": "é"}'.encode("latin-1"))
+    with pytest.raises(SceneError, match=r"the file is not UTF-8 \(byte 26\)"):
+        read_scene(path)
+
+
+def test_a_folder_a_missing_file_and_a_name_that_can_be_none_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(SceneError, match=r"this is a folder, and a scene is a \.scene\.json file"):
+        read_scene(tmp_path)
+    with pytest.raises(SceneError, match=r"none\.scene\.json: cannot be read: No such file"):
+        read_scene(tmp_path / "none.scene.json")
+    with pytest.raises(SceneError, match="cannot be read"):
+        read_scene("a\0b.scene.json")
+
+
+def test_a_file_that_is_too_large_is_refused_before_it_is_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(module, "MAX_BYTES", 2**20)
+    path = tmp_path / "large.scene.json"
+    path.write_bytes(b" " * (2**20 + 1))
+    with pytest.raises(SceneError, match="larger than 1 MiB"):
+        read_scene(path)
+
+
+def test_a_parsed_scene_is_called_scene_in_messages() -> None:
+    with pytest.raises(SceneError, match=r"^<scene>: objects\[0\]: 'id' is missing$"):
+        read_scene(without("id"))
+
+
+def test_keys_that_are_no_texts_are_unknown_ones() -> None:
+    keys: Any = {1: "x", "objects": [], "zzz": 2}
+    with pytest.raises(SceneError, match="is no key here"):
+        read_scene(keys)
