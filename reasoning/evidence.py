@@ -75,7 +75,8 @@ class Evidence:
         matched = assignments != UNMATCHED
         bonus = self.bonus[np.arange(assignments.shape[1]), np.where(matched, assignments, 0)] if self.bonus.size else 0
         totals: NDArray[np.float64] = self.degrees(assignments) @ self.description.weights[self.facts]
-        return totals + np.where(matched, bonus, 0.0).sum(axis=1)
+        totals += np.where(matched, bonus, 0.0).sum(axis=1)
+        return totals
 
     def reordered(self, rows: NDArray[np.int64], columns: NDArray[np.int64]) -> Evidence:
         """The same evidence with the objects and the perceived things in another order."""

@@ -106,8 +106,8 @@ def ground(
     """Aligns, and says what the alignment rests on.
 
     The evidence is first put in the order of its names, so that the answer does not depend on the order in which
-    objects and facts were stated or things perceived: where the evidence leaves several answers, names decide, and the result says so
-    (``interchangeable``, ``decided``).
+    objects and facts were stated or things perceived: where the evidence leaves several answers, names decide, and
+    the result says so (``interchangeable``, ``decided``).
     """
     started = time.perf_counter()
     rows = np.array(sorted(range(len(evidence.description.nodes)), key=lambda i: evidence.description.nodes[i]), int)

@@ -103,7 +103,7 @@ class _Step:
 
     def _zero_pairs(self, degrees1: NDArray[np.float64], degrees2: NDArray[np.float64]) -> NDArray[np.float64]:
         """For how many of the labels that a sub-graph uses both degrees are zero, shape (n1, b, n2)."""
-        used = self._in1.any(axis=1)[:, None, :]
+        used = (self._in1.sum(axis=1) > 0)[:, None, :]
         zero1 = ((degrees1 == 0) & self._kept & used).astype(float)
         pairs: NDArray[np.float64] = np.einsum("lab,lc->abc", zero1, (degrees2 == 0).astype(float))
         return pairs

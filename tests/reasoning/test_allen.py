@@ -94,8 +94,8 @@ def test_the_thirteen_and_points_by_hand(a: Interval, b: Interval, symbol: str) 
 
 def test_ends_that_differ_by_no_more_than_the_tolerance_are_equal() -> None:
     def code(shift: float) -> str:
-        ends = [np.array([v]) for v in (0.0, 1.0, 1.0 + shift, 2.0)]
-        return Allen(int(allen_relations(*ends[:4], tolerance=0.25)[0])).symbol  # type: ignore[misc]
+        low_a, high_a, low_b, high_b = (np.array([v]) for v in (0.0, 1.0, 1.0 + shift, 2.0))
+        return Allen(int(allen_relations(low_a, high_a, low_b, high_b, tolerance=0.25)[0])).symbol
 
     assert [code(s) for s in (-0.5, -0.25, 0.0, 0.25, 0.5)] == ["o", "m", "m", "m", "<"]
 

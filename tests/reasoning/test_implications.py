@@ -121,7 +121,8 @@ def check(derivation: Derivation, stated: list[Fact]) -> None:
     elif derivation.rule is Rule.SUB_PROPERTY:
         (premise,) = premises
         assert (premise.subject, premise.object) == (fact.subject, fact.object)
-        ancestors, todo = set(), [premise.relations[0].name]
+        ancestors: set[str] = set()
+        todo = [premise.relations[0].name]
         while todo:
             todo += (above := broader[todo.pop()] - ancestors)
             ancestors |= above
@@ -248,7 +249,7 @@ def test_more_connected_objects_than_the_limit_are_an_error(
 ) -> None:
     monkeypatch.setattr(module, "MAX_CONNECTED", 3)
     Implications(graph_of("left(a, b)", "left(b, c)", "left(d, e)"))
-    with pytest.raises(LimitError, match="connect 4 objects .* up to 3") as caught:
+    with pytest.raises(LimitError, match=r"connect 4 objects .* up to 3") as caught:
         Implications(graph_of("left(a, b)", "left(b, c)", "left(c, d)"))
     assert isinstance(caught.value, OverflowError)
 
