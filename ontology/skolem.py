@@ -35,7 +35,7 @@ def with_names(triples: Iterable[ox.Triple]) -> Iterator[ox.Triple]:
         yield ox.Triple(_named(triple.subject), triple.predicate, _named(triple.object))
 
 
-_Term = TypeVar("_Term", ox.NamedNode, ox.BlankNode, ox.Literal, ox.Triple)
+_Term = TypeVar("_Term")
 
 
 def _blank(term: _Term) -> _Term | ox.BlankNode:

@@ -47,7 +47,7 @@ class DX(StrEnum):
     DIRECTION = BASE + "direction"
     SUPPORT = BASE + "support"
     FILLS = BASE + "fills"
-    CONTAINS = BASE + "contains"
+    SHOWS = BASE + "shows"
     IN_SCENE = BASE + "inScene"
     SEEN_FROM = BASE + "seenFrom"
     IDENTIFIER = BASE + "identifier"

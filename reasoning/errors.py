@@ -7,3 +7,7 @@ from deixis.ontology.errors import DeixisError
 
 class LimitError(DeixisError, OverflowError):
     """A question that is larger than what can be answered in bounded time and memory; nothing was decided."""
+
+
+class InconsistencyError(DeixisError, ValueError):
+    """Axioms that cannot all hold."""
