@@ -1,8 +1,8 @@
 """A layout as SHACL shapes, and a scene as the data that they are checked on.
 
 A scene conforms to a layout where every role is filled, everything in it fills a role, and every fact holds of what
-fill its roles; facts about an unfilled role are passed over, since the role itself is reported. The focus node of a broken
-fact is the statement itself, which leads to its line. A hedged fact is a warning, an optional one information.
+fills its roles; facts about an unfilled role are passed over, since the role itself is reported. The focus node of a
+broken fact is the statement itself, which leads to its line. A hedged fact is a warning, an optional one information.
 """
 
 from __future__ import annotations

@@ -12,8 +12,10 @@ from collections.abc import Hashable, Sequence
 
 from deixis.ontology.graph import RelationGraph
 
-BUDGET = 20_000
-"""Colour refinements at the most, over a whole description."""
+BUDGET = 3_000_000
+"""Nodes visited by colour refinements at the most, over a whole description."""
+
+_Colouring = dict[int, int]
 
 _Edges = tuple[tuple[tuple[int, Hashable], ...], ...]
 """For each node its neighbours, each with the edge's colour, which includes the direction."""
@@ -32,12 +34,12 @@ def interchangeable(graph: RelationGraph, colours: Sequence[Hashable]) -> list[t
     >>> interchangeable(graph, [0, 0, 0])
     [('salad_fork', 'dinner_fork')]
     """
-    edges = _edges(graph)
-    search = _Automorphisms(edges)
-    stable = search.refine(_numbered(colours))
+    search = _Automorphisms(_edges(graph))
+    everything = list(range(len(graph.nodes)))
+    stable = search.refine(dict(zip(everything, _numbered(colours), strict=True)))
     classes: dict[int, list[int]] = defaultdict(list)
-    for node, colour in enumerate(stable):
-        classes[colour].append(node)
+    for node in everything:
+        classes[stable[node]].append(node)
     groups = []
     for members in classes.values():
         groups += [group for group in _orbits(members, stable, search) if len(group) > 1]
@@ -64,7 +66,7 @@ def _numbered(colours: Sequence[Hashable]) -> list[int]:
     return [numbers.setdefault(colour, len(numbers)) for colour in colours]
 
 
-def _orbits(members: list[int], stable: list[int], search: _Automorphisms) -> list[list[int]]:
+def _orbits(members: list[int], stable: _Colouring, search: _Automorphisms) -> list[list[int]]:
     orbits: list[list[int]] = []
     for node in members:
         for orbit in orbits:
@@ -77,31 +79,40 @@ def _orbits(members: list[int], stable: list[int], search: _Automorphisms) -> li
 
 
 class _Automorphisms:
-    """Finds automorphisms of one graph, within a budget of refinements."""
+    """Finds automorphisms of one graph, within a budget of node visits.
+
+    An automorphism that takes one node to another exists where the connected part of the one can be laid on the part
+    of the other; so each search looks at these two parts alone.
+    """
 
     def __init__(self, edges: _Edges) -> None:
         self._edges = edges
         self._bags = [Counter(neighbours) for neighbours in edges]
+        self._part = _parts(edges)
         self._budget = BUDGET
 
-    def refine(self, colours: list[int]) -> list[int]:
+    def refine(self, colours: _Colouring) -> _Colouring:
         """The coarsest stable colouring that is finer; numbers depend on structure alone, not on node order."""
-        count = len(set(colours))
+        count = len(set(colours.values()))
         while True:
-            self._budget -= 1
-            signatures = [
-                (colours[node], tuple(sorted(Counter((c, colours[j]) for j, c in self._edges[node]).items(), key=repr)))
-                for node in range(len(colours))
-            ]
-            ranks = {signature: rank for rank, signature in enumerate(sorted(set(signatures), key=repr))}
-            colours = [ranks[signature] for signature in signatures]
+            self._budget -= len(colours)
+            signatures = {
+                node: (colour, tuple(sorted((colours[j], repr(c)) for j, c in self._edges[node])))
+                for node, colour in colours.items()
+            }
+            ranks = {signature: rank for rank, signature in enumerate(sorted(set(signatures.values())))}
+            colours = {node: ranks[signature] for node, signature in signatures.items()}
             if len(ranks) == count:
                 return colours
             count = len(ranks)
 
-    def exchangeable(self, a: int, b: int, stable: list[int]) -> bool:
+    def exchangeable(self, a: int, b: int, stable: _Colouring) -> bool:
         """Whether some automorphism takes ``a`` to ``b``."""
-        return self._twins(a, b) or self._extends(self._marked(stable, a), self._marked(stable, b))
+        if self._twins(a, b):
+            return True
+        first = {node: stable[node] for node in self._part[a]}
+        second = {node: stable[node] for node in self._part[b]}
+        return len(first) == len(second) and self._extends(_marked(first, a), _marked(second, b))
 
     def _twins(self, a: int, b: int) -> bool:
         """Whether swapping the two and leaving all others is an automorphism."""
@@ -109,29 +120,47 @@ class _Automorphisms:
         swapped = Counter({(swap.get(j, j), c): count for (j, c), count in self._bags[a].items()})
         return swapped == self._bags[b]
 
-    def _marked(self, colours: list[int], node: int) -> list[int]:
-        marked = [2 * colour for colour in colours]
-        marked[node] += 1
-        return marked
-
-    def _extends(self, first: list[int], second: list[int]) -> bool:
-        """Whether some automorphism takes the one colouring to the other."""
+    def _extends(self, first: _Colouring, second: _Colouring) -> bool:
+        """Whether the one coloured part can be laid on the other."""
         if self._budget <= 0:
             return False
         first, second = self.refine(first), self.refine(second)
-        if Counter(first) != Counter(second):
+        sizes = Counter(first.values())
+        if sizes != Counter(second.values()):
             return False
-        cell = next((c for c, count in sorted(Counter(first).items()) if count > 1), None)
+        cell = next((colour for colour, count in sorted(sizes.items()) if count > 1), None)
         if cell is None:
-            return self._is_automorphism(first, second)
-        chosen = self._marked(first, first.index(cell))
-        choices = (node for node, colour in enumerate(second) if colour == cell)
-        return any(self._extends(chosen, self._marked(second, node)) for node in choices)
+            return self._agree(first, second)
+        chosen = _marked(first, next(node for node, colour in first.items() if colour == cell))
+        choices = (node for node, colour in second.items() if colour == cell)
+        return any(self._extends(chosen, _marked(second, node)) for node in choices)
 
-    def _is_automorphism(self, first: list[int], second: list[int]) -> bool:
-        position = {colour: node for node, colour in enumerate(second)}
-        image = [position[colour] for colour in first]
+    def _agree(self, first: _Colouring, second: _Colouring) -> bool:
+        """Whether laying nodes on those of their colour takes edges to edges."""
+        position = {colour: node for node, colour in second.items()}
+        image = {node: position[colour] for node, colour in first.items()}
         return all(
             Counter({(image[j], c): count for (j, c), count in self._bags[node].items()}) == self._bags[image[node]]
-            for node in range(len(image))
+            for node in first
         )
+
+
+def _marked(colours: _Colouring, node: int) -> _Colouring:
+    """The colouring with one node set apart."""
+    return {other: 2 * colour + (other == node) for other, colour in colours.items()}
+
+
+def _parts(edges: _Edges) -> list[list[int]]:
+    """For each node the nodes of its connected part, in order."""
+    parts: list[list[int]] = [[] for _ in edges]
+    for start in range(len(edges)):
+        if not parts[start]:
+            found, todo = {start}, [start]
+            while todo:
+                fresh = {j for j, _ in edges[todo.pop()]} - found
+                found |= fresh
+                todo += fresh
+            members = sorted(found)
+            for node in members:
+                parts[node] = members
+    return parts

@@ -14,6 +14,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from deixis.cli_memory import HideLabels, Image, SceneFile, register
+
 if TYPE_CHECKING:
     from deixis.reasoning.grounding import Grounding
     from deixis.session import Inference
@@ -145,19 +147,21 @@ def _explain(inference: Inference, text: str, as_json: bool) -> None:
 @app.command()
 def ground(
     script: Script,
-    scene: Annotated[str, typer.Argument(metavar="SCENE", help="A scene (.scene.json).")],
+    scene: SceneFile,
     engine: Annotated[EngineName, typer.Option(help="exact, or similarity: the paper's.")] = EngineName.EXACT,
     plot: Annotated[Path | None, typer.Option(metavar="FILE", help="Draw the scene with the names found.")] = None,
     time_limit: Annotated[float, typer.Option(min=0.0, metavar="SECONDS", help="Answer by then.")] = 10.0,
+    hide_labels: HideLabels = False,
+    image: Image = None,
     as_json: AsJson = False,
 ) -> None:
     """Work out which perceived thing each object of a script is."""
     from deixis.report import grounding_to_dict
     from deixis.session import ground as run
-    from deixis.session import read_scene, read_script
+    from deixis.session import load_scene, read_script
     from deixis.show import grounding_lines
 
-    parsed, seen = read_script(script), read_scene(scene)
+    parsed, seen = read_script(script), load_scene(scene, hide_labels, image)
     found = run(parsed, seen, engine=engine, time_limit=time_limit)
     if plot is not None:
         from deixis.plot import plot_grounding
@@ -181,7 +185,9 @@ def _verdict(found: Grounding) -> int:
 @app.command()
 def experiment(
     name: Annotated[str, typer.Argument(help="figure6: the paper's Figure 6 again.")],
-    out: Annotated[Path, typer.Option("-o", "--out", metavar="DIR", help="Where pictures and figures go.")] = Path("out"),
+    out: Annotated[Path, typer.Option("-o", "--out", metavar="DIR", help="Where pictures and figures go.")] = Path(
+        "out"
+    ),
     variants: Annotated[int, typer.Option(min=1, help="Generated place settings.")] = 50,
     orders: Annotated[int, typer.Option(min=1, help="Random node orders that an accuracy is a mean over.")] = 200,
     seed: Annotated[int, typer.Option(help="Seed of everything random.")] = 1,
@@ -205,6 +211,9 @@ def demo(
     from deixis.story import tell
 
     tell(out)
+
+
+register(app)
 
 
 def _replace(path: Path, text: str) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Collection
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -52,14 +53,14 @@ def new_figure(width: float, height: float, **subplots: Any) -> tuple[Figure, An
     return figure, figure.subplots(**subplots)
 
 
-def grounding_figure(found: Grounding, scene: Scene, title: str | None = None) -> Figure:
-    """The picture as a matplotlib figure."""
+def grounding_figure(found: Grounding, scene: Scene, title: str | None = None, wrong: Collection[str] = ()) -> Figure:
+    """The picture as a matplotlib figure; the things in ``wrong`` have a red edge."""
     width, height = _extent(scene)
     figure, axes = new_figure(9.0, min(max(9.0 * height / width, 3.0), 12.0) + 0.9)
     colours = _group_colours(found)
     names = {match.perceived: match.object for match in found.matches.values()}
     for thing in sorted(scene.objects, key=_area, reverse=True):
-        _draw_box(axes, thing, names.get(thing.id), colours)
+        _draw_box(axes, thing, names.get(thing.id), colours, thing.id in wrong)
     for entry in found.satisfied:
         _draw_fact(axes, entry, scene, QUIET, 0.8, 3)
     for entry in found.violated:
@@ -87,7 +88,7 @@ def _group_colours(found: Grounding) -> dict[str, str]:
     return {name: GROUP_COLOURS[i % len(GROUP_COLOURS)] for i, group in enumerate(groups) for name in group}
 
 
-def _draw_box(axes: Axes, thing: PerceivedObject, name: str | None, colours: dict[str, str]) -> None:
+def _draw_box(axes: Axes, thing: PerceivedObject, name: str | None, colours: dict[str, str], wrong: bool) -> None:
     from matplotlib.patches import Rectangle
 
     (x, y), (right, top) = thing.minimum[:2], thing.maximum[:2]
@@ -103,7 +104,7 @@ def _draw_box(axes: Axes, thing: PerceivedObject, name: str | None, colours: dic
             zorder=1,
         )
     )
-    edge = colour or (INK if name else QUIET)
+    edge = WRONG if wrong else colour or (INK if name else QUIET)
     style = "-" if name else (0, (4, 3))
     axes.add_patch(
         Rectangle((x, y), right - x, top - y, fill=False, edgecolor=edge, linewidth=1.2, linestyle=style, zorder=2)
@@ -166,7 +167,7 @@ def _write_name(axes: Axes, thing: PerceivedObject, name: str | None, scene: Sce
     x, y = _centre(thing)
     width, depth = (high - low for low, high in zip(thing.minimum[:2], thing.maximum[:2], strict=True))
     upright = depth > 2.0 * width
-    text = (name or thing.id).replace("_", " ")
+    text = (name or thing.label or thing.id).replace("_", " ")
     anchor = "center"
     if _bears_another(thing, scene):
         y, anchor = thing.maximum[1] - 0.04 * depth, "top"

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from deixis.grammar.script import Script
     from deixis.reasoning.grounding import FactOutcome, Grounding
     from deixis.reasoning.implications import Derivation
-    from deixis.session import Inference
+    from deixis.session import Checked, Inference, Learned
 
 
 def script_to_dict(script: Script) -> dict[str, Any]:
@@ -97,3 +97,47 @@ def outcome_to_dict(entry: FactOutcome) -> dict[str, Any]:
         }
     line = entry.fact.source.line if entry.fact.source else None
     return {"fact": fact_to_dict(entry.fact), "line": line, "degree": entry.degree, "perceived": perceived}
+
+
+def learned_to_dict(learned: Learned) -> dict[str, Any]:
+    """A lesson: what it taught, what it left open, and the grounding that it rests on."""
+    layout = learned.lesson.layout
+    return {
+        "lesson": layout.lesson,
+        "layout": layout.name,
+        "roles": [role.name for role in layout.roles],
+        "facts": len(layout.facts),
+        "categories": list(learned.categories),
+        "undecided": list(learned.doubtful),
+        "grounding": grounding_to_dict(learned.grounding),
+    }
+
+
+def check_to_dict(checked: Checked) -> dict[str, Any]:
+    """The verdicts on a table; broken facts with their lines and what was seen instead."""
+    from deixis.reasoning.checking import Verdict
+
+    table = checked.table
+    return {
+        "layout": checked.layout.name,
+        "lesson": checked.layout.lesson,
+        "well": table.well,
+        "conforms": checked.conforms,
+        "correct": [{"object": c.role, "perceived": c.perceived} for c in table.of(Verdict.CORRECT)],
+        "missing": [{"object": c.role, "lines": _lines_about(c.role, checked)} for c in table.of(Verdict.MISSING)],
+        "misplaced": [
+            {"object": c.role, "perceived": c.perceived, "violated": [outcome_to_dict(entry) for entry in c.broken]}
+            for c in table.of(Verdict.MISPLACED)
+        ],
+        "extra": [{"perceived": e.perceived, "label": e.label, "reason": e.reason} for e in table.extra],
+        "undetermined": [{"object": c.role, "perceived": c.perceived} for c in table.of(Verdict.UNDETERMINED)],
+        "absent": [{"object": c.role} for c in table.of(Verdict.ABSENT)],
+        "violated": [outcome_to_dict(entry) for entry in table.broken],
+        "notes": list(table.grounding.notes),
+        "report": checked.report,
+    }
+
+
+def _lines_about(role: str, checked: Checked) -> list[int]:
+    facts = (fact for fact in checked.layout.facts if role in (fact.subject, fact.object))
+    return sorted({fact.source.line for fact in facts if fact.source is not None})

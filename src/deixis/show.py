@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sized
-from typing import TYPE_CHECKING
+from collections.abc import Sequence, Sized
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from deixis.grammar.script import Script
     from deixis.ontology.graph import Fact
     from deixis.reasoning.grounding import FactOutcome, Grounding, Match
     from deixis.reasoning.implications import Derivation
-    from deixis.session import Inference
+    from deixis.session import Checked, Inference, Learned
 
 
 def script_lines(script: Script) -> list[str]:
@@ -19,7 +19,11 @@ def script_lines(script: Script) -> list[str]:
     viewpoint = f", seen from {script.viewpoint}" if script.viewpoint else ""
     head = f"{script.name or script.file}{title}: {_count(script.objects, 'object')}, {_count(script.facts, 'fact')}"
     kinds = [f"        {name} is a {kind.label}" for name, kind in script.kinds.items()]
-    return [f"{head}{viewpoint}", *(f"{_line(fact, script.file):>6}  {qualified(fact)}" for fact in script.facts), *kinds]
+    return [
+        f"{head}{viewpoint}",
+        *(f"{_line(fact, script.file):>6}  {qualified(fact)}" for fact in script.facts),
+        *kinds,
+    ]
 
 
 def qualified(fact: Fact) -> str:
@@ -49,7 +53,9 @@ def inference_lines(inference: Inference) -> list[str]:
     lines = [f"Stated ({len(inference.stated)}):"]
     lines += [f"    {qualified(fact)}   line {fact.source.line if fact.source else '?'}" for fact in inference.stated]
     lines.append(f"Inferred ({len(inferred)}):")
-    return lines + [f"    {derivation.fact}   by {derivation.rule} from {_places(derivation)}" for derivation in inferred]
+    return lines + [
+        f"    {derivation.fact}   by {derivation.rule} from {_places(derivation)}" for derivation in inferred
+    ]
 
 
 def _places(derivation: Derivation) -> str:
@@ -66,7 +72,9 @@ def grounding_lines(found: Grounding) -> list[str]:
         lines += ["    " + ", ".join(group) for group in groups]
     lines += ["", f"Facts: {len(found.outcomes)} stated, {len(found.satisfied)} satisfied" + _rest(found)]
     lines += [f"    violated: {violation_text(entry)}" for entry in found.violated]
-    lines += [f"Left out: {left.name}: {left.reason}." for left in (*found.unmatched_objects, *found.unmatched_perceived)]
+    lines += [
+        f"Left out: {left.name}: {left.reason}." for left in (*found.unmatched_objects, *found.unmatched_perceived)
+    ]
     lines.append(f"Graph similarity {found.graph_similarity:.3f}; engine {found.engine}, {_standing(found)}.")
     return lines + [f"Note: {note}." for note in found.notes]
 
@@ -104,3 +112,61 @@ def _standing(found: Grounding) -> str:
     if found.proved_best:
         return f"proved the best in {found.seconds:.2f} s"
     return f"{found.seconds:.2f} s, not proved the best"
+
+
+def learned_lines(learned: Learned, memory: str) -> list[str]:
+    """What a lesson taught, and what it left open."""
+    layout = learned.lesson.layout
+    lines = [
+        f"Learned '{layout.name}' as lesson {layout.lesson}: {_count(layout.roles, 'role')}, "
+        f"{_count(layout.facts, 'fact')}; in {memory}"
+    ]
+    if learned.categories:
+        lines.append("Categories with a new view: " + ", ".join(learned.categories))
+    if learned.doubtful:
+        lines.append("Recorded as not settled, and teaching nothing: " + ", ".join(learned.doubtful))
+    lines += [f"Left out: {left.name}: {left.reason}." for left in learned.grounding.unmatched_objects]
+    return lines
+
+
+def check_lines(checked: Checked) -> list[str]:
+    """The verdict on a table, what is wrong with it by line, and what cannot be told."""
+    from deixis.reasoning.checking import Verdict
+
+    table = checked.table
+    head = "Nothing is wrong" if table.well else "This table is not laid"
+    lines = [
+        f"{head} as '{checked.layout.name}' says." if not table.well else f"{head}, as '{checked.layout.name}' has it."
+    ]
+    for entry in table.of(Verdict.MISSING):
+        lines.append(f"missing     {entry.role}{_said_of(entry.role, checked)}")
+    for entry in table.of(Verdict.MISPLACED):
+        lines.append(f"misplaced   {entry.role} ({entry.perceived})")
+        lines += [f"            {violation_text(broken)}" for broken in entry.broken]
+    blamed = {entry.role for entry in table.of(Verdict.MISPLACED)}
+    for broken in table.broken:
+        if not blamed & {broken.fact.subject, broken.fact.object}:
+            lines.append(f"broken      {violation_text(broken)}")
+    lines += [f"extra       {extra.perceived}: {extra.reason}" for extra in table.extra]
+    lines += [
+        f"undetermined {entry.role}: {entry.perceived}, by its place alone" for entry in table.of(Verdict.UNDETERMINED)
+    ]
+    lines += [f"absent      {entry.role}, which is optional" for entry in table.of(Verdict.ABSENT)]
+    lines.append(f"correct     {len(table.of(Verdict.CORRECT))} of {len(table.roles)}")
+    return lines + [f"Note: {note}." for note in table.grounding.notes]
+
+
+def _said_of(role: str, checked: Checked) -> str:
+    facts = [fact for fact in checked.layout.facts if role in (fact.subject, fact.object) and not fact.optional]
+    return "".join(f"; {fact}" + (f" ({fact.source})" if fact.source else "") for fact in facts)
+
+
+def stats_lines(counted: dict[str, Any], lessons: Sequence[str]) -> list[str]:
+    """The counts of a memory, one a line, and its lessons."""
+    lines = []
+    for name, value in counted.items():
+        if isinstance(value, dict):
+            lines += [f"{name}, {graph}: {number}" for graph, number in value.items()]
+        else:
+            lines.append(f"{name}: {value}")
+    return [*lines, *(f"lesson {lesson}" for lesson in lessons)]

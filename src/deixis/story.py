@@ -6,9 +6,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from deixis.examples_data import example
+from deixis.perception.scene_file import read_scene
 from deixis.plot import plot_grounding
 from deixis.reasoning.grounding import Grounding
-from deixis.session import ground, infer, read_scene, read_script
+from deixis.session import ground, infer, read_script
 from deixis.show import grounding_lines, inference_lines, script_lines
 
 if TYPE_CHECKING:
@@ -63,7 +64,7 @@ def full_text(name: str) -> list[str]:
 def _ambiguity(found: Grounding) -> list[str]:
     open_names = [match.object for match in found.matches.values() if not match.decided]
     return [
-        f"All {len(found.satisfied)} facts hold, and still {len(open_names)} of {len(found.matches)} names are not settled:",
+        f"All {len(found.satisfied)} facts hold, and still {len(open_names)} of {len(found.matches)} names are open:",
         "the words never say which fork is nearer to the plate, or which of two things lies farther back.",
         "Deixis says so, instead of passing off a lucky order as knowledge.",
     ]

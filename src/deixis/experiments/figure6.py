@@ -25,12 +25,13 @@ from deixis.examples_data import example
 from deixis.ontology.graph import PaperGraph, RelationGraph
 from deixis.ontology.tbox import default_ontology
 from deixis.perception.scene import Scene
+from deixis.perception.scene_file import read_scene
 from deixis.perception.settings import formal_setting
 from deixis.reasoning.engines import described
 from deixis.reasoning.evidence import UNMATCHED, Evidence, no_unary_evidence
 from deixis.reasoning.similarity import node_similarity
 from deixis.reasoning.symmetry import interchangeable
-from deixis.session import read_scene, read_script
+from deixis.session import read_script
 
 SIZES = range(4, 13)
 PER_SIZE = 60
@@ -215,9 +216,7 @@ class _Trial:
                 result[f"exactly the absent dropped, {choice}"] = self._dropped_the_absent(chosen, scene)
         return result
 
-    def _in_orders(
-        self, matrices: NDArray[np.float64], members: NDArray[np.bool_], orders: int
-    ) -> NDArray[np.int64]:
+    def _in_orders(self, matrices: NDArray[np.float64], members: NDArray[np.bool_], orders: int) -> NDArray[np.int64]:
         """The Hungarian assignments with both graphs' nodes in random orders: shape (sub-graphs, orders, n1)."""
         found = np.full((len(matrices), orders, matrices.shape[1]), UNMATCHED, dtype=np.int64)
         for matrix, kept, assignments in zip(matrices, members, found, strict=True):
@@ -241,7 +240,8 @@ class _Trial:
     def _dropped_the_absent(self, assignments: NDArray[np.int64], scene: Scene) -> NDArray[np.float64]:
         present = {thing.label for thing in scene.objects}
         absent = np.array([name not in present for name in self._description.nodes])
-        return ((assignments == UNMATCHED) == absent).all(axis=-1).astype(float)
+        same: NDArray[np.float64] = ((assignments == UNMATCHED) == absent).all(axis=-1).astype(float)
+        return same
 
 
 @dataclass(frozen=True, eq=False)
@@ -264,4 +264,5 @@ class _Measured:
         """For each order the assignment with the greatest key (the last one first), ties at random: (orders, n1)."""
         ties = rng.random(self.similarity.shape)
         winner = np.lexsort((ties, *keys), axis=0)[-1]
-        return self.assignments[winner, np.arange(self.assignments.shape[1])]
+        chosen: NDArray[np.int64] = self.assignments[winner, np.arange(self.assignments.shape[1])]
+        return chosen

@@ -1,0 +1,223 @@
+"""The commands that use a memory: learn, show, check, query, and memory itself."""
+
+from __future__ import annotations
+
+import json
+import sys
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+MemoryDir = Annotated[
+    Path | None,
+    typer.Option("--memory", metavar="DIR", help="The memory (default: $DEIXIS_MEMORY, else a folder of yours)."),
+]
+AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
+SceneFile = Annotated[
+    str, typer.Argument(metavar="SCENE", help="A scene (.scene.json), or COCO or LabelMe annotations.")
+]
+TimeLimit = Annotated[float, typer.Option(min=0.0, metavar="SECONDS", help="Answer by then.")]
+HideLabels = Annotated[bool, typer.Option("--hide-labels", help="Look at the scene as if nothing in it were named.")]
+Image = Annotated[str | None, typer.Option(metavar="NAME", help="Which image of a COCO file.")]
+
+memory_app = typer.Typer(help="Export, import, count, or forget what was learned.", no_args_is_help=True)
+
+
+class DumpFormat(StrEnum):
+    TRIG = "trig"
+    TURTLE = "turtle"
+
+
+class TableFormat(StrEnum):
+    TABLE = "table"
+    JSON = "json"
+    CSV = "csv"
+    TURTLE = "turtle"
+
+
+def register(app: typer.Typer) -> None:
+    """Adds these commands to the command line."""
+    for command in (learn, show, check, query):
+        app.command()(command)
+    app.add_typer(memory_app, name="memory")
+
+
+def learn(
+    script: Annotated[str, typer.Argument(metavar="SCRIPT", help="A layout script (.layout).")],
+    scene: SceneFile,
+    engine: Annotated[str, typer.Option(help="exact, or similarity: the paper's.")] = "exact",
+    time_limit: TimeLimit = 10.0,
+    hide_labels: HideLabels = False,
+    image: Image = None,
+    memory: MemoryDir = None,
+    as_json: AsJson = False,
+) -> None:
+    """Ground a script in a scene, and keep the layout and its objects as concepts."""
+    from deixis.report import learned_to_dict
+    from deixis.session import Session, load_scene
+    from deixis.show import learned_lines
+
+    with Session(memory) as session:
+        learned = session.learn(script, load_scene(scene, hide_labels, image), engine, time_limit)
+        where = session.path
+    if as_json:
+        _print(json.dumps(learned_to_dict(learned), indent=2, ensure_ascii=False))
+    else:
+        _print(*learned_lines(learned, str(where)))
+    if not learned.grounding.matches:
+        raise typer.Exit(1)
+
+
+def show(
+    layout: Annotated[str, typer.Argument(metavar="LAYOUT", help="A learned layout's name, or a lesson's id.")],
+    memory: MemoryDir = None,
+    as_json: AsJson = False,
+) -> None:
+    """Print a learned layout as a script again."""
+    from deixis.ontology.export import fact_to_dict
+    from deixis.session import Session
+
+    with Session(memory) as session:
+        concept, text = session.layout(layout), session.show(layout)
+    if as_json:
+        facts = [fact_to_dict(fact) for fact in concept.facts]
+        head = {"name": concept.name, "title": concept.title, "viewpoint": concept.viewpoint, "lesson": concept.lesson}
+        _print(json.dumps({**head, "facts": facts, "text": text}, indent=2, ensure_ascii=False))
+    else:
+        sys.stdout.write(text)
+
+
+def check(
+    layout: Annotated[str, typer.Argument(metavar="LAYOUT", help="A learned layout's name, or a script.")],
+    scene: SceneFile,
+    report: Annotated[Path | None, typer.Option(metavar="FILE", help="Write the SHACL report (Turtle).")] = None,
+    turtle: Annotated[bool, typer.Option("--turtle", help="Print the SHACL report (Turtle).")] = False,
+    plot: Annotated[Path | None, typer.Option(metavar="FILE", help="Draw the table with what is wrong.")] = None,
+    time_limit: TimeLimit = 10.0,
+    hide_labels: HideLabels = False,
+    image: Image = None,
+    memory: MemoryDir = None,
+    as_json: AsJson = False,
+) -> None:
+    """Say what is missing, misplaced and extra on a table; exit 0 where all is well, 1 where not."""
+    from deixis.report import check_to_dict
+    from deixis.session import Session, load_scene
+    from deixis.show import check_lines
+
+    seen = load_scene(scene, hide_labels, image)
+    with Session(memory) as session:
+        checked = session.check(layout, seen, time_limit)
+    if report is not None:
+        report.parent.mkdir(parents=True, exist_ok=True)
+        report.write_text(checked.report, encoding="utf-8")
+    if plot is not None:
+        from deixis.plot_check import plot_check
+
+        plot_check(checked, seen, plot)
+    if turtle:
+        sys.stdout.write(checked.report)
+    elif as_json:
+        _print(json.dumps(check_to_dict(checked), indent=2, ensure_ascii=False))
+    else:
+        _print(*check_lines(checked))
+    if not checked.table.well:
+        raise typer.Exit(1)
+
+
+def query(
+    sparql: Annotated[str | None, typer.Argument(metavar="SPARQL", help="SELECT, ASK, CONSTRUCT or DESCRIBE.")] = None,
+    file: Annotated[
+        Path | None, typer.Option("-f", "--file", metavar="FILE", help="Read the query from a file.")
+    ] = None,
+    format: Annotated[TableFormat, typer.Option("--format", help="How to print the answer.")] = TableFormat.TABLE,
+    memory: MemoryDir = None,
+    as_json: AsJson = False,
+) -> None:
+    """Ask SPARQL of everything remembered."""
+    from deixis.ontology.errors import DeixisError
+    from deixis.session import Session
+
+    if (sparql is None) == (file is None):
+        raise DeixisError("give a query, or a file with -f, and one of them only")
+    with Session(memory) as session:
+        result = session.query(file.read_text(encoding="utf-8") if file is not None else sparql or "")
+        if as_json or format is TableFormat.JSON:
+            _print(result.to_json())
+        elif format is TableFormat.CSV:
+            sys.stdout.write(result.to_csv())
+        elif format is TableFormat.TURTLE:
+            sys.stdout.write(result.to_turtle())
+        else:
+            _print(*result.to_table())
+        if result.boolean is False:
+            raise typer.Exit(1)
+
+
+@memory_app.command("export")
+def export(
+    out: Annotated[Path | None, typer.Option("-o", "--out", metavar="FILE", help="Write a file, else print.")] = None,
+    format: Annotated[
+        DumpFormat, typer.Option("--format", help="trig: everything; turtle: one graph, for Protégé.")
+    ] = DumpFormat.TRIG,
+    memory: MemoryDir = None,
+) -> None:
+    """Write everything remembered, sorted: the same bytes for the same content."""
+    from deixis.memory.exchange import export_memory
+    from deixis.session import Session
+
+    with Session(memory) as session:
+        text = export_memory(session.memory(), format.value)
+    if out is None:
+        sys.stdout.write(text)
+    else:
+        out.write_text(text, encoding="utf-8")
+
+
+@memory_app.command("import")
+def import_(
+    dump: Annotated[Path, typer.Argument(metavar="FILE", help="What export wrote, or triples in another format.")],
+    memory: MemoryDir = None,
+) -> None:
+    """Take in what was exported; what is there stays."""
+    from deixis.memory.exchange import import_dump
+    from deixis.session import default_memory
+
+    target = default_memory() if memory is None else memory
+    import_dump(dump, target)
+    _print(f"{dump} is in the memory {target}.")
+
+
+@memory_app.command("stats")
+def stats(memory: MemoryDir = None, as_json: AsJson = False) -> None:
+    """Count what is remembered."""
+    from dataclasses import asdict
+
+    from deixis.session import Session
+    from deixis.show import stats_lines
+
+    with Session(memory) as session:
+        counted = asdict(session.memory().stats())
+        lessons = session.memory().lessons()
+    if as_json:
+        _print(json.dumps({**counted, "lesson_ids": list(lessons)}, indent=2, default=str))
+    else:
+        _print(*stats_lines(counted, lessons))
+
+
+@memory_app.command("forget")
+def forget(
+    lesson: Annotated[str, typer.Argument(metavar="LESSON", help="The id that learn printed; see memory stats.")],
+    memory: MemoryDir = None,
+) -> None:
+    """Take back one lesson, with everything that follows from it alone."""
+    from deixis.session import Session
+
+    with Session(memory) as session:
+        session.forget(lesson)
+    _print(f"Forgotten: {lesson}.")
+
+
+def _print(*lines: str) -> None:
+    print("\n".join(lines))

@@ -1,0 +1,160 @@
+"""From a grounding to a lesson: what is kept of a script, a scene and who was who; and what follows from it all."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from datetime import datetime
+from pathlib import Path
+
+import pyoxigraph as ox
+
+from deixis.grammar.format import format_script
+from deixis.grammar.script import Script
+from deixis.ontology.concepts import LayoutConcept, Lesson, MatchRecord, Role, SceneRecord, SeenObject
+from deixis.ontology.relation import Reading, Relation, Relations
+from deixis.ontology.skolem import GENID, with_blank_nodes
+from deixis.ontology.vocabulary import W3C
+from deixis.perception.scene import Scene
+from deixis.perception.scene_file import scene_to_dict
+from deixis.reasoning.description_logic import classify
+from deixis.reasoning.errors import InconsistencyError
+from deixis.reasoning.evidence import exact_names
+from deixis.reasoning.grounding import Grounding, Match
+
+MAX_PAIRS = 2000
+"""Ordered pairs of a scene whose relations are all kept; of a larger scene only those that the script compares."""
+
+
+@dataclass(frozen=True, slots=True)
+class Occasion:
+    """When and by what something was learned."""
+
+    started: datetime
+    ended: datetime
+    version: str
+
+
+def layout_concept(script: Script, lesson: str, interchangeable: Iterable[tuple[str, ...]] = ()) -> LayoutConcept:
+    """The layout that a script describes, as a concept of that lesson."""
+    graph = script.graph()
+    roles = [
+        Role(name, kind, declared=name in script.kinds)
+        for name, kind in zip(graph.nodes, graph.kinds or (None,) * len(graph.nodes), strict=True)
+    ]
+    return LayoutConcept(
+        lesson=lesson,
+        name=layout_name(script),
+        title=script.title,
+        viewpoint=script.viewpoint,
+        roles=tuple(roles),
+        facts=tuple(graph.facts()),
+        interchangeable=tuple(interchangeable),
+    )
+
+
+def layout_name(script: Script) -> str:
+    """The name in the header, or that of the file."""
+    return script.name or Path(script.file).name.split(".")[0].strip("<>") or "layout"
+
+
+def lesson_of(script: Script, scene: Scene, found: Grounding, id: str, occasion: Occasion) -> Lesson:
+    """Everything that one grounding teaches."""
+    return Lesson(
+        layout=layout_concept(script, id, found.interchangeable),
+        scene=scene_record(scene, script.ontology.relations, found),
+        matches=tuple(_match(match) for match in found.matches.values()),
+        engine=found.engine,
+        proved_best=found.proved_best,
+        started=occasion.started,
+        ended=occasion.ended,
+        version=occasion.version,
+        script_file=script.file,
+        script_text=format_script(script),
+        scene_text=json.dumps(scene_to_dict(scene), ensure_ascii=False, sort_keys=True),
+    )
+
+
+def _match(match: Match) -> MatchRecord:
+    equal = tuple(other.perceived for other in match.alternatives if other.cost <= 1e-9)
+    could_be = () if match.decided else (match.perceived, *equal)
+    return MatchRecord(match.object, match.perceived if match.decided else None, match.decided, match.score, could_be)
+
+
+def scene_record(scene: Scene, relations: Relations, found: Grounding) -> SceneRecord:
+    """A scene as a lesson keeps it."""
+    return SceneRecord(
+        frame=scene.frame,
+        viewpoint=scene.viewpoint,
+        unit=scene.unit,
+        objects=tuple(SeenObject(o.id, o.minimum, o.maximum, o.label, o.confidence) for o in scene.objects),
+        relations=tuple(_seen_relations(scene, relations, found)),
+    )
+
+
+def _seen_relations(scene: Scene, relations: Relations, found: Grounding) -> Iterator[tuple[str, Relation, str]]:
+    names, ids = exact_names(scene.graph(relations)), scene.ids
+    compared = {entry.perceived for entry in found.outcomes if entry.perceived is not None}
+    few = len(ids) * (len(ids) - 1) <= MAX_PAIRS
+    for i, subject in enumerate(ids):
+        for j, object in enumerate(ids):
+            if i != j and (few or (subject, object) in compared):
+                yield subject, relations.members(1 << int(names[i, j]))[0], object
+
+
+def consequences(
+    ontology: Iterable[ox.Triple], learned: Iterable[ox.Triple], asserted: Iterable[ox.Triple], relations: Relations
+) -> list[ox.Triple]:
+    """All that follows from what was learned and seen, and was not said: the content of the inferred graph.
+
+    HermiT classifies the ontology with the learned classes; the kinds of things follow from that, and the wide
+    relations of pairs from their exact ones. Raises InconsistencyError where a learned class has become impossible.
+    """
+    learned, asserted = list(learned), list(asserted)
+    axioms = [*ontology, *_class_axioms(learned)]
+    nt = ox.serialize(with_blank_nodes(axioms), format=ox.RdfFormat.N_TRIPLES)
+    classified = classify((nt or b"").decode("utf-8"))
+    if classified.unsatisfiable:
+        listed = ", ".join(iri.rsplit("/", 1)[-1] for iri in classified.unsatisfiable)
+        raise InconsistencyError(
+            f"nothing can be a '{listed}' any more: what was learned about it before says it is of another kind; "
+            "forget that lesson, or declare the same kind in both scripts"
+        )
+    inferred = list(ox.parse(classified.inferred, format=ox.RdfFormat.N_TRIPLES))
+    classes = [ox.Triple(quad.subject, quad.predicate, quad.object) for quad in inferred]
+    known = {*learned, *asserted}
+    types = _types(asserted, [*learned, *classes])
+    wide = _wide(asserted, relations)
+    return sorted({*classes, *types, *wide} - known, key=str)
+
+
+def _class_axioms(learned: list[ox.Triple]) -> list[ox.Triple]:
+    """What learned triples say of classes; roles, statements and matches are no business of classification."""
+    classes = {t.subject for t in learned if t.predicate.value == W3C.RDF_TYPE and _value(t.object) == W3C.OWL_CLASS}
+    return [t for t in learned if t.subject in classes or _value(t.subject).startswith(GENID)]
+
+
+def _types(asserted: list[ox.Triple], classes: list[ox.Triple]) -> Iterator[ox.Triple]:
+    """Every broader class of what each thing is said to be."""
+    broader: dict[str, set[ox.Triple]] = {}
+    for triple in classes:
+        if triple.predicate.value == W3C.RDFS_SUB_CLASS_OF and not _value(triple.object).startswith(GENID):
+            broader.setdefault(_value(triple.subject), set()).add(triple)
+    for triple in asserted:
+        if triple.predicate.value == W3C.RDF_TYPE:
+            for axiom in broader.get(_value(triple.object), ()):
+                yield ox.Triple(triple.subject, triple.predicate, axiom.object)
+
+
+def _wide(asserted: list[ox.Triple], relations: Relations) -> Iterator[ox.Triple]:
+    exact = {relation.iri: relation for relation in relations.of_reading(Reading.EXACT)}
+    for triple in asserted:
+        relation = exact.get(triple.predicate.value)
+        if relation is not None:
+            for broader in relation.broader:
+                yield ox.Triple(triple.subject, ox.NamedNode(relations[broader].iri), triple.object)
+
+
+def _value(term: object) -> str:
+    return str(getattr(term, "value", ""))

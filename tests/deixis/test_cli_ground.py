@@ -1,0 +1,170 @@
+"""deixis ground: text, JSON, pictures and exit codes."""
+
+from __future__ import annotations
+
+import io
+import json
+import sys
+from contextlib import redirect_stderr, redirect_stdout
+from pathlib import Path
+from unittest.mock import patch
+
+import pytest
+
+from deixis.cli import main
+from deixis.examples_data import example
+
+SCRIPT1, FULL = example("script1.layout"), example("formal_dinner.layout")
+SCENE = example("place_setting.scene.json")
+PROMISED = {
+    "engine": str,
+    "matches": list,
+    "unmatched_objects": list,
+    "unmatched_perceived": list,
+    "interchangeable": list,
+    "graph_similarity": float,
+    "facts": dict,
+    "proved_best": bool,
+    "seconds": float,
+}
+QUALIFYING = {"left_out": dict, "converged": bool, "notes": list}
+MAGIC = {"png": b"\x89PNG\r\n\x1a\n", "svg": b"<?xml", "pdf": b"%PDF-"}
+
+
+def deixis(*args: object) -> tuple[int, str, str]:
+    """Runs a command in this process: exit code, standard output, standard error."""
+    out, err = io.StringIO(), io.StringIO()
+    with patch.object(sys, "argv", ["deixis", *map(str, args)]), redirect_stdout(out), redirect_stderr(err):
+        try:
+            main()
+            code: object = 0
+        except SystemExit as end:
+            code = end.code
+    assert isinstance(code, int | None)
+    return code or 0, out.getvalue(), err.getvalue()
+
+
+def write(path: Path, text: str) -> Path:
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def test_text_says_who_is_who_and_what_is_open() -> None:
+    code, out, err = deixis("ground", SCRIPT1, SCENE)
+    assert (code, err) == (0, "")
+    rows = [line.split() for line in out.splitlines()]
+    assert ["dinner_plate", "o8"] in rows
+    assert "    dinner_knife, water_glass" in out.splitlines()
+    assert "Facts: 11 stated, 11 satisfied" in out
+    assert "proved the best" in out
+
+
+@pytest.mark.parametrize("engine", ["exact", "similarity"])
+def test_json_holds_what_is_promised(engine: str) -> None:
+    code, out, err = deixis("ground", FULL, SCENE, "--json", "--engine", engine)
+    data = json.loads(out)
+    assert (code, err) == (0, "")
+    assert {key: type(value) for key, value in data.items()} == PROMISED | QUALIFYING
+    assert data["engine"] == engine
+    assert data["proved_best"] is (engine == "exact")
+    assert len(data["matches"]) == 12
+    for match in data["matches"]:
+        assert match.keys() == {"object", "perceived", "score", "similarity", "decided", "alternatives"}
+        assert all(other.keys() == {"perceived", "cost"} for other in match["alternatives"])
+        assert 0 <= match["score"] <= 1
+    assert data["facts"].keys() == {"stated", "satisfied", "violated", "waived", "open"}
+    assert data["facts"]["stated"] == 11
+
+
+def test_a_violated_fact_is_told_with_its_line_and_what_was_perceived(tmp_path: Path) -> None:
+    script = write(tmp_path / "s.layout", "a left of b\nb on c\nc left of a\n")
+    boxes = [f'{{"id": "o{i}", "min": [{i}, 0], "max": [{i}.5, 1]}}' for i in range(3)]
+    scene = write(tmp_path / "s.scene.json", f'{{"objects": [{", ".join(boxes)}]}}')
+    code, out, _ = deixis("ground", script, scene, "--json")
+    (entry,) = json.loads(out)["facts"]["violated"]
+    assert code == 0
+    assert entry.keys() == {"fact", "line", "degree", "perceived"}
+    assert (entry["line"], entry["fact"]["relation"]) == (2, "on")
+    assert entry["perceived"].keys() == {"relation", "subject", "object", "reading"}
+    assert entry["perceived"]["reading"] == "exact"
+    assert f"violated: on(b, c) ({script}:2:1): perceived is" in deixis("ground", script, scene)[1]
+
+
+@pytest.mark.parametrize("ending", ["png", "svg", "pdf"])
+def test_the_picture_is_written(tmp_path: Path, ending: str) -> None:
+    path = tmp_path / "new" / f"found.{ending}"
+    code, out, err = deixis("ground", SCRIPT1, SCENE, "--plot", path)
+    assert (code, err) == (0, "")
+    assert f"The picture is in {path}." in out
+    data = path.read_bytes()
+    assert data.startswith(MAGIC[ending])
+    assert 5_000 < len(data) < 2_000_000
+
+
+def test_with_json_only_json_is_printed(tmp_path: Path) -> None:
+    code, out, _ = deixis("ground", SCRIPT1, SCENE, "--json", "--plot", tmp_path / "found.svg")
+    assert code == 0
+    assert json.loads(out)["facts"]["satisfied"] == 11
+
+
+@pytest.mark.parametrize("name", ["found.bmp2", "found", "", "folder.png"])
+def test_a_picture_that_cannot_be(tmp_path: Path, name: str) -> None:
+    (tmp_path / "folder.png").mkdir()
+    code, _, err = deixis("ground", SCRIPT1, SCENE, "--plot", tmp_path / name)
+    assert code == 2
+    assert err.startswith(f"deixis: {tmp_path / name}: ")
+
+
+def test_an_unwritable_place(tmp_path: Path) -> None:
+    file = write(tmp_path / "file", "")
+    code, _, err = deixis("ground", SCRIPT1, SCENE, "--plot", file / "found.png")
+    assert code == 2
+    assert "the picture cannot be written" in err
+
+
+def test_without_time_there_is_an_answer_all_the_same(tmp_path: Path) -> None:
+    script = write(tmp_path / "s.layout", "\n".join(f"a{i} left of a{(i * 7 + 1) % 20}" for i in range(1, 20)))
+    boxes = [
+        {"id": f"o{i}", "min": [i * 37 % 20, i * 11 % 20], "max": [i * 37 % 20 + 2, i * 11 % 20 + 2]} for i in range(20)
+    ]
+    scene = write(tmp_path / "s.scene.json", json.dumps({"objects": boxes}))
+    code, out, err = deixis("ground", script, scene, "--time-limit", "0", "--json")
+    data = json.loads(out)
+    assert (code, err) == (3, "")
+    assert data["proved_best"] is False
+    assert len(data["matches"]) == 20
+    assert any("time limit" in note for note in data["notes"])
+
+
+@pytest.mark.parametrize("engine", ["exact", "similarity"])
+def test_a_scene_without_objects_is_a_no(tmp_path: Path, engine: str) -> None:
+    scene = write(tmp_path / "s.scene.json", '{"objects": []}')
+    code, out, err = deixis("ground", SCRIPT1, scene, "--json", "--engine", engine)
+    data = json.loads(out)
+    assert (code, err) == (1, "")
+    assert data["matches"] == []
+    assert len(data["unmatched_objects"]) == 12
+    assert set(data["left_out"].values()) == {"nothing was perceived"}
+
+
+@pytest.mark.parametrize("text", ["", "# nothing but a comment\n", 'layout empty "Empty"\n'])
+def test_a_script_without_objects_is_a_no(tmp_path: Path, text: str) -> None:
+    code, out, err = deixis("ground", write(tmp_path / "s.layout", text), SCENE, "--plot", tmp_path / "found.svg")
+    assert (code, err) == (1, "")
+    assert "Facts: 0 stated, 0 satisfied" in out
+    assert "Left out: o1: the description names nothing." in out
+
+
+def test_a_script_without_facts_leaves_all_undecided(tmp_path: Path) -> None:
+    code, out, _ = deixis("ground", write(tmp_path / "s.layout", "x is a Fork; y is a Fork\n"), SCENE, "--json")
+    data = json.loads(out)
+    assert code == 0
+    assert [match["decided"] for match in data["matches"]] == [False, False]
+    assert data["interchangeable"] == [["x", "y"]]
+
+
+def test_a_contradictory_script_is_grounded_with_a_note() -> None:
+    code, out, _ = deixis("ground", example("contradiction.layout"), SCENE)
+    assert code == 0
+    assert "Note: the script contradicts itself" in out
+    assert "violated" in out

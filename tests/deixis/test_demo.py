@@ -1,0 +1,39 @@
+"""The demo: every chapter is told, and both pictures are there."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from deixis.story import tell
+
+CHAPTERS = [
+    "1. Somebody says how a table is laid",
+    "2. The robot looks at a table and can name nothing on it",
+    "3. Who is who?",
+    "4. A fuller script settles it",
+    "5. What the script implies without saying so",
+    "6. A script that cannot be laid",
+    "7. The pictures",
+]
+
+
+def test_the_whole_story(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    tell(tmp_path / "out")
+    told = capsys.readouterr().out
+    assert [line for line in told.splitlines() if line[:1].isdigit()] == CHAPTERS
+    for said in (
+        "right(water_glass, dinner_plate)",
+        "It sees 12 boxes, from the chair",
+        "dinner_knife, water_glass",
+        "8 of 12 names are not settled",
+        "left(salad_fork, soup_spoon)   by transitivity",
+        "The script contradicts itself",
+    ):
+        assert said in told
+    for name in ("script1.png", "formal_dinner.png"):
+        picture = tmp_path / "out" / name
+        assert str(picture) in told
+        assert picture.read_bytes().startswith(b"\x89PNG\r\n\x1a\n")
+        assert picture.stat().st_size > 20_000

@@ -1,0 +1,40 @@
+"""How far grounding reaches on the shipped scripts, over generated place settings."""
+
+from __future__ import annotations
+
+import pytest
+
+import deixis
+from deixis.examples_data import example
+from deixis.perception.scene import Scene
+from deixis.perception.settings import formal_setting
+
+ABSENT = {"red_wine_glass", "white_wine_glass", "champagne_glass"}
+
+
+@pytest.mark.parametrize("seed", [None, *range(8)])
+def test_the_full_script_names_all_twelve(seed: int | None) -> None:
+    scene = formal_setting(seed, displacement=0.01)
+    found = deixis.ground(example("formal_dinner.layout"), scene.without_labels())
+    assert {name: match.perceived for name, match in found.matches.items()} == {id: id for id in scene.ids}
+    assert all(match.decided for match in found.matches.values())
+    assert not found.violated
+    assert found.proved_best
+
+
+@pytest.mark.parametrize("scene", [deixis.read_scene(example("place_setting.scene.json")), formal_setting()])
+def test_script2_drops_exactly_the_absent_glasses(scene: Scene) -> None:
+    found = deixis.ground(example("script2.layout"), scene.without_labels())
+    assert {left.name for left in found.unmatched_objects} == ABSENT
+    assert found.proved_best
+
+
+def test_script1_leaves_exactly_three_groups() -> None:
+    found = deixis.ground(example("script1.layout"), formal_setting().without_labels())
+    assert {frozenset(group) for group in found.interchangeable} == {
+        frozenset({"salad_fork", "dinner_fork"}),
+        frozenset({"dessert_fork", "dessert_spoon"}),
+        frozenset({"dinner_knife", "water_glass"}),
+    }
+    for group in found.interchangeable:
+        assert not any(found.matches[name].decided for name in group)

@@ -1,0 +1,170 @@
+"""Deixis from Python, as it reads in the design: read, ground, infer; answers are plain immutable data."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping
+from typing import Any
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import deixis
+from deixis.examples_data import example
+from deixis.perception.scene import Scene
+from deixis.reasoning.grounding import Grounding
+
+SCRIPT1 = deixis.read_script(example("script1.layout"))
+SCENE = deixis.read_scene(example("place_setting.scene.json"))
+LABELLED = deixis.read_scene(example("place_setting.labelled.scene.json"))
+TRUTH = {thing.label: thing.id for thing in LABELLED.objects}
+
+
+def names(found: Grounding) -> dict[str, str]:
+    return {name: match.perceived for name, match in found.matches.items()}
+
+
+def box(id: str, x: float, **more: Any) -> dict[str, Any]:
+    return {"id": id, "min": [x, 0.0], "max": [x + 1, 1.0], **more}
+
+
+def test_as_the_design_has_it() -> None:
+    script = deixis.read_script(example("formal_dinner.layout"))
+    found = deixis.ground(script, SCENE)
+    assert found.matches["dinner_plate"].perceived == "o8"
+    assert names(found) == TRUTH
+    assert all(match.decided for match in found.matches.values())
+    assert found.proved_best
+    assert not found.violated
+
+
+def test_paths_and_dicts_will_do() -> None:
+    script, scene = example("formal_dinner.layout"), example("place_setting.scene.json")
+    assert names(deixis.ground(str(script), str(scene))) == names(deixis.ground(script, scene)) == TRUTH
+    assert names(deixis.ground(deixis.read_script(text="a left of b"), {"objects": [box("p", 5), box("q", 0)]})) == {
+        "a": "q",
+        "b": "p",
+    }
+
+
+def test_absent_objects_are_absent() -> None:
+    found = deixis.ground(deixis.read_script(text="a left of b; b left of c"), {"objects": [box("p", 0), box("q", 5)]})
+    assert len(found.matches) == 2
+    (absent,) = found.unmatched_objects
+    assert absent.name not in found.matches
+    with pytest.raises(KeyError):
+        found.matches[absent.name]
+
+
+def test_a_script_comes_from_a_path_or_a_text() -> None:
+    with pytest.raises(TypeError, match="one of them only"):
+        deixis.read_script()
+    with pytest.raises(TypeError, match="one of them only"):
+        deixis.read_script("some.layout", text="a left of b")
+
+
+def test_errors_are_deixis_errors_and_built_in_ones() -> None:
+    with pytest.raises(deixis.DeixisError, match="there is no engine 'magic'") as caught:
+        deixis.ground(SCRIPT1, SCENE, engine="magic")
+    assert isinstance(caught.value, LookupError)
+    with pytest.raises(deixis.DeixisError):
+        deixis.read_script(text="fork lft of plate")
+    with pytest.raises(deixis.DeixisError):
+        deixis.read_scene({"objects": [box("o", 0), box("o", 1)]})
+
+
+def test_names_are_offered_and_others_are_refused() -> None:
+    assert set(deixis.__all__) <= set(dir(deixis))
+    assert all(getattr(deixis, name) is not None for name in deixis.__all__)
+    with pytest.raises(AttributeError, match="no attribute 'nothing'"):
+        _ = deixis.nothing
+
+
+def test_another_viewpoint_is_noted() -> None:
+    script = deixis.read_script(text="layout seen from window\na left of b")
+    (note,) = deixis.ground(script, {"objects": [box("p", 0), box("q", 5)]}).notes
+    assert "'window'" in note
+    assert "'chair'" in note
+    assert deixis.ground(SCRIPT1, SCENE).notes == ()
+
+
+def test_a_contradictory_script_is_noted() -> None:
+    found = deixis.ground(example("contradiction.layout"), SCENE)
+    assert any(note.startswith("the script contradicts itself") for note in found.notes)
+    assert found.violated
+
+
+def test_certain_labels_decide() -> None:
+    found = deixis.ground(SCRIPT1, LABELLED)
+    assert names(found) == TRUTH
+    assert sum(match.decided for match in found.matches.values()) == 12
+    assert found.interchangeable == ()
+
+
+def test_certain_labels_outweigh_facts() -> None:
+    scene = {"objects": [box("p", 5, label="a"), box("q", 0)]}
+    found = deixis.ground(deixis.read_script(text="a left of b"), scene)
+    assert names(found) == {"a": "p", "b": "q"}
+    assert len(found.violated) == 1
+
+
+@pytest.mark.parametrize(("confidence", "fork"), [(0.1, "q"), (0.9, "p"), (0.0, "q")])
+def test_an_uncertain_label_weighs(confidence: float, fork: str) -> None:
+    scene = {"objects": [box("p", 5, label="fork", confidence=confidence), box("q", 0)]}
+    assert deixis.ground(deixis.read_script(text="fork left of plate"), scene).matches["fork"].perceived == fork
+
+
+def test_an_uncertain_label_settles_what_facts_leave_open() -> None:
+    script = deixis.read_script(text="fork left of plate; spoon left of plate")
+    things = [box("p", 0), box("q", 2, label="fork", confidence=0.3), box("r", 8)]
+    found = deixis.ground(script, {"objects": things})
+    assert names(found) == {"fork": "q", "plate": "r", "spoon": "p"}
+    assert found.matches["fork"].decided
+
+
+@settings(max_examples=8, deadline=None)
+@given(st.permutations(range(12)), st.permutations(range(11)), st.sampled_from(["exact", "similarity"]))
+def test_the_order_of_lines_and_things_does_not_matter(things: list[int], lines: list[int], engine: str) -> None:
+    stated = [str(fact) for fact in SCRIPT1.facts]
+    expected = deixis.ground(SCRIPT1, SCENE, engine=engine)
+    script = deixis.read_script(text="\n".join(stated[i] for i in lines))
+    found = deixis.ground(script, SCENE.reordered(things), engine=engine)
+    assert names(found) == names(expected)
+    assert {frozenset(group) for group in found.interchangeable} == {frozenset(g) for g in expected.interchangeable}
+    assert found.graph_similarity == pytest.approx(expected.graph_similarity)
+    assert {n: m.decided for n, m in found.matches.items()} == {n: m.decided for n, m in expected.matches.items()}
+
+
+def test_results_cannot_be_changed() -> None:
+    found = deixis.ground(SCRIPT1, SCENE)
+    assert isinstance(found.matches, Mapping)
+    with pytest.raises(TypeError):
+        found.matches["napkin"] = None  # type: ignore[index]
+    for thing, field in ((found, "engine"), (found.matches["napkin"], "perceived"), (found.outcomes[0], "degree")):
+        with pytest.raises(dataclasses.FrozenInstanceError):
+            setattr(thing, field, None)
+    assert isinstance(found.outcomes, tuple)
+    assert isinstance(found.interchangeable, tuple)
+
+
+def test_infer_takes_a_script_or_a_path() -> None:
+    path = example("formal_dinner.layout")
+    for inference in (deixis.infer(path), deixis.infer(str(path)), deixis.infer(deixis.read_script(path))):
+        assert inference.consistent
+        assert len(inference.stated) == 11
+        assert "left(salad_fork, soup_spoon)" in {str(derivation.fact) for derivation in inference.inferred()}
+
+
+def test_nothing_is_inferred_from_a_contradiction() -> None:
+    inference = deixis.infer(example("contradiction.layout"))
+    assert not inference.consistent
+    assert inference.conflict is not None
+    assert len(inference.conflict.facts) == 3
+    assert inference.inferred() == ()
+
+
+def test_an_empty_scene() -> None:
+    found = deixis.ground(SCRIPT1, Scene(()))
+    assert not found.matches
+    assert found.graph_similarity == 0
