@@ -29,9 +29,7 @@ def allen(a0: float, a1: float, b0: float, b1: float) -> str:
     if b1 == a0:
         return "mi"
     begin, end = (a0 > b0) - (a0 < b0), (a1 > b1) - (a1 < b1)
-    return {(0, 0): "=", (-1, -1): "o", (1, 1): "oi", (-1, 1): "di", (1, -1): "d"}.get(
-        (begin, end), f"{begin}{end}"
-    )
+    return {(0, 0): "=", (-1, -1): "o", (1, 1): "oi", (-1, 1): "di", (1, -1): "d"}.get((begin, end), f"{begin}{end}")
 
 
 def loop(few: list[list[list[float]]]) -> int:

@@ -199,19 +199,19 @@ class RelationGraph:
         telling label stays: the one that implies the most others, the first stated among equals.
         """
         labels = tuple(r.word for r in self.vocabulary.of_reading(Reading.EXACT))
-        by_index = {r.index: (labels.index(r.word), len(r.broader)) for r in self.vocabulary.values()}
-        best: dict[tuple[int, int], tuple[int, int]] = {}
-        plain = self.positive & (np.bitwise_count(self.relation_sets) == 1)
-        for edge in np.flatnonzero(plain):
-            label, implied = by_index[int(self.relation_sets[edge]).bit_length() - 1]
-            pair = (int(self.subjects[edge]), int(self.objects[edge]))
-            if pair not in best or implied > best[pair][1]:
-                best[pair] = (label, implied)
+        label_of = np.array([labels.index(r.word) for r in self.vocabulary.values()], dtype=np.int8)
+        telling = np.array([len(r.broader) for r in self.vocabulary.values()])
+        plain = np.flatnonzero(self.positive & (np.bitwise_count(self.relation_sets) == 1))
+        relation = np.round(np.log2(self.relation_sets[plain])).astype(np.int64)
+        pair = self.subjects[plain].astype(np.int64) * len(self.nodes) + self.objects[plain]
+        order = np.lexsort((plain, -telling[relation], pair))
+        first = order[np.flatnonzero(np.diff(pair[order], prepend=-1))]
+        kept = np.sort(first)
         return PaperGraph(
             vertices=self.nodes,
             vertex_labels=self.nodes,
-            edges=np.array(list(best), dtype=np.int32).reshape(-1, 2),
-            edge_labels=np.array([label for label, _ in best.values()], dtype=np.int8),
+            edges=np.stack([self.subjects[plain[kept]], self.objects[plain[kept]]], axis=1),
+            edge_labels=label_of[relation[kept]],
             labels=labels,
         )
 

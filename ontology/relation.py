@@ -187,7 +187,7 @@ def relation_from_triples(iri: str, triples: Triples, index: int) -> Relation:
         z_atoms=_atoms(iri, DX.DECIDED_ON_Z, triples),
         broader=frozenset(_name(triples.value(parent, W3C.RDFS_LABEL)) for parent in broader),
         phrase=phrase,
-        words=(label, phrase, *triples.values(iri, W3C.SKOS_ALT_LABEL)),
+        words=tuple(dict.fromkeys((label, phrase, *triples.values(iri, W3C.SKOS_ALT_LABEL)))),
     )
 
 

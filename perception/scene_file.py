@@ -1,4 +1,7 @@
-"""Scenes as files: ``.scene.json``, read with an error that names the place, and written."""
+"""Scenes as files: ``.scene.json``, read with an error that names the place, and written.
+
+Annotation files (COCO, LabelMe) are told by their content and read too: see :mod:`deixis.perception.annotations`.
+"""
 
 from __future__ import annotations
 
@@ -7,6 +10,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from deixis.perception.annotations import annotation_reader
+from deixis.perception.checks import mapping, number, shown, text
 from deixis.perception.errors import SceneError
 from deixis.perception.scene import PerceivedObject, Scene
 
@@ -18,8 +23,10 @@ _SCENE_KEYS = {"frame", "viewpoint", "unit", "objects"}
 _OBJECT_KEYS = {"id", "min", "max", "label", "confidence", "cloud"}
 
 
-def read_scene(source: str | Path | Mapping[str, Any]) -> Scene:
-    """Reads a scene from a ``.scene.json`` file, or takes one that is parsed already.
+def read_scene(source: str | Path | Mapping[str, Any], image: str | int | None = None) -> Scene:
+    """Reads a scene from a ``.scene.json`` or an annotation file, or takes one that is parsed already.
+
+    ``image`` chooses the image, by file name or id, in a COCO file that has several.
 
     >>> scene = read_scene({"objects": [{"id": "o1", "min": [0, 0], "max": [20, 1]}], "unit": "cm"})
     >>> scene.objects[0].maximum
@@ -28,9 +35,9 @@ def read_scene(source: str | Path | Mapping[str, Any]) -> Scene:
     Raises SceneError, with the file and the place in it, where it is no such thing.
     """
     if isinstance(source, Mapping):
-        return scene_from_dict(source, "<scene>")
+        return scene_from_dict(source, "<scene>", image)
     path = Path(source)
-    return scene_from_dict(_parsed(path), str(path))
+    return scene_from_dict(_parsed(path), str(path), image)
 
 
 def _parsed(path: Path) -> Any:
@@ -39,7 +46,7 @@ def _parsed(path: Path) -> Any:
             raise SceneError(f"{path}: this is a folder, and a scene is a .scene.json file")
         if path.stat().st_size > MAX_BYTES:
             raise SceneError(f"{path}: the file is larger than {MAX_BYTES // 2**20} MiB")
-        text = path.read_text(encoding="utf-8-sig")
+        content = path.read_text(encoding="utf-8-sig")
     except OSError as error:
         raise SceneError(f"{path}: cannot be read: {error.strerror}") from error
     except UnicodeDecodeError as error:
@@ -47,7 +54,7 @@ def _parsed(path: Path) -> Any:
     except ValueError as error:
         raise SceneError(f"{path}: cannot be read: {error}") from error
     try:
-        return json.loads(text, parse_constant=_refuse_constant)
+        return json.loads(content, parse_constant=_refuse_constant)
     except json.JSONDecodeError as error:
         raise SceneError(f"{path}:{error.lineno}:{error.colno}: this is no JSON: {error.msg}") from error
     except (ValueError, RecursionError) as error:
@@ -58,22 +65,36 @@ def _refuse_constant(name: str) -> float:
     raise ValueError(f"{name} is no number that a coordinate can be; leave the object out")
 
 
-def scene_from_dict(data: Any, file: str) -> Scene:
-    """The scene that parsed JSON describes; unknown keys are errors, so that a misspelt one is not lost."""
+def scene_from_dict(data: Any, file: str, image: str | int | None = None) -> Scene:
+    """The scene that parsed JSON describes, whichever of the formats it is in; ``image`` as in :func:`read_scene`.
+
+    In a scene of our own unknown keys are errors, so that a misspelt one is not lost.
+    """
+    reader = annotation_reader(data)
+    if reader is not None:
+        return reader(data, file, image)
+    scene = _own_scene(data, file)
+    if image is not None:
+        raise SceneError(f"{file}: an image ('{shown(image)}') is chosen in annotation files, and this is a scene")
+    return scene
+
+
+def _own_scene(data: Any, file: str) -> Scene:
     scene = _mapping(data, file, _SCENE_KEYS)
     if "objects" not in scene:
         raise SceneError(f"{file}: 'objects' is missing: the list of what was seen")
     if not isinstance(scene["objects"], list):
         raise SceneError(f"{file}: 'objects' must be a list")
-    unit = _text(scene.get("unit", "m"), f"{file}: 'unit'")
+    unit = text(scene.get("unit", "m"), f"{file}: 'unit'")
     if unit not in UNITS:
         raise SceneError(f"{file}: the unit '{unit}' is not known; use one of {', '.join(UNITS)}")
     return Scene(
         objects=tuple(
-            _object(entry, f"{file}: objects[{number}]", UNITS[unit]) for number, entry in enumerate(scene["objects"])
+            _object(entry, f"{file}: objects[{position}]", UNITS[unit])
+            for position, entry in enumerate(scene["objects"])
         ),
-        frame=_text(scene.get("frame", "table"), f"{file}: 'frame'"),
-        viewpoint=_text(scene.get("viewpoint", "chair"), f"{file}: 'viewpoint'"),
+        frame=text(scene.get("frame", "table"), f"{file}: 'frame'"),
+        viewpoint=text(scene.get("viewpoint", "chair"), f"{file}: 'viewpoint'"),
         unit="px" if unit == "px" else "m",
         file=file,
     )
@@ -86,55 +107,27 @@ def _object(data: Any, where: str, scale: float) -> PerceivedObject:
         raise SceneError(f"{where}: '{missing[0]}' is missing")
     label, confidence, cloud = entry.get("label"), entry.get("confidence", 1.0), entry.get("cloud")
     return PerceivedObject(
-        id=_text(entry["id"], f"{where}: 'id'"),
+        id=text(entry["id"], f"{where}: 'id'"),
         minimum=_corner(entry["min"], f"{where}: 'min'", scale),
         maximum=_corner(entry["max"], f"{where}: 'max'", scale),
-        label=None if label is None else _text(label, f"{where}: 'label'"),
-        confidence=1.0 if confidence is None else _number(confidence, f"{where}: 'confidence'"),
-        cloud=None if cloud is None else _text(cloud, f"{where}: 'cloud'"),
+        label=None if label is None else text(label, f"{where}: 'label'"),
+        confidence=1.0 if confidence is None else number(confidence, f"{where}: 'confidence'"),
+        cloud=None if cloud is None else text(cloud, f"{where}: 'cloud'"),
     )
 
 
 def _mapping(data: Any, where: str, known: set[str]) -> Mapping[str, Any]:
-    if not isinstance(data, Mapping):
-        raise SceneError(f"{where}: an object {{…}} is expected here, not {_kind(data)}")
-    unknown = sorted(set(data) - known, key=str)
+    entry = mapping(data, where)
+    unknown = sorted(set(entry) - known, key=str)
     if unknown:
-        raise SceneError(f"{where}: '{unknown[0]}' is no key here; the keys are {', '.join(sorted(known))}")
-    return data
+        raise SceneError(f"{where}: '{shown(unknown[0])}' is no key here; the keys are {', '.join(sorted(known))}")
+    return entry
 
 
 def _corner(data: Any, where: str, scale: float) -> tuple[float, ...]:
     if not isinstance(data, list | tuple) or len(data) not in (2, 3):
         raise SceneError(f"{where} must be a list of 2 or 3 numbers")
-    return tuple(_number(value, where) * scale for value in data)
-
-
-def _number(data: Any, where: str) -> float:
-    if isinstance(data, bool) or not isinstance(data, int | float):
-        raise SceneError(f"{where}: a number is expected, not {_kind(data)}")
-    try:
-        return float(data)
-    except OverflowError:
-        raise SceneError(f"{where}: the number is too large") from None
-
-
-def _text(data: Any, where: str) -> str:
-    if not isinstance(data, str):
-        raise SceneError(f"{where}: a text is expected, not {_kind(data)}")
-    if not data.strip():
-        raise SceneError(f"{where}: a text is expected, and this one is blank")
-    if any("\ud800" <= character <= "\udfff" for character in data):
-        raise SceneError(f"{where}: the text has half a character in it, and cannot be written")
-    return data
-
-
-def _kind(data: Any) -> str:
-    if data is None or isinstance(data, bool):
-        return {None: "null", True: "true", False: "false"}[data]
-    return {"str": "a text", "int": "a number", "float": "a number", "list": "a list"}.get(
-        type(data).__name__, "an object"
-    )
+    return tuple(number(value, where) * scale for value in data)
 
 
 def scene_to_dict(scene: Scene) -> dict[str, Any]:

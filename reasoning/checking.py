@@ -1,20 +1,24 @@
 """Is a table laid as it should be? What is missing, misplaced and extra, and what cannot be told.
 
 Identity comes from labels. A thing whose label names a role, and which fits there best, is that role's; where nothing
-but the layout says who is who, its place is *undetermined*, never correct. Which end of a broken fact is misplaced is
+but the layout says who is who, its place is *undetermined*, never correct. Two labelled things are *exchanged* where
+all that is said of both would hold if each stood in the place of the other. Which end of another broken fact is misplaced is
 settled by how much else is broken about it: the ends with the largest share of broken facts explain the others.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
+from itertools import combinations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from deixis.ontology.graph import RelationGraph
 from deixis.ontology.kinds import Kinds
+from deixis.reasoning.evidence import UNMATCHED, Evidence
 from deixis.reasoning.grounding import FactOutcome, Grounding, Outcome
 from deixis.reasoning.labels import Label, named_objects
 
@@ -34,13 +38,17 @@ class Verdict(StrEnum):
 
 @dataclass(frozen=True)
 class RoleCheck:
-    """A role, the thing that fills it, the verdict, and the broken facts that explain it."""
+    """A role, the thing that fills it, the verdict, and the broken facts that explain it.
+
+    ``exchanged_with`` is the role whose thing stands in its place, where the two were swapped.
+    """
 
     role: str
     verdict: Verdict
     perceived: str | None
     label: str | None
     broken: tuple[FactOutcome, ...] = ()
+    exchanged_with: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,16 +79,19 @@ class TableCheck:
 
 
 def check_table(
-    layout: RelationGraph, labels: dict[str, Label | None], kinds: Kinds, grounding: Grounding
+    evidence: Evidence, labels: Mapping[str, Label | None], kinds: Kinds, grounding: Grounding
 ) -> TableCheck:
-    """Reads a grounding of the layout in a scene as a verdict on every role and every thing.
+    """Reads a grounding of a layout in a scene as a verdict on every role and every thing.
 
-    ``labels`` has one entry for each thing of the scene, in its order.
+    ``evidence`` is what was grounded; ``labels`` has one entry for each thing of its scene.
     """
-    broken = tuple(entry for entry in grounding.violated if entry.fact.weight >= 1)
-    blamed = _blamed(grounding, broken)
-    optional = _optional_roles(layout)
+    layout = evidence.description
     sure = {thing: _sure_roles(layout, label, kinds) for thing, label in labels.items()}
+    broken = tuple(entry for entry in grounding.violated if entry.fact.weight >= 1)
+    exchanged = _exchanged(evidence, grounding, sure)
+    explained = [entry for entry in broken if not exchanged.keys() & {entry.fact.subject, entry.fact.object}]
+    misplaced = exchanged.keys() | _blamed(grounding, explained)
+    optional = _optional_roles(layout)
     roles = []
     for role in layout.nodes:
         match = grounding.matches.get(role)
@@ -88,15 +99,61 @@ def check_table(
             roles.append(RoleCheck(role, Verdict.ABSENT if role in optional else Verdict.MISSING, None, None))
             continue
         label = labels[match.perceived]
+        verdict = Verdict.CORRECT if role in sure[match.perceived] else Verdict.UNDETERMINED
         about = tuple(entry for entry in broken if role in (entry.fact.subject, entry.fact.object))
-        if role in blamed:
-            verdict = Verdict.MISPLACED
-        elif role in sure[match.perceived]:
-            verdict = Verdict.CORRECT
-        else:
-            verdict = Verdict.UNDETERMINED
-        roles.append(RoleCheck(role, verdict, match.perceived, label.text if label else None, about))
+        roles.append(
+            RoleCheck(
+                role=role,
+                verdict=Verdict.MISPLACED if role in misplaced else verdict,
+                perceived=match.perceived,
+                label=label.text if label else None,
+                broken=about,
+                exchanged_with=exchanged.get(role),
+            )
+        )
     return TableCheck(tuple(roles), _extra(labels, grounding, sure), broken, grounding)
+
+
+def _exchanged(evidence: Evidence, grounding: Grounding, sure: Mapping[str, frozenset[str]]) -> dict[str, str]:
+    """Pairs of labelled roles, both ways, that all broken facts about them show to stand in each other's place.
+
+    The exchange that mends most is taken first, then the next among the others.
+    """
+    layout, scene = evidence.description, evidence.scene
+    assignment = np.full(len(layout.nodes), UNMATCHED, dtype=np.int64)
+    for role, match in grounding.matches.items():
+        assignment[layout.index(role)] = scene.index(match.perceived)
+    known = [i for i, p in enumerate(assignment) if p != UNMATCHED and layout.nodes[i] in sure[scene.nodes[p]]]
+    firm = evidence.firm()
+    found: dict[str, str] = {}
+    while True:
+        now = evidence.degrees(assignment)
+        broken = set(_ends(evidence, firm & (now <= 0), assignment).tolist())
+        best: tuple[int, float, int, int] | None = None
+        for i, j in combinations(known, 2):
+            if not {i, j} & broken or {layout.nodes[i], layout.nodes[j]} & found.keys():
+                continue
+            other = assignment.copy()
+            other[[i, j]] = other[[j, i]]
+            then = evidence.degrees(other)
+            mended = int((firm & (now <= 0)).sum() - (firm & (then <= 0)).sum())
+            spoilt = {i, j} & set(_ends(evidence, firm & (then <= 0), other).tolist())
+            gain = float(then.sum() - now.sum())
+            if mended > 0 and not spoilt and (best is None or (mended, gain) > best[:2]):
+                best = mended, gain, i, j
+        if best is None:
+            return found
+        i, j = best[2:]
+        assignment[[i, j]] = assignment[[j, i]]
+        found |= {layout.nodes[i]: layout.nodes[j], layout.nodes[j]: layout.nodes[i]}
+
+
+def _ends(evidence: Evidence, chosen: NDArray[np.bool_], assignment: NDArray[np.int64]) -> NDArray[np.int64]:
+    """The objects of the chosen facts, of those both of whose ends are matched."""
+    edges = evidence.facts[chosen]
+    subjects, objects = evidence.description.subjects[edges], evidence.description.objects[edges]
+    both = (assignment[subjects] != UNMATCHED) & (assignment[objects] != UNMATCHED)
+    return np.concatenate([subjects[both], objects[both]]).astype(np.int64)
 
 
 def _sure_roles(layout: RelationGraph, label: Label | None, kinds: Kinds) -> frozenset[str]:

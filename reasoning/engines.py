@@ -77,15 +77,20 @@ def engine_named(name: str, select: Select = Select.FACTS) -> Engine:
     raise UnknownTermError(f"there is no engine '{name}'; the engines are: exact, similarity")
 
 
+MAX_DESCRIBED = 20_000
+"""Facts, stated and implied, that the similarity looks at; of a larger description it sees the stated ones alone."""
+
+
 def described(description: RelationGraph) -> PaperGraph:
     """The description as the paper's matcher sees it: with the inverses and transitive relations that it implies.
 
     What follows from sub-properties is left out, since it names no exact relation. Facts that contradict each other
-    imply everything, so that from such a description nothing is inferred.
+    imply everything, so that from such a description nothing is inferred; nor is it where too much would follow.
     """
     implied = Implications(description, sub_properties=False)
-    graph = description if find_conflict(implied) else implied.completed()
-    return graph.paper_view()
+    if implied.count() > MAX_DESCRIBED or find_conflict(implied):
+        return description.paper_view()
+    return implied.completed().paper_view()
 
 
 def paper_similarity(evidence: Evidence, members: NDArray[np.bool_] | None = None) -> NodeSimilarity:

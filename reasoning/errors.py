@@ -11,3 +11,7 @@ class LimitError(DeixisError, OverflowError):
 
 class InconsistencyError(DeixisError, ValueError):
     """Axioms that cannot all hold."""
+
+
+class SettingError(DeixisError, ValueError):
+    """A setting of a call that it cannot have."""

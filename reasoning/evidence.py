@@ -43,6 +43,11 @@ class Evidence:
         """The edges of the description that can be compared: all but those of an object to itself."""
         return np.flatnonzero(self.description.subjects != self.description.objects)
 
+    def firm(self) -> NDArray[np.bool_]:
+        """Which comparable facts must hold: neither optional nor hedged."""
+        must: NDArray[np.bool_] = ~self.description.optional[self.facts] & (self.description.weights[self.facts] >= 1)
+        return must
+
     @cached_property
     def degree_table(self) -> NDArray[np.float64]:
         """The degree of each comparable fact by the pair's exact name, shape (facts, relations + 1); last column 0."""

@@ -18,6 +18,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.ontology.errors import GraphError
 from deixis.ontology.graph import Fact, RelationGraph
 from deixis.ontology.relation import Relation, Relations
 from deixis.reasoning.errors import LimitError
@@ -80,6 +81,7 @@ class Implications:
         self.graph = graph
         self.vocabulary: Relations = graph.vocabulary
         self._base = _base_edges(graph, sub_properties)
+        self._explained: dict[tuple[int, int, int], Derivation] = {}
         self._place, self._components = _components(graph, self._base)
 
     def holds(self, relation: Relation, subject: str, object: str) -> bool:
@@ -102,7 +104,7 @@ class Implications:
         """Every fact that is stated or implied, by relation, subject and object in node order."""
         for relation in self.vocabulary.values():
             rows: list[tuple[int, int]] = []
-            for part in self._components:
+            for part in (part for part in self._components if part.has(relation)):
                 s, o = np.nonzero((part.distance(relation) < FAR) & ~np.eye(len(part.nodes), dtype=bool))
                 rows += zip(part.nodes[s].tolist(), part.nodes[o].tolist(), strict=True)
             for u, v in sorted(rows):
@@ -110,17 +112,53 @@ class Implications:
 
     def inferred(self) -> Iterator[Derivation]:
         """Every implied fact that is not stated itself, with its shortest derivation."""
+        for fact in self.implied():
+            derivation = self.derive(fact.relations[0], fact.subject, fact.object)
+            assert derivation is not None
+            yield derivation
+
+    def implied(self) -> Iterator[Fact]:
+        """Every implied fact that is not stated itself, without its derivation: cheap, however long that may be."""
+        stated = {
+            (self.graph.subjects[edge], self.graph.objects[edge], self.graph.relation_sets[edge])
+            for edge in firm_edges(self.graph)
+        }
         for relation, subject, object in self.triples():
-            derivation = self.derive(relation, subject, object)
-            if derivation is not None and derivation.rule is not Rule.STATED:
-                yield derivation
+            if (self.graph.index(subject), self.graph.index(object), relation.bit) not in stated:
+                yield Fact(subject, (relation,), object)
+
+    def steps(self, fact: Fact) -> int:
+        """How many stated facts the shortest derivation of an implied fact takes; 0 where it does not follow."""
+        part, s, o = self._locate(fact.subject, fact.object)
+        distance = FAR if part is None or s == o else int(part.distance(fact.relations[0])[s, o])
+        return 0 if distance >= FAR else distance
+
+    def support(self, fact: Fact) -> tuple[Rule, tuple[int, ...]]:
+        """By what rule an implied fact follows last, and the edges of the graph that its shortest derivation rests on.
+
+        The same as :meth:`derive` says, without the derivation. Raises GraphError where the fact does not follow.
+        """
+        part, s, o = self._locate(fact.subject, fact.object)
+        relation = fact.relations[0]
+        if part is None or s == o or part.distance(relation)[s, o] >= FAR:
+            raise GraphError(f"{fact} does not follow")
+        path = part.nodes[part.path(relation, s, o)].tolist()
+        if len(path) == 2:
+            return self._explain_edge(relation, path[0], path[1]).rule, (self._base[relation.index][path[0], path[1]],)
+        base = self._base[relation.index]
+        return Rule.TRANSITIVITY, tuple(dict.fromkeys(base[pair] for pair in pairwise(path)))
+
+    def count(self) -> int:
+        """How many facts are stated or implied."""
+        distances = (part.distance(r) for part in self._components for r in self.vocabulary.values() if part.has(r))
+        return sum(int(np.count_nonzero(d < FAR)) - int(np.count_nonzero(d.diagonal() < FAR)) for d in distances)
 
     def completed(self) -> RelationGraph:
         """The graph with the implied facts as further edges, after the stated ones."""
         return RelationGraph.from_facts(
             self.vocabulary,
             self.graph.nodes,
-            [*self.graph.facts(), *(derivation.fact for derivation in self.inferred())],
+            [*self.graph.facts(), *self.implied()],
             kinds=self.graph.kinds,
             boxes=self.graph.boxes,
         )
@@ -137,6 +175,12 @@ class Implications:
 
     def _explain_edge(self, relation: Relation, subject: int, object: int) -> Derivation:
         """One edge of a relation's graph: stated, an inverse, a sub-property, or the last two in turn."""
+        key = (relation.index, subject, object)
+        if key not in self._explained:
+            self._explained[key] = self._derive_edge(relation, subject, object)
+        return self._explained[key]
+
+    def _derive_edge(self, relation: Relation, subject: int, object: int) -> Derivation:
         stated = self.graph.fact(self._base[relation.index][subject, object])
         derivation = Derivation(stated, Rule.STATED)
         current = stated.relations[0]

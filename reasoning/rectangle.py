@@ -40,12 +40,18 @@ class BoxRelations:
         return ",".join(SYMBOLS[axis[subject, object]] for axis in axes)
 
 
-def box_relations(boxes: NDArray[np.float64], vocabulary: Relations, tolerance: float = 0.0) -> BoxRelations:
+def box_relations(
+    boxes: NDArray[np.float64],
+    vocabulary: Relations,
+    tolerance: float = 0.0,
+    ranks: NDArray[np.int64] | None = None,
+) -> BoxRelations:
     """Relates every ordered pair of boxes.
 
     ``boxes`` has shape (n, 2, d): least and greatest corner, d = 2 or 3, x to the viewer's right, y away from the
-    viewer, z up, metres. End points that differ by at most ``tolerance`` count as equal. Raises GraphError for
-    another shape, a corner that is not finite, or a greatest corner below the least.
+    viewer, z up, metres. End points that differ by at most ``tolerance`` count as equal. ``ranks`` (n,) stand for the
+    order of listing, where that has to decide. Raises GraphError for another shape, a corner that is not finite, or a
+    greatest corner below the least.
 
     >>> from deixis.ontology.tbox import default_ontology
     >>> relations = default_ontology().relations
@@ -61,7 +67,8 @@ def box_relations(boxes: NDArray[np.float64], vocabulary: Relations, tolerance: 
         for axis in range(boxes.shape[2])
     ]
     z = codes[2] if len(codes) == 3 else None
-    names = _names(codes[0], codes[1], z, boxes, vocabulary)
+    order = np.arange(len(boxes)) if ranks is None else ranks
+    names = _names(codes[0], codes[1], z, boxes, vocabulary, order)
     return BoxRelations(codes[0], codes[1], z, names)
 
 
@@ -74,10 +81,12 @@ def perceived_graph(
 ) -> RelationGraph:
     """The complete relation graph of a scene: for every ordered pair one edge with its exact name.
 
-    ``boxes``: as for :func:`box_relations`. The graph has n (n - 1) edges, by subject, then by object.
+    ``boxes``: as for :func:`box_relations`. The graph has n (n - 1) edges, by subject, then by object. Where the order
+    of listing has to decide, that of the ids does, so that a scene means the same in whatever order it is listed.
     """
     n = len(ids)
-    related = box_relations(boxes, vocabulary, tolerance)
+    ranks = np.argsort(np.argsort(np.array(ids, dtype=np.str_)))
+    related = box_relations(boxes, vocabulary, tolerance, ranks)
     subjects, objects = np.nonzero(~np.eye(n, dtype=bool))
     m = len(subjects)
     return RelationGraph(
@@ -111,6 +120,7 @@ def _names(
     z: NDArray[np.int8] | None,
     boxes: NDArray[np.float64],
     vocabulary: Relations,
+    ranks: NDArray[np.int64],
 ) -> NDArray[np.int8]:
     exact = vocabulary.of_reading(Reading.EXACT)
     table = _name_table(exact)
@@ -123,7 +133,7 @@ def _names(
                 settled = overlapping & (relation.z_atoms >> z.astype(np.int64) & 1).astype(bool)
                 names = np.where(settled, np.int8(relation.index), names)
                 undecided &= ~settled
-    offset = _offset_names(boxes, table)
+    offset = _offset_names(boxes, table, ranks)
     names = np.where(undecided, offset, names)
     np.fill_diagonal(names, -1)
     return names
@@ -145,8 +155,8 @@ def _overlap_mask() -> NDArray[np.bool_]:
     return (codes > Allen.MEETS) & (codes < Allen.MET_BY)
 
 
-def _offset_names(boxes: NDArray[np.float64], table: NDArray[np.int8]) -> NDArray[np.int8]:
-    """A name by the larger offset of the centres on x and y; by the order of listing where both are zero."""
+def _offset_names(boxes: NDArray[np.float64], table: NDArray[np.int8], ranks: NDArray[np.int64]) -> NDArray[np.int8]:
+    """A name by the larger offset of the centres on x and y; by rank where both are zero."""
     centres = boxes.mean(axis=1)[:, :2]
     dx = centres[:, None, 0] - centres[None, :, 0]
     dy = centres[:, None, 1] - centres[None, :, 1]
@@ -155,7 +165,7 @@ def _offset_names(boxes: NDArray[np.float64], table: NDArray[np.int8]) -> NDArra
     on, under = table[Allen.DURING, Allen.DURING], table[Allen.CONTAINS, Allen.CONTAINS]
     by_x = np.where(dx < 0, left, right)
     by_y = np.where(dy < 0, bottom, top)
-    later = np.arange(len(boxes))[:, None] > np.arange(len(boxes))[None, :]
+    later = ranks[:, None] > ranks[None, :]
     by_order = np.where(later, on, under)
     names = np.where(np.abs(dx) >= np.abs(dy), by_x, by_y)
     named: NDArray[np.int8] = np.where((dx == 0) & (dy == 0), by_order, names).astype(np.int8)

@@ -5,8 +5,10 @@ Exit codes: 0 done, 1 the answer is no, 2 bad input, 3 undecided within the time
 
 from __future__ import annotations
 
+import io
 import json
 import os
+import signal
 import sys
 from enum import StrEnum
 from pathlib import Path
@@ -17,6 +19,7 @@ import typer
 from deixis.cli_memory import HideLabels, Image, SceneFile, register
 
 if TYPE_CHECKING:
+    from deixis.ontology.graph import Fact
     from deixis.reasoning.grounding import Grounding
     from deixis.session import Inference
 
@@ -88,7 +91,10 @@ def fmt(
     """Print a script in its canonical form, comments kept."""
     from deixis.grammar.format import format_script
     from deixis.grammar.parser import read_script
+    from deixis.ontology.errors import DeixisError
 
+    if write and check:
+        raise DeixisError("fmt: --check and --write exclude each other")
     formatted = format_script(read_script(script))
     same = formatted == Path(script).read_bytes().decode("utf-8-sig")
     if write and not same:
@@ -112,9 +118,10 @@ def infer(
     from deixis.session import infer as run
     from deixis.show import inference_lines
 
+    fact = None if explain is None else _one_fact(explain)
     inference = run(script)
-    if explain is not None and inference.consistent:
-        _explain(inference, explain, as_json)
+    if fact is not None and inference.consistent:
+        _explain(inference, fact, as_json)
         return
     if as_json:
         _print_json(inference_to_dict(inference))
@@ -124,15 +131,23 @@ def infer(
         raise typer.Exit(NO)
 
 
-def _explain(inference: Inference, text: str, as_json: bool) -> None:
+def _one_fact(text: str) -> Fact:
+    from deixis.grammar.parser import parse_script
     from deixis.ontology.errors import DeixisError
-    from deixis.report import derivation_to_dict
-    from deixis.session import read_script
 
-    facts = read_script(text=text).facts
+    facts = parse_script(text, "--explain").facts
     if len(facts) != 1 or not facts[0].plain:
         raise DeixisError(f"--explain: '{text}' is not one plain fact; write it like 'left(fork, plate)'")
-    fact = facts[0]
+    return facts[0]
+
+
+def _explain(inference: Inference, fact: Fact, as_json: bool) -> None:
+    from deixis.ontology.errors import UnknownTermError
+    from deixis.report import derivation_to_dict
+
+    for name in (fact.subject, fact.object):
+        if name not in inference.implications.graph.nodes:
+            raise UnknownTermError(f"--explain: the script names no '{name}'")
     derivation = inference.implications.derive(fact.relations[0], fact.subject, fact.object)
     if as_json:
         _print_json({"fact": str(fact), "derivation": derivation and derivation_to_dict(derivation)})
@@ -161,6 +176,10 @@ def ground(
     from deixis.session import load_scene, read_script
     from deixis.show import grounding_lines
 
+    if plot is not None:
+        from deixis.plot import require_picture
+
+        require_picture(plot)
     parsed, seen = read_script(script), load_scene(scene, hide_labels, image)
     found = run(parsed, seen, engine=engine, time_limit=time_limit)
     if plot is not None:
@@ -190,7 +209,7 @@ def experiment(
     ),
     variants: Annotated[int, typer.Option(min=1, help="Generated place settings.")] = 50,
     orders: Annotated[int, typer.Option(min=1, help="Random node orders that an accuracy is a mean over.")] = 200,
-    seed: Annotated[int, typer.Option(help="Seed of everything random.")] = 1,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of everything random.")] = 1,
     as_json: AsJson = False,
 ) -> None:
     """Run an experiment of the paper again."""
@@ -217,11 +236,13 @@ register(app)
 
 
 def _replace(path: Path, text: str) -> None:
-    """Writes a file in one step, so that a crash leaves the old one."""
-    draft = path.with_name(f".{path.name}.{os.getpid()}")
+    """Writes a file in one step, so that a crash leaves the old one; through a link, and with the file's mode."""
+    target = path.resolve()
+    draft = target.with_name(f".{target.name}.{os.getpid()}")
     try:
         draft.write_text(text, encoding="utf-8", newline="")
-        draft.replace(path)
+        draft.chmod(target.stat().st_mode & 0o7777)
+        draft.replace(target)
     finally:
         draft.unlink(missing_ok=True)
 
@@ -238,15 +259,17 @@ def main() -> None:
     """Runs the command line; errors of Deixis are one message and exit code 2, never a traceback."""
     from deixis.ontology.errors import DeixisError
 
+    if hasattr(signal, "SIGPIPE"):
+        signal.signal(signal.SIGPIPE, signal.SIG_DFL)  # a closed pipe ends us quietly, as it ends other tools
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")
     try:
         app()
     except DeixisError as error:
         _fail(str(error))
-    except BrokenPipeError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        sys.exit(0)
     except OSError as error:
-        _fail(f"{error.filename or 'a file'}: {error.strerror or error}")
+        _fail(f"{error.filename or 'standard output'}: {error.strerror or error}")
 
 
 def _fail(message: str) -> None:

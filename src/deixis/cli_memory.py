@@ -106,6 +106,10 @@ def check(
     from deixis.session import Session, load_scene
     from deixis.show import check_lines
 
+    if plot is not None:
+        from deixis.plot import require_picture
+
+        require_picture(plot)
     seen = load_scene(scene, hide_labels, image)
     with Session(memory) as session:
         checked = session.check(layout, seen, time_limit)

@@ -32,15 +32,29 @@ def plot_grounding(found: Grounding, scene: Scene, path: str | Path, title: str 
 
 def save(figure: Figure, path: str | Path) -> None:
     """Writes a figure, making the folder it goes to; raises DeixisError where that fails."""
-    target = Path(path)
-    known = figure.canvas.get_supported_filetypes()
-    if target.suffix.lstrip(".").lower() not in known:
-        raise DeixisError(f"{target}: a picture's name ends in one of .png, .svg, .pdf")
+    import warnings
+
+    target = require_picture(path)
     try:
-        target.parent.mkdir(parents=True, exist_ok=True)
-        figure.savefig(target, dpi=180, facecolor=PAPER)
+        with warnings.catch_warnings():
+            warnings.filterwarnings("ignore", message="Glyph", category=UserWarning)
+            figure.savefig(target, dpi=180, facecolor=PAPER)
     except OSError as error:
         raise DeixisError(f"{target}: the picture cannot be written: {error.strerror}") from error
+
+
+def require_picture(path: str | Path) -> Path:
+    """The path of a picture that can be written, its folder made; raises DeixisError where it cannot be."""
+    target = Path(path)
+    if target.suffix.lower() not in (".png", ".svg", ".pdf"):
+        raise DeixisError(f"{target}: a picture's name ends in .png, .svg or .pdf")
+    if target.is_dir():
+        raise DeixisError(f"{target}: this is a folder; name a file for the picture")
+    try:
+        target.parent.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise DeixisError(f"{target}: the folder of the picture cannot be made: {error.strerror}") from error
+    return target
 
 
 def new_figure(width: float, height: float, **subplots: Any) -> tuple[Figure, Any]:
@@ -182,6 +196,7 @@ def _write_name(axes: Axes, thing: PerceivedObject, name: str | None, scene: Sce
         style="normal" if name else "italic",
         color=INK if name else "#77808a",
         zorder=6,
+        parse_math=False,
         path_effects=[patheffects.withStroke(linewidth=2.2, foreground=PAPER)],
     )
 
@@ -207,7 +222,7 @@ def _dress(axes: Axes, found: Grounding, scene: Scene, title: str | None, colour
     for side in axes.spines.values():
         side.set_color(QUIET)
     if title:
-        axes.set_title(title, color=INK, fontsize=12, loc="left")
+        axes.set_title(title, color=INK, fontsize=12, loc="left", parse_math=False)
     keys: list[Any] = [Line2D([], [], color=QUIET, label=f"{len(found.satisfied)} facts satisfied")]
     if found.violated:
         keys.append(Line2D([], [], color=WRONG, label=f"{len(found.violated)} violated"))

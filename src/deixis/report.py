@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from deixis.grammar.script import Script
     from deixis.reasoning.grounding import FactOutcome, Grounding
     from deixis.reasoning.implications import Derivation
-    from deixis.session import Checked, Inference, Learned
+    from deixis.session import Checked, Inference, Inferred, Learned
 
 
 def script_to_dict(script: Script) -> dict[str, Any]:
@@ -32,13 +32,13 @@ def inference_to_dict(inference: Inference) -> dict[str, Any]:
         facts = [fact_to_dict(fact) for fact in inference.conflict.facts]
         return {"consistent": False, "conflict": {"reason": inference.conflict.reason, "facts": facts}}
     stated = [fact_to_dict(fact) | {"status": "stated"} for fact in inference.stated]
-    inferred = [_inferred_to_dict(derivation) for derivation in inference.inferred()]
+    inferred = [_inferred_to_dict(entry) for entry in inference.inferred()]
     return {"consistent": True, "facts": stated + inferred}
 
 
-def _inferred_to_dict(derivation: Derivation) -> dict[str, Any]:
-    lines = sorted({fact.source.line for fact in derivation.stated() if fact.source})
-    return fact_to_dict(derivation.fact) | {"status": "inferred", "rule": derivation.rule.value, "lines": lines}
+def _inferred_to_dict(entry: Inferred) -> dict[str, Any]:
+    how = {"status": "inferred", "rule": entry.rule.value, "steps": entry.steps, "lines": list(entry.lines)}
+    return fact_to_dict(entry.fact) | how
 
 
 def derivation_to_dict(derivation: Derivation) -> dict[str, Any]:
@@ -126,7 +126,12 @@ def check_to_dict(checked: Checked) -> dict[str, Any]:
         "correct": [{"object": c.role, "perceived": c.perceived} for c in table.of(Verdict.CORRECT)],
         "missing": [{"object": c.role, "lines": _lines_about(c.role, checked)} for c in table.of(Verdict.MISSING)],
         "misplaced": [
-            {"object": c.role, "perceived": c.perceived, "violated": [outcome_to_dict(entry) for entry in c.broken]}
+            {
+                "object": c.role,
+                "perceived": c.perceived,
+                "exchanged_with": c.exchanged_with,
+                "violated": [outcome_to_dict(entry) for entry in c.broken],
+            }
             for c in table.of(Verdict.MISPLACED)
         ],
         "extra": [{"perceived": e.perceived, "label": e.label, "reason": e.reason} for e in table.extra],

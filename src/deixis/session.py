@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
@@ -19,11 +19,11 @@ from deixis.perception.scene import Scene
 from deixis.perception.scene_file import read_scene
 from deixis.reasoning.conflict import Conflict, find_conflict
 from deixis.reasoning.engines import Select, engine_named
-from deixis.reasoning.errors import InconsistencyError
+from deixis.reasoning.errors import InconsistencyError, SettingError
 from deixis.reasoning.evidence import Evidence
 from deixis.reasoning.grounding import DEFAULT_TIME_LIMIT, Grounding
 from deixis.reasoning.grounding import ground as ground_evidence
-from deixis.reasoning.implications import Derivation, Implications
+from deixis.reasoning.implications import Implications, Rule
 from deixis.reasoning.labels import Label, label_evidence
 
 if TYPE_CHECKING:
@@ -31,6 +31,20 @@ if TYPE_CHECKING:
     from deixis.memory.sparql import QueryResult
     from deixis.ontology.concepts import LayoutConcept, Lesson
     from deixis.reasoning.checking import TableCheck
+
+
+MANY_STEPS = 40
+"""Stated facts of which an inferred one is listed with all its lines; ``--explain`` has the others."""
+
+
+@dataclass(frozen=True, slots=True)
+class Inferred:
+    """A fact that follows, by what rule last, and from what: how many stated facts, and their lines unless too many."""
+
+    fact: Fact
+    rule: Rule
+    steps: int
+    lines: tuple[int, ...]
 
 
 @dataclass(frozen=True)
@@ -45,9 +59,19 @@ class Inference:
     def consistent(self) -> bool:
         return self.conflict is None
 
-    def inferred(self) -> tuple[Derivation, ...]:
-        """The facts that follow, each with its shortest derivation; none where the script contradicts itself."""
-        return tuple(self.implications.inferred()) if self.consistent else ()
+    def inferred(self) -> tuple[Inferred, ...]:
+        """The facts that follow without being stated; none where the script contradicts itself."""
+        return tuple(self._inferred()) if self.consistent else ()
+
+    def _inferred(self) -> Iterator[Inferred]:
+        lines = [source.line if source else 0 for source in self.implications.graph.sources]
+        for fact in self.implications.implied():
+            steps = self.implications.steps(fact)
+            if steps > MANY_STEPS:
+                yield Inferred(fact, Rule.TRANSITIVITY, steps, ())
+                continue
+            rule, edges = self.implications.support(fact)
+            yield Inferred(fact, rule, steps, tuple(sorted({lines[edge] for edge in edges})))
 
 
 def read_script(path: str | Path | None = None, *, text: str | None = None, ontology: Ontology | None = None) -> Script:
@@ -91,6 +115,10 @@ def ground(
     script = _script(script)
     scene = scene if isinstance(scene, Scene) else read_scene(scene)
     notes = _viewpoint_notes(script.viewpoint, scene) + _conflict_notes(script)
+    if not time_limit >= 0:
+        raise SettingError(f"a time limit is 0 or more seconds, not {time_limit}")
+    if select not in list(Select):
+        raise SettingError(f"select is one of {', '.join(Select)}, not '{select}'")
     return ground_evidence(evidence_of(script, scene), engine_named(engine, Select(select)), time_limit, notes)
 
 
@@ -285,7 +313,7 @@ class Session:
         evidence = Evidence(graph, scene.graph(relations), allowed, bonus)
         notes = _viewpoint_notes(concept.viewpoint, scene)
         found = ground_evidence(evidence, engine_named("exact"), time_limit, notes)
-        table = check_table(graph, labels, self.ontology.kinds, found)
+        table = check_table(evidence, labels, self.ontology.kinds, found)
         return Checked(concept, table, *shacl_report(concept, scene, table, relations))
 
     def query(self, sparql: str) -> QueryResult:

@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence, Sized
 from typing import TYPE_CHECKING, Any
 
+MANY = 12
+"""Lines that are listed one by one."""
+
 if TYPE_CHECKING:
     from deixis.grammar.script import Script
     from deixis.ontology.graph import Fact
     from deixis.reasoning.grounding import FactOutcome, Grounding, Match
-    from deixis.reasoning.implications import Derivation
-    from deixis.session import Checked, Inference, Learned
+    from deixis.session import Checked, Inference, Inferred, Learned
 
 
 def script_lines(script: Script) -> list[str]:
@@ -53,19 +55,19 @@ def inference_lines(inference: Inference) -> list[str]:
     lines = [f"Stated ({len(inference.stated)}):"]
     lines += [f"    {qualified(fact)}   line {fact.source.line if fact.source else '?'}" for fact in inference.stated]
     lines.append(f"Inferred ({len(inferred)}):")
-    return lines + [
-        f"    {derivation.fact}   by {derivation.rule} from {_places(derivation)}" for derivation in inferred
-    ]
+    return lines + [f"    {entry.fact}   by {entry.rule} from {_places(entry)}" for entry in inferred]
 
 
-def _places(derivation: Derivation) -> str:
-    lines = sorted({fact.source.line for fact in derivation.stated() if fact.source})
+def _places(entry: Inferred) -> str:
+    lines = entry.lines
+    if not lines or len(lines) > MANY:
+        return f"{entry.steps} facts"
     return ("line " if len(lines) == 1 else "lines ") + ", ".join(map(str, lines))
 
 
 def grounding_lines(found: Grounding) -> list[str]:
     """Who is who, what cannot be told apart, which facts fail, what was left out, and what qualifies the answer."""
-    lines = [_match_line(match, found) for match in found.matches.values()]
+    lines = [_match_line(match) for match in found.matches.values()] or ["No object was found."]
     groups = [group for group in found.interchangeable if any(name in found.matches for name in group)]
     if groups:
         lines += ["", "The description cannot tell these apart, so their names may be swapped:"]
@@ -79,7 +81,7 @@ def grounding_lines(found: Grounding) -> list[str]:
     return lines + [f"Note: {note}." for note in found.notes]
 
 
-def _match_line(match: Match, found: Grounding) -> str:
+def _match_line(match: Match) -> str:
     name = f"{match.object:<24} {match.perceived:<10}"
     if match.decided:
         return name.rstrip()
@@ -141,7 +143,8 @@ def check_lines(checked: Checked) -> list[str]:
     for entry in table.of(Verdict.MISSING):
         lines.append(f"missing     {entry.role}{_said_of(entry.role, checked)}")
     for entry in table.of(Verdict.MISPLACED):
-        lines.append(f"misplaced   {entry.role} ({entry.perceived})")
+        exchanged = f", exchanged with {entry.exchanged_with}" if entry.exchanged_with else ""
+        lines.append(f"misplaced   {entry.role} ({entry.perceived}){exchanged}")
         lines += [f"            {violation_text(broken)}" for broken in entry.broken]
     blamed = {entry.role for entry in table.of(Verdict.MISPLACED)}
     for broken in table.broken:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from deixis.examples_data import example
 from deixis.perception.scene_file import read_scene
-from deixis.plot import plot_grounding
+from deixis.plot import plot_grounding, require_picture
 from deixis.reasoning.grounding import Grounding
 from deixis.session import ground, infer, read_script
 from deixis.show import grounding_lines, inference_lines, script_lines
@@ -20,6 +20,7 @@ def tell(out: Path) -> None:
     """Tells the story and leaves its pictures in ``out``."""
     from rich.console import Console
 
+    require_picture(out / "script1.png")
     console = Console(highlight=False, soft_wrap=True)
     script1, scene = read_script(example("script1.layout")), read_scene(example("place_setting.scene.json"))
 

@@ -1,0 +1,60 @@
+"""What this room raises on purpose."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from deixis.ontology.errors import DeixisError
+
+
+class MemoryBusyError(DeixisError, BlockingIOError):
+    """Somebody else, or this process already, holds the memory."""
+
+
+class MemoryFormatError(DeixisError, ValueError):
+    """A folder that is no memory, a damaged one, or one of a version that this program does not know."""
+
+
+class MemoryWriteError(DeixisError, OSError):
+    """The disk is full, the folder is read-only, or the store could not be read or written otherwise."""
+
+
+class UnknownLessonError(DeixisError, KeyError):
+    """A lesson that the memory does not hold."""
+
+    def __str__(self) -> str:
+        return str(self.args[0]) if self.args else "unknown lesson"
+
+
+class QueryError(DeixisError, ValueError):
+    """A query that cannot be run, or a result asked for in a form that it does not have."""
+
+
+class ImportFormatError(DeixisError, ValueError):
+    """A file that cannot be taken in: of no known format, malformed, too large, or with a DTD."""
+
+
+@dataclass(frozen=True, slots=True)
+class ShapeResult:
+    """One result of SHACL validation."""
+
+    focus: str
+    path: str | None
+    message: str
+    severity: str
+    shape: str
+    value: str | None = None
+
+    def __str__(self) -> str:
+        where = f"{self.focus}, {self.path}" if self.path else self.focus
+        seen = f" (here: {self.value})" if self.value is not None else ""
+        return f"{where}: {self.message}{seen} [{self.shape}]"
+
+
+class RejectedWriteError(DeixisError, ValueError):
+    """A write that would have broken the shapes, or contradicts what is there; nothing was written."""
+
+    def __init__(self, message: str, results: Sequence[ShapeResult] = ()) -> None:
+        self.results = tuple(results)
+        super().__init__("\n".join([message, *map(str, self.results)]))

@@ -1,0 +1,200 @@
+"""The folder of a memory: telling it from other folders, making one, finishing what a crash left, and migrating.
+
+``memory.json`` makes a folder a memory; ``semantic/`` is its store. What is new is made beside it in ``semantic.new``
+and swapped in by renaming, so that a crash at any moment leaves something that the next open can finish or undo.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+from collections.abc import Callable
+from enum import Enum, auto
+from pathlib import Path
+from typing import Any
+
+import pyoxigraph as ox
+
+from deixis.memory.errors import MemoryFormatError
+from deixis.memory.lock import LOCK_FILE
+from deixis.memory.migration import MIGRATIONS, VERSION
+
+FORMAT = "deixis-memory"
+MARK, STORE, NEW, OLD = "memory.json", "semantic", "semantic.new", "semantic.old"
+NEW_MARK = MARK + ".new"
+
+
+class State(Enum):
+    """What is at a path."""
+
+    ABSENT = auto()
+    EMPTY = auto()
+    UNFINISHED = auto()
+    MEMORY = auto()
+
+
+def inspect(folder: Path) -> State:
+    """What is there, by looking only. Raises MemoryFormatError for what is no memory, or a damaged one."""
+    if not folder.exists():
+        if folder.is_symlink():
+            raise MemoryFormatError(f"{folder} is a link that leads nowhere; remove it or mend it")
+        return State.ABSENT
+    if not folder.is_dir():
+        raise MemoryFormatError(f"{folder} is a file: a memory is a folder; name another path")
+    names = set(os.listdir(folder))
+    if MARK in names:
+        read_mark(folder)
+        _check_store(folder)
+        return State.MEMORY
+    if STORE in names and NEW_MARK in names:
+        return State.UNFINISHED
+    if names <= {LOCK_FILE, NEW, NEW_MARK}:
+        return State.EMPTY
+    if STORE in names and (folder / STORE / "CURRENT").is_file():
+        raise MemoryFormatError(
+            f"the memory at {folder} is damaged: {MARK} is missing; put it back from a copy of the folder"
+        )
+    raise MemoryFormatError(
+        f"{folder} is no memory: it holds other things ({', '.join(sorted(names)[:3])}) and no {MARK}; "
+        "name an empty or a new folder"
+    )
+
+
+def read_mark(folder: Path) -> dict[str, Any]:
+    """What ``memory.json`` says. Raises MemoryFormatError where it cannot be believed."""
+    file = folder / MARK
+    try:
+        mark = json.loads(file.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise MemoryFormatError(f"the memory at {folder} is damaged: {MARK} cannot be read ({error})") from error
+    if not isinstance(mark, dict) or mark.get("format") != FORMAT:
+        raise MemoryFormatError(f'the memory at {folder} is damaged or foreign: {MARK} does not say "{FORMAT}"')
+    version = mark.get("version")
+    if not isinstance(version, int) or isinstance(version, bool):
+        raise MemoryFormatError(f"the memory at {folder} is damaged: {MARK} has no version number")
+    if version > VERSION:
+        raise MemoryFormatError(
+            f"the memory at {folder} was written by a newer version (format {version}, this program knows {VERSION}); "
+            "upgrade deixis to open it"
+        )
+    if version != VERSION and version not in MIGRATIONS:
+        raise MemoryFormatError(f"the memory at {folder} has the unknown format version {version}")
+    return mark
+
+
+def _check_store(folder: Path) -> None:
+    store = folder / STORE
+    if not store.is_dir() and (folder / OLD).is_dir():
+        store = folder / OLD  # a swap was cut short; finish() puts it back
+    current = store / "CURRENT"
+    try:
+        manifest = current.read_text(encoding="ascii").strip()
+    except (OSError, ValueError):
+        raise MemoryFormatError(
+            f"the memory at {folder} is damaged: {STORE}/CURRENT is missing or unreadable; restore the folder from a copy"
+        ) from None
+    if not manifest.startswith("MANIFEST-") or not (store / manifest).is_file():
+        raise MemoryFormatError(
+            f"the memory at {folder} is damaged: {STORE}/{manifest[:40]} is missing; restore the folder from a copy"
+        )
+
+
+def check_store_opens(folder: Path) -> None:
+    """Opens the store for reading only, which changes nothing, and lets go. Raises MemoryFormatError."""
+    if not (folder / STORE).is_dir():
+        return
+    try:
+        ox.Store.read_only(str(folder / STORE))
+    except (OSError, RuntimeError) as error:
+        raise MemoryFormatError(
+            f"the memory at {folder} is damaged: its store does not open ({one_line(error)}); "
+            "restore the folder from a copy"
+        ) from error
+
+
+def create(folder: Path, fill: Callable[[ox.Store], None], digest: str) -> None:
+    """Makes a memory in an empty folder: a store that ``fill`` fills, then the mark."""
+    _remove(folder / NEW)
+    (folder / NEW_MARK).unlink(missing_ok=True)
+    store = ox.Store(folder / NEW)
+    fill(store)
+    store.flush()
+    del store
+    _write(folder / NEW_MARK, {"format": FORMAT, "version": VERSION, "package": digest})
+    _rename(folder / NEW, folder / STORE)
+    _rename(folder / NEW_MARK, folder / MARK)
+
+
+def finish(folder: Path) -> None:
+    """Ends or undoes what a crash cut short."""
+    if not (folder / MARK).exists():
+        _rename(folder / NEW_MARK, folder / MARK)
+    if (folder / OLD).is_dir():
+        if (folder / STORE).is_dir() and not (folder / NEW_MARK).exists():
+            _remove(folder / OLD)  # the swap was done
+        else:
+            _remove(folder / STORE)
+            _rename(folder / OLD, folder / STORE)
+    _remove(folder / NEW)
+    (folder / NEW_MARK).unlink(missing_ok=True)
+
+
+def swap(folder: Path, mark: dict[str, Any]) -> None:
+    """Puts ``semantic.new`` in the place of ``semantic``, with the mark that goes with it; nobody has either open."""
+    _write(folder / NEW_MARK, mark)
+    _rename(folder / STORE, folder / OLD)
+    _rename(folder / NEW, folder / STORE)
+    _rename(folder / NEW_MARK, folder / MARK)
+    _remove(folder / OLD)
+
+
+def migrate(folder: Path) -> None:
+    """Brings an older memory to this version, one step at a time, each on a copy that is then swapped in."""
+    mark = read_mark(folder)
+    while mark["version"] != VERSION:
+        step = MIGRATIONS[mark["version"]]
+        _remove(folder / NEW)
+        old, new = ox.Store.read_only(str(folder / STORE)), ox.Store(folder / NEW)
+        step(old, new)
+        new.flush()
+        del old, new
+        mark = {**mark, "version": mark["version"] + 1}
+        swap(folder, mark)
+
+
+def write_mark(folder: Path, mark: dict[str, Any]) -> None:
+    """Replaces ``memory.json`` in one step."""
+    _write(folder / NEW_MARK, mark)
+    _rename(folder / NEW_MARK, folder / MARK)
+
+
+def size(folder: Path) -> int:
+    """The bytes of all files under a folder."""
+    return sum(file.stat().st_size for file in folder.rglob("*") if file.is_file())
+
+
+def one_line(error: BaseException) -> str:
+    """An error's text without line ends."""
+    return " ".join(str(error).split())
+
+
+def _write(file: Path, mark: dict[str, Any]) -> None:
+    with file.open("w", encoding="utf-8") as out:
+        out.write(json.dumps(mark, indent=2, sort_keys=True) + "\n")
+        out.flush()
+        os.fsync(out.fileno())
+
+
+def _rename(old: Path, new: Path) -> None:
+    os.replace(old, new)
+    descriptor = os.open(new.parent, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)
+
+
+def _remove(path: Path) -> None:
+    if path.is_dir():
+        shutil.rmtree(path)

@@ -1,0 +1,118 @@
+"""Opening a memory: look, lock, look again, mend what a crash left, bring up to date, open."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pyoxigraph as ox
+
+from deixis.memory import folder as files
+from deixis.memory import ledger
+from deixis.memory.errors import MemoryBusyError, MemoryFormatError, MemoryWriteError
+from deixis.memory.folder import State
+from deixis.memory.lock import OwnerLock
+from deixis.memory.package import package_digest, packaged
+from deixis.memory.writing import committed
+
+
+class Opened:
+    """An open store, the folder that it is in, and the lock on it."""
+
+    def __init__(self, folder: Path, lock: OwnerLock) -> None:
+        self.folder, self._lock = folder, lock
+        self.store = open_store(folder)
+
+    def close(self) -> None:
+        """Closes the store, then lets go of the lock."""
+        self.shut()
+        self._lock.release()
+
+    def shut(self) -> None:
+        """Closes the store alone."""
+        del self.store
+
+    def reopen(self) -> None:
+        """Opens the store again after :meth:`shut`."""
+        self.store = open_store(self.folder)
+
+
+def open_store(folder: Path) -> ox.Store:
+    """Opens ``semantic/`` for reading and writing."""
+    try:
+        return ox.Store(folder / files.STORE)
+    except (OSError, RuntimeError) as error:
+        if "lock hold by current process" in str(error):
+            raise MemoryBusyError(
+                f"the memory at {folder} is still read by this process: let go of what iterates over it, then try again"
+            ) from error
+        raise MemoryWriteError(f"the memory at {folder} could not be opened: {files.one_line(error)}") from error
+
+
+def open_memory(folder: Path, create: bool) -> Opened:
+    """See :meth:`deixis.memory.semantic.SemanticMemory.open`."""
+    state = files.inspect(folder)
+    if state in (State.ABSENT, State.EMPTY) and not create:
+        what = "there is no memory at" if state is State.ABSENT else "there is no memory yet in the empty folder"
+        raise MemoryFormatError(f"{what} {folder}; learn something into it first, or name another folder")
+    made = _make_folder(folder) if state is State.ABSENT else False
+    try:
+        return _open_locked(folder)
+    except BaseException:
+        if made and not any(folder.iterdir()):
+            folder.rmdir()
+        raise
+
+
+def _make_folder(folder: Path) -> bool:
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise MemoryWriteError(f"the folder {folder} cannot be made: {error.strerror}") from error
+    return True
+
+
+def _open_locked(folder: Path) -> Opened:
+    lock = OwnerLock.acquire(folder)
+    try:
+        _prepare(folder)
+        opened = Opened(folder, lock)
+    except BaseException:
+        lock.release(undo=True)
+        raise
+    try:
+        lock.sign()
+        _update_package(opened)
+    except BaseException:
+        opened.close()
+        raise
+    return opened
+
+
+def _prepare(folder: Path) -> None:
+    """Everything between the lock and the open store. What is damaged is found before anything is changed."""
+    state = files.inspect(folder)
+    if state is State.EMPTY:
+        with committed(folder):
+            files.create(folder, _fill, package_digest())
+        return
+    files.check_store_opens(folder)
+    with committed(folder):
+        files.finish(folder)
+        files.migrate(folder)
+
+
+def _fill(store: ox.Store) -> None:
+    store.update(" ;\n".join(ledger.package_update(store, packaged())))
+
+
+def _update_package(opened: Opened) -> None:
+    """Brings the ontology and the shapes to the packaged version, if they are of another one."""
+    mark, digest = files.read_mark(opened.folder), package_digest()
+    if mark.get("package") == digest:
+        return
+    with committed(opened.folder):
+        statements = list(ledger.package_update(opened.store, packaged()))
+        if statements:
+            opened.store.update(" ;\n".join(statements))
+            opened.store.flush()
+        files.write_mark(opened.folder, {**mark, "package": digest})

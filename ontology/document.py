@@ -1,0 +1,290 @@
+"""The ontology as a page to read: every term with its definition and words, made from the TBox alone.
+
+``python -m deixis.ontology.document > docs/ontology.md`` writes the page anew; a test fails where it is out of step.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+
+from deixis.ontology.allen import SYMBOLS
+from deixis.ontology.errors import OntologyError
+from deixis.ontology.vocabulary import BASE, DX, ONTOLOGY_IRI, W3C
+
+_OWL = "http://www.w3.org/2002/07/owl#"
+_RDFS = "http://www.w3.org/2000/01/rdf-schema#"
+_RDF = "http://www.w3.org/1999/02/22-rdf-syntax-ns#"
+_DCTERMS = "http://purl.org/dc/terms/"
+_PREFIXES = {
+    BASE: "dx:",
+    _OWL: "owl:",
+    "http://www.w3.org/ns/prov#": "prov:",
+    "http://www.w3.org/2001/XMLSchema#": "xsd:",
+    "http://www.w3.org/2004/02/skos/core#": "skos:",
+    _DCTERMS: "dcterms:",
+    "http://purl.org/vocab/vann/": "vann:",
+}
+_PROPERTIES = {
+    "Object properties": _OWL + "ObjectProperty",
+    "Datatype properties": _OWL + "DatatypeProperty",
+    "Annotation properties": _OWL + "AnnotationProperty",
+}
+_CHARACTERISTICS = ("Functional", "InverseFunctional", "Transitive", "Symmetric", "Asymmetric", "Irreflexive")
+
+_INTRODUCTION = """\
+<!-- Made from ontology/deixis.ttl by: python -m deixis.ontology.document > docs/ontology.md -->
+
+# The ontology
+
+{title}, version {version}: {description}
+
+Its IRI is <{iri}>, its prefix `dx:` stands for <{base}>, its licence is <{license}>. Alignments to SOMA and DUL, SOSA
+and SSN, GeoSPARQL and IEEE 1872 are files of their own in `ontology/alignments/`; the ontology imports nothing.
+
+Add a word that scripts may use for a relation, a hedge or a kind of thing: add a `skos:altLabel` to its term."""
+
+_WIDE = """\
+## Relations, the wide reading
+
+What a word means in a script, and what inference and checking use: it constrains the axis that it names and leaves the
+rest open. *x* points to the viewer's right, *y* away from the viewer, *z* up. Of a pair in a relation, the projections
+on an axis bear one of the Allen relations that stand there."""
+
+_EXACT = """\
+## Relations, the exact reading
+
+The name of a pair of boxes: of these ten every ordered pair bears exactly one. None is transitive, and each implies the
+wide relation that it stands under."""
+
+
+@dataclass(frozen=True, slots=True)
+class Term:
+    """What the TBox says of one subject: values by predicate, both as strings, in the order of the file."""
+
+    iri: str
+    said: Mapping[str, tuple[str, ...]]
+
+    def values(self, predicate: str) -> tuple[str, ...]:
+        return self.said.get(predicate, ())
+
+    def value(self, predicate: str) -> str:
+        """The first value, or an empty text."""
+        return next(iter(self.values(predicate)), "")
+
+    def is_a(self, kind: str) -> bool:
+        return kind in self.values(W3C.RDF_TYPE)
+
+    @property
+    def words(self) -> tuple[str, ...]:
+        """Label, phrase and synonyms, each once."""
+        given = (self.value(W3C.RDFS_LABEL), self.value(DX.PHRASE), *self.values(W3C.SKOS_ALT_LABEL))
+        return tuple(word for word in dict.fromkeys(given) if word)
+
+
+Terms = Mapping[str, Term]
+
+
+def term_document(turtle: str) -> str:
+    """The page, in Markdown, of an ontology in Turtle that is built as the shipped TBox is.
+
+    >>> from deixis.ontology.tbox import TBOX_FILE
+    >>> page = term_document(TBOX_FILE.read_text(encoding="utf-8"))
+    >>> "**fork** (`dx:Fork`): Cutlery with tines." in page
+    True
+
+    Raises OntologyError where the text is no Turtle, or has no header.
+    """
+    terms = _terms(turtle)
+    if ONTOLOGY_IRI not in terms:
+        raise OntologyError(f"the ontology has no header: nothing is said of <{ONTOLOGY_IRI}>")
+    own = [term for iri, term in terms.items() if iri.startswith(BASE)]
+    parts = [
+        _introduction(terms[ONTOLOGY_IRI]),
+        _WIDE,
+        *(_relation(term, terms) for term in own if DX.WIDE in term.values(DX.READING)),
+        _EXACT,
+        *(_relation(term, terms) for term in own if DX.EXACT in term.values(DX.READING)),
+        _allen_relations(own),
+        "## Kinds of things",
+        "\n".join(_tree(DX.THING, own)),
+        _hedges(own),
+        _other_classes(own),
+        *(_properties(title, kind, own, terms) for title, kind in _PROPERTIES.items()),
+        _individuals(own),
+        _of_others(terms),
+    ]
+    return "\n\n".join(parts) + "\n"
+
+
+def _terms(turtle: str) -> Terms:
+    import pyoxigraph as ox
+
+    said: dict[str, dict[str, list[str]]] = {}
+    try:
+        for quad in ox.parse(turtle, format=ox.RdfFormat.TURTLE):
+            subject, value = (getattr(node, "value", str(node)) for node in (quad.subject, quad.object))
+            said.setdefault(subject, {}).setdefault(quad.predicate.value, []).append(value)
+    except SyntaxError as error:
+        raise OntologyError(f"the ontology is no valid Turtle: {error}") from error
+    return {iri: Term(iri, {p: tuple(values) for p, values in about.items()}) for iri, about in said.items()}
+
+
+def _introduction(header: Term) -> str:
+    return _INTRODUCTION.format(
+        title=header.value(W3C.DCTERMS_TITLE),
+        version=header.value(_OWL + "versionInfo"),
+        description=header.value(_DCTERMS + "description"),
+        license=header.value(_DCTERMS + "license"),
+        iri=header.iri,
+        base=BASE,
+    )
+
+
+def _relation(term: Term, terms: Terms) -> str:
+    facts = [f"inverse {', '.join(map(_code, _inverses(term, terms)))}"]
+    if term.is_a(_OWL + "TransitiveProperty"):
+        facts.append("transitive")
+    facts.append(f"under {', '.join(map(_code, term.values(W3C.RDFS_SUB_PROPERTY_OF)))}")
+    axes = [("x", DX.ADMITS_ON_X), ("y", DX.ADMITS_ON_Y), ("z, where heights are known", DX.DECIDED_ON_Z)]
+    atoms = [f"on {axis} {_atoms(term.values(prop), terms)}" for axis, prop in axes if term.values(prop)]
+    return "\n".join(
+        [
+            f"### {term.value(W3C.RDFS_LABEL)} ({_code(term.iri)})\n",
+            f"{term.value(W3C.SKOS_DEFINITION)}\n",
+            f"- {'; '.join(facts)}",
+            f"- {'; '.join(atoms)}",
+            f"- words: {', '.join(term.words)}",
+        ]
+    )
+
+
+def _inverses(term: Term, terms: Terms) -> list[str]:
+    """OWL states an inverse from either side."""
+    backwards = [other.iri for other in terms.values() if term.iri in other.values(W3C.OWL_INVERSE_OF)]
+    return list(dict.fromkeys([*term.values(W3C.OWL_INVERSE_OF), *backwards]))
+
+
+def _atoms(relations: Iterable[str], terms: Terms) -> str:
+    symbols = [terms[iri].value(DX.ALLEN_SYMBOL) for iri in relations]
+    return "any" if len(symbols) == len(SYMBOLS) else " ".join(f"`{symbol}`" for symbol in symbols)
+
+
+def _allen_relations(own: Iterable[Term]) -> str:
+    rows = [
+        (f"`{term.value(DX.ALLEN_SYMBOL)}`", term.value(W3C.RDFS_LABEL), _code(term.iri), _definition(term))
+        for term in own
+        if term.is_a(DX.ALLEN_RELATION)
+    ]
+    return "## Allen's relations\n\n" + _table(("sign", "relation of interval a to b", "term", "definition"), rows)
+
+
+def _tree(iri: str, own: list[Term], above: tuple[str, ...] = ()) -> Iterator[str]:
+    """A class and all below it, indented; a class with two parents stands under both."""
+    for term in own:
+        if term.iri == iri:
+            yield f"{'  ' * len(above)}- {_entry(term)}"
+    for term in own:
+        below = iri in term.values(W3C.RDFS_SUB_CLASS_OF) and term.is_a(W3C.OWL_CLASS)
+        if below and term.iri not in (iri, *above):
+            yield from _tree(term.iri, own, (*above, iri))
+
+
+def _entry(term: Term) -> str:
+    label, *others = term.words or (_code(term.iri),)
+    also = f" Also: {', '.join(others)}." if others else ""
+    return f"**{label}** ({_code(term.iri)}): {_definition(term)}{also}"
+
+
+def _hedges(own: Iterable[Term]) -> str:
+    rows = [
+        (term.value(DX.HEDGE_WEIGHT), ", ".join(term.words), _code(term.iri), _definition(term))
+        for term in own
+        if term.is_a(DX.HEDGE)
+    ]
+    return "## Hedges\n\n" + _table(("weight", "words", "term", "definition"), rows)
+
+
+def _other_classes(own: list[Term]) -> str:
+    """The classes that are no kind of thing."""
+    shown = "\n".join(_tree(DX.THING, own))
+    rows = []
+    for term in own:
+        if term.is_a(W3C.OWL_CLASS) and f"({_code(term.iri)})" not in shown:
+            broader = ", ".join(_code(value) for value in term.values(W3C.RDFS_SUB_CLASS_OF) if _is_iri(value))
+            rows.append((term.value(W3C.RDFS_LABEL), _code(term.iri), broader, _definition(term)))
+    return "## Other classes\n\n" + _table(("class", "term", "under", "definition"), rows)
+
+
+def _properties(title: str, kind: str, own: Iterable[Term], terms: Terms) -> str:
+    rows = []
+    for term in own:
+        if term.is_a(kind) and not term.values(DX.READING):
+            notes = [name.lower() for name in _CHARACTERISTICS if term.is_a(f"{_OWL}{name}Property")]
+            notes += [f"inverse of {_code(other)}" for other in _inverses(term, terms)]
+            notes += [f"under {_code(other)}" for other in term.values(W3C.RDFS_SUB_PROPERTY_OF)]
+            domain, range_ = (_classes(term.values(_RDFS + end), terms) for end in ("domain", "range"))
+            rows.append((", ".join(term.words), _code(term.iri), domain, range_, ", ".join(notes), _definition(term)))
+    return f"## {title}\n\n" + _table(("property", "term", "domain", "range", "", "definition"), rows)
+
+
+def _classes(values: Iterable[str], terms: Terms) -> str:
+    return ", ".join(" or ".join(map(_code, _union(value, terms))) for value in values)
+
+
+def _union(value: str, terms: Terms) -> list[str]:
+    """The members where ``value`` is the name of a union, else ``value`` alone."""
+    if value not in terms or not terms[value].values(_OWL + "unionOf"):
+        return [value]
+    members, node = [], terms[value].value(_OWL + "unionOf")
+    while node in terms:
+        members.append(terms[node].value(_RDF + "first"))
+        node = terms[node].value(_RDF + "rest")
+    return members
+
+
+def _individuals(own: Iterable[Term]) -> str:
+    rows = []
+    for term in own:
+        if term.is_a(_OWL + "NamedIndividual") and not (term.is_a(DX.ALLEN_RELATION) or term.is_a(DX.HEDGE)):
+            kinds = [kind for kind in term.values(W3C.RDF_TYPE) if kind.startswith(BASE)]
+            rows.append((", ".join(term.words), _code(term.iri), ", ".join(map(_code, kinds)), _definition(term)))
+    return "## Other individuals\n\n" + _table(("individual", "term", "of class", "definition"), rows)
+
+
+def _of_others(terms: Terms) -> str:
+    named = [iri for iri in terms if iri.startswith(tuple(_PREFIXES)) and not iri.startswith(BASE)]
+    return "## Terms of others\n\nUsed as they are defined elsewhere: " + ", ".join(map(_code, sorted(named))) + "."
+
+
+def _is_iri(value: str) -> bool:
+    """Blank nodes have names without a colon."""
+    return ":" in value
+
+
+def _definition(term: Term) -> str:
+    return term.value(W3C.SKOS_DEFINITION)
+
+
+def _code(iri: str) -> str:
+    """An IRI as ``prefix:name`` where the prefix is known."""
+    for base, prefix in _PREFIXES.items():
+        if iri.startswith(base):
+            return f"`{prefix}{iri.removeprefix(base)}`"
+    return f"`{iri}`"
+
+
+def _table(heads: tuple[str, ...], rows: Iterable[tuple[str, ...]]) -> str:
+    """A table without the columns in which every cell is empty."""
+    body = list(rows)
+    kept = [column for column in range(len(heads)) if any(row[column] for row in body)]
+    lines = [heads, ("---",) * len(heads), *body]
+    return "\n".join("| " + " | ".join(line[c].replace("|", "\\|") for c in kept) + " |" for line in lines)
+
+
+if __name__ == "__main__":
+    import sys
+
+    from deixis.ontology.tbox import TBOX_FILE
+
+    sys.stdout.buffer.write(term_document(TBOX_FILE.read_text(encoding="utf-8")).encode("utf-8"))

@@ -1,0 +1,137 @@
+"""Checking a table: verdicts, and that the SHACL report says the same."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import combinations
+from pathlib import Path
+
+import pytest
+import rdflib
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from deixis.examples_data import example
+from deixis.perception.scene import PerceivedObject, Scene
+from deixis.perception.scene_file import read_scene
+from deixis.perception.settings import formal_setting
+from deixis.reasoning.checking import Verdict
+from deixis.session import Checked, Session, read_script
+
+SH = rdflib.Namespace("http://www.w3.org/ns/shacl#")
+FULL = read_script(example("formal_dinner.layout"))
+
+
+def check(scene: Scene, text: str | None = None) -> Checked:
+    return Session(Path("unused")).check(FULL if text is None else read_script(text=text), scene)
+
+
+def without(scene: Scene, *ids: str) -> Scene:
+    return replace(scene, objects=tuple(o for o in scene.objects if o.id not in ids))
+
+
+def swapped(scene: Scene, a: str, b: str) -> Scene:
+    label = {a: b, b: a}
+    return replace(scene, objects=tuple(replace(o, label=label.get(o.label or "", o.label)) for o in scene.objects))
+
+
+def roles(checked: Checked, verdict: Verdict) -> set[str]:
+    return {entry.role for entry in checked.table.of(verdict)}
+
+
+def test_a_table_that_is_laid_right_has_nothing_wrong_with_it() -> None:
+    checked = check(formal_setting())
+    assert checked.table.well and checked.conforms
+    assert len(checked.table.of(Verdict.CORRECT)) == 12
+
+
+def test_a_swap_that_labels_reveal_is_reported_for_both() -> None:
+    checked = check(swapped(formal_setting(), "dinner_knife", "dinner_fork"))
+    assert roles(checked, Verdict.MISPLACED) == {"dinner_knife", "dinner_fork"}
+    assert not checked.table.well and not checked.conforms
+    told = {str(b.fact): b for entry in checked.table.of(Verdict.MISPLACED) for b in entry.broken}
+    broken = told["left(dinner_fork, dinner_plate)"]
+    assert broken.fact.source is not None and broken.fact.source.line == 7
+    assert broken.seen is not None and broken.seen.word == "right"
+
+
+def test_what_is_missing_and_what_is_extra_is_named() -> None:
+    scene = without(formal_setting(), "water_glass")
+    napkin = PerceivedObject("n2", (0.5, 0.1), (0.6, 0.2), label="napkin")
+    vase = PerceivedObject("v", (0.7, 0.1), (0.8, 0.2), label="vase")
+    checked = check(replace(scene, objects=(*scene.objects, napkin, vase)))
+    assert roles(checked, Verdict.MISSING) == {"water_glass"}
+    assert {extra.perceived: extra.reason for extra in checked.table.extra} == {
+        "n2": "one napkin too many",
+        "v": "the layout has no place left for a vase",
+    }
+
+
+def test_without_labels_a_place_is_never_called_correct() -> None:
+    checked = check(formal_setting().without_labels())
+    assert checked.table.well
+    assert len(checked.table.of(Verdict.UNDETERMINED)) == 12
+    assert not checked.table.of(Verdict.CORRECT)
+
+
+def test_an_unsure_label_is_no_identity() -> None:
+    scene = formal_setting()
+    unsure = replace(scene, objects=tuple(replace(o, confidence=0.6) for o in scene.objects))
+    assert len(check(unsure).table.of(Verdict.UNDETERMINED)) == 12
+
+
+def test_what_is_optional_may_be_absent_and_may_fail() -> None:
+    scene = read_scene({"objects": [{"id": "f", "min": [0, 0], "max": [1, 1], "label": "fork"},
+                                    {"id": "p", "min": [2, 0], "max": [3, 1], "label": "plate"}]})  # fmt: skip
+    checked = check(scene, "fork left of plate; optional vase above plate; optional fork above plate")
+    assert checked.table.well and checked.conforms
+    assert roles(checked, Verdict.ABSENT) == {"vase"}
+
+
+def test_a_hedged_fact_that_fails_is_a_warning_and_no_fault() -> None:
+    scene = read_scene({"objects": [{"id": "f", "min": [0, 0], "max": [1, 1], "label": "fork"},
+                                    {"id": "p", "min": [2, 0], "max": [3, 1], "label": "plate"}]})  # fmt: skip
+    checked = check(scene, "usually fork right of plate")
+    assert checked.table.well and checked.conforms
+    assert SH.Warning in set(
+        rdflib.Graph().parse(data=checked.report, format="turtle").objects(None, SH.resultSeverity)
+    )
+
+
+def test_denials_and_choices_are_checked() -> None:
+    scene = read_scene({"objects": [{"id": "f", "min": [0, 0], "max": [1, 1], "label": "fork"},
+                                    {"id": "p", "min": [2, 0], "max": [3, 1], "label": "plate"}]})  # fmt: skip
+    assert check(scene, "fork left of or above plate; fork not right of plate").table.well
+    wrong = check(scene, "fork not left of plate; fork right of or above plate")
+    assert len(wrong.table.broken) == 2 and not wrong.conforms
+
+
+@settings(deadline=None, max_examples=15)
+@given(
+    st.integers(0, 50),
+    st.lists(st.sampled_from(FULL.objects), max_size=3, unique=True),
+    st.lists(st.sampled_from(FULL.objects), min_size=2, max_size=2, unique=True),
+)
+def test_the_shacl_report_says_what_the_verdicts_say(seed: int, absent: list[str], swap: list[str]) -> None:
+    checked = check(without(swapped(formal_setting(seed), *swap), *absent))
+    report = rdflib.Graph().parse(data=checked.report, format="turtle")
+    results = [
+        str(report.value(result, SH.focusNode)).rsplit("/", 2)[1:]
+        for result in report.subjects(rdflib.RDF.type, SH.ValidationResult)
+    ]
+    facts = list(FULL.graph().facts())
+    assert {name for kind, name in results if kind == "role"} == roles(checked, Verdict.MISSING)
+    assert {str(facts[int(name) - 1]) for kind, name in results if kind == "fact"} == {
+        str(entry.fact) for entry in checked.table.broken
+    }
+    assert {name for kind, name in results if kind not in ("role", "fact")} == {
+        e.perceived for e in checked.table.extra
+    }
+    assert checked.conforms == checked.table.well
+
+
+@pytest.mark.parametrize("swap", list(combinations(FULL.objects, 2)))
+def test_of_any_swapped_pair_both_are_reported_and_nothing_else(swap: tuple[str, str]) -> None:
+    checked = check(swapped(formal_setting(), *swap))
+    assert roles(checked, Verdict.MISPLACED) == set(swap)
+    assert {entry.exchanged_with for entry in checked.table.of(Verdict.MISPLACED)} == set(swap)

@@ -1,0 +1,40 @@
+"""A learned layout as a script again: reading it gives the same facts."""
+
+from __future__ import annotations
+
+from hypothesis import given, settings
+from random_scripts import scripts
+
+from deixis.grammar.parser import parse_script
+from deixis.grammar.rebuild import layout_script
+from deixis.grammar.script import Script
+from deixis.learning import layout_concept
+from deixis.ontology.lesson_reading import layouts
+from deixis.ontology.tbox import default_ontology
+
+
+@settings(deadline=None, max_examples=100)
+@given(scripts())
+def test_parse_learn_show_parse_gives_the_same_facts(script: Script) -> None:
+    concept = layout_concept(script, "x-1")
+    again = parse_script(layout_script(concept, default_ontology()))
+    said = [(str(f), f.positive, f.optional, f.weight) for f in script.graph().facts()]
+    assert [(str(f), f.positive, f.optional, f.weight) for f in again.graph().facts()] == said
+    assert again.kinds == script.kinds
+    assert (again.title, again.viewpoint) == (script.title, script.viewpoint)
+
+
+def test_the_layout_is_written_a_fact_a_line() -> None:
+    script = parse_script(
+        'layout t "T" seen from chair\nx is a Fork\n2 glass above x; maybe x not left of y', file="t.layout"
+    )
+    assert layouts([], default_ontology().relations) == ()
+    assert layout_script(layout_concept(script, "t-1"), default_ontology()).splitlines() == [
+        'layout t "T" seen from chair',
+        "",
+        "x is a Fork",
+        "",
+        "glass_1 above x",
+        "glass_2 above x",
+        "maybe x not left of y",
+    ]
