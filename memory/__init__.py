@@ -1,1 +1,1 @@
-"""What is kept: semantic memory, perceptual memory and episodes. Nothing is kept yet; this room is still empty."""
+"""What is kept: semantic memory, as RDF in named graphs that one process owns."""

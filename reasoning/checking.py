@@ -2,8 +2,8 @@
 
 Identity comes from labels. A thing whose label names a role, and which fits there best, is that role's; where nothing
 but the layout says who is who, its place is *undetermined*, never correct. Two labelled things are *exchanged* where
-all that is said of both would hold if each stood in the place of the other. Which end of another broken fact is misplaced is
-settled by how much else is broken about it: the ends with the largest share of broken facts explain the others.
+all that is said of both would hold if each stood in the place of the other. Which end of another broken fact is
+misplaced is settled by how much else is broken about it: the ends with the largest share explain the others.
 """
 
 from __future__ import annotations

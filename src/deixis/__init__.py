@@ -23,11 +23,12 @@ if TYPE_CHECKING:
     from deixis.grammar.format import format_script
     from deixis.ontology.errors import DeixisError
     from deixis.perception.scene_file import read_scene, write_scene
-    from deixis.session import ground, infer, read_script
+    from deixis.session import Session, ground, infer, read_script
 
 __version__ = "0.1.0"
 __all__ = [
     "DeixisError",
+    "Session",
     "format_script",
     "ground",
     "infer",
@@ -38,6 +39,7 @@ __all__ = [
 
 _HOMES = {
     "DeixisError": "deixis.ontology.errors",
+    "Session": "deixis.session",
     "format_script": "deixis.grammar.format",
     "ground": "deixis.session",
     "infer": "deixis.session",

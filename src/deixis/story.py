@@ -2,18 +2,28 @@
 
 from __future__ import annotations
 
+import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from deixis.examples_data import example
+from deixis.grammar.script import Script
+from deixis.perception.scene import Scene
 from deixis.perception.scene_file import read_scene
 from deixis.plot import plot_grounding, require_picture
+from deixis.plot_check import plot_check
 from deixis.reasoning.grounding import Grounding
-from deixis.session import ground, infer, read_script
-from deixis.show import grounding_lines, inference_lines, script_lines
+from deixis.session import Session, ground, infer, read_script
+from deixis.show import check_lines, grounding_lines, inference_lines, learned_lines, script_lines
 
 if TYPE_CHECKING:
     from rich.console import Console
+
+
+QUERY = """SELECT ?object ?kind ?lesson WHERE {
+  ?match dx:category ?category ; dx:ofRole/dx:ofKind ?kind ; prov:wasGeneratedBy ?lesson .
+  ?category rdfs:label ?object ; rdfs:subClassOf dx:Cutlery .
+} ORDER BY ?object"""
 
 
 def tell(out: Path) -> None:
@@ -34,6 +44,8 @@ def tell(out: Path) -> None:
     found = ground(script1, scene)
     _listing(console, grounding_lines(found))
     _say(console, *_ambiguity(found))
+    plot_grounding(found, scene, out / "script1.png", script1.title)
+    _say(console, f"Picture: {out / 'script1.png'}")
 
     _chapter(console, 4, "A fuller script settles it")
     full = read_script(example("formal_dinner.layout"))
@@ -42,19 +54,32 @@ def tell(out: Path) -> None:
     _listing(console, grounding_lines(settled))
 
     _chapter(console, 5, "What the script implies without saying so")
-    implied = infer(full).implications
-    fact = implied.derive(full.ontology.relations["left"], "salad_fork", "soup_spoon")
-    if fact is not None:
-        _listing(console, list(fact.lines()))
+    fact = infer(full).implications.derive(full.ontology.relations["left"], "salad_fork", "soup_spoon")
+    _listing(console, list(fact.lines()) if fact is not None else [])
 
     _chapter(console, 6, "A script that cannot be laid")
     _listing(console, inference_lines(infer(example("contradiction.layout"))))
 
-    _chapter(console, 7, "The pictures")
-    pictures = [(found, script1.title, "script1.png"), (settled, full.title, "formal_dinner.png")]
-    for grounding, title, name in pictures:
-        plot_grounding(grounding, scene, out / name, title)
-        _say(console, f"{out / name}")
+    with tempfile.TemporaryDirectory() as folder, Session(Path(folder) / "memory") as session:
+        _remembered(console, session, full, scene, out)
+
+
+def _remembered(console: Console, session: Session, full: Script, scene: Scene, out: Path) -> None:
+    """The part of the story that needs a memory."""
+    _chapter(console, 7, "What was understood is learned")
+    learned = session.learn(full, scene)
+    _listing(console, learned_lines(learned, "a memory of its own, for this demo"))
+
+    _chapter(console, 8, "And can be asked for, in SPARQL: what cutlery do I know, and from which lesson?")
+    _listing(console, QUERY.splitlines())
+    _listing(console, session.query(QUERY).to_table())
+
+    _chapter(console, 9, "Another table, whose things have names by now. What is wrong with it?")
+    second = read_scene(example("second_table.scene.json"))
+    checked = session.check("formal_dinner", second)
+    _listing(console, check_lines(checked))
+    plot_check(checked, second, out / "second_table.png")
+    _say(console, f"Picture: {out / 'second_table.png'}")
 
 
 def full_text(name: str) -> list[str]:

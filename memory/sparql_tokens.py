@@ -1,0 +1,124 @@
+r"""The words of a SPARQL query, told apart well enough to see what it would do.
+
+This is no parser. It finds keywords, prefixed names, IRIs and strings as Oxigraph's parser does, and where the two
+might disagree about where a string or a comment begins, the query is refused rather than guessed at: ``FILTER(?a<?b#>``
+can be read as an IRI or as a comparison and a comment, and ``trueSERVICE`` as one word or two.
+
+>>> [token.text for token in tokens("ASK { ?s a dx:Scene }")]
+['ASK', '{', '?s', 'a', 'dx:Scene', '}']
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from enum import StrEnum
+
+
+class Kind(StrEnum):
+    """What a token is."""
+
+    COMMENT = "comment"
+    IRI = "iri"
+    STRING = "string"
+    VARIABLE = "variable"
+    LANGUAGE = "language"
+    NUMBER = "number"
+    NAME = "name"
+    WORD = "word"
+    SIGN = "sign"
+
+
+@dataclass(frozen=True, slots=True)
+class Token:
+    """A token, and where it begins."""
+
+    kind: Kind
+    text: str
+    start: int
+
+    @property
+    def upper(self) -> str:
+        return self.text.upper()
+
+
+_ESCAPE = r"\\u[0-9A-Fa-f]{4}|\\U[0-9A-Fa-f]{8}"
+_IRI = rf"<(?:[^<>\"{{}}|^`\\\x00-\x20]|{_ESCAPE})*>"
+_LOCAL = r"(?:[\w·:-]|\.(?=[\w·:.\\%-])|%[0-9A-Fa-f]{2}|\\[_~.\-!$&'()*+,;=/?#@%])*"
+
+_TOKEN = re.compile(
+    "|".join(
+        [
+            r"(?P<comment>#[^\n\r]*)",
+            rf"(?P<iri>{_IRI})",
+            r'(?P<string>"""(?:[^"\\]|\\.|"(?!""))*"""|' + r"'''(?:[^'\\]|\\.|'(?!''))*'''|"
+            r'"(?:[^"\\\n\r]|\\.)*"|' + r"'(?:[^'\\\n\r]|\\.)*')",
+            r"(?P<variable>[?$]\w+)",
+            r"(?P<language>@[A-Za-z]+(?:-[A-Za-z0-9]+)*)",
+            r"(?P<number>\d+(?:\.\d+)?(?:[eE][+-]?\d+)?)",
+            rf"(?P<name>(?:_:|(?:[^\W\d_](?:[\w·.-]*[\w·-])?)?:){_LOCAL})",
+            r"(?P<word>[^\W\d]\w*)",
+            r"(?P<sign>\\.|\S)",
+        ]
+    ),
+    re.DOTALL,
+)
+
+_SKIPPED = re.compile(rf"(?:#[^\n\r]*|{_IRI}|" + r'"""(?:[^"\\]|\\.|"(?!""))*"""|' + r"'''(?:[^'\\]|\\.|'(?!''))*'''|"
+                      r'"(?:[^"\\\n\r]|\\.)*"|' + r"'(?:[^'\\\n\r]|\\.)*')" + rf"|(?P<escape>{_ESCAPE})", re.DOTALL)  # fmt: skip
+
+
+def tokens(text: str) -> Iterator[Token]:
+    """The tokens of a decoded query, without comments."""
+    for match in _TOKEN.finditer(text):
+        kind = Kind(match.lastgroup or "sign")
+        if kind is not Kind.COMMENT:
+            yield Token(kind, match.group(), match.start())
+
+
+def decoded(text: str) -> tuple[str, list[tuple[int, int]]]:
+    r"""The text with codepoint escapes outside strings, comments and IRIs as the letters that they stand for.
+
+    Also pairs of offsets, in the decoded and in the given text, to translate places by. Escapes of anything but
+    letters, digits and ``_:?$-`` are left standing: they are no SPARQL.
+
+    >>> decoded(r"SEL\u0045CT * {}")[0]
+    'SELECT * {}'
+    """
+    parts: list[str] = []
+    places = [(0, 0)]
+    done = length = 0
+    for match in _SKIPPED.finditer(text):
+        escape = match.group("escape")
+        if escape is None or (letter := _letter(escape)) is None:
+            continue
+        parts += [text[done : match.start()], letter]
+        length += match.start() - done + 1
+        done = match.end()
+        places.append((length, done))
+    return "".join([*parts, text[done:]]), places
+
+
+def _letter(escape: str) -> str | None:
+    code = int(escape[2:], 16)
+    letter = chr(code) if code <= 0x10FFFF and not 0xD800 <= code <= 0xDFFF else ""
+    return letter if letter and (letter.isalnum() or letter in "_:?$-") else None
+
+
+def given_offset(offset: int, places: list[tuple[int, int]]) -> int:
+    """The offset in the text as given, of an offset in the decoded one."""
+    here, there = max(place for place in places if place[0] <= offset)
+    return there + offset - here
+
+
+def ambiguous(token: Token, prefixes: set[str]) -> bool:
+    """Whether an IRI might be a comparison that hides the beginning of a comment, a string or a SERVICE.
+
+    An IRI that begins with a scheme is one, unless the scheme is a prefix of the query.
+    """
+    inner = token.text[1:-1]
+    scheme = re.match(r"([A-Za-z][A-Za-z0-9+.-]*):", inner)
+    if scheme and scheme.group(1) not in prefixes:
+        return False
+    return bool(re.search(r"[#']|service", inner, re.IGNORECASE))
