@@ -117,10 +117,14 @@ def create(folder: Path, fill: Callable[[ox.Store], None], digest: str) -> None:
     """Makes a memory in an empty folder: a store that ``fill`` fills, then the mark."""
     _remove(folder / NEW)
     (folder / NEW_MARK).unlink(missing_ok=True)
-    store = ox.Store(folder / NEW)
-    fill(store)
-    store.flush()
-    del store
+    try:
+        store = ox.Store(folder / NEW)
+        fill(store)
+        store.flush()
+        del store
+    except BaseException:
+        _remove(folder / NEW)
+        raise
     _write(folder / NEW_MARK, {"format": FORMAT, "version": VERSION, "package": digest})
     _rename(folder / NEW, folder / STORE)
     _rename(folder / NEW_MARK, folder / MARK)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 import pyoxigraph as ox
@@ -48,15 +49,19 @@ def open_store(folder: Path) -> ox.Store:
         raise MemoryWriteError(f"the memory at {folder} could not be opened: {files.one_line(error)}") from error
 
 
-def open_memory(folder: Path, create: bool) -> Opened:
-    """See :meth:`deixis.memory.semantic.SemanticMemory.open`."""
+def _fill(store: ox.Store) -> None:
+    store.update(" ;\n".join(ledger.package_update(store, packaged())))
+
+
+def open_memory(folder: Path, create: bool, fill: Callable[[ox.Store], None] = _fill) -> Opened:
+    """Opens a memory, or makes one whose store ``fill`` fills: see :meth:`deixis.memory.semantic.SemanticMemory.open`."""
     state = files.inspect(folder)
     if state in (State.ABSENT, State.EMPTY) and not create:
         what = "there is no memory at" if state is State.ABSENT else "there is no memory yet in the empty folder"
         raise MemoryFormatError(f"{what} {folder}; learn something into it first, or name another folder")
     made = _make_folder(folder) if state is State.ABSENT else False
     try:
-        return _open_locked(folder)
+        return _open_locked(folder, fill)
     except BaseException:
         if made and not any(folder.iterdir()):
             folder.rmdir()
@@ -71,10 +76,10 @@ def _make_folder(folder: Path) -> bool:
     return True
 
 
-def _open_locked(folder: Path) -> Opened:
+def _open_locked(folder: Path, fill: Callable[[ox.Store], None]) -> Opened:
     lock = OwnerLock.acquire(folder)
     try:
-        _prepare(folder)
+        _prepare(folder, fill)
         opened = Opened(folder, lock)
     except BaseException:
         lock.release(undo=True)
@@ -88,21 +93,17 @@ def _open_locked(folder: Path) -> Opened:
     return opened
 
 
-def _prepare(folder: Path) -> None:
+def _prepare(folder: Path, fill: Callable[[ox.Store], None]) -> None:
     """Everything between the lock and the open store. What is damaged is found before anything is changed."""
     state = files.inspect(folder)
     if state is State.EMPTY:
         with committed(folder):
-            files.create(folder, _fill, package_digest())
+            files.create(folder, fill, package_digest())
         return
     files.check_store_opens(folder)
     with committed(folder):
         files.finish(folder)
         files.migrate(folder)
-
-
-def _fill(store: ox.Store) -> None:
-    store.update(" ;\n".join(ledger.package_update(store, packaged())))
 
 
 def _update_package(opened: Opened) -> None:

@@ -77,7 +77,9 @@ class SemanticMemory:
             raise MemoryFormatError("this memory is closed: open it again")
         return self._opened
 
-    def learn(self, lesson: str, contributions: Mapping[GraphName, Sequence[ox.Triple]], inferred: Sequence[ox.Triple]) -> None:
+    def learn(
+        self, lesson: str, contributions: Mapping[GraphName, Sequence[ox.Triple]], inferred: Sequence[ox.Triple]
+    ) -> None:
         """Writes a lesson, and what now follows from everything, in one step.
 
         ``inferred`` replaces the inferred graph. Blank nodes become names. Raises RejectedWriteError, having written
@@ -88,7 +90,7 @@ class SemanticMemory:
         said = incoming(lesson, contributions)
         if not any(said.values()):
             raise RejectedWriteError(f"lesson '{lesson}' says nothing: give at least one triple")
-        self._commit(arriving(self.store, lesson, said, inferred))
+        self.commit(arriving(self.store, lesson, said, inferred))
 
     def forget(self, lesson: str, inferred: Sequence[ox.Triple]) -> None:
         """Takes back what only this lesson contributed, and replaces the inferred graph, in one step.
@@ -97,7 +99,7 @@ class SemanticMemory:
         something that stays depends on what would go.
         """
         self._known(lesson)
-        self._commit(departing(self.store, lesson, inferred))
+        self.commit(departing(self.store, lesson, inferred))
 
     def remaining(self, lesson: str) -> dict[GraphName, list[ox.Triple]]:
         """What the canonical graphs would hold without that lesson; raises UnknownLessonError where there is none."""
@@ -158,7 +160,8 @@ class SemanticMemory:
         with reading(self.path):
             return count(self.store, self.path, len(self.lessons()))
 
-    def _commit(self, change: Change) -> None:
+    def commit(self, change: Change) -> None:
+        """Writes a change in one step, if what comes of it keeps to the shapes; raises RejectedWriteError if not."""
         from deixis.memory.validation import check_change
 
         check_change(self.store, change)
@@ -170,12 +173,12 @@ class SemanticMemory:
         known = self.lessons()
         if lesson not in known:
             near = nearest(lesson, list(known))
-            hint = f"did you mean '{near}'?" if near else f"it holds: {', '.join(known[-5:])}" if known else "it is empty"
+            hint = (
+                f"did you mean '{near}'?" if near else f"it holds: {', '.join(known[-5:])}" if known else "it is empty"
+            )
             raise UnknownLessonError(f"no lesson '{lesson}' in the memory at {self.path}; {hint}")
 
     def _drop_views(self) -> None:
         for view in self._views:
             view.store._store = ox.Store()
         self._views.clear()
-
-

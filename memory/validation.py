@@ -5,3 +5,7 @@ from deixis.memory.change import Change
 
 def check_change(store: ox.Store, change: Change) -> None:
     return None
+
+
+def check_store(store: ox.Store) -> None:
+    return None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import unicodedata
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -12,6 +13,9 @@ from numpy.typing import NDArray
 from deixis.ontology.graph import RelationGraph
 from deixis.ontology.relation import Relations
 from deixis.perception.errors import SceneError
+
+FARTHEST = 1e9
+"""Coordinates reach so far at the most, in metres or pixels."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,11 +90,15 @@ class Scene:
 
 
 def _require_box(thing: PerceivedObject, file: str) -> None:
+    if any(unicodedata.category(character) == "Cc" for character in thing.id + (thing.label or "")):
+        raise SceneError(f"{file}: object {thing.id!a}: its id or its label has a control character in it")
     where = f"{file}: object '{thing.id}'"
     if len(thing.minimum) != len(thing.maximum) or len(thing.minimum) not in (2, 3):
         raise SceneError(f"{where}: 'min' and 'max' must both have 2 coordinates, or both 3")
     if not np.isfinite([*thing.minimum, *thing.maximum]).all():
         raise SceneError(f"{where}: a coordinate is not finite")
+    if max(map(abs, (*thing.minimum, *thing.maximum))) > FARTHEST:
+        raise SceneError(f"{where}: a coordinate is beyond {FARTHEST:g}; is the unit right?")
     for axis, low, high in zip("xyz", thing.minimum, thing.maximum, strict=False):
         if low > high:
             raise SceneError(f"{where}: on {axis} its min {low:g} is above its max {high:g}; swap them")

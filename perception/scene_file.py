@@ -44,6 +44,8 @@ def _parsed(path: Path) -> Any:
     try:
         if path.is_dir():
             raise SceneError(f"{path}: this is a folder, and a scene is a .scene.json file")
+        if not path.is_file() and path.exists():
+            raise SceneError(f"{path}: this is no regular file, and a scene is a .scene.json file")
         if path.stat().st_size > MAX_BYTES:
             raise SceneError(f"{path}: the file is larger than {MAX_BYTES // 2**20} MiB")
         content = path.read_text(encoding="utf-8-sig")
@@ -54,15 +56,33 @@ def _parsed(path: Path) -> Any:
     except ValueError as error:
         raise SceneError(f"{path}: cannot be read: {error}") from error
     try:
-        return json.loads(content, parse_constant=_refuse_constant)
+        return json.loads(
+            content, parse_constant=_refuse_constant, parse_int=_whole_number, object_pairs_hook=_without_repeats
+        )
     except json.JSONDecodeError as error:
         raise SceneError(f"{path}:{error.lineno}:{error.colno}: this is no JSON: {error.msg}") from error
-    except (ValueError, RecursionError) as error:
+    except RecursionError as error:
+        raise SceneError(f"{path}: the JSON is nested too deeply") from error
+    except ValueError as error:
         raise SceneError(f"{path}: {error}") from error
 
 
 def _refuse_constant(name: str) -> float:
     raise ValueError(f"{name} is no number that a coordinate can be; leave the object out")
+
+
+def _whole_number(digits: str) -> int:
+    if len(digits) > 4000:
+        raise ValueError(f"a number of {len(digits)} digits is too large")
+    return int(digits)
+
+
+def _without_repeats(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    found = dict(pairs)
+    if len(found) != len(pairs):
+        keys = [key for key, _ in pairs]
+        raise ValueError(f"the key '{next(key for key in keys if keys.count(key) > 1)}' stands twice in one object")
+    return found
 
 
 def scene_from_dict(data: Any, file: str, image: str | int | None = None) -> Scene:

@@ -259,11 +259,6 @@ def main() -> None:
     """Runs the command line; errors of Deixis are one message and exit code 2, never a traceback."""
     from deixis.ontology.errors import DeixisError
 
-    if hasattr(signal, "SIGPIPE"):
-        signal.signal(signal.SIGPIPE, signal.SIG_DFL)  # a closed pipe ends us quietly, as it ends other tools
-    for stream in (sys.stdout, sys.stderr):
-        if isinstance(stream, io.TextIOWrapper):
-            stream.reconfigure(errors="backslashreplace")
     try:
         app()
     except DeixisError as error:
@@ -281,5 +276,15 @@ def _fail(message: str) -> None:
     sys.exit(BAD_INPUT)
 
 
-if __name__ == "__main__":
+def run() -> None:
+    """The process's entry: a closed pipe ends it quietly, and no character is too odd for a terminal."""
+    if hasattr(signal, "SIGPIPE"):
+        signal.signal(signal.SIGPIPE, signal.SIG_DFL)
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")
     main()
+
+
+if __name__ == "__main__":
+    run()

@@ -119,7 +119,7 @@ def test_an_unwritable_place(tmp_path: Path) -> None:
     file = write(tmp_path / "file", "")
     code, _, err = deixis("ground", SCRIPT1, SCENE, "--plot", file / "found.png")
     assert code == 2
-    assert "the picture cannot be written" in err
+    assert "the folder of the picture cannot be made" in err
 
 
 def test_without_time_there_is_an_answer_all_the_same(tmp_path: Path) -> None:

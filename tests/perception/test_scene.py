@@ -90,3 +90,19 @@ def test_a_point_is_a_box() -> None:
 def test_two_objects_of_one_id_are_refused() -> None:
     with pytest.raises(SceneError, match="the id 'fork' is used twice"):
         Scene((FORK, FORK))
+
+
+@pytest.mark.parametrize(
+    ("id", "corner", "message"),
+    [("a\n\x1b[31mred", 1.0, "control character"), ("a", 1e12, "beyond 1e\\+09; is the unit right")],
+)
+def test_what_would_spoil_a_terminal_or_a_picture_is_refused(id: str, corner: float, message: str) -> None:
+    with pytest.raises(SceneError, match=message):
+        Scene((PerceivedObject(id, (0.0, 0.0), (corner, 1.0)),))
+
+
+def test_boxes_alike_mean_the_same_in_any_order_of_listing() -> None:
+    relations = default_ontology().relations
+    things = [PerceivedObject(id, (0.0, 0.0), (1.0, 1.0)) for id in ("b", "a")]
+    facts = [{str(fact) for fact in Scene(tuple(order)).graph(relations).facts()} for order in (things, things[::-1])]
+    assert facts[0] == facts[1] == {"exactly_on(b, a)", "exactly_under(a, b)"}

@@ -18,7 +18,7 @@ from deixis.perception.scene_file import read_scene, scene_to_dict, write_scene
 
 BOX: dict[str, Any] = {"id": "o1", "min": [0, 0], "max": [1, 1]}
 
-texts = st.text(min_size=1, max_size=8).filter(lambda text: bool(text.strip()))
+texts = st.text(st.characters(exclude_categories=["Cs", "Cc"]), min_size=1, max_size=8).filter(lambda text: bool(text.strip()))
 coordinates = st.floats(-1e6, 1e6)
 
 
@@ -241,3 +241,24 @@ def test_keys_that_are_no_texts_are_unknown_ones() -> None:
     keys: Any = {1: "x", "objects": [], "zzz": 2}
     with pytest.raises(SceneError, match="is no key here"):
         read_scene(keys)
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        ('{"objects": [], "objects": []}', "the key 'objects' stands twice in one object"),
+        ("[" * 100_000, "the JSON is nested too deeply"),
+        ('{"objects": ' + "9" * 5000 + "}", "a number of 5000 digits is too large"),
+    ],
+)
+def test_json_that_python_would_take_or_choke_on_is_refused(content: str, message: str, tmp_path: Path) -> None:
+    path = tmp_path / "x.scene.json"
+    path.write_text(content, encoding="utf-8")
+    with pytest.raises(SceneError, match=message):
+        read_scene(path)
+
+
+@pytest.mark.skipif(not Path("/dev/zero").exists(), reason="there is no /dev/zero")
+def test_a_device_is_not_read() -> None:
+    with pytest.raises(SceneError, match="no regular file"):
+        read_scene("/dev/zero")

@@ -1,0 +1,105 @@
+"""A memory as text, and text as a memory: the user's data is the user's."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pyoxigraph as ox
+
+from deixis.memory import ledger
+from deixis.memory.change import Change
+from deixis.memory.dump import Dump, read_dump
+from deixis.memory.errors import ImportFormatError, RejectedWriteError
+from deixis.memory.folder import State, inspect
+from deixis.memory.graphs import CANONICAL, CONTRIBUTED, GraphName, graph_iri, loaded_graph
+from deixis.memory.opening import open_memory
+from deixis.memory.package import packaged
+from deixis.memory.semantic import SemanticMemory
+from deixis.memory.turtle_writer import trig, turtle
+
+TURTLE_GRAPHS = (GraphName.ONTOLOGY, GraphName.ASSERTED, GraphName.INFERRED, GraphName.LEARNED)
+"""The graphs that an export in Turtle merges."""
+
+
+def export_memory(memory: SemanticMemory, format: str = "trig") -> str:
+    """Everything that a memory keeps, the same text for the same content.
+
+    ``trig`` is exact: every graph, and which lesson contributed what. ``turtle`` merges the ontology with what was
+    asserted, inferred and learned into one graph, for tools such as Protégé. Raises ImportFormatError for others.
+    """
+    if format == "turtle":
+        return turtle(triple for name in TURTLE_GRAPHS for triple in memory.triples(name))
+    if format != "trig":
+        raise ImportFormatError(f"no export as '{format}': it is trig or turtle")
+    graphs = [graph for graph in memory.store.named_graphs() if isinstance(graph, ox.NamedNode)]
+    first = list(CANONICAL)
+    rest = sorted((graph for graph in graphs if graph not in CANONICAL), key=lambda graph: graph.value)
+    return trig((graph, ledger.triples_in(memory.store, graph)) for graph in [*first, *rest])
+
+
+def import_dump(file: str | Path, target: str | Path) -> None:
+    """Takes a file into a memory, all of it or nothing.
+
+    A TriG or N-Quads file that export wrote gives the same graphs back; into a memory that holds something it is
+    merged, lesson by lesson. Plain triples (Turtle, N-Triples, RDF/XML) become a lesson named after the file. Raises
+    ImportFormatError for what cannot be read, RejectedWriteError for what breaks the shapes or another lesson.
+    """
+    file, target = Path(file), Path(target)
+    dump = read_dump(file)
+    if inspect(target) in (State.ABSENT, State.EMPTY):
+        open_memory(target, create=True, fill=lambda store: _fill(store, dump)).close()
+        return
+    with SemanticMemory.open(target) as memory:
+        change = _merged(memory, dump, file)
+        if change.statements:
+            memory.commit(change)
+
+
+def _fill(store: ox.Store, dump: Dump) -> None:
+    from deixis.memory.validation import check_store
+
+    store.bulk_extend(dump.quads())
+    statements = list(ledger.package_update(store, packaged()))
+    if statements:
+        store.update(" ;\n".join(statements))
+    check_store(store)
+
+
+def _merged(memory: SemanticMemory, dump: Dump, file: Path) -> Change:
+    """The change that brings a dump into a memory."""
+    store, known = memory.store, set(memory.lessons())
+    added: dict[GraphName, set[ox.Triple]] = {name: set() for name in GraphName}
+    statements: list[str] = []
+    for lesson, graphs in dump.lessons.items():
+        said = {name: sorted(triples, key=str) for name, triples in graphs.items() if triples}
+        if lesson in known:
+            if {name: set(triples) for name, triples in memory.contributions(lesson).items()} != _sets(said):
+                raise RejectedWriteError(
+                    f"{file}: its lesson '{lesson}' differs from the one in the memory at {memory.path}; forget that "
+                    "one first, or import into another memory"
+                )
+            continue
+        statements += ledger.arrival(store, lesson, said)
+        for name, triples in said.items():
+            added[name].update(triples)
+    for name, graph, triples in _loose(store, dump):
+        statements += ledger.insertion(graph, sorted(triples, key=str))
+        added[name].update(triples)
+    return Change({name: frozenset(triples) for name, triples in added.items()}, {}, tuple(statements))
+
+
+def _loose(store: ox.Store, dump: Dump) -> Iterator[tuple[GraphName, ox.NamedNode, set[ox.Triple]]]:
+    """What belongs to no lesson, by graph; what a lesson says as well is marked as loaded, so that it stays."""
+    for name in CONTRIBUTED:
+        loose = dump.loose(name)
+        also = {triple for triple in loose if any(store.quads_for_pattern(*triple, None))} | dump.loaded[name]
+        also |= {triple for triple in loose for graphs in dump.lessons.values() if triple in graphs[name]}
+        yield name, graph_iri(name), loose
+        yield name, loaded_graph(name), also
+    inferred = graph_iri(GraphName.INFERRED)
+    yield GraphName.INFERRED, inferred, dump.canonical[GraphName.INFERRED]
+
+
+def _sets(said: dict[GraphName, list[ox.Triple]]) -> dict[GraphName, set[ox.Triple]]:
+    return {name: set(triples) for name, triples in said.items()}
