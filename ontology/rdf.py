@@ -22,11 +22,11 @@ def text(value: str) -> ox.Literal:
 
 
 def typed(value: bool | int | float | datetime) -> ox.Literal:
-    """A boolean, integer or dateTime as such; a float as xsd:double."""
+    """A boolean, integer or dateTime as such (HermiT reads no finer than milliseconds); a float as xsd:double."""
     if isinstance(value, bool):
         return ox.Literal(str(value).lower(), datatype=iri(XSD + "boolean"))
     if isinstance(value, datetime):
-        return ox.Literal(value.isoformat(), datatype=iri(XSD + "dateTime"))
+        return ox.Literal(value.isoformat(timespec="milliseconds"), datatype=iri(XSD + "dateTime"))
     name = "integer" if isinstance(value, int) else "double"
     return ox.Literal(repr(value), datatype=iri(XSD + name))
 

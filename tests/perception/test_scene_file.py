@@ -18,7 +18,9 @@ from deixis.perception.scene_file import read_scene, scene_to_dict, write_scene
 
 BOX: dict[str, Any] = {"id": "o1", "min": [0, 0], "max": [1, 1]}
 
-texts = st.text(st.characters(exclude_categories=["Cs", "Cc"]), min_size=1, max_size=8).filter(lambda text: bool(text.strip()))
+texts = st.text(st.characters(exclude_categories=["Cs", "Cc"]), min_size=1, max_size=8).filter(
+    lambda text: bool(text.strip())
+)
 coordinates = st.floats(-1e6, 1e6)
 
 

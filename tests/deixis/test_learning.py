@@ -1,0 +1,172 @@
+"""Learning, showing, asking and forgetting, through the session and the command line."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pyoxigraph as ox
+import pytest
+
+from deixis.cli import main
+from deixis.examples_data import example
+from deixis.memory.exchange import export_memory
+from deixis.memory.graphs import GraphName
+from deixis.ontology.skolem import with_blank_nodes
+from deixis.perception.settings import formal_setting
+from deixis.reasoning.description_logic import classify
+from deixis.reasoning.errors import InconsistencyError
+from deixis.session import Session, default_memory, read_script
+
+FULL, SCRIPT1, SCENE = (example(n) for n in ("formal_dinner.layout", "script1.layout", "place_setting.scene.json"))
+LEARNED = "https://w3id.org/deixis/learned/"
+
+
+@pytest.fixture(scope="module")
+def taught(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A memory with two lessons: the fuller script, and Figure 7."""
+    path = tmp_path_factory.mktemp("taught") / "memory"
+    with Session(path) as session:
+        session.learn(FULL, SCENE)
+        session.learn(SCRIPT1, SCENE)
+    return path
+
+
+def deixis(monkeypatch: pytest.MonkeyPatch, *arguments: object) -> int:
+    monkeypatch.setattr("sys.argv", ["deixis", *map(str, arguments)])
+    try:
+        main()
+    except SystemExit as left:
+        return int(left.code or 0)
+    return 0
+
+
+def test_a_lesson_outlives_the_process_that_learned_it(taught: Path) -> None:
+    with Session(taught) as session:
+        assert session.memory().lessons() == ("formal_dinner-1", "script1-1")
+        assert [layout.name for layout in session.layouts()] == ["formal_dinner", "script1"]
+        concept = session.layout("formal_dinner")
+        assert [str(fact) for fact in concept.facts] == [str(fact) for fact in read_script(FULL).facts]
+
+
+def test_the_layout_is_a_class_whose_label_is_its_name(taught: Path) -> None:
+    with Session(taught) as session:
+        asked = "ASK { ?l a owl:Class ; rdfs:subClassOf dx:Layout ; rdfs:label 'formal_dinner' ; dx:learnedIn ?lesson }"
+        assert session.query(asked).boolean is True
+
+
+def test_what_is_doubtful_is_recorded_and_teaches_nothing(taught: Path) -> None:
+    with Session(taught) as session:
+        rows = session.query(
+            "SELECT ?name (COUNT(?thing) AS ?n) { ?m dx:ofRole ?role ; dx:decided false ; dx:couldBe ?thing . "
+            f"?role rdfs:label ?name ; dx:inLayout <{LEARNED}layout/script1-1> }} GROUP BY ?name ORDER BY ?name"
+        ).rows
+        assert len(rows) == 8
+        asked = "ASK { ?m dx:ofRole/dx:inLayout ?l ; dx:decided false ; dx:category ?c }"
+        assert session.query(asked).boolean is False
+        swap = "ASK { ?a rdfs:label 'dinner_knife' . ?a dx:interchangeableWith/rdfs:label 'water_glass' }"
+        assert session.query(swap).boolean is True
+
+
+def test_a_category_says_which_lessons_showed_it(taught: Path) -> None:
+    with Session(taught) as session:
+        rows = session.query(
+            f"SELECT ?lesson {{ ?m dx:category <{LEARNED}category/napkin> ; prov:wasGeneratedBy ?lesson }} ORDER BY ?lesson"
+        ).rows
+        assert [str(row[0]) for row in rows] == [
+            f"<{LEARNED}lesson/{lesson}>" for lesson in ("formal_dinner-1", "script1-1")
+        ]
+
+
+def test_what_follows_is_in_the_inferred_graph_and_only_there(taught: Path) -> None:
+    with Session(taught) as session:
+        memory = session.memory()
+        inferred, said = set(memory.triples(GraphName.INFERRED)), set(memory.triples(GraphName.LEARNED))
+        rdfs, dx = "http://www.w3.org/2000/01/rdf-schema#", "https://w3id.org/deixis/onto#"
+        broader = ox.Triple(
+            ox.NamedNode(LEARNED + "category/fish_knife"),
+            ox.NamedNode(rdfs + "subClassOf"),
+            ox.NamedNode(dx + "Cutlery"),
+        )
+        assert broader in inferred
+        assert not inferred & said
+        assert any(triple.predicate.value == dx + "left" for triple in inferred)
+
+
+@pytest.mark.slow
+def test_the_whole_memory_is_consistent_for_hermit(taught: Path) -> None:
+    with Session(taught) as session:
+        names = (GraphName.ONTOLOGY, GraphName.LEARNED, GraphName.ASSERTED, GraphName.EPISODES)
+        triples = [triple for name in names for triple in session.memory().triples(name)]
+    text = ox.serialize(with_blank_nodes(triples), format=ox.RdfFormat.N_TRIPLES) or b""
+    assert classify(text.decode("utf-8")).unsatisfiable == ()
+
+
+@pytest.mark.slow
+def test_forgetting_b_after_a_and_b_leaves_what_a_alone_leaves(tmp_path: Path) -> None:
+    with Session(tmp_path / "memory") as session:
+        session.learn(FULL, SCENE)
+        before = export_memory(session.memory(), "trig")
+        session.learn(SCRIPT1, SCENE)
+        assert export_memory(session.memory(), "trig") != before
+        session.forget("script1-1")
+        assert export_memory(session.memory(), "trig") == before
+
+
+@pytest.mark.slow
+def test_a_lesson_that_makes_a_kind_impossible_is_refused_and_changes_nothing(tmp_path: Path) -> None:
+    scene = formal_setting().without_labels()
+    says = "bread_plate top left of dinner_plate; thing on dinner_plate; butter_knife on bread_plate; thing is a "
+    with Session(tmp_path / "memory") as session:
+        assert "thing" in session.learn(read_script(text=f"layout a\n{says} Napkin"), scene).categories
+        before = export_memory(session.memory(), "trig")
+        with pytest.raises(InconsistencyError, match="nothing can be a 'thing' any more"):
+            session.learn(read_script(text=f"layout b\n{says} Fork"), scene)
+        assert export_memory(session.memory(), "trig") == before
+
+
+def test_a_script_that_contradicts_itself_is_not_learned(tmp_path: Path) -> None:
+    with Session(tmp_path / "memory") as session:
+        with pytest.raises(InconsistencyError, match="contradiction.layout:5:1"):
+            session.learn(example("contradiction.layout"), SCENE)
+    assert not (tmp_path / "memory").exists()
+
+
+def test_the_commands(taught: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    assert deixis(monkeypatch, "show", "formal_dinner", "--memory", taught) == 0
+    shown = capsys.readouterr().out
+    assert shown.startswith('layout formal_dinner "Formal dinner" seen from chair\n')
+    assert [str(f) for f in read_script(text=shown).facts] == [str(f) for f in read_script(FULL).facts]
+    second = example("second_table.scene.json")
+    assert deixis(monkeypatch, "check", "formal_dinner", second, "--json", "--memory", taught) == 1
+    found = json.loads(capsys.readouterr().out)
+    assert [entry["object"] for entry in found["misplaced"]] == ["dinner_fork", "dinner_knife"]
+    assert [entry["object"] for entry in found["missing"]] == ["water_glass"]
+    assert [entry["perceived"] for entry in found["extra"]] == ["p1"]
+    assert found["misplaced"][0]["violated"][0]["line"] == 7
+    assert deixis(monkeypatch, "check", "formal_diner", second, "--memory", taught) == 2
+    assert "did you mean 'formal_dinner'" in capsys.readouterr().err
+    assert deixis(monkeypatch, "memory", "stats", "--json", "--memory", taught) == 0
+    assert json.loads(capsys.readouterr().out)["lesson_ids"] == ["formal_dinner-1", "script1-1"]
+    assert deixis(monkeypatch, "memory", "forget", "formal_diner-1", "--memory", taught) == 2
+    assert "formal_dinner-1" in capsys.readouterr().err
+    for refused in ("INSERT DATA { <a:b> <a:c> 1 }", "ASK { SERVICE <http://localhost/> { ?s ?p ?o } }"):
+        assert deixis(monkeypatch, "query", refused, "--memory", taught) == 2
+    assert deixis(monkeypatch, "query", "ASK { ?x a dx:Nothing }", "--memory", taught) == 1
+
+
+def test_nothing_is_made_where_only_reading_was_asked_for(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for command in (["show", "x"], ["query", "ASK {}"], ["memory", "stats"], ["memory", "forget", "x"]):
+        assert deixis(monkeypatch, *command, "--memory", tmp_path / "none") == 2
+        assert capsys.readouterr().err.count("\n") == 1
+    assert not (tmp_path / "none").exists()
+
+
+def test_the_memory_is_where_the_environment_says(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setenv("DEIXIS_MEMORY", str(tmp_path / "here"))
+    assert default_memory() == tmp_path / "here"
+    monkeypatch.delenv("DEIXIS_MEMORY")
+    monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path))
+    assert default_memory() == tmp_path / "deixis" / "memory"
