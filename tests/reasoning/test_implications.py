@@ -284,3 +284,19 @@ def test_whatever_follows_from_facts_that_hold_of_boxes_holds_of_them_and_contra
     assert find_conflict(implied) is None
     for relation, s, o in implied.triples():
         assert relation.name in geometry(boxes[ids.index(s)], boxes[ids.index(o)])
+
+
+@settings(deadline=None, max_examples=40)
+@given(stated=facts)
+def test_what_is_implied_without_derivations_is_what_is_derived(stated: list[Triple]) -> None:
+    implied = implications(stated)
+    graph = implied.graph
+    listed = list(implied.implied())
+    derived = list(implied.inferred())
+    assert [str(fact) for fact in listed] == [str(derivation.fact) for derivation in derived]
+    for fact, derivation in zip(listed, derived, strict=True):
+        rule, edges = implied.support(fact)
+        assert rule == derivation.rule
+        assert {graph.fact(edge) for edge in edges} == set(derivation.stated())
+        assert implied.steps(fact) >= len(edges)
+    assert implied.count() == len(list(implied.triples()))

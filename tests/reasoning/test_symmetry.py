@@ -122,3 +122,11 @@ def test_a_thousand_like_objects_are_one_group_soon() -> None:
 
 def test_no_objects_have_no_groups() -> None:
     assert interchangeable(RelationGraph.from_facts(R, [], []), []) == []
+
+
+def test_many_parts_that_are_alike_are_told_quickly() -> None:
+    left = (R["left"],)
+    facts = [Fact(f"fork{i}", left, f"plate{i}") for i in range(300)]
+    names = [name for fact in facts for name in (fact.subject, fact.object)]
+    graph = RelationGraph.from_facts(R, names, facts)
+    assert sorted(map(len, interchangeable(graph, [0] * len(names)))) == [300, 300]
