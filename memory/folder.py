@@ -45,7 +45,6 @@ def inspect(folder: Path) -> State:
     names = set(os.listdir(folder))
     if MARK in names:
         read_mark(folder)
-        _check_store(folder)
         return State.MEMORY
     if STORE in names and NEW_MARK in names:
         return State.UNFINISHED
@@ -83,7 +82,7 @@ def read_mark(folder: Path) -> dict[str, Any]:
     return mark
 
 
-def _check_store(folder: Path) -> None:
+def _check_current(folder: Path) -> None:
     store = folder / STORE
     if not store.is_dir() and (folder / OLD).is_dir():
         store = folder / OLD  # a swap was cut short; finish() puts it back
@@ -101,7 +100,11 @@ def _check_store(folder: Path) -> None:
 
 
 def check_store_opens(folder: Path) -> None:
-    """Opens the store for reading only, which changes nothing, and lets go. Raises MemoryFormatError."""
+    """Opens the store for reading only, which changes nothing, and lets go. Raises MemoryFormatError.
+
+    To be called by the owner: another process may be about to replace the files.
+    """
+    _check_current(folder)
     if not (folder / STORE).is_dir():
         return
     try:

@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 
 from deixis.ontology.graph import Fact, RelationGraph
 from deixis.ontology.relation import Relation, Relations
-from deixis.reasoning.implications import FAR, Implications
+from deixis.reasoning.closure import FAR
+from deixis.reasoning.implications import Implications
 
 
 @dataclass(frozen=True)

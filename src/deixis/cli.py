@@ -19,9 +19,9 @@ import typer
 from deixis.cli_memory import HideLabels, Image, SceneFile, register
 
 if TYPE_CHECKING:
+    from deixis.inference import Inference
     from deixis.ontology.graph import Fact
     from deixis.reasoning.grounding import Grounding
-    from deixis.session import Inference
 
 NO, BAD_INPUT, UNDECIDED = 1, 2, 3
 

@@ -8,9 +8,10 @@ from deixis.ontology.export import fact_to_dict, graph_to_dict
 
 if TYPE_CHECKING:
     from deixis.grammar.script import Script
+    from deixis.inference import Inference, Inferred
     from deixis.reasoning.grounding import FactOutcome, Grounding
     from deixis.reasoning.implications import Derivation
-    from deixis.session import Checked, Inference, Inferred, Learned
+    from deixis.session import Checked, Learned
 
 
 def script_to_dict(script: Script) -> dict[str, Any]:

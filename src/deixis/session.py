@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
@@ -13,65 +13,24 @@ from typing import TYPE_CHECKING, Any
 from deixis.grammar.parser import parse_script
 from deixis.grammar.parser import read_script as read_script_file
 from deixis.grammar.script import Script
-from deixis.ontology.graph import Fact
+from deixis.inference import Inference, inference_of
 from deixis.ontology.tbox import Ontology
 from deixis.perception.scene import Scene
 from deixis.perception.scene_file import read_scene
-from deixis.reasoning.conflict import Conflict, find_conflict
+from deixis.reasoning.conflict import find_conflict
 from deixis.reasoning.engines import Select, engine_named
 from deixis.reasoning.errors import InconsistencyError, SettingError
 from deixis.reasoning.evidence import Evidence
 from deixis.reasoning.grounding import DEFAULT_TIME_LIMIT, Grounding
 from deixis.reasoning.grounding import ground as ground_evidence
-from deixis.reasoning.implications import Implications, Rule
+from deixis.reasoning.implications import Implications
 from deixis.reasoning.labels import Label, label_evidence
 
 if TYPE_CHECKING:
+    from deixis.memory.results import QueryResult
     from deixis.memory.semantic import SemanticMemory
-    from deixis.memory.sparql import QueryResult
     from deixis.ontology.concepts import LayoutConcept, Lesson
     from deixis.reasoning.checking import TableCheck
-
-
-MANY_STEPS = 40
-"""Stated facts of which an inferred one is listed with all its lines; ``--explain`` has the others."""
-
-
-@dataclass(frozen=True, slots=True)
-class Inferred:
-    """A fact that follows, by what rule last, and from what: how many stated facts, and their lines unless too many."""
-
-    fact: Fact
-    rule: Rule
-    steps: int
-    lines: tuple[int, ...]
-
-
-@dataclass(frozen=True)
-class Inference:
-    """What a script implies: every fact that follows without being stated, or the conflict that spoils it."""
-
-    stated: tuple[Fact, ...]
-    implications: Implications
-    conflict: Conflict | None
-
-    @property
-    def consistent(self) -> bool:
-        return self.conflict is None
-
-    def inferred(self) -> tuple[Inferred, ...]:
-        """The facts that follow without being stated; none where the script contradicts itself."""
-        return tuple(self._inferred()) if self.consistent else ()
-
-    def _inferred(self) -> Iterator[Inferred]:
-        lines = [source.line if source else 0 for source in self.implications.graph.sources]
-        for fact in self.implications.implied():
-            steps = self.implications.steps(fact)
-            if steps > MANY_STEPS:
-                yield Inferred(fact, Rule.TRANSITIVITY, steps, ())
-                continue
-            rule, edges = self.implications.support(fact)
-            yield Inferred(fact, rule, steps, tuple(sorted({lines[edge] for edge in edges})))
 
 
 def read_script(path: str | Path | None = None, *, text: str | None = None, ontology: Ontology | None = None) -> Script:
@@ -87,9 +46,7 @@ def read_script(path: str | Path | None = None, *, text: str | None = None, onto
 
 def infer(script: Script | str | Path) -> Inference:
     """What follows from a script in the wide reading, and whether it contradicts itself."""
-    script = _script(script)
-    implications = Implications(script.graph())
-    return Inference(script.facts, implications, find_conflict(implications))
+    return inference_of(_script(script))
 
 
 def evidence_of(script: Script, scene: Scene) -> Evidence:

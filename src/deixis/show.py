@@ -10,9 +10,10 @@ MANY = 12
 
 if TYPE_CHECKING:
     from deixis.grammar.script import Script
+    from deixis.inference import Inference, Inferred
     from deixis.ontology.graph import Fact
     from deixis.reasoning.grounding import FactOutcome, Grounding, Match
-    from deixis.session import Checked, Inference, Inferred, Learned
+    from deixis.session import Checked, Learned
 
 
 def script_lines(script: Script) -> list[str]:

@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-import io
-import sys
-from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
-from unittest.mock import patch
 
 import pytest
+from commands import deixis
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from deixis.cli import main
 from deixis.examples_data import example
 
 SCRIPT1, SCENE = example("script1.layout"), example("place_setting.scene.json")
@@ -40,19 +36,6 @@ BAD_SCRIPTS = {
     "json": '{"objects": []}',
 }
 COMMANDS = [("parse",), ("parse", "--json"), ("fmt",), ("fmt", "--check"), ("infer",), ("infer", "--json")]
-
-
-def deixis(*args: object) -> tuple[int, str, str]:
-    """Runs a command in this process: exit code, standard output, standard error."""
-    out, err = io.StringIO(), io.StringIO()
-    with patch.object(sys, "argv", ["deixis", *map(str, args)]), redirect_stdout(out), redirect_stderr(err):
-        try:
-            main()
-            code: object = 0
-        except SystemExit as end:
-            code = end.code
-    assert isinstance(code, int | None)
-    return code or 0, out.getvalue(), err.getvalue()
 
 
 def refused(*args: object) -> str:

@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-import io
 import json
-import sys
-from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
-from unittest.mock import patch
 
 import pytest
+from commands import deixis
 
-from deixis.cli import main
 from deixis.examples_data import example
 
 SCRIPT1, FULL = example("script1.layout"), example("formal_dinner.layout")
@@ -29,19 +25,6 @@ PROMISED = {
 }
 QUALIFYING = {"left_out": dict, "converged": bool, "notes": list}
 MAGIC = {"png": b"\x89PNG\r\n\x1a\n", "svg": b"<?xml", "pdf": b"%PDF-"}
-
-
-def deixis(*args: object) -> tuple[int, str, str]:
-    """Runs a command in this process: exit code, standard output, standard error."""
-    out, err = io.StringIO(), io.StringIO()
-    with patch.object(sys, "argv", ["deixis", *map(str, args)]), redirect_stdout(out), redirect_stderr(err):
-        try:
-            main()
-            code: object = 0
-        except SystemExit as end:
-            code = end.code
-    assert isinstance(code, int | None)
-    return code or 0, out.getvalue(), err.getvalue()
 
 
 def write(path: Path, text: str) -> Path:

@@ -2,32 +2,16 @@
 
 from __future__ import annotations
 
-import io
 import json
-import sys
-from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
 from unittest.mock import patch
 
 import pytest
+from commands import deixis
 
-from deixis.cli import main
 from deixis.examples_data import example
 
 SCRIPT1, CONTRADICTION = example("script1.layout"), example("contradiction.layout")
-
-
-def deixis(*args: object) -> tuple[int, str, str]:
-    """Runs a command in this process: exit code, standard output, standard error."""
-    out, err = io.StringIO(), io.StringIO()
-    with patch.object(sys, "argv", ["deixis", *map(str, args)]), redirect_stdout(out), redirect_stderr(err):
-        try:
-            main()
-            code: object = 0
-        except SystemExit as end:
-            code = end.code
-    assert isinstance(code, int | None)
-    return code or 0, out.getvalue(), err.getvalue()
 
 
 def script(folder: Path, text: str) -> Path:

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pyoxigraph as ox
 import pytest
+from commands import deixis
 
-from deixis.cli import main
 from deixis.examples_data import example
 from deixis.memory.exchange import export_memory
 from deixis.memory.graphs import GraphName
@@ -30,15 +30,6 @@ def taught(tmp_path_factory: pytest.TempPathFactory) -> Path:
         session.learn(FULL, SCENE)
         session.learn(SCRIPT1, SCENE)
     return path
-
-
-def deixis(monkeypatch: pytest.MonkeyPatch, *arguments: object) -> int:
-    monkeypatch.setattr("sys.argv", ["deixis", *map(str, arguments)])
-    try:
-        main()
-    except SystemExit as left:
-        return int(left.code or 0)
-    return 0
 
 
 def test_a_lesson_outlives_the_process_that_learned_it(taught: Path) -> None:
@@ -71,7 +62,8 @@ def test_what_is_doubtful_is_recorded_and_teaches_nothing(taught: Path) -> None:
 def test_a_category_says_which_lessons_showed_it(taught: Path) -> None:
     with Session(taught) as session:
         rows = session.query(
-            f"SELECT ?lesson {{ ?m dx:category <{LEARNED}category/napkin> ; prov:wasGeneratedBy ?lesson }} ORDER BY ?lesson"
+            f"SELECT ?lesson {{ ?m dx:category <{LEARNED}category/napkin> ; prov:wasGeneratedBy ?lesson }} "
+            "ORDER BY ?lesson"
         ).rows
         assert [str(row[0]) for row in rows] == [
             f"<{LEARNED}lesson/{lesson}>" for lesson in ("formal_dinner-1", "script1-1")
@@ -126,41 +118,49 @@ def test_a_lesson_that_makes_a_kind_impossible_is_refused_and_changes_nothing(tm
 
 
 def test_a_script_that_contradicts_itself_is_not_learned(tmp_path: Path) -> None:
-    with Session(tmp_path / "memory") as session:
-        with pytest.raises(InconsistencyError, match="contradiction.layout:5:1"):
-            session.learn(example("contradiction.layout"), SCENE)
+    session = Session(tmp_path / "memory")
+    with pytest.raises(InconsistencyError, match=r"contradiction\.layout:5:1"):
+        session.learn(example("contradiction.layout"), SCENE)
     assert not (tmp_path / "memory").exists()
 
 
-def test_the_commands(taught: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
-    assert deixis(monkeypatch, "show", "formal_dinner", "--memory", taught) == 0
-    shown = capsys.readouterr().out
-    assert shown.startswith('layout formal_dinner "Formal dinner" seen from chair\n')
+def test_the_commands(taught: Path) -> None:
+    code, shown, _ = deixis("show", "formal_dinner", "--memory", taught)
+    assert (code, shown.splitlines()[0]) == (0, 'layout formal_dinner "Formal dinner" seen from chair')
     assert [str(f) for f in read_script(text=shown).facts] == [str(f) for f in read_script(FULL).facts]
     second = example("second_table.scene.json")
-    assert deixis(monkeypatch, "check", "formal_dinner", second, "--json", "--memory", taught) == 1
-    found = json.loads(capsys.readouterr().out)
+    code, told, _ = deixis("check", "formal_dinner", second, "--json", "--memory", taught)
+    found = json.loads(told)
+    assert code == 1
     assert [entry["object"] for entry in found["misplaced"]] == ["dinner_fork", "dinner_knife"]
     assert [entry["object"] for entry in found["missing"]] == ["water_glass"]
     assert [entry["perceived"] for entry in found["extra"]] == ["p1"]
     assert found["misplaced"][0]["violated"][0]["line"] == 7
-    assert deixis(monkeypatch, "check", "formal_diner", second, "--memory", taught) == 2
-    assert "did you mean 'formal_dinner'" in capsys.readouterr().err
-    assert deixis(monkeypatch, "memory", "stats", "--json", "--memory", taught) == 0
-    assert json.loads(capsys.readouterr().out)["lesson_ids"] == ["formal_dinner-1", "script1-1"]
-    assert deixis(monkeypatch, "memory", "forget", "formal_diner-1", "--memory", taught) == 2
-    assert "formal_dinner-1" in capsys.readouterr().err
-    for refused in ("INSERT DATA { <a:b> <a:c> 1 }", "ASK { SERVICE <http://localhost/> { ?s ?p ?o } }"):
-        assert deixis(monkeypatch, "query", refused, "--memory", taught) == 2
-    assert deixis(monkeypatch, "query", "ASK { ?x a dx:Nothing }", "--memory", taught) == 1
+    code, told, _ = deixis("memory", "stats", "--json", "--memory", taught)
+    assert (code, json.loads(told)["lesson_ids"]) == (0, ["formal_dinner-1", "script1-1"])
+    assert deixis("query", "ASK { ?x a dx:Nothing }", "--memory", taught)[0] == 1
 
 
-def test_nothing_is_made_where_only_reading_was_asked_for(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+@pytest.mark.parametrize(
+    ("command", "said"),
+    [
+        (["check", "formal_diner", "SECOND"], "did you mean 'formal_dinner'"),
+        (["memory", "forget", "formal_diner-1"], "formal_dinner-1"),
+        (["query", "INSERT DATA { <a:b> <a:c> 1 }"], "INSERT is refused"),
+        (["query", "ASK { SERVICE <http://localhost/> { ?s ?p ?o } }"], "SERVICE is refused"),
+    ],
+)
+def test_a_refusal_says_what_is_wrong(taught: Path, command: list[str], said: str) -> None:
+    second = str(example("second_table.scene.json"))
+    code, out, err = deixis(*(second if part == "SECOND" else part for part in command), "--memory", taught)
+    assert (code, out) == (2, "")
+    assert said in err
+
+
+def test_nothing_is_made_where_only_reading_was_asked_for(tmp_path: Path) -> None:
     for command in (["show", "x"], ["query", "ASK {}"], ["memory", "stats"], ["memory", "forget", "x"]):
-        assert deixis(monkeypatch, *command, "--memory", tmp_path / "none") == 2
-        assert capsys.readouterr().err.count("\n") == 1
+        code, _, err = deixis(*command, "--memory", tmp_path / "none")
+        assert (code, err.count("\n")) == (2, 1)
     assert not (tmp_path / "none").exists()
 
 

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 from rdflib import OWL, RDF, RDFS, Graph, URIRef
 
-import deixis.reasoning.implications as module
+import deixis.reasoning.closure as module
 from deixis.ontology.graph import Fact, RelationGraph
 from deixis.ontology.relation import Relation, Relations
 from deixis.ontology.tbox import TBOX_FILE, default_ontology
