@@ -124,7 +124,7 @@ class _Compiler:
             return []
         path = said[_sh("path")]
         values = self._path(path[0]) if path else _itself
-        return [self._constraint(predicate, said, values) for predicate in said if predicate not in _NO_CONSTRAINT]
+        return [self._constraint(predicate, said, values) for predicate in list(said) if predicate not in _NO_CONSTRAINT]
 
     def _path(self, path: Node) -> Values:
         inverse = self._said[path][_sh("inversePath")] if isinstance(path, ox.BlankNode) else []

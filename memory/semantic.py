@@ -147,11 +147,10 @@ class SemanticMemory:
             return run_query(self.store, sparql)
 
     def dataset(self) -> rdflib.Dataset:
-        """A live view for rdflib over all graphs at once; read it, and write through this class."""
-        import rdflib
-        from oxrdflib import OxigraphStore
+        """A live view of the six canonical graphs for rdflib; to be read only."""
+        from deixis.memory.rdflib_view import dataset_view
 
-        view = rdflib.Dataset(store=OxigraphStore(store=self.store), default_union=True)
+        view = dataset_view(self.store)
         self._views.append(view)
         return view
 
@@ -180,5 +179,5 @@ class SemanticMemory:
 
     def _drop_views(self) -> None:
         for view in self._views:
-            view.store._store = ox.Store()
+            view.store._store = ox.Store()  # type: ignore[attr-defined]
         self._views.clear()

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+import logging
+from collections.abc import Collection, Iterable, Iterator
+from contextlib import contextmanager
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
@@ -24,32 +26,47 @@ def shapes_graph() -> rdflib.Graph:
     return rdflib.Graph().parse(SHAPES_FILE, format="turtle")
 
 
-def violations(triples: Iterable[ox.Triple], focus: Sequence[str] | None = None) -> list[ShapeResult]:
+def violations(triples: Iterable[ox.Triple], focus: Collection[str] | None = None) -> list[ShapeResult]:
     """What breaks the packaged shapes, of these focus nodes or of all; warnings left out, sorted."""
     results = [result for result in validate(triples, focus) if result.severity == "Violation"]
     return sorted(results, key=str)
 
 
-def validate(triples: Iterable[ox.Triple], focus: Sequence[str] | None = None) -> list[ShapeResult]:
-    """Every result of validating these triples, of whatever severity."""
+def validate(triples: Iterable[ox.Triple], focus: Collection[str] | None = None) -> list[ShapeResult]:
+    """Every result of validating these triples, of whatever severity; about some focus nodes or about all."""
     import pyshacl
     import rdflib
 
-    data = rdflib.Graph()
-    data.parse(data=(ox.serialize(triples, format=ox.RdfFormat.N_TRIPLES) or b"").decode("utf-8"), format="nt")
-    _, found, _ = pyshacl.validate(
-        data,
-        shacl_graph=shapes_graph(),
-        advanced=False,
-        inference="none",
-        do_owl_imports=False,
-        meta_shacl=False,
-        focus_nodes=None if focus is None else [rdflib.URIRef(node) for node in focus],
-    )
+    with _quiet():
+        data = rdflib.Graph()
+        data.parse(data=(ox.serialize(triples, format=ox.RdfFormat.N_TRIPLES) or b"").decode("utf-8"), format="nt")
+        _, found, _ = pyshacl.validate(
+            data,
+            shacl_graph=shapes_graph(),
+            advanced=False,
+            inference="none",
+            do_owl_imports=False,
+            meta_shacl=False,
+        )
     if not isinstance(found, rdflib.Graph):
         raise RuntimeError(f"pyshacl could not validate: {found}")
-    sh = rdflib.SH
-    return [_result(found, node) for node in found.subjects(rdflib.RDF.type, sh.ValidationResult)]
+    return [
+        _result(found, node)
+        for node in found.subjects(rdflib.RDF.type, rdflib.SH.ValidationResult)
+        if focus is None or str(found.value(node, rdflib.SH.focusNode)) in focus
+    ]
+
+
+@contextmanager
+def _quiet() -> Iterator[None]:
+    """Without rdflib's log of each literal that is ill-typed: the report names it."""
+    logger = logging.getLogger("rdflib.term")
+    level = logger.level
+    logger.setLevel(logging.CRITICAL)
+    try:
+        yield
+    finally:
+        logger.setLevel(level)
 
 
 def _result(found: rdflib.Graph, node: rdflib.term.Node) -> ShapeResult:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import pyoxigraph as ox
@@ -55,7 +56,7 @@ class _Text:
 def run_query(store: ox.Store, sparql: str) -> QueryResult:
     """Runs a query over a memory's store. Raises QueryError for what is refused or cannot be understood."""
     text = _Text(sparql)
-    checked = _check(text)
+    checked = _check(text, PREFIXES)
     graphs = {} if checked.names_graphs else {"default_graph": [*map(graph_iri, UNION)], "named_graphs": [*CANONICAL]}
     try:
         answer = store.query(checked.text, prefixes=PREFIXES, **graphs)  # type: ignore[arg-type]
@@ -66,19 +67,19 @@ def run_query(store: ox.Store, sparql: str) -> QueryResult:
         raise QueryError(f"query: {error}") from error
 
 
-def check_query(sparql: str) -> Checked:
-    """What a query would do, without running it. Raises QueryError for what is refused.
+def check_query(sparql: str, prefixes: Mapping[str, str] = PREFIXES) -> Checked:
+    """What a query would do, without running it; ``prefixes`` need no declaration. Raises QueryError for what is refused.
 
     >>> check_query("ASK { ?s ?p ?o }").kind
     <QueryKind.ASK: 'ask'>
     """
-    return _check(_Text(sparql))
+    return _check(_Text(sparql), prefixes)
 
 
-def _check(text: _Text) -> Checked:
+def _check(text: _Text, prefixes: Mapping[str, str]) -> Checked:
     found = list(tokens(text.text))
     declared = _declared(found)
-    known = {**PREFIXES, **declared}
+    known = {**prefixes, **declared}
     for position, token in enumerate(found):
         _refuse(text, token, found[position - 1 : position], found[position + 1 : position + 2], known)
     form = next((token for token in _body(found) if token.kind is Kind.WORD and token.upper in _FORMS), None)
@@ -127,8 +128,8 @@ def _refuse(text: _Text, token: Token, before: list[Token], after: list[Token], 
 
 def _unknown_prefix(prefix: str, known: dict[str, str]) -> str:
     near = nearest(prefix, sorted(known))
-    hint = f"did you mean '{near}:'?" if near else f"known without being declared are {', '.join(sorted(PREFIXES))}"
-    return f"the prefix '{prefix}:' is not known; {hint} Else declare it: PREFIX {prefix}: <…>"
+    hint = f"did you mean '{near}:'?" if near else f"known without being declared are {', '.join(sorted(PREFIXES))};"
+    return f"the prefix '{prefix}:' is not known; {hint} else declare it: PREFIX {prefix}: <…>"
 
 
 def _check_from(text: _Text, found: list[Token], known: dict[str, str]) -> bool:

@@ -94,4 +94,4 @@ def report(triples: Iterable[ox.Triple], nodes: Iterable[Node] | None = None) ->
     """The violations that pyshacl finds among these triples, of these focus nodes or of all."""
     from deixis.memory.shacl import violations
 
-    return violations(triples, None if nodes is None else [str(getattr(node, "value", "")) for node in nodes])
+    return violations(triples, None if nodes is None else {str(getattr(node, "value", "")) for node in nodes})
