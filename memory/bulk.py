@@ -10,7 +10,8 @@ import pyoxigraph as ox
 from deixis.memory import folder as files
 from deixis.memory.change import named
 from deixis.memory.errors import RejectedWriteError
-from deixis.memory.graphs import GraphName, graph_iri, loaded_graph
+from deixis.memory.graphs import MERGED, UNION, GraphName, graph_iri, loaded_graph
+from deixis.memory.merged import merge_if_overlapping
 from deixis.memory.opening import Opened
 from deixis.memory.writing import committed
 
@@ -30,6 +31,7 @@ def load_aside(opened: Opened, contributions: Mapping[GraphName, Iterable[ox.Tri
             store = ox.Store(aside)
             for name, triples in contributions.items():
                 store.bulk_extend(_quads(opened.store, GraphName(name), triples))
+            merge_if_overlapping(store)
             check_store(store)
             store.flush()
             del store
@@ -46,9 +48,12 @@ def load_aside(opened: Opened, contributions: Mapping[GraphName, Iterable[ox.Tri
 def _quads(store: ox.Store, name: GraphName, triples: Iterable[ox.Triple]) -> Iterator[ox.Quad]:
     """The quads to write: where the graph has content, a triple that is there already is marked as loaded too."""
     graph, mark = graph_iri(name), loaded_graph(name)
+    merged = name in UNION and store.contains_named_graph(MERGED)
     held = any(store.quads_for_pattern(None, None, None, graph))
     for triple in named(f"loaded.{name}", triples):
         quad = ox.Quad(triple.subject, triple.predicate, triple.object, graph)
         if held and quad in store:
             yield ox.Quad(triple.subject, triple.predicate, triple.object, mark)
+        if merged:
+            yield ox.Quad(triple.subject, triple.predicate, triple.object, MERGED)
         yield quad

@@ -14,15 +14,13 @@ from deixis.memory.graphs import GraphName, graph_iri, lesson_graph
 from deixis.ontology.iris import content_key
 from deixis.ontology.skolem import skolem
 
-Triples = Mapping[GraphName, frozenset[ox.Triple]]
-
 
 @dataclass(frozen=True)
 class Change:
     """What a write adds to and removes from the canonical graphs, and the operations of its one update."""
 
-    added: Triples = field(default_factory=dict)
-    removed: Triples = field(default_factory=dict)
+    added: ledger.Triples = field(default_factory=dict)
+    removed: ledger.Triples = field(default_factory=dict)
     statements: tuple[str, ...] = ()
 
 
@@ -79,7 +77,9 @@ def named(key: str, triples: Iterable[ox.Triple]) -> Iterable[ox.Triple]:
         if isinstance(subject, ox.NamedNode) and isinstance(object, ox.NamedNode | ox.Literal):
             yield triple
         else:
-            yield ox.Triple(_name(key, subject), triple.predicate, _name(key, object))
+            named_subject = _name(key, subject)
+            assert not isinstance(named_subject, ox.Literal)
+            yield ox.Triple(named_subject, triple.predicate, _name(key, object))
 
 
 def _name(key: str, term: ox.NamedNode | ox.BlankNode | ox.Literal | ox.Triple) -> ox.NamedNode | ox.Literal:

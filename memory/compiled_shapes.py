@@ -1,8 +1,8 @@
 """SHACL shapes as plain checks, so that what is well formed, which is nearly everything, is let through fast.
 
-A check says True only where it is sure; whatever it doubts goes to pyshacl, which decides and words the report. It knows
-the constraints that ``ontology/shapes.ttl`` uses, on paths of one step, and refuses to compile any other. Shapes that
-only warn are left out: they reject nothing.
+A check says True only where it is sure; whatever it doubts goes to pyshacl, which decides and words the report. The
+constraints that ``ontology/shapes.ttl`` uses are known, on paths of one step, and no other compiles. Shapes that only
+warn are left out: they reject nothing.
 """
 
 from __future__ import annotations
@@ -55,6 +55,10 @@ class Shape:
             or any(view.subjects(predicate, node) for predicate in self.objects_of)
         )
 
+    def sure(self, view: View, node: Node) -> bool:
+        """Whether a focus node surely conforms."""
+        return all(check(view, node) for check in self.checks)
+
     def focus(self, view: View) -> set[Node]:
         """All its focus nodes."""
         found = {node for kind in self.classes for node in view.instances(kind)}
@@ -79,9 +83,7 @@ class Shapes:
 
     def sure(self, view: View, node: Node) -> bool:
         """Whether a node surely conforms to every shape that targets it."""
-        return all(
-            check(view, node) for shape in self.shapes if shape.targets(view, node) for check in shape.checks
-        )
+        return all(shape.sure(view, node) for shape in self.shapes if shape.targets(view, node))
 
 
 @lru_cache(maxsize=1)
@@ -124,7 +126,9 @@ class _Compiler:
             return []
         path = said[_sh("path")]
         values = self._path(path[0]) if path else _itself
-        return [self._constraint(predicate, said, values) for predicate in list(said) if predicate not in _NO_CONSTRAINT]
+        return [
+            self._constraint(predicate, said, values) for predicate in list(said) if predicate not in _NO_CONSTRAINT
+        ]
 
     def _path(self, path: Node) -> Values:
         inverse = self._said[path][_sh("inversePath")] if isinstance(path, ox.BlankNode) else []
@@ -149,30 +153,18 @@ class _Compiler:
         return make(values, arguments)
 
     def _or(self, head: Node, values: Values, outer: Said) -> Check:
-        cases = []
-        for item in self._list(head):
-            said = self._said[item]
-            if not said[_sh("path")] and outer[_sh("path")]:
-                # an alternative about each value of the outer path
-                said = {**said, _sh("path"): outer[_sh("path")]}  # its class is asked of that path's values
-                said = defaultdict(list, said)
-                cases.append(self._each(said))
-            else:
-                cases.append(_each_of(self._shape(said)))
-        if outer[_sh("path")]:
+        outer_path = outer[_sh("path")]
+        cases = [self._case(self._said[item], outer_path) for item in self._list(head)]
+        if outer_path:  # an alternative about each value of the outer path
             return lambda view, node: all(any(case(view, value) for case in cases) for value in values(view, node))
         return lambda view, node: any(case(view, node) for case in cases)
 
-    def _each(self, said: Said) -> Check:
-        """The checks of an alternative, asked of one value."""
-        path = said[_sh("path")]
-        inner = {predicate: found for predicate, found in said.items() if predicate != _sh("path")}
-        checks = [
-            self._constraint(predicate, defaultdict(list, {**inner, _sh("path"): path}), _itself)
-            for predicate in inner
-            if predicate not in _NO_CONSTRAINT
-        ]
-        return _each_of(checks)
+    def _case(self, said: Said, outer_path: list[Node]) -> Check:
+        """One alternative of sh:or, asked of one value; a class that it asks for is one of the outer path's values."""
+        if said[_sh("path")] or not outer_path:
+            return _all_of(self._shape(said))
+        placed: Said = defaultdict(list, {**said, _sh("path"): outer_path})
+        return _all_of([self._constraint(p, placed, _itself) for p in list(said) if p not in _NO_CONSTRAINT])
 
     def _list(self, head: Node) -> list[Node]:
         items = []
@@ -198,9 +190,5 @@ def _backwards(predicate: ox.NamedNode) -> Values:
     return lambda view, node: view.subjects(predicate, node)
 
 
-def _each_of(checks: Sequence[Check]) -> Check:
+def _all_of(checks: Sequence[Check]) -> Check:
     return lambda view, node: all(check(view, node) for check in checks)
-
-
-_all_of = _each_of
-

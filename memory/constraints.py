@@ -53,11 +53,13 @@ def _number(node: Node) -> float | None:
 
 
 def _moment(node: Node) -> datetime | None:
+    """The time that a literal names; None for one without a zone, which cannot be compared with the rest."""
     if isinstance(node, ox.Literal) and node.datatype == _DATE_TIME:
         try:
-            return datetime.fromisoformat(node.value)
+            moment = datetime.fromisoformat(node.value)
         except ValueError:
             return None
+        return moment if moment.tzinfo is not None else None
     return None
 
 
@@ -81,7 +83,9 @@ def _each(values: Values, holds: Callable[[Node], bool]) -> Check:
 
 def _datatype(values: Values, arguments: Sequence[Node]) -> Check:
     (wanted,) = arguments
-    return _each(values, lambda value: isinstance(value, ox.Literal) and value.datatype == wanted and _well_spelt(value))
+    return _each(
+        values, lambda value: isinstance(value, ox.Literal) and value.datatype == wanted and _well_spelt(value)
+    )
 
 
 def _class(values: Values, arguments: Sequence[Node]) -> Check:

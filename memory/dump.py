@@ -77,6 +77,8 @@ def read_dump(file: Path) -> Dump:
     dump, plain = Dump(), list[ox.Triple]()
     found: dict[str, list[ox.Triple]] = defaultdict(list)
     for quad in read_quads(file):
+        if isinstance(quad.object, ox.Triple):
+            raise ImportFormatError(f"{file}: a triple inside a triple cannot be kept: {quad.object}")
         if isinstance(quad.graph_name, ox.DefaultGraph):
             plain.append(quad.triple)
         elif isinstance(quad.graph_name, ox.NamedNode):
@@ -84,7 +86,7 @@ def read_dump(file: Path) -> Dump:
         else:
             raise ImportFormatError(f"{file}: a graph without a name, {quad.graph_name}, has no place in a memory")
     for graph, triples in found.items():
-        _place(dump, file, graph).update(_stored(file, triples))
+        _place(dump, file, graph).update(ledger.as_stored(with_names(triples)))
     if plain:
         _add_plain(dump, file, plain)
     return dump
@@ -102,13 +104,6 @@ def _place(dump: Dump, file: Path, graph: str) -> set[ox.Triple]:
     return kept[name]
 
 
-def _stored(file: Path, triples: list[ox.Triple]) -> list[ox.Triple]:
-    for triple in triples:
-        if isinstance(triple.object, ox.Triple):
-            raise ImportFormatError(f"{file}: a triple inside a triple cannot be kept: {triple}")
-    return ledger.as_stored(with_names(triples))
-
-
 def _add_plain(dump: Dump, file: Path, triples: list[ox.Triple]) -> None:
     lesson = file.stem
     if lesson in dump.lessons:
@@ -120,7 +115,7 @@ def _add_plain(dump: Dump, file: Path, triples: list[ox.Triple]) -> None:
         ox.Triple(about, iri(PROV.STARTED_AT_TIME), typed(datetime.now(UTC))),
     ]
     key = content_key(lesson)
-    dump.lessons[lesson][GraphName.ASSERTED].update(_stored(file, list(named(key, triples))))
+    dump.lessons[lesson][GraphName.ASSERTED].update(ledger.as_stored(named(key, triples)))
     dump.lessons[lesson][GraphName.EPISODES].update(ledger.as_stored(told))
 
 

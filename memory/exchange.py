@@ -12,7 +12,8 @@ from deixis.memory.change import Change
 from deixis.memory.dump import Dump, read_dump
 from deixis.memory.errors import ImportFormatError, RejectedWriteError
 from deixis.memory.folder import State, inspect
-from deixis.memory.graphs import CANONICAL, CONTRIBUTED, GraphName, graph_iri, loaded_graph
+from deixis.memory.graphs import CANONICAL, CONTRIBUTED, GraphName, copied_graph, graph_iri, loaded_graph
+from deixis.memory.merged import merge_if_overlapping
 from deixis.memory.opening import open_memory
 from deixis.memory.package import packaged
 from deixis.memory.semantic import SemanticMemory
@@ -33,9 +34,8 @@ def export_memory(memory: SemanticMemory, format: str = "trig") -> str:
     if format != "trig":
         raise ImportFormatError(f"no export as '{format}': it is trig or turtle")
     graphs = [graph for graph in memory.store.named_graphs() if isinstance(graph, ox.NamedNode)]
-    first = list(CANONICAL)
-    rest = sorted((graph for graph in graphs if graph not in CANONICAL), key=lambda graph: graph.value)
-    return trig((graph, ledger.triples_in(memory.store, graph)) for graph in [*first, *rest])
+    copies = sorted((graph for graph in graphs if copied_graph(graph.value)), key=lambda graph: graph.value)
+    return trig((graph, ledger.triples_in(memory.store, graph)) for graph in [*CANONICAL, *copies])
 
 
 def import_dump(file: str | Path, target: str | Path) -> None:
@@ -63,6 +63,7 @@ def _fill(store: ox.Store, dump: Dump) -> None:
     statements = list(ledger.package_update(store, packaged()))
     if statements:
         store.update(" ;\n".join(statements))
+    merge_if_overlapping(store)
     check_store(store)
 
 
@@ -83,9 +84,9 @@ def _merged(memory: SemanticMemory, dump: Dump, file: Path) -> Change:
         statements += ledger.arrival(store, lesson, said)
         for name, triples in said.items():
             added[name].update(triples)
-    for name, graph, triples in _loose(store, dump):
-        statements += ledger.insertion(graph, sorted(triples, key=str))
-        added[name].update(triples)
+    for name, graph, loose in _loose(store, dump):
+        statements += ledger.insertion(graph, sorted(loose, key=str))
+        added[name].update(loose)
     return Change({name: frozenset(triples) for name, triples in added.items()}, {}, tuple(statements))
 
 
@@ -93,7 +94,7 @@ def _loose(store: ox.Store, dump: Dump) -> Iterator[tuple[GraphName, ox.NamedNod
     """What belongs to no lesson, by graph; what a lesson says as well is marked as loaded, so that it stays."""
     for name in CONTRIBUTED:
         loose = dump.loose(name)
-        also = {triple for triple in loose if any(store.quads_for_pattern(*triple, None))} | dump.loaded[name]
+        also = {triple for triple in loose if any(ledger.quads_of(store, triple))} | dump.loaded[name]
         also |= {triple for triple in loose for graphs in dump.lessons.values() if triple in graphs[name]}
         yield name, graph_iri(name), loose
         yield name, loaded_graph(name), also

@@ -91,7 +91,7 @@ def _check_current(folder: Path) -> None:
         manifest = current.read_text(encoding="ascii").strip()
     except (OSError, ValueError):
         raise MemoryFormatError(
-            f"the memory at {folder} is damaged: {STORE}/CURRENT is missing or unreadable; restore the folder from a copy"
+            f"the memory at {folder} is damaged: {STORE}/CURRENT is missing; restore the folder from a copy"
         ) from None
     if not manifest.startswith("MANIFEST-") or not (store / manifest).is_file():
         raise MemoryFormatError(

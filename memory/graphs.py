@@ -40,6 +40,9 @@ CONTRIBUTED = tuple(name for name in GraphName if name is not GraphName.INFERRED
 UNION = (GraphName.ASSERTED, GraphName.INFERRED, GraphName.LEARNED)
 """The graphs that a query without GRAPH looks at."""
 
+MERGED = ox.NamedNode(GRAPHS + "merged")
+"""Their union as a graph of its own, kept where they overlap: see :mod:`deixis.memory.merged`."""
+
 
 def graph_iri(name: GraphName) -> ox.NamedNode:
     """The IRI of a canonical graph."""

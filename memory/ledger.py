@@ -22,6 +22,8 @@ from deixis.ontology.vocabulary import PROV
 
 Contributions = Mapping[GraphName, Sequence[ox.Triple]]
 
+Triples = Mapping[GraphName, frozenset[ox.Triple]]
+
 _STARTED = ox.NamedNode(PROV.STARTED_AT_TIME)
 
 
@@ -43,6 +45,16 @@ def triples_in(store: ox.Store, graph: ox.NamedNode) -> Iterator[ox.Triple]:
         yield quad.triple
 
 
+def quad_of(triple: ox.Triple, graph: ox.NamedNode) -> ox.Quad:
+    """The triple in a graph."""
+    return ox.Quad(triple.subject, triple.predicate, triple.object, graph)
+
+
+def quads_of(store: ox.Store, triple: ox.Triple) -> Iterator[ox.Quad]:
+    """The triple in every graph that holds it."""
+    return store.quads_for_pattern(triple.subject, triple.predicate, triple.object, None)
+
+
 def copies(store: ox.Store, lesson: str) -> dict[GraphName, list[ox.Triple]]:
     """What one lesson contributed, by graph."""
     found = {name: list(triples_in(store, lesson_graph(lesson, name))) for name in CONTRIBUTED}
@@ -55,7 +67,7 @@ def only_of(store: ox.Store, copy: ox.NamedNode, name: GraphName, triples: Itera
 
 
 def _held_elsewhere(store: ox.Store, copy: ox.NamedNode, name: GraphName, triple: ox.Triple) -> bool:
-    quads = store.quads_for_pattern(*triple, None)
+    quads = quads_of(store, triple)
     return any(quad.graph_name != copy and _copies(quad.graph_name, name) for quad in quads)
 
 
@@ -70,7 +82,7 @@ def arrival(store: ox.Store, lesson: str, contributions: Contributions) -> Itera
 def _unowned(store: ox.Store, name: GraphName, triples: Iterable[ox.Triple]) -> Iterator[ox.Triple]:
     """Those that were loaded in bulk: the canonical graph has them, and no copy does."""
     for triple in triples:
-        graphs = {quad.graph_name for quad in store.quads_for_pattern(*triple, None)}
+        graphs = {quad.graph_name for quad in quads_of(store, triple)}
         if graph_iri(name) in graphs and not any(_copies(graph, name) for graph in graphs):
             yield triple
 
@@ -94,7 +106,7 @@ def package_update(store: ox.Store, packaged: Contributions) -> Iterator[str]:
 def as_stored(triples: Iterable[ox.Triple]) -> list[ox.Triple]:
     """The triples as a store gives them back: numbers, times and language tags in one spelling, sorted."""
     store = ox.Store()
-    store.extend(ox.Quad(*triple) for triple in triples)
+    store.extend(ox.Quad(t.subject, t.predicate, t.object) for t in triples)
     return sorted((quad.triple for quad in store), key=str)
 
 

@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator
 import pyoxigraph as ox
 
 from deixis.memory.graphs import GRAPHS
+from deixis.memory.merged import merge_if_overlapping
 
 VERSION = 1
 
@@ -28,6 +29,7 @@ def _from_0(old: ox.Store, new: ox.Store) -> None:
             yield ox.Quad(quad.subject, quad.predicate, quad.object, graph)
 
     new.bulk_extend(renamed())
+    merge_if_overlapping(new)
 
 
 MIGRATIONS: dict[int, Callable[[ox.Store, ox.Store], None]] = {0: _from_0}

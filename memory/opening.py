@@ -54,7 +54,7 @@ def _fill(store: ox.Store) -> None:
 
 
 def open_memory(folder: Path, create: bool, fill: Callable[[ox.Store], None] = _fill) -> Opened:
-    """Opens a memory, or makes one whose store ``fill`` fills: see :meth:`deixis.memory.semantic.SemanticMemory.open`."""
+    """Opens a memory, or makes one whose store ``fill`` fills; raises as ``SemanticMemory.open`` does."""
     state = files.inspect(folder)
     if state in (State.ABSENT, State.EMPTY) and not create:
         what = "there is no memory at" if state is State.ABSENT else "there is no memory yet in the empty folder"

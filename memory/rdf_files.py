@@ -76,7 +76,9 @@ def _xml(file: Path, content: bytes) -> str:
     if found:
         line = text.count("\n", 0, found.start()) + 1
         column = found.start() - text.rfind("\n", 0, found.start())
-        raise ImportFormatError(f"{file}:{line}:{column}: a DTD ({found.group()}) is refused; take it out of the file")
+        raise ImportFormatError(
+            f"{file}:{line}:{column}: a DTD (<!{found.group(1)}) is refused; take it out of the file"
+        )
     return text
 
 

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import pyoxigraph as ox
 
 from deixis.memory.errors import MemoryFormatError
-from deixis.memory.graphs import CANONICAL
+from deixis.memory.graphs import CANONICAL, UNION
+from deixis.memory.merged import default_graph
 from deixis.memory.sparql import check_query
 
 if TYPE_CHECKING:
@@ -73,7 +74,8 @@ class _Canonical:
         self._store = store
 
     def query(self, query: str, **kwargs: Any) -> Any:
-        kwargs |= {"use_default_graph_as_union": False, "default_graph": [*CANONICAL], "named_graphs": [*CANONICAL]}
+        graphs = [*default_graph(self._store), *(graph for graph, name in CANONICAL.items() if name not in UNION)]
+        kwargs |= {"use_default_graph_as_union": False, "default_graph": graphs, "named_graphs": [*CANONICAL]}
         return self._store.query(query, **kwargs)
 
 

@@ -51,7 +51,7 @@ class QueryResult:
             return cls(kind, boolean=bool(answer))
         if isinstance(answer, ox.QuerySolutions):
             variables = tuple(variable.value for variable in answer.variables)
-            rows = [tuple(solution[name] for name in variables) for solution in answer]
+            rows = [tuple(solution) for solution in answer]
             return cls(kind, variables, tuple(rows if ordered else sorted(rows, key=_row_key)))
         return cls(kind, triples=tuple(sorted(set(answer), key=str)))
 

@@ -19,6 +19,7 @@ from deixis.memory import ledger
 from deixis.memory.change import Change, arriving, departing, incoming
 from deixis.memory.errors import MemoryFormatError, RejectedWriteError, UnknownLessonError
 from deixis.memory.graphs import GraphName, graph_iri
+from deixis.memory.merged import merging
 from deixis.memory.opening import Opened, open_memory
 from deixis.memory.stats import MemoryStats, count
 from deixis.memory.writing import committed, reading
@@ -27,7 +28,7 @@ from deixis.ontology.relation import nearest
 if TYPE_CHECKING:
     import rdflib
 
-    from deixis.memory.sparql import QueryResult
+    from deixis.memory.results import QueryResult
 
 
 class SemanticMemory:
@@ -165,7 +166,8 @@ class SemanticMemory:
 
         check_change(self.store, change)
         with committed(self.path):
-            self.store.update(" ;\n".join(change.statements))
+            statements = [*change.statements, *merging(self.store, change.added, change.removed)]
+            self.store.update(" ;\n".join(statements))
             self.store.flush()
 
     def _known(self, lesson: str) -> None:

@@ -1,8 +1,9 @@
-"""pyshacl, asked about a few triples in a graph of rdflib's own: over a live view it takes strings for something else."""
+"""pyshacl, asked about a few triples in a graph of rdflib's own: over a live view it misjudges plain strings."""
 
 from __future__ import annotations
 
 import logging
+import warnings
 from collections.abc import Collection, Iterable, Iterator
 from contextlib import contextmanager
 from functools import lru_cache
@@ -28,8 +29,20 @@ def shapes_graph() -> rdflib.Graph:
 
 def violations(triples: Iterable[ox.Triple], focus: Collection[str] | None = None) -> list[ShapeResult]:
     """What breaks the packaged shapes, of these focus nodes or of all; warnings left out, sorted."""
-    results = [result for result in validate(triples, focus) if result.severity == "Violation"]
-    return sorted(results, key=str)
+    triples = list(triples)
+    try:
+        results = validate(triples, focus)
+    except (TypeError, ValueError, ArithmeticError, RuntimeError):
+        # pyshacl gives up on values that cannot be compared, such as a time with a zone and one without
+        if focus is None or len(focus) == 1:
+            return [_incomparable(*(focus or ()))]
+        results = [result for node in focus for result in violations(triples, {node})]
+    return sorted({result for result in results if result.severity == "Violation"}, key=str)
+
+
+def _incomparable(node: str = "somewhere") -> ShapeResult:
+    told = "values that are to be compared cannot be: give numbers and times in the datatypes that the ontology states"
+    return ShapeResult(short(node), None, told, "Violation", "comparable values")
 
 
 def validate(triples: Iterable[ox.Triple], focus: Collection[str] | None = None) -> list[ShapeResult]:
@@ -50,21 +63,33 @@ def validate(triples: Iterable[ox.Triple], focus: Collection[str] | None = None)
         )
     if not isinstance(found, rdflib.Graph):
         raise RuntimeError(f"pyshacl could not validate: {found}")
-    return [
-        _result(found, node)
-        for node in found.subjects(rdflib.RDF.type, rdflib.SH.ValidationResult)
-        if focus is None or str(found.value(node, rdflib.SH.focusNode)) in focus
-    ]
+    results = [(found.value(node, rdflib.SH.focusNode), node) for node in _results(found)]
+    return [_result(found, node) for about, node in results if focus is None or _asked(about, focus)]
+
+
+def _results(found: rdflib.Graph) -> Iterator[rdflib.term.Node]:
+    import rdflib
+
+    return found.subjects(rdflib.RDF.type, rdflib.SH.ValidationResult)
+
+
+def _asked(about: rdflib.term.Node | None, focus: Collection[str]) -> bool:
+    """Whether a result is about one of these nodes; a literal, which rdflib spells its own way, always is."""
+    import rdflib
+
+    return isinstance(about, rdflib.Literal) or str(about) in focus
 
 
 @contextmanager
 def _quiet() -> Iterator[None]:
-    """Without rdflib's log of each literal that is ill-typed: the report names it."""
+    """Without rdflib's log of each literal that is ill-typed, which the report names, and its warnings about itself."""
     logger = logging.getLogger("rdflib.term")
     level = logger.level
     logger.setLevel(logging.CRITICAL)
     try:
-        yield
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", DeprecationWarning)
+            yield
     finally:
         logger.setLevel(level)
 

@@ -9,7 +9,8 @@ from dataclasses import dataclass
 import pyoxigraph as ox
 
 from deixis.memory.errors import QueryError
-from deixis.memory.graphs import CANONICAL, UNION, graph_iri
+from deixis.memory.graphs import CANONICAL
+from deixis.memory.merged import default_graph
 from deixis.memory.prefixes import PREFIXES
 from deixis.memory.results import QueryKind, QueryResult
 from deixis.memory.sparql_tokens import Kind, Token, ambiguous, decoded, given_offset, tokens
@@ -57,7 +58,7 @@ def run_query(store: ox.Store, sparql: str) -> QueryResult:
     """Runs a query over a memory's store. Raises QueryError for what is refused or cannot be understood."""
     text = _Text(sparql)
     checked = _check(text, PREFIXES)
-    graphs = {} if checked.names_graphs else {"default_graph": [*map(graph_iri, UNION)], "named_graphs": [*CANONICAL]}
+    graphs = {} if checked.names_graphs else {"default_graph": default_graph(store), "named_graphs": [*CANONICAL]}
     try:
         answer = store.query(checked.text, prefixes=PREFIXES, **graphs)  # type: ignore[arg-type]
         return QueryResult.of(checked.kind, answer, checked.ordered)
@@ -68,7 +69,9 @@ def run_query(store: ox.Store, sparql: str) -> QueryResult:
 
 
 def check_query(sparql: str, prefixes: Mapping[str, str] = PREFIXES) -> Checked:
-    """What a query would do, without running it; ``prefixes`` need no declaration. Raises QueryError for what is refused.
+    """What a query would do, without running it; ``prefixes`` need no declaration.
+
+    Raises QueryError for what is refused.
 
     >>> check_query("ASK { ?s ?p ?o }").kind
     <QueryKind.ASK: 'ask'>

@@ -47,13 +47,21 @@ _ESCAPE = r"\\u[0-9A-Fa-f]{4}|\\U[0-9A-Fa-f]{8}"
 _IRI = rf"<(?:[^<>\"{{}}|^`\\\x00-\x20]|{_ESCAPE})*>"
 _LOCAL = r"(?:[\w·:-]|\.(?=[\w·:.\\%-])|%[0-9A-Fa-f]{2}|\\[_~.\-!$&'()*+,;=/?#@%])*"
 
+_STRINGS = "|".join(
+    [
+        r'"""(?:[^"\\]|\\.|"(?!""))*"""',
+        r"'''(?:[^'\\]|\\.|'(?!''))*'''",
+        r'"(?:[^"\\\n\r]|\\.)*"',
+        r"'(?:[^'\\\n\r]|\\.)*'",
+    ]
+)
+
 _TOKEN = re.compile(
     "|".join(
         [
             r"(?P<comment>#[^\n\r]*)",
             rf"(?P<iri>{_IRI})",
-            r'(?P<string>"""(?:[^"\\]|\\.|"(?!""))*"""|' + r"'''(?:[^'\\]|\\.|'(?!''))*'''|"
-            r'"(?:[^"\\\n\r]|\\.)*"|' + r"'(?:[^'\\\n\r]|\\.)*')",
+            rf"(?P<string>{_STRINGS})",
             r"(?P<variable>[?$]\w+)",
             r"(?P<language>@[A-Za-z]+(?:-[A-Za-z0-9]+)*)",
             r"(?P<number>\d+(?:\.\d+)?(?:[eE][+-]?\d+)?)",
@@ -65,8 +73,7 @@ _TOKEN = re.compile(
     re.DOTALL,
 )
 
-_SKIPPED = re.compile(rf"(?:#[^\n\r]*|{_IRI}|" + r'"""(?:[^"\\]|\\.|"(?!""))*"""|' + r"'''(?:[^'\\]|\\.|'(?!''))*'''|"
-                      r'"(?:[^"\\\n\r]|\\.)*"|' + r"'(?:[^'\\\n\r]|\\.)*')" + rf"|(?P<escape>{_ESCAPE})", re.DOTALL)  # fmt: skip
+_SKIPPED = re.compile(rf"(?:#[^\n\r]*|{_IRI}|{_STRINGS})|(?P<escape>{_ESCAPE})", re.DOTALL)
 
 
 def tokens(text: str) -> Iterator[Token]:

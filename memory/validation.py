@@ -28,7 +28,7 @@ def check_change(store: ox.Store, change: Change) -> None:
 def check_store(store: ox.Store) -> None:
     """Raises RejectedWriteError where something in the store breaks the shapes."""
     shapes, view = packaged_shapes(), View(store)
-    _check(shapes, view, {node for shape in shapes.shapes for node in shape.focus(view)})
+    _decide(shapes, view, {node for shape in shapes.shapes for node in shape.focus(view) if not shape.sure(view, node)})
 
 
 def touched(shapes: Shapes, view: View, change: Change) -> set[Node]:
@@ -54,13 +54,20 @@ def _leading_to(shapes: Shapes, view: View, node: Node) -> set[Node]:
 
 
 def _check(shapes: Shapes, view: View, nodes: Iterable[Node]) -> None:
-    doubtful = sorted((node for node in nodes if not shapes.sure(view, node)), key=str)
+    _decide(shapes, view, {node for node in nodes if not shapes.sure(view, node)})
+
+
+def _decide(shapes: Shapes, view: View, nodes: set[Node]) -> None:
+    """Asks pyshacl about the doubtful nodes."""
+    doubtful = sorted(nodes, key=str)
     for position, batch in enumerate(_batches(doubtful)):
         results = report(_copy(shapes, view, batch), batch)
         if results:
             left = len(doubtful) - (position + 1) * BATCH
             more = f"; {left} more nodes may be wrong too" if left > 0 else ""
-            raise RejectedWriteError(f"nothing was written: it breaks the shapes in {len(results)} places{more}", results)
+            raise RejectedWriteError(
+                f"nothing was written: it breaks the shapes in {len(results)} places{more}", results
+            )
 
 
 def _batches(nodes: list[Node]) -> Iterator[list[Node]]:
@@ -72,22 +79,31 @@ def _copy(shapes: Shapes, view: View, nodes: Iterable[Node]) -> set[ox.Triple]:
     """What the shapes reach from these nodes: what is said of them, what leads to them, and the classes of the rest."""
     copied: set[ox.Triple] = set()
     for node in nodes:
-        for predicate, values in view.about(node).items():
-            copied.update(ox.Triple(node, predicate, value) for value in values)
-            for value in values:
-                copied.update(_classes(view, value))
-        for predicate in shapes.objects_of:
-            copied.update(ox.Triple(other, predicate, node) for other in view.subjects(predicate, node))
+        copied.update(_about(view, node))
         copied.update(_classes(view, node))
+        for predicate in shapes.objects_of:
+            copied.update(_triple(other, predicate, node) for other in view.subjects(predicate, node))
     return copied
+
+
+def _about(view: View, node: Node) -> Iterator[ox.Triple]:
+    for predicate, values in view.about(node).items():
+        for value in values:
+            yield _triple(node, predicate, value)
+            yield from _classes(view, value)
 
 
 def _classes(view: View, node: Node) -> Iterator[ox.Triple]:
     for kind in view.values(node, TYPE):
-        yield ox.Triple(node, TYPE, kind)
+        yield _triple(node, TYPE, kind)
         for narrow in view.broader(kind):
             for broad in view.values(narrow, SUB_CLASS_OF):
-                yield ox.Triple(narrow, SUB_CLASS_OF, broad)
+                yield _triple(narrow, SUB_CLASS_OF, broad)
+
+
+def _triple(subject: Node, predicate: ox.NamedNode, object: Node) -> ox.Triple:
+    assert not isinstance(subject, ox.Literal)
+    return ox.Triple(subject, predicate, object)
 
 
 def report(triples: Iterable[ox.Triple], nodes: Iterable[Node] | None = None) -> list[ShapeResult]:

@@ -25,7 +25,7 @@ class View:
 
     def __init__(self, store: ox.Store, change: Change | None = None) -> None:
         self._store = store
-        self._names = {graph_iri(name): name for name in DATA}
+        self._names: dict[object, GraphName] = {graph_iri(name): name for name in DATA}
         self._removed = change.removed if change else {}
         self._coming: dict[Node, list[ox.Triple]] = defaultdict(list)
         self._pointing: dict[tuple[ox.NamedNode, Node], list[ox.Triple]] = defaultdict(list)
@@ -62,7 +62,7 @@ class View:
         return found
 
     def _stays(self, quad: ox.Quad) -> bool:
-        name = self._names.get(quad.graph_name)  # type: ignore[call-overload]
+        name = self._names.get(quad.graph_name)
         return name is not None and not (self._removed.get(name) and quad.triple in self._removed[name])
 
     def is_a(self, node: Node, kind: Node) -> bool:
@@ -97,7 +97,9 @@ class View:
 
     def subjects_of(self, predicate: ox.NamedNode) -> set[Node]:
         """The nodes of which a predicate is used, in the store alone."""
-        return {quad.subject for quad in self._store.quads_for_pattern(None, predicate, None, None) if self._stays(quad)}
+        return {
+            quad.subject for quad in self._store.quads_for_pattern(None, predicate, None, None) if self._stays(quad)
+        }
 
     def objects_of(self, predicate: ox.NamedNode) -> set[Node]:
         """The nodes that a predicate leads to, in the store alone."""

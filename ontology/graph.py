@@ -59,6 +59,17 @@ class Fact:
         return mask
 
 
+def dispensable(facts: Iterable[Fact]) -> frozenset[str]:
+    """The objects of which something is said, but nothing firmly: no plain affirmed fact needs them to be there."""
+    mentioned: set[str] = set()
+    needed: set[str] = set()
+    for fact in facts:
+        mentioned |= {fact.subject, fact.object}
+        if fact.positive and not fact.optional and fact.weight >= 1:
+            needed |= {fact.subject, fact.object}
+    return frozenset(mentioned - needed)
+
+
 @dataclass(frozen=True, eq=False)
 class RelationGraph:
     """A weighted directed multigraph over named objects (n nodes, m edges).

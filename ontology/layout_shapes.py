@@ -12,7 +12,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 import pyoxigraph as ox
 
 from deixis.ontology.concepts import LayoutConcept
-from deixis.ontology.graph import Fact
+from deixis.ontology.graph import Fact, dispensable
 from deixis.ontology.iris import content_key, learned_iri
 from deixis.ontology.lesson_triples import fact_iri, layout_iri, role_iri
 from deixis.ontology.rdf import Description, iri, text, typed
@@ -28,10 +28,9 @@ def layout_shapes(layout: LayoutConcept) -> Iterator[ox.Triple]:
     """The shapes graph of a layout; blank nodes as skolem IRIs."""
     writer = _Shapes(layout)
     yield from writer.extra()
-    optional = {name for fact in layout.facts if fact.optional for name in (fact.subject, fact.object)}
-    firm = {name for fact in layout.facts if not fact.optional for name in (fact.subject, fact.object)}
+    spare = dispensable(layout.facts)
     for role in layout.roles:
-        yield from writer.missing(role.name, "Info" if role.name in optional - firm else "Violation")
+        yield from writer.missing(role.name, "Info" if role.name in spare else "Violation")
     for position, fact in enumerate(layout.facts, 1):
         yield from writer.fact(position, fact)
 

@@ -46,7 +46,7 @@ def _layout(layout: str, index: TripleIndex, relations: Relations) -> LayoutConc
     roles = _in_order([part for part in parts if DX.ROLE in index.values(part, W3C.RDF_TYPE)], index)
     facts = _in_order([part for part in parts if DX.RELATION_STATEMENT in index.values(part, W3C.RDF_TYPE)], index)
     by_iri = {relation.iri: relation for relation in relations.values()}
-    viewpoint = index.value(layout, DX.SEEN_FROM)
+    viewpoint = index.value(layout, DX.DESCRIBED_FROM)
     return LayoutConcept(
         lesson=last_part(layout),
         name=index.value(layout, W3C.RDFS_LABEL) or last_part(layout),

@@ -58,7 +58,13 @@ def episode_triples(lesson: Lesson) -> Iterator[ox.Triple]:
     about.say(W3C.RDFS_LABEL, text(lesson.id))
     about.say(PROV.STARTED_AT_TIME, typed(lesson.started))
     about.say(PROV.ENDED_AT_TIME, typed(lesson.ended))
+    script, agent = script_iri(lesson.id), learned_iri("agent", f"deixis {lesson.version}")
     about.say(PROV.USED, iri(scene_iri(lesson)))
+    about.say(PROV.WAS_ASSOCIATED_WITH, iri(agent))
+    yield ox.Triple(iri(script), iri(W3C.RDF_TYPE), iri(PROV.ENTITY))
+    yield ox.Triple(iri(script), iri(W3C.RDFS_LABEL), text(lesson.script_file))
+    yield ox.Triple(iri(agent), iri(W3C.RDF_TYPE), iri(PROV.SOFTWARE_AGENT))
+    yield ox.Triple(iri(agent), iri(W3C.RDFS_LABEL), text(f"Deixis {lesson.version}"))
     about.say(DX.ENGINE, text(lesson.engine))
     about.say(DX.PROVED_BEST, typed(lesson.proved_best))
     about.say(DX.SOFTWARE_VERSION, text(lesson.version))
@@ -70,6 +76,11 @@ def episode_triples(lesson: Lesson) -> Iterator[ox.Triple]:
 
 def lesson_iri(lesson: str) -> str:
     return learned_iri("lesson", lesson)
+
+
+def script_iri(lesson: str) -> str:
+    """The script that a lesson was read from, as what its statements are derived from."""
+    return learned_iri("lesson", lesson, "script")
 
 
 def layout_iri(lesson: str) -> str:
@@ -114,7 +125,7 @@ def _layout(layout: LayoutConcept, relations: Relations) -> Iterator[ox.Triple]:
     if layout.title:
         about.say(W3C.DCTERMS_TITLE, text(layout.title))
     if layout.viewpoint:
-        about.say(DX.SEEN_FROM, iri(_viewpoint(layout.viewpoint)))
+        about.say(DX.DESCRIBED_FROM, iri(_viewpoint(layout.viewpoint)))
         yield from _viewpoint_triples(layout.viewpoint)
     kinds = dict.fromkeys(role.kind for role in layout.roles if role.kind)
     for number, kind in enumerate(kinds, 1):
@@ -134,6 +145,8 @@ def _role(layout: LayoutConcept, role: Role, position: int) -> Iterator[ox.Tripl
     about.say(DX.IN_LAYOUT, iri(layout_iri(layout.lesson)))
     about.say(DX.POSITION, typed(position))
     about.say(DX.KIND_DECLARED, typed(role.declared))
+    about.say(PROV.WAS_GENERATED_BY, iri(lesson_iri(layout.lesson)))
+    about.say(PROV.WAS_DERIVED_FROM, iri(script_iri(layout.lesson)))
     if role.kind:
         about.say(DX.OF_KIND, iri(role.kind))
     for group in layout.interchangeable:
@@ -153,6 +166,8 @@ def _statement(layout: LayoutConcept, fact: Fact, position: int) -> Iterator[ox.
     about.say(DX.POSITIVE, typed(fact.positive))
     about.say(DX.OPTIONAL, typed(fact.optional))
     about.say(DX.WEIGHT, decimal(fact.weight))
+    about.say(PROV.WAS_GENERATED_BY, iri(lesson_iri(layout.lesson)))
+    about.say(PROV.WAS_DERIVED_FROM, iri(script_iri(layout.lesson)))
     about.say(DX.POSITION, typed(position))
     if fact.source is not None:
         about.say(DX.STATED_AT, text(str(fact.source)))

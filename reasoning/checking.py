@@ -1,14 +1,14 @@
 """Is a table laid as it should be? What is missing, misplaced and extra, and what cannot be told.
 
 Identity comes from labels. A thing whose label names a role, and which fits there best, is that role's; where nothing
-but the layout says who is who, its place is *undetermined*, never correct. Two labelled things are *exchanged* where
-all that is said of both would hold if each stood in the place of the other. Which end of another broken fact is
-misplaced is settled by how much else is broken about it: the ends with the largest share explain the others.
+but the layout says who is who, its place is *undetermined*, never correct. Two or three labelled things have changed
+places where all that is said of them would hold if they stood in each other's, and more would hold of each. Which end
+of another broken fact is misplaced is settled by how much else is broken about it: the worst share explains the others.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from itertools import combinations
@@ -16,20 +16,23 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.ontology.graph import RelationGraph
+from deixis.ontology.graph import RelationGraph, dispensable
 from deixis.ontology.kinds import Kinds
 from deixis.reasoning.evidence import UNMATCHED, Evidence
 from deixis.reasoning.grounding import FactOutcome, Grounding, Outcome
-from deixis.reasoning.labels import Label, named_objects
+from deixis.reasoning.labels import Label, named_objects, objects_called
 
 SURE = 0.9
 """Confidence from which a label counts as an identity."""
+
+MAX_ROTATED = 30
+"""Labelled roles among which rotations of three are looked for; among more, only swaps."""
 
 
 class Verdict(StrEnum):
     """What became of a role."""
 
-    CORRECT = "correct"  # its label says that it is there, and nothing said of it is broken
+    CORRECT = "correct"  # its label says that it is there, and what is broken about it is the fault of others
     MISPLACED = "misplaced"  # it is there, and not where it belongs
     MISSING = "missing"  # nothing fills it
     ABSENT = "absent"  # nothing fills it, and it is optional
@@ -40,7 +43,7 @@ class Verdict(StrEnum):
 class RoleCheck:
     """A role, the thing that fills it, the verdict, and the broken facts that explain it.
 
-    ``exchanged_with`` is the role whose thing stands in its place, where the two were swapped.
+    ``in_place_of`` is the role in whose place its thing stands, where two or three have changed places.
     """
 
     role: str
@@ -48,7 +51,7 @@ class RoleCheck:
     perceived: str | None
     label: str | None
     broken: tuple[FactOutcome, ...] = ()
-    exchanged_with: str | None = None
+    in_place_of: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,7 +69,8 @@ class TableCheck:
 
     roles: tuple[RoleCheck, ...]
     extra: tuple[Extra, ...]
-    broken: tuple[FactOutcome, ...]
+    broken: tuple[FactOutcome, ...]  # firm facts that do not hold
+    unexpected: tuple[FactOutcome, ...]  # hedged facts that do not hold: no fault
     grounding: Grounding
 
     def of(self, verdict: Verdict) -> tuple[RoleCheck, ...]:
@@ -91,12 +95,12 @@ def check_table(
     exchanged = _exchanged(evidence, grounding, sure)
     explained = [entry for entry in broken if not exchanged.keys() & {entry.fact.subject, entry.fact.object}]
     misplaced = exchanged.keys() | _blamed(grounding, explained)
-    optional = _optional_roles(layout)
+    spare = dispensable(layout.facts())
     roles = []
     for role in layout.nodes:
         match = grounding.matches.get(role)
         if match is None:
-            roles.append(RoleCheck(role, Verdict.ABSENT if role in optional else Verdict.MISSING, None, None))
+            roles.append(RoleCheck(role, Verdict.ABSENT if role in spare else Verdict.MISSING, None, None))
             continue
         label = labels[match.perceived]
         verdict = Verdict.CORRECT if role in sure[match.perceived] else Verdict.UNDETERMINED
@@ -108,44 +112,80 @@ def check_table(
                 perceived=match.perceived,
                 label=label.text if label else None,
                 broken=about,
-                exchanged_with=exchanged.get(role),
+                in_place_of=exchanged.get(role),
             )
         )
-    return TableCheck(tuple(roles), _extra(labels, grounding, sure), broken, grounding)
+    unexpected = tuple(entry for entry in grounding.violated if entry.fact.weight < 1)
+    return TableCheck(tuple(roles), _extra(labels, grounding, sure), broken, unexpected, grounding)
 
 
 def _exchanged(evidence: Evidence, grounding: Grounding, sure: Mapping[str, frozenset[str]]) -> dict[str, str]:
-    """Pairs of labelled roles, both ways, that all broken facts about them show to stand in each other's place.
+    """Labelled roles that have changed places, each with the role in whose place its thing stands.
 
-    The exchange that mends most is taken first, then the next among the others.
+    Of all changes among two or three roles that would mend the most broken facts, leave none about them broken and
+    make more hold of each, the smallest is taken first; then the next among the others.
     """
     layout, scene = evidence.description, evidence.scene
     assignment = np.full(len(layout.nodes), UNMATCHED, dtype=np.int64)
     for role, match in grounding.matches.items():
         assignment[layout.index(role)] = scene.index(match.perceived)
     known = [i for i, p in enumerate(assignment) if p != UNMATCHED and layout.nodes[i] in sure[scene.nodes[p]]]
-    firm = evidence.firm()
     found: dict[str, str] = {}
     while True:
-        now = evidence.degrees(assignment)
-        broken = set(_ends(evidence, firm & (now <= 0), assignment).tolist())
-        best: tuple[int, float, int, int] | None = None
-        for i, j in combinations(known, 2):
-            if not {i, j} & broken or {layout.nodes[i], layout.nodes[j]} & found.keys():
-                continue
-            other = assignment.copy()
-            other[[i, j]] = other[[j, i]]
-            then = evidence.degrees(other)
-            mended = int((firm & (now <= 0)).sum() - (firm & (then <= 0)).sum())
-            spoilt = {i, j} & set(_ends(evidence, firm & (then <= 0), other).tolist())
-            gain = float(then.sum() - now.sum())
-            if mended > 0 and not spoilt and (best is None or (mended, gain) > best[:2]):
-                best = mended, gain, i, j
-        if best is None:
+        left = [i for i in known if layout.nodes[i] not in found]
+        change = _best_change(evidence, assignment, left)
+        if change is None:
             return found
-        i, j = best[2:]
-        assignment[[i, j]] = assignment[[j, i]]
-        found |= {layout.nodes[i]: layout.nodes[j], layout.nodes[j]: layout.nodes[i]}
+        roles, places = change
+        found |= {layout.nodes[i]: layout.nodes[j] for i, j in zip(roles, places, strict=True)}
+        assignment[list(places)] = assignment[list(roles)]
+
+
+def _best_change(
+    evidence: Evidence, assignment: NDArray[np.int64], known: list[int]
+) -> tuple[tuple[int, ...], tuple[int, ...]] | None:
+    """Roles, and the roles in whose places their things stand; None where no change explains what is broken."""
+    firm = evidence.firm()
+    now = evidence.degrees(assignment)
+    broken = set(_ends(evidence, firm & (now <= 0), assignment).tolist())
+    best: tuple[int, int, float] | None = None
+    change = None
+    for roles, places in _changes(known, broken):
+        other = assignment.copy()
+        other[list(places)] = assignment[list(roles)]
+        then = evidence.degrees(other)
+        mended = int((firm & (now <= 0)).sum() - (firm & (then <= 0)).sum())
+        key = (mended, -len(roles), float(then.sum() - now.sum()))
+        if mended > 0 and (best is None or key > best) and _explains(evidence, roles, firm, now, then, other):
+            best, change = key, (roles, places)
+    return change
+
+
+def _changes(known: list[int], broken: set[int]) -> Iterator[tuple[tuple[int, ...], tuple[int, ...]]]:
+    """Swaps and rotations of three among known roles, at least one of them in a broken fact."""
+    sizes = (2, 3) if len(known) <= MAX_ROTATED else (2,)
+    for roles in (roles for size in sizes for roles in combinations(known, size)):
+        if broken & set(roles):
+            yield roles, (*roles[1:], roles[0])
+            if len(roles) == 3:
+                yield roles, (roles[2], *roles[:2])
+
+
+def _explains(
+    evidence: Evidence,
+    roles: tuple[int, ...],
+    firm: NDArray[np.bool_],
+    now: NDArray[np.float64],
+    then: NDArray[np.float64],
+    other: NDArray[np.int64],
+) -> bool:
+    """Whether after the change nothing firm about these roles is broken, and more holds of each of them."""
+    if set(roles) & set(_ends(evidence, firm & (then <= 0), other).tolist()):
+        return False
+    edges = evidence.facts
+    subjects, objects = evidence.description.subjects[edges], evidence.description.objects[edges]
+    gained = np.where(firm, then - now, 0.0)
+    return all(gained[(subjects == i) | (objects == i)].sum() > 0 for i in roles)
 
 
 def _ends(evidence: Evidence, chosen: NDArray[np.bool_], assignment: NDArray[np.int64]) -> NDArray[np.int64]:
@@ -157,20 +197,12 @@ def _ends(evidence: Evidence, chosen: NDArray[np.bool_], assignment: NDArray[np.
 
 
 def _sure_roles(layout: RelationGraph, label: Label | None, kinds: Kinds) -> frozenset[str]:
-    """The roles that a label says its thing fills: one, or several that the label cannot tell apart."""
+    """The roles that a sure label says its thing fills: those that bear the name, or the one of that kind."""
     if label is None or label.confidence < SURE:
         return frozenset()
-    named = np.flatnonzero(named_objects(layout, label.text, kinds))
-    return frozenset(layout.nodes[i] for i in named) if len(named) == 1 else frozenset()
-
-
-def _optional_roles(layout: RelationGraph) -> frozenset[str]:
-    """Roles of which everything that is said is optional."""
-    firm: set[str] = set()
-    optional: set[str] = set()
-    for fact in layout.facts():
-        (optional if fact.optional else firm).update((fact.subject, fact.object))
-    return frozenset(optional - firm)
+    called = np.flatnonzero(objects_called(layout, label.text))
+    named = called if len(called) else np.flatnonzero(named_objects(layout, label.text, kinds))
+    return frozenset(layout.nodes[i] for i in named) if len(called) or len(named) == 1 else frozenset()
 
 
 def _blamed(grounding: Grounding, broken: Sequence[FactOutcome]) -> frozenset[str]:

@@ -15,3 +15,7 @@ class InconsistencyError(DeixisError, ValueError):
 
 class SettingError(DeixisError, ValueError):
     """A setting of a call that it cannot have."""
+
+
+class NothingFoundError(DeixisError, LookupError):
+    """A script of which a scene shows nothing."""

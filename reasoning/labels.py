@@ -49,17 +49,20 @@ def label_evidence(
 
 def named_objects(description: RelationGraph, label: str, kinds: Kinds) -> NDArray[np.bool_]:
     """Which objects of a description a label names, shape (n1,)."""
-    plain = _plain(label)
-    same = np.array([_plain(name) == plain for name in description.nodes], dtype=bool)
+    named = objects_called(description, label)
+    kind = kinds.of_word(label)
+    if named.any() or kind is None:
+        return named
+    return np.array([_is_a(iri, kind, kinds) for iri in description.kinds or [None] * len(named)], dtype=bool)
+
+
+def objects_called(description: RelationGraph, name: str) -> NDArray[np.bool_]:
+    """Which objects bear a name, or a number of it: ``wine_glass`` calls ``wine_glass_1`` and ``wine_glass_2``."""
+    plain = _plain(name)
+    same = np.array([_plain(node) == plain for node in description.nodes], dtype=bool)
     if same.any():
         return same
-    counted = np.array([_plain(re.sub(r"_\d+$", "", name)) == plain for name in description.nodes], dtype=bool)
-    if counted.any():
-        return counted
-    kind = kinds.of_word(label)
-    if kind is None:
-        return counted
-    return np.array([_is_a(iri, kind, kinds) for iri in description.kinds or [None] * len(same)], dtype=bool)
+    return np.array([_plain(re.sub(r"_\d+$", "", node)) == plain for node in description.nodes], dtype=bool)
 
 
 def _is_a(iri: str | None, kind: Kind, kinds: Kinds) -> bool:

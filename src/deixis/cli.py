@@ -277,13 +277,27 @@ def _fail(message: str) -> None:
 
 
 def run() -> None:
-    """The process's entry: a closed pipe ends it quietly, and no character is too odd for a terminal."""
+    """The process's entry: a closed pipe ends it quietly, no character is too odd for a terminal, nothing is lost."""
     if hasattr(signal, "SIGPIPE"):
         signal.signal(signal.SIGPIPE, signal.SIG_DFL)
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")
-    main()
+    try:
+        main()
+    finally:
+        _flush()
+
+
+def _flush() -> None:
+    """Writes what is still buffered, so that a full disk is an error and not a remark at the very end."""
+    if sys.stdout is None:
+        return
+    try:
+        sys.stdout.flush()
+    except OSError as error:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        _fail(f"standard output: {error.strerror}")
 
 
 if __name__ == "__main__":

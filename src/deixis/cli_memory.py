@@ -55,19 +55,22 @@ def learn(
     as_json: AsJson = False,
 ) -> None:
     """Ground a script in a scene, and keep the layout and its objects as concepts."""
+    from deixis.reasoning.errors import NothingFoundError
     from deixis.report import learned_to_dict
     from deixis.session import Session, load_scene
     from deixis.show import learned_lines
 
     with Session(memory) as session:
-        learned = session.learn(script, load_scene(scene, hide_labels, image), engine, time_limit)
+        try:
+            learned = session.learn(script, load_scene(scene, hide_labels, image), engine, time_limit)
+        except NothingFoundError as error:
+            print(f"deixis: {error}", file=sys.stderr)
+            raise typer.Exit(1) from error
         where = session.path
     if as_json:
         _print(json.dumps(learned_to_dict(learned), indent=2, ensure_ascii=False))
     else:
         _print(*learned_lines(learned, str(where)))
-    if not learned.grounding.matches:
-        raise typer.Exit(1)
 
 
 def show(
@@ -126,6 +129,8 @@ def check(
         _print(json.dumps(check_to_dict(checked), indent=2, ensure_ascii=False))
     else:
         _print(*check_lines(checked))
+    if not checked.table.grounding.proved_best:
+        raise typer.Exit(3)
     if not checked.table.well:
         raise typer.Exit(1)
 
@@ -146,7 +151,7 @@ def query(
     if (sparql is None) == (file is None):
         raise DeixisError("give a query, or a file with -f, and one of them only")
     with Session(memory) as session:
-        result = session.query(file.read_text(encoding="utf-8") if file is not None else sparql or "")
+        result = session.query(_text(file) if file is not None else sparql or "")
         if as_json or format is TableFormat.JSON:
             _print(result.to_json())
         elif format is TableFormat.CSV:
@@ -221,6 +226,15 @@ def forget(
     with Session(memory) as session:
         session.forget(lesson)
     _print(f"Forgotten: {lesson}.")
+
+
+def _text(file: Path) -> str:
+    from deixis.ontology.errors import DeixisError
+
+    try:
+        return file.read_text(encoding="utf-8")
+    except UnicodeDecodeError as error:
+        raise DeixisError(f"{file}: the file is not UTF-8 (byte {error.start})") from error
 
 
 def _print(*lines: str) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from datetime import datetime
@@ -11,6 +12,7 @@ from pathlib import Path
 import pyoxigraph as ox
 
 from deixis.grammar.format import format_script
+from deixis.grammar.language import language_of
 from deixis.grammar.script import Script
 from deixis.ontology.concepts import LayoutConcept, Lesson, MatchRecord, Role, SceneRecord, SeenObject
 from deixis.ontology.relation import Reading, Relation, Relations
@@ -55,8 +57,12 @@ def layout_concept(script: Script, lesson: str, interchangeable: Iterable[tuple[
 
 
 def layout_name(script: Script) -> str:
-    """The name in the header, or that of the file."""
-    return script.name or Path(script.file).name.split(".")[0].strip("<>") or "layout"
+    """The name in the header, or one made from the file's that a header can bear."""
+    if script.name:
+        return script.name
+    stem = Path(script.file).name.strip("<>.").split(".")[0]
+    name = re.sub(r"\W+", "_", stem).strip("_") or "layout"
+    return name if language_of(script.ontology).reads_as_name(name) else f"layout_{name}"
 
 
 def lesson_of(script: Script, scene: Scene, found: Grounding, id: str, occasion: Occasion) -> Lesson:

@@ -67,21 +67,27 @@ def new_figure(width: float, height: float, **subplots: Any) -> tuple[Figure, An
     return figure, figure.subplots(**subplots)
 
 
-def grounding_figure(found: Grounding, scene: Scene, title: str | None = None, wrong: Collection[str] = ()) -> Figure:
-    """The picture as a matplotlib figure; the things in ``wrong`` have a red edge."""
+def grounding_figure(
+    found: Grounding,
+    scene: Scene,
+    title: str | None = None,
+    wrong: Collection[str] = (),
+    unsure: Collection[str] = (),
+) -> Figure:
+    """The picture as a matplotlib figure; the things in ``wrong`` have a red edge, those in ``unsure`` a dotted one."""
     width, height = _extent(scene)
     figure, axes = new_figure(9.0, min(max(9.0 * height / width, 3.0), 12.0) + 0.9)
     colours = _group_colours(found)
     names = {match.perceived: match.object for match in found.matches.values()}
     for thing in sorted(scene.objects, key=_area, reverse=True):
-        _draw_box(axes, thing, names.get(thing.id), colours, thing.id in wrong)
+        _draw_box(axes, thing, names.get(thing.id), colours, thing.id in wrong, thing.id in unsure)
     for entry in found.satisfied:
         _draw_fact(axes, entry, scene, QUIET, 0.8, 3)
     for entry in found.violated:
         _draw_fact(axes, entry, scene, WRONG, 1.8, 7)
     for thing in scene.objects:
         _write_name(axes, thing, names.get(thing.id), scene)
-    _dress(axes, found, scene, title, colours)
+    _dress(axes, found, scene, title, colours, bool(wrong), bool(unsure))
     return figure
 
 
@@ -102,7 +108,9 @@ def _group_colours(found: Grounding) -> dict[str, str]:
     return {name: GROUP_COLOURS[i % len(GROUP_COLOURS)] for i, group in enumerate(groups) for name in group}
 
 
-def _draw_box(axes: Axes, thing: PerceivedObject, name: str | None, colours: dict[str, str], wrong: bool) -> None:
+def _draw_box(
+    axes: Axes, thing: PerceivedObject, name: str | None, colours: dict[str, str], wrong: bool, unsure: bool
+) -> None:
     from matplotlib.patches import Rectangle
 
     (x, y), (right, top) = thing.minimum[:2], thing.maximum[:2]
@@ -119,7 +127,7 @@ def _draw_box(axes: Axes, thing: PerceivedObject, name: str | None, colours: dic
         )
     )
     edge = WRONG if wrong else colour or (INK if name else QUIET)
-    style = "-" if name else (0, (4, 3))
+    style = (0, (1, 2)) if unsure else "-" if name else (0, (4, 3))
     axes.add_patch(
         Rectangle((x, y), right - x, top - y, fill=False, edgecolor=edge, linewidth=1.2, linestyle=style, zorder=2)
     )
@@ -207,7 +215,15 @@ def _bears_another(thing: PerceivedObject, scene: Scene) -> bool:
     return any(x0 < x < x1 and y0 < y < y1 for x, y in centres)
 
 
-def _dress(axes: Axes, found: Grounding, scene: Scene, title: str | None, colours: dict[str, str]) -> None:
+def _dress(
+    axes: Axes,
+    found: Grounding,
+    scene: Scene,
+    title: str | None,
+    colours: dict[str, str],
+    wrong: bool,
+    unsure: bool,
+) -> None:
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
 
@@ -226,6 +242,10 @@ def _dress(axes: Axes, found: Grounding, scene: Scene, title: str | None, colour
     keys: list[Any] = [Line2D([], [], color=QUIET, label=f"{len(found.satisfied)} facts satisfied")]
     if found.violated:
         keys.append(Line2D([], [], color=WRONG, label=f"{len(found.violated)} violated"))
+    if wrong:
+        keys.append(Patch(facecolor=PAPER, edgecolor=WRONG, label="misplaced, or (dashed) extra"))
+    if unsure:
+        keys.append(Patch(facecolor=PAPER, edgecolor=INK, linestyle=":", label="named by its place alone"))
     for colour in dict.fromkeys(colours.values()):
         members = [name.replace("_", " ") for name, other in colours.items() if other == colour]
         keys.append(Patch(facecolor=colour, alpha=0.45, label="cannot be told apart: " + ", ".join(members)))

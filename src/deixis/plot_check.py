@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 from deixis.perception.scene import Scene
@@ -11,11 +12,27 @@ from deixis.session import Checked
 
 
 def plot_check(checked: Checked, scene: Scene, path: str | Path) -> None:
-    """Draws the table from above: misplaced things in red with what is said of them, missing ones named below it."""
+    """Draws the table from above: what is misplaced or extra in red, what is undetermined dotted, and the verdict."""
     table = checked.table
     wrong = {entry.perceived for entry in table.of(Verdict.MISPLACED) if entry.perceived is not None}
-    extra = {entry.perceived for entry in table.extra}
-    title = checked.layout.title or checked.layout.name
-    missing = [entry.role.replace("_", " ") for entry in table.of(Verdict.MISSING)]
-    verdict = "nothing wrong" if table.well else "missing: " + (", ".join(missing) or "nothing")
-    save(grounding_figure(table.grounding, scene, f"{title} — {verdict}", wrong=wrong | extra), path)
+    wrong |= {entry.perceived for entry in table.extra}
+    unsure = {entry.perceived for entry in table.of(Verdict.UNDETERMINED) if entry.perceived is not None}
+    title = f"{checked.layout.title or checked.layout.name}: {_summary(checked)}"
+    save(grounding_figure(table.grounding, scene, title, wrong, unsure), path)
+
+
+def _summary(checked: Checked) -> str:
+    table = checked.table
+    found = [
+        _listed("missing", [entry.role for entry in table.of(Verdict.MISSING)]),
+        _listed("misplaced", [entry.role for entry in table.of(Verdict.MISPLACED)]),
+        _listed("extra", [entry.label or entry.perceived for entry in table.extra]),
+    ]
+    return "; ".join(part for part in found if part) or "nothing wrong"
+
+
+def _listed(what: str, names: Sequence[str]) -> str:
+    """Up to two names, or how many there are."""
+    if not names:
+        return ""
+    return f"{what} " + (", ".join(names).replace("_", " ") if len(names) < 3 else str(len(names)))

@@ -130,7 +130,7 @@ def check_to_dict(checked: Checked) -> dict[str, Any]:
             {
                 "object": c.role,
                 "perceived": c.perceived,
-                "exchanged_with": c.exchanged_with,
+                "in_place_of": c.in_place_of,
                 "violated": [outcome_to_dict(entry) for entry in c.broken],
             }
             for c in table.of(Verdict.MISPLACED)
@@ -139,6 +139,8 @@ def check_to_dict(checked: Checked) -> dict[str, Any]:
         "undetermined": [{"object": c.role, "perceived": c.perceived} for c in table.of(Verdict.UNDETERMINED)],
         "absent": [{"object": c.role} for c in table.of(Verdict.ABSENT)],
         "violated": [outcome_to_dict(entry) for entry in table.broken],
+        "unexpected": [outcome_to_dict(entry) for entry in table.unexpected],
+        "proved_best": table.grounding.proved_best,
         "notes": list(table.grounding.notes),
         "report": checked.report,
     }

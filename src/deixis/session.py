@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
 from types import TracebackType
@@ -14,12 +14,13 @@ from deixis.grammar.parser import parse_script
 from deixis.grammar.parser import read_script as read_script_file
 from deixis.grammar.script import Script
 from deixis.inference import Inference, inference_of
+from deixis.ontology.graph import RelationGraph
 from deixis.ontology.tbox import Ontology
 from deixis.perception.scene import Scene
 from deixis.perception.scene_file import read_scene
 from deixis.reasoning.conflict import find_conflict
 from deixis.reasoning.engines import Select, engine_named
-from deixis.reasoning.errors import InconsistencyError, SettingError
+from deixis.reasoning.errors import InconsistencyError, NothingFoundError, SettingError
 from deixis.reasoning.evidence import Evidence
 from deixis.reasoning.grounding import DEFAULT_TIME_LIMIT, Grounding
 from deixis.reasoning.grounding import ground as ground_evidence
@@ -71,7 +72,7 @@ def ground(
     """
     script = _script(script)
     scene = scene if isinstance(scene, Scene) else read_scene(scene)
-    notes = _viewpoint_notes(script.viewpoint, scene) + _conflict_notes(script)
+    notes = _viewpoint_notes(script.viewpoint, scene) + _conflict_notes(script.graph())
     if not time_limit >= 0:
         raise SettingError(f"a time limit is 0 or more seconds, not {time_limit}")
     if select not in list(Select):
@@ -92,8 +93,8 @@ def _viewpoint_notes(viewpoint: str | None, scene: Scene) -> tuple[str, ...]:
     )
 
 
-def _conflict_notes(script: Script) -> tuple[str, ...]:
-    conflict = find_conflict(Implications(script.graph()))
+def _conflict_notes(graph: RelationGraph) -> tuple[str, ...]:
+    conflict = find_conflict(Implications(graph))
     if conflict is None:
         return ()
     return (f"the script contradicts itself, so that not all of it can hold: {conflict.reason}",)
@@ -195,6 +196,8 @@ class Session:
             raise InconsistencyError(f"the script contradicts itself, nothing was learned: {conflict.reason} ({lines})")
         started = datetime.now(UTC)
         found = ground(script, scene, engine, time_limit)
+        if not found.matches:
+            raise NothingFoundError("nothing that the script names was found in the scene, so nothing was learned")
         memory = self.memory(create=True)
         id = next_lesson_id(layout_name(script), memory.lessons())
         lesson = lesson_of(script, scene, found, id, Occasion(started, datetime.now(UTC), __version__))
@@ -268,8 +271,10 @@ class Session:
         labels = scene_labels(scene)
         allowed, bonus = label_evidence(graph, list(labels.values()), self.ontology.kinds)
         evidence = Evidence(graph, scene.graph(relations), allowed, bonus)
-        notes = _viewpoint_notes(concept.viewpoint, scene)
-        found = ground_evidence(evidence, engine_named("exact"), time_limit, notes)
+        notes = _viewpoint_notes(concept.viewpoint, scene) + _conflict_notes(graph)
+        found = ground_evidence(evidence, engine_named("exact"), time_limit)
+        kept = tuple(note for note in found.notes if "similarity" not in note)  # a check shows no similarity
+        found = replace(found, notes=notes + kept)
         table = check_table(evidence, labels, self.ontology.kinds, found)
         return Checked(concept, table, *shacl_report(concept, scene, table, relations))
 
@@ -289,7 +294,7 @@ def load_scene(file: str | Path, hide_labels: bool = False, image: str | None = 
 
 def is_script_file(layout: str | Path) -> bool:
     """Whether a layout is given as a file rather than by its name."""
-    return isinstance(layout, Path) or layout.endswith(".layout") or os.sep in layout or Path(layout).is_file()
+    return isinstance(layout, Path) or layout.endswith(".layout") or os.sep in layout
 
 
 def scene_labels(scene: Scene) -> dict[str, Label | None]:

@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from deixis.grammar.script import Script
     from deixis.inference import Inference, Inferred
     from deixis.ontology.graph import Fact
+    from deixis.reasoning.checking import RoleCheck
     from deixis.reasoning.grounding import FactOutcome, Grounding, Match
     from deixis.session import Checked, Learned
 
@@ -144,7 +145,7 @@ def check_lines(checked: Checked) -> list[str]:
     for entry in table.of(Verdict.MISSING):
         lines.append(f"missing     {entry.role}{_said_of(entry.role, checked)}")
     for entry in table.of(Verdict.MISPLACED):
-        exchanged = f", exchanged with {entry.exchanged_with}" if entry.exchanged_with else ""
+        exchanged = f", in the place of {entry.in_place_of}" if entry.in_place_of else ""
         lines.append(f"misplaced   {entry.role} ({entry.perceived}){exchanged}")
         lines += [f"            {violation_text(broken)}" for broken in entry.broken]
     blamed = {entry.role for entry in table.of(Verdict.MISPLACED)}
@@ -152,12 +153,17 @@ def check_lines(checked: Checked) -> list[str]:
         if not blamed & {broken.fact.subject, broken.fact.object}:
             lines.append(f"broken      {violation_text(broken)}")
     lines += [f"extra       {extra.perceived}: {extra.reason}" for extra in table.extra]
+    lines += [f"unexpected  {violation_text(entry)}" for entry in table.unexpected]
     lines += [
-        f"undetermined {entry.role}: {entry.perceived}, by its place alone" for entry in table.of(Verdict.UNDETERMINED)
+        f"undetermined {entry.role}: {entry.perceived}, {_known_by(entry)}" for entry in table.of(Verdict.UNDETERMINED)
     ]
     lines += [f"absent      {entry.role}, which is optional" for entry in table.of(Verdict.ABSENT)]
     lines.append(f"correct     {len(table.of(Verdict.CORRECT))} of {len(table.roles)}")
     return lines + [f"Note: {note}." for note in table.grounding.notes]
+
+
+def _known_by(entry: RoleCheck) -> str:
+    return f"labelled '{entry.label}', which does not settle it" if entry.label else "by its place alone"
 
 
 def _said_of(role: str, checked: Checked) -> str:

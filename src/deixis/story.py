@@ -91,7 +91,7 @@ def _ambiguity(found: Grounding) -> list[str]:
     open_names = [match.object for match in found.matches.values() if not match.decided]
     return [
         f"All {len(found.satisfied)} facts hold, and still {len(open_names)} of {len(found.matches)} names are open:",
-        "the words never say which fork is nearer to the plate, or which of two things lies farther back.",
+        "three pairs could trade names unnoticed, and fish knife and soup spoon be any two in a row on the right.",
         "Deixis says so, instead of passing off a lucky order as knowledge.",
     ]
 

@@ -134,4 +134,44 @@ def test_the_shacl_report_says_what_the_verdicts_say(seed: int, absent: list[str
 def test_of_any_swapped_pair_both_are_reported_and_nothing_else(swap: tuple[str, str]) -> None:
     checked = check(swapped(formal_setting(), *swap))
     assert roles(checked, Verdict.MISPLACED) == set(swap)
-    assert {entry.exchanged_with for entry in checked.table.of(Verdict.MISPLACED)} == set(swap)
+    assert {entry.in_place_of for entry in checked.table.of(Verdict.MISPLACED)} == set(swap)
+
+
+@pytest.mark.parametrize(
+    "turn", [("salad_fork", "dinner_knife", "soup_spoon"), ("salad_fork", "dinner_fork", "dinner_knife")]
+)
+def test_three_that_have_changed_places_are_all_reported_and_nothing_else(turn: tuple[str, str, str]) -> None:
+    label = dict(zip(turn, (*turn[1:], turn[0]), strict=True))
+    scene = formal_setting()
+    turned = replace(scene, objects=tuple(replace(o, label=label.get(o.label or "", o.label)) for o in scene.objects))
+    assert roles(check(turned), Verdict.MISPLACED) == set(turn)
+
+
+def test_nothing_is_held_against_what_nothing_is_said_of() -> None:
+    boxes = {"fork": 1, "knife": 0, "plate": 2, "salt_shaker": 4}
+    scene = Scene(tuple(PerceivedObject(n, (x, 0.0), (x + 0.5, 1.0), label=n) for n, x in boxes.items()))
+    says = "fork left of plate; knife right of plate; salt_shaker is a SaltShaker"
+    assert roles(check(scene, says), Verdict.MISPLACED) == {"knife"}
+    assert roles(check(scene, says + "; optional salt_shaker above plate"), Verdict.MISPLACED) == {"knife"}
+
+
+def test_what_is_only_hedged_or_denied_need_not_be_there_and_is_told_where_it_fails() -> None:
+    boxes = {"fork": (0.0, 0.0), "plate": (2.0, 0.0), "candle": (2.0, -3.0)}
+    scene = Scene(tuple(PerceivedObject(n, (x, y), (x + 1, y + 1), label=n) for n, (x, y) in boxes.items()))
+    checked = check(scene, "maybe candle above plate; fork left of plate; not vase on plate")
+    assert checked.table.well and checked.conforms
+    assert [str(entry.fact) for entry in checked.table.unexpected] == ["top(candle, plate)"]
+    assert roles(check(without(scene, "candle"), "maybe candle above plate; fork left of plate"), Verdict.ABSENT) == {
+        "candle"
+    }
+
+
+def test_a_number_of_things_alike_is_correct_by_its_name() -> None:
+    scene = Scene(
+        (
+            PerceivedObject("a", (0.0, 2.0), (1.0, 3.0), label="wine glass"),
+            PerceivedObject("b", (2.0, 2.0), (3.0, 3.0), label="wine glass"),
+            PerceivedObject("p", (0.0, 0.0), (3.0, 1.0), label="plate"),
+        )
+    )
+    assert len(check(scene, "2 wine_glass above plate").table.of(Verdict.CORRECT)) == 3

@@ -34,7 +34,7 @@ def test_the_whole_story(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> 
         "The script contradicts itself",
         "fish knife     dx:FishKnife     lx:lesson/formal_dinner-1",
         "missing     water_glass",
-        "misplaced   dinner_fork (p3), exchanged with dinner_knife",
+        "misplaced   dinner_fork (p3), in the place of dinner_knife",
         "one napkin too many",
     ):
         assert said in told

@@ -19,7 +19,7 @@ MakeLesson = Callable[..., Contributions]
 LEARNED = """
 <L/layout/NAME> a owl:Class ; rdfs:label "formal_dinner" ; dcterms:title "Formal dinner" ;
     rdfs:subClassOf dx:Layout, <https://w3id.org/deixis/.well-known/genid/NAME.r1> ;
-    dx:seenFrom <L/viewpoint/chair> ; dx:learnedIn <L/lesson/NAME> .
+    dx:describedFrom <L/viewpoint/chair> ; dx:learnedIn <L/lesson/NAME> .
 <https://w3id.org/deixis/.well-known/genid/NAME.r1> a owl:Restriction ; owl:onProperty dx:shows ;
     owl:someValuesFrom dx:DinnerPlate .
 <L/layout/NAME/role/dinner_plate> a dx:Role ; rdfs:label "dinner_plate" ; dx:inLayout <L/layout/NAME> ;

@@ -13,7 +13,7 @@ import rdflib
 from deixis.memory import rdf_files
 from deixis.memory.errors import ImportFormatError, MemoryFormatError, RejectedWriteError
 from deixis.memory.exchange import export_memory, import_dump
-from deixis.memory.graphs import GraphName
+from deixis.memory.graphs import MERGED, GraphName
 from deixis.memory.semantic import SemanticMemory
 
 Learn = Callable[..., None]
@@ -60,12 +60,13 @@ def test_n_quads_come_back_exactly(dump: Path, tmp_path: Path) -> None:
     assert exported(tmp_path / "new") == dump.read_text(encoding="utf-8")
 
 
+@pytest.mark.filterwarnings("ignore::DeprecationWarning")
 def test_an_export_is_read_by_others(dump: Path, taught: SemanticMemory) -> None:
     quads = set(ox.parse(path=dump, format=ox.RdfFormat.TRIG))
-    assert len(quads) == len(taught.store)
-    dataset = rdflib.Dataset(default_union=True)
+    assert len(quads) == len([quad for quad in taught.store if quad.graph_name != MERGED])
+    dataset = rdflib.Dataset()
     dataset.parse(dump, format="trig")
-    assert len(list(dataset.quads())) == len(quads)
+    assert sum(len(graph) for graph in dataset.graphs()) == len(quads)
     text = export_memory(taught, "turtle")
     assert len(rdflib.Graph().parse(data=text, format="turtle")) == len(set(ox.parse(text, format=ox.RdfFormat.TURTLE)))
     assert "genid" not in text
@@ -95,7 +96,7 @@ def test_merging_brings_the_lessons_that_are_missing(dump: Path, tmp_path: Path,
 
 def test_merging_refuses_another_lesson_of_the_same_name(dump: Path, tmp_path: Path, learn: Learn) -> None:
     with SemanticMemory.open(tmp_path / "m", create=True) as memory:
-        learn(memory, "dinner-1", kind="dx:ButterKnife")
+        learn(memory, "dinner-1", kind="dx:Knife")
     before = exported(tmp_path / "m")
     with pytest.raises(RejectedWriteError, match="lesson 'dinner-1' differs from the one in the memory"):
         import_dump(dump, tmp_path / "m")
@@ -175,9 +176,9 @@ DTD = f'<?xml version="1.0"?>\n<!DOCTYPE r [ <!ENTITY a "aaaa"> <!ENTITY b "&a;&
 def test_a_dtd_is_refused_before_a_parser_sees_it(
     tmp_path: Path, content: bytes, ending: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(rdf_files.ox, "parse", None)
+    monkeypatch.setattr("deixis.memory.rdf_files.ox.parse", None)
     (tmp_path / f"k{ending}").write_bytes(content)
-    with pytest.raises(ImportFormatError, match=r"k\.\w+:\d+:\d+: a DTD .* is refused"):
+    with pytest.raises(ImportFormatError, match=r"(?s)k\.\w+:\d+:\d+: a DTD .* is refused"):
         import_dump(tmp_path / f"k{ending}", tmp_path / "m")
     assert not (tmp_path / "m").exists()
 

@@ -15,45 +15,48 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from deixis.memory.errors import DeixisError, QueryError
+from deixis.memory.errors import QueryError
 from deixis.memory.exchange import export_memory, import_dump
-from deixis.memory.graphs import CANONICAL, GraphName
+from deixis.memory.graphs import CANONICAL, GraphName, graph_iri, lesson_graph, package_graph
 from deixis.memory.semantic import SemanticMemory
+from deixis.ontology.errors import DeixisError
 from deixis.ontology.iris import learned_iri
 
 Learn = Callable[..., None]
 
 NASTY = st.one_of(
-    st.text(max_size=12),
+    st.text(st.characters(exclude_categories=["Cs"]), max_size=12),
     st.text(alphabet="\"'\\{}<>|^` .;#%\n\r\t\0\u2028é🍴uU0041", max_size=16),
     st.sampled_from(
         [
             "x> } } ; DROP ALL #", '" . } INSERT DATA { <urn:a> <urn:b> "', "%3E%20%7D", "\\u003E } ; CLEAR ALL", "'''",
-            '"""', "a\nb", "../../lesson/other", "\ud83c\udf74", "http://x/ y", "@prefix : <urn:> .", "]]>", "&lt;",
+            '"""', "a\nb", "../../lesson/other", "http://x/ y", "@prefix : <urn:> .", "]]>", "&lt;",
         ]
     ),
 )  # fmt: skip
 
 
-@settings(max_examples=120, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=40, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(name=NASTY, lesson=NASTY)
 def test_no_name_changes_the_number_of_triples_or_graphs(memory: SemanticMemory, name: str, lesson: str) -> None:
-    try:
-        name.encode(), lesson.encode()
-    except UnicodeEncodeError:
-        return
     thing, text = ox.NamedNode(learned_iri("category", name)), ox.Literal(name)
     triples = [ox.Triple(thing, ox.NamedNode("urn:p"), text), ox.Triple(thing, ox.NamedNode("urn:q"), thing)]
-    before = export_memory(memory)
-    size, graphs = len(memory.store), len(list(memory.store.named_graphs()))
+    inferred = [ox.Triple(thing, ox.NamedNode("urn:r"), text)]
     lesson = f"l{lesson}"
-    memory.learn(lesson, {GraphName.ASSERTED: triples}, triples[:1])
+    for known in memory.lessons():  # of an example that failed
+        memory.forget(known, [])
+    before, size = export_memory(memory), len(memory.store)
+    memory.learn(lesson, {GraphName.ASSERTED: triples}, inferred)
+    graphs = {quad.graph_name for quad in memory.store}
     assert len(memory.store) == size + 5
-    assert len(list(memory.store.named_graphs())) == graphs + 3 - (2 if graphs > 5 else 0)
+    assert graphs == {
+        *map(graph_iri, (GraphName.ASSERTED, GraphName.INFERRED, GraphName.ONTOLOGY, GraphName.SHAPES)),
+        *map(package_graph, (GraphName.ONTOLOGY, GraphName.SHAPES)),
+        lesson_graph(lesson, GraphName.ASSERTED),
+    }
     assert set(memory.triples(GraphName.ASSERTED)) == set(triples)
-    assert lesson in memory.lessons()
-    quads = set(ox.parse(export_memory(memory), format=ox.RdfFormat.TRIG))
-    assert len(quads) == size + 5
+    assert memory.lessons() == (lesson,)
+    assert len(set(ox.parse(export_memory(memory), format=ox.RdfFormat.TRIG))) == size + 5
     table = memory.query(f"SELECT ?o {{ {thing} <urn:p> ?o }}")
     assert [row[0] for row in table.rows] == [text]
     assert len(table.to_table()) == 3
@@ -68,7 +71,7 @@ def test_an_iri_that_could_break_out_cannot_be_made() -> None:
 
 
 def test_nothing_opens_a_connection(tmp_path: Path, learn: Learn, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Neither through Python, whose sockets are shut here, nor through Oxigraph: somebody listens, and hears nothing."""
+    """Neither through Python, whose sockets are shut here, nor through Oxigraph: one listens, and hears nothing."""
 
     def refuse(*_: object, **__: object) -> NoReturn:
         raise AssertionError("a connection was tried")

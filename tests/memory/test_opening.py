@@ -19,6 +19,7 @@ from deixis.memory import opening
 from deixis.memory.errors import MemoryBusyError, MemoryFormatError, MemoryWriteError
 from deixis.memory.exchange import export_memory
 from deixis.memory.graphs import GRAPHS, GraphName
+from deixis.memory.package import packaged
 from deixis.memory.semantic import SemanticMemory
 from deixis.ontology.errors import DeixisError
 
@@ -207,10 +208,10 @@ def test_a_crash_while_creating_is_mended(tmp_path: Path, steps: int, monkeypatc
 
 
 def test_another_ontology_is_brought_in_on_opening(kept: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    packaged = dict(opening.packaged())
+    content = dict(packaged())
     extra = ox.Triple(ox.NamedNode("urn:new"), ox.NamedNode("urn:p"), ox.Literal("term"))
-    gone = packaged[GraphName.ONTOLOGY][0]
-    changed = {**packaged, GraphName.ONTOLOGY: (*packaged[GraphName.ONTOLOGY][1:], extra)}
+    gone = content[GraphName.ONTOLOGY][0]
+    changed = {**content, GraphName.ONTOLOGY: (*content[GraphName.ONTOLOGY][1:], extra)}
     with monkeypatch.context() as patched:
         patched.setattr(opening, "packaged", lambda: changed)
         patched.setattr(opening, "package_digest", lambda: "other")
@@ -238,6 +239,7 @@ def test_a_link_that_leads_nowhere(tmp_path: Path) -> None:
 
 HOLDER = """
 import sys, time
+from deixis.memory.package import packaged
 from deixis.memory.semantic import SemanticMemory
 memory = SemanticMemory.open(sys.argv[1])
 print("open", flush=True)

@@ -68,9 +68,7 @@ def test_forgetting_everything_leaves_an_empty_memory(memory: SemanticMemory, le
     )
 
 
-def test_what_was_loaded_in_bulk_stays_when_a_lesson_that_says_it_too_goes(
-    memory: SemanticMemory, read: Read
-) -> None:
+def test_what_was_loaded_in_bulk_stays_when_a_lesson_that_says_it_too_goes(memory: SemanticMemory, read: Read) -> None:
     loaded = read('<urn:a> <urn:p> "x" . <urn:b> <urn:p> 1 .')
     memory.load({GraphName.ASSERTED: loaded})
     memory.learn("one", {GraphName.ASSERTED: loaded[:1]}, [])

@@ -15,6 +15,7 @@ from deixis.memory.compiled_shapes import compile_shapes, packaged_shapes
 from deixis.memory.errors import RejectedWriteError
 from deixis.memory.exchange import export_memory
 from deixis.memory.graphs import GraphName
+from deixis.memory.ledger import quad_of
 from deixis.memory.package import SHAPES_FILE
 from deixis.memory.semantic import SemanticMemory
 from deixis.memory.shacl import validate, violations
@@ -81,7 +82,8 @@ BROKEN = {
     ),
     "a lesson without a script": ("<L/lesson/dinner-1> dx:scriptText 'layout formal_dinner' .", "", "dx:scriptText"),
     "a layout of another lesson": (
-        "<L/layout/dinner-1> dx:learnedIn <L/lesson/dinner-1> .", "<L/layout/dinner-1> dx:learnedIn <L/viewpoint/chair> .",
+        "<L/layout/dinner-1> dx:learnedIn <L/lesson/dinner-1> .",
+        "<L/layout/dinner-1> dx:learnedIn <L/viewpoint/chair> .",
         "was learned in one dx:Lesson",
     ),
     "a category with two names": ("", "<L/category/fish_knife> rdfs:label 'knife' .", "a category has one name"),
@@ -121,6 +123,17 @@ def test_a_result_carries_where_and_what(memory: SemanticMemory, read: Read) -> 
     assert (result.focus, result.path, result.shape) == ("lx:viewpoint/x", "rdfs:label", "name of a viewpoint")
 
 
+def test_values_that_cannot_be_compared_are_rejected_all_the_same(
+    memory: SemanticMemory, make_lesson: MakeLesson, read: Read
+) -> None:
+    """pyshacl fails on them instead of reporting them."""
+    memory.learn("dinner-1", {name: said for name, said in make_lesson().items() if name is not GraphName.INFERRED}, [])
+    words = read('<L/scene/s1/o1> dx:minX "wide"^^xsd:double . <L/scene/s1/o2> dx:identifier "again" .')
+    with pytest.raises(RejectedWriteError, match="cannot be: give numbers and times") as caught:
+        memory.learn("two", {GraphName.ASSERTED: words}, [])
+    assert {result.focus for result in caught.value.results} == {"lx:scene/s1/o1", "lx:scene/s1/o2"}
+
+
 def test_warnings_do_not_reject(memory: SemanticMemory, read: Read) -> None:
     scene = "<L/scene/x> a dx:Scene ; dx:frame 'table' ; dx:unit 'm' ; dx:seenFrom <L/viewpoint/c> ."
     triples = read(scene + "<L/viewpoint/c> a dx:Viewpoint ; rdfs:label 'c' .")
@@ -132,7 +145,9 @@ def test_what_is_already_there_is_spoilt_by_a_later_lesson(taught: SemanticMemor
     with pytest.raises(RejectedWriteError, match="one dx:identifier"):
         taught.learn("bad", {GraphName.ASSERTED: read("<L/scene/s1/o1> dx:identifier 'x' .")}, [])
     with pytest.raises(RejectedWriteError, match="a scene"):
-        taught.learn("bad", {GraphName.ASSERTED: read("<urn:x> a <urn:Room> . <urn:Room> rdfs:subClassOf dx:Scene .")}, [])
+        taught.learn(
+            "bad", {GraphName.ASSERTED: read("<urn:x> a <urn:Room> . <urn:Room> rdfs:subClassOf dx:Scene .")}, []
+        )
 
 
 def test_a_new_class_axiom_reaches_instances_that_are_there(memory: SemanticMemory, read: Read) -> None:
@@ -215,7 +230,8 @@ PREDICATES = [
 VALUES = [
     '"x"', '""', '"m"', '"a:1:2"', '"x"@en', "1", "0", "-1", "0.5", "1.0", "1.5", "2.0e0", "-1.0e0", "1.0e300", "true",
     "false", '"NaN"^^xsd:double', '"INF"^^xsd:double', '"wide"^^xsd:double', '"maybe"^^xsd:boolean',
-    '"2026-11-21T10:00:01Z"^^xsd:dateTime', '"2026-11-21T10:00:01"^^xsd:dateTime', '"2026-13-41T10:00:01Z"^^xsd:dateTime',
+    '"2026-11-21T10:00:01Z"^^xsd:dateTime', '"2026-11-21T10:00:01"^^xsd:dateTime',
+    '"2026-13-41T10:00:01Z"^^xsd:dateTime',
     '"9999999999999999999999"^^xsd:integer', '"1"^^<urn:other>', "dx:Scene", "dx:Role", "dx:Match", "dx:Layout",
     "dx:PerceivedObject", "owl:Class", *(f"<L/{node}>" for node in LESSON_NODES),
 ]  # fmt: skip
@@ -261,7 +277,7 @@ def test_looking_at_what_changed_is_as_good_as_looking_at_everything(
     there = sorted(_stored([triple for name in graphs for triple in graphs[name]]), key=str)
     store = ox.Store()
     graph = ox.NamedNode("https://w3id.org/deixis/graph/asserted")
-    store.extend(ox.Quad(*triple, graph) for triple in there)
+    store.extend(quad_of(triple, graph) for triple in there)
     gone = frozenset(triple for position, triple in enumerate(there) if position in removed)
     come = frozenset(_stored(read("".join(f"<L/{s}> {p} {o} .\n" for s, p, o in new)))) - set(there)
     expected = bool(violations([*(set(there) - gone), *come]))

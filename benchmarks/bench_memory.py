@@ -1,0 +1,113 @@
+"""Bulk load and queries at 100,000 and 1,000,000 triples, beside bare pyoxigraph in the same run.
+
+Two kinds of data: background knowledge that no shape is about, and scenes, of which every object is checked.
+"""
+
+from __future__ import annotations
+
+import shutil
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pyoxigraph as ox
+from common import medians
+
+from deixis.memory.graphs import GraphName, graph_iri
+from deixis.memory.prefixes import PREFIXES
+from deixis.memory.semantic import SemanticMemory
+from deixis.ontology.rdf import iri, text, typed
+from deixis.ontology.vocabulary import DX, W3C
+
+ASSERTED = graph_iri(GraphName.ASSERTED)
+
+QUERIES = {
+    "join of three patterns": "SELECT ?a ?c { ?a <urn:p1> ?b . ?b <urn:p2> ?c . ?c <urn:p3> ?d } LIMIT 1000",
+    "look-up of one subject": "SELECT ?p ?o { <urn:node:77> ?p ?o }",
+    "count": "SELECT (COUNT(*) AS ?n) { ?s <urn:p1> ?o }",
+}
+
+
+def background(triples: int) -> Iterator[ox.Triple]:
+    """Nodes of ten statements each, about other nodes."""
+    predicates = [ox.NamedNode(f"urn:p{number}") for number in range(10)]
+    nodes = triples // 10
+    for number in range(nodes):
+        subject = ox.NamedNode(f"urn:node:{number}")
+        for step, predicate in enumerate(predicates):
+            yield ox.Triple(subject, predicate, ox.NamedNode(f"urn:node:{(number * 7 + step * 31) % nodes}"))
+
+
+def scenes(triples: int) -> Iterator[ox.Triple]:
+    """Scenes of fifty objects of eight statements each."""
+    chair, inside = iri("urn:chair"), iri(DX.IN_SCENE)
+    yield ox.Triple(chair, iri(W3C.RDF_TYPE), iri(DX.VIEWPOINT))
+    yield ox.Triple(chair, iri(W3C.RDFS_LABEL), text("chair"))
+    for number in range(triples // 8):
+        if number % 50 == 0:
+            scene = iri(f"urn:scene:{number}")
+            yield ox.Triple(scene, iri(W3C.RDF_TYPE), iri(DX.SCENE))
+            yield ox.Triple(scene, iri(DX.FRAME), text("table"))
+            yield ox.Triple(scene, iri(DX.UNIT), text("m"))
+            yield ox.Triple(scene, iri(DX.SEEN_FROM), chair)
+        thing = iri(f"urn:thing:{number}")
+        yield ox.Triple(thing, iri(W3C.RDF_TYPE), iri(DX.PERCEIVED_OBJECT))
+        yield ox.Triple(thing, inside, scene)
+        yield ox.Triple(thing, iri(DX.IDENTIFIER), text(f"o{number}"))
+        for low, high in ((DX.MIN_X, DX.MAX_X), (DX.MIN_Y, DX.MAX_Y)):
+            yield ox.Triple(thing, iri(low), typed(number / 10))
+            yield ox.Triple(thing, iri(high), typed(number / 10 + 1.0))
+
+
+def seconds(job: Callable[[], object]) -> float:
+    started = time.perf_counter()
+    job()
+    return time.perf_counter() - started
+
+
+def load(kind: str, data: list[ox.Triple], folder: Path) -> tuple[SemanticMemory, ox.Store]:
+    """Loads the same triples in both, and prints how long each took."""
+    bare = ox.Store(folder / "bare")
+
+    def fill() -> None:
+        bare.bulk_extend(ox.Quad(t.subject, t.predicate, t.object, ASSERTED) for t in data)
+        bare.flush()
+
+    memory = SemanticMemory.open(folder / "memory", create=True)
+    theirs = seconds(fill)
+    ours = seconds(lambda: memory.load({GraphName.ASSERTED: data}))
+    times = f"deixis {ours:.2f} s, bare {theirs:.2f} s, {ours / theirs:.2f} times"
+    print(f"load, {len(data):>9,} triples of {kind}: {times}")
+    return memory, bare
+
+
+def ask(memory: SemanticMemory, bare: ox.Store) -> None:
+    """Runs the queries in both, and prints how long each took."""
+    for name, query in QUERIES.items():
+
+        def direct(query: str = query) -> object:
+            found = bare.query(query, default_graph=ASSERTED, prefixes=PREFIXES)
+            assert isinstance(found, ox.QuerySolutions)
+            return [tuple(solution) for solution in found]
+
+        ours, theirs = medians(lambda query=query: memory.query(query), direct, runs=15)  # type: ignore[misc]
+        print(f"    {name}: deixis {ours * 1e3:.3f} ms, bare {theirs * 1e3:.3f} ms, {ours / theirs:.2f} times")
+
+
+def main() -> None:
+    sizes = [int(size) for size in sys.argv[1:]] or [100_000, 1_000_000]
+    for size in sizes:
+        for kind, make in (("background knowledge", background), ("scenes", scenes)):
+            folder = Path(tempfile.mkdtemp())
+            memory, bare = load(kind, list(make(size)), folder)
+            if make is background:
+                ask(memory, bare)
+            memory.close()
+            del bare
+            shutil.rmtree(folder)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,43 @@
+"""The queries of docs/queries.md run, and find what is there."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from deixis.memory.results import QueryKind
+from deixis.memory.semantic import SemanticMemory
+
+PAGE = Path(__file__).parents[2] / "docs" / "queries.md"
+SECTIONS = re.findall(r"^## (.+?)\n\n(.+?)\n\n```sparql\n(.+?)```", PAGE.read_text(encoding="utf-8"), re.M | re.S)
+
+EXPECTED = {
+    "1. Which": "formal_dinner  Formal dinner  chair      lx:lesson/dinner-1",
+    "2. What does": "5     dinner_fork  left or top left  dinner_plate  1",
+    "3. What filled": "lx:lesson/dinner-1  fish_knife    o2      0.9",
+    "4. Which": "dinner plate  2      2",
+    "5. Which": "lx:lesson/dinner-1  salad_fork  o3        dinner_fork",
+    "6. What lies": "lx:layout/dinner-1  salad_fork   4     0.7",
+    "7. Which": "fish_knife  dx:FishKnife  lx:lesson/dinner-1  dx:DinnerKnife  lx:lesson/dinner-2",
+    "8. What was": "dx:Plate",
+    "9. Which": "lx:scene/s1  o2",
+    "10. Where": "2026-11-21T10:00:00Z  0.1.0    exact   dinner.layout  lx:scene/s1",
+    "And how": "dxg:learned",
+}
+
+
+def test_the_page_has_ten_queries_and_the_counts() -> None:
+    assert len(SECTIONS) == 11
+    assert PAGE.read_text(encoding="utf-8").count("```sparql") == 11
+    assert all(sentence.rstrip().endswith(".") for _, sentence, _ in SECTIONS)
+
+
+@pytest.mark.parametrize(("title", "query"), [(title, query) for title, _, query in SECTIONS])
+def test_every_query_finds_what_is_there(taught: SemanticMemory, title: str, query: str) -> None:
+    answer = taught.query(query)
+    assert answer.kind is QueryKind.SELECT
+    assert answer.rows
+    (expected,) = [line for start, line in EXPECTED.items() if title.startswith(f"{start} ")]
+    assert any(expected in line for line in answer.to_table()), "\n".join(answer.to_table())
