@@ -48,6 +48,13 @@ def departing(store: ox.Store, lesson: str, inferred: Iterable[ox.Triple] | None
     return Change({GraphName.INFERRED: frozenset(come)}, removed, (*statements, *_replacing(come, gone)))
 
 
+def concluding(store: ox.Store, inferred: Iterable[ox.Triple]) -> Change:
+    """The change that only replaces the inferred graph."""
+    come, gone = _inferred(store, inferred)
+    removed = {GraphName.INFERRED: frozenset(gone)}
+    return Change({GraphName.INFERRED: frozenset(come)}, removed, tuple(_replacing(come, gone)))
+
+
 def _inferred(store: ox.Store, triples: Iterable[ox.Triple]) -> tuple[list[ox.Triple], list[ox.Triple]]:
     """What comes to the inferred graph and what goes, so that it holds just these triples."""
     old = set(ledger.triples_in(store, graph_iri(GraphName.INFERRED)))

@@ -18,8 +18,9 @@ from deixis.memory.opening import open_memory
 from deixis.memory.package import packaged
 from deixis.memory.semantic import SemanticMemory
 from deixis.memory.turtle_writer import trig, turtle
+from deixis.memory.writing import reading
 
-TURTLE_GRAPHS = (GraphName.ONTOLOGY, GraphName.ASSERTED, GraphName.INFERRED, GraphName.LEARNED)
+TURTLE_GRAPHS = (GraphName.ONTOLOGY, GraphName.ASSERTED, GraphName.INFERRED, GraphName.LEARNED, GraphName.EPISODES)
 """The graphs that an export in Turtle merges."""
 
 
@@ -27,8 +28,14 @@ def export_memory(memory: SemanticMemory, format: str = "trig") -> str:
     """Everything that a memory keeps, the same text for the same content.
 
     ``trig`` is exact: every graph, and which lesson contributed what. ``turtle`` merges the ontology with what was
-    asserted, inferred and learned into one graph, for tools such as Protégé. Raises ImportFormatError for others.
+    asserted, inferred and learned, and when, into one graph, for tools such as Protégé. Raises ImportFormatError for
+    others.
     """
+    with reading(memory.path):
+        return _exported(memory, format)
+
+
+def _exported(memory: SemanticMemory, format: str) -> str:
     if format == "turtle":
         return turtle(triple for name in TURTLE_GRAPHS for triple in memory.triples(name))
     if format != "trig":

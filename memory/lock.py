@@ -35,6 +35,7 @@ class OwnerLock:
 
     def __init__(self, folder: Path, descriptor: int, made: bool) -> None:
         self._folder, self._descriptor, self._made = folder, descriptor, made
+        self._before = os.pread(descriptor, 4096, 0)  # what a failed open puts back
 
     @classmethod
     def acquire(cls, folder: Path) -> OwnerLock:
@@ -63,11 +64,14 @@ class OwnerLock:
             raise MemoryWriteError(f"{self._folder / LOCK_FILE}: cannot be written: {error.strerror}") from error
 
     def release(self, undo: bool = False) -> None:
-        """Lets go; with ``undo`` the folder is left as it was found, without the lock file that this one made."""
+        """Lets go and takes the owner's name away; with ``undo`` the folder is left as it was found."""
         with _guard:
-            if undo and self._made:
-                with contextlib.suppress(OSError):
+            with contextlib.suppress(OSError):
+                if undo and self._made:
                     os.unlink(self._folder / LOCK_FILE)
+                else:
+                    os.ftruncate(self._descriptor, 0)
+                    os.pwrite(self._descriptor, self._before if undo else b"", 0)
             os.close(self._descriptor)
             _held.discard(self._folder)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Callable
 from pathlib import Path
 
@@ -79,18 +80,26 @@ def _make_folder(folder: Path) -> bool:
 def _open_locked(folder: Path, fill: Callable[[ox.Store], None]) -> Opened:
     lock = OwnerLock.acquire(folder)
     try:
+        lock.sign()
         _prepare(folder, fill)
         opened = Opened(folder, lock)
     except BaseException:
         lock.release(undo=True)
         raise
     try:
-        lock.sign()
+        _drop_old_logs(folder)
         _update_package(opened)
     except BaseException:
         opened.close()
         raise
     return opened
+
+
+def _drop_old_logs(folder: Path) -> None:
+    """The store leaves a log of its own behind at every opening, and never takes one away."""
+    for log in (folder / files.STORE).glob("LOG.old.*"):
+        with contextlib.suppress(OSError):
+            log.unlink()
 
 
 def _prepare(folder: Path, fill: Callable[[ox.Store], None]) -> None:

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 import pyoxigraph as ox
 
 from deixis.memory import ledger
-from deixis.memory.change import Change, arriving, departing, incoming
+from deixis.memory.change import Change, arriving, concluding, departing, incoming
 from deixis.memory.errors import MemoryFormatError, RejectedWriteError, UnknownLessonError
 from deixis.memory.graphs import GraphName, graph_iri
 from deixis.memory.merged import merging
@@ -102,6 +102,12 @@ class SemanticMemory:
         self._known(lesson)
         self.commit(departing(self.store, lesson, inferred))
 
+    def conclude(self, inferred: Sequence[ox.Triple]) -> None:
+        """Replaces the inferred graph, in one step."""
+        change = concluding(self.store, inferred)
+        if change.statements:
+            self.commit(change)
+
     def remaining(self, lesson: str) -> dict[GraphName, list[ox.Triple]]:
         """What the canonical graphs would hold without that lesson; raises UnknownLessonError where there is none."""
         self._known(lesson)
@@ -135,7 +141,8 @@ class SemanticMemory:
 
     def triples(self, name: GraphName) -> Iterator[ox.Triple]:
         """The triples of a canonical graph, in no stated order."""
-        return ledger.triples_in(self.store, graph_iri(GraphName(name)))
+        with reading(self.path):
+            yield from ledger.triples_in(self.store, graph_iri(GraphName(name)))
 
     def query(self, sparql: str) -> QueryResult:
         """Asks SELECT, ASK, CONSTRUCT or DESCRIBE of the asserted, inferred and learned graphs together.

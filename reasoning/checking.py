@@ -230,7 +230,9 @@ def _blamed(grounding: Grounding, broken: Sequence[FactOutcome]) -> frozenset[st
     return frozenset(blamed)
 
 
-def _extra(labels: dict[str, Label | None], grounding: Grounding, sure: dict[str, frozenset[str]]) -> tuple[Extra, ...]:
+def _extra(
+    labels: Mapping[str, Label | None], grounding: Grounding, sure: Mapping[str, frozenset[str]]
+) -> tuple[Extra, ...]:
     taken = {match.perceived for match in grounding.matches.values()}
     found = []
     for thing, label in labels.items():

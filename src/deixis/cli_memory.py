@@ -190,12 +190,11 @@ def import_(
     memory: MemoryDir = None,
 ) -> None:
     """Take in what was exported; what is there stays."""
-    from deixis.memory.exchange import import_dump
-    from deixis.session import default_memory
+    from deixis.session import Session
 
-    target = default_memory() if memory is None else memory
-    import_dump(dump, target)
-    _print(f"{dump} is in the memory {target}.")
+    with Session(memory) as session:
+        session.import_(dump)
+        _print(f"{dump} is in the memory {session.path}.")
 
 
 @memory_app.command("stats")

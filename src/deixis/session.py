@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import tempfile
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
@@ -230,6 +231,29 @@ class Session:
         memory = self.memory()
         remaining = memory.remaining(lesson)
         memory.forget(lesson, self._consequences(remaining))
+
+    def import_(self, file: str | Path) -> None:
+        """Takes in what another memory exported, or plain triples; what is there stays.
+
+        What follows from both together is worked out first: raises InconsistencyError, having changed nothing, where
+        they contradict each other.
+        """
+        from deixis.memory.exchange import import_dump
+        from deixis.memory.graphs import GraphName
+        from deixis.memory.semantic import SemanticMemory
+
+        self.close()
+        with tempfile.TemporaryDirectory() as scratch:
+            aside = Path(scratch) / "memory"
+            import_dump(file, aside)
+            with SemanticMemory.open(aside) as other:
+                graphs = {name: list(other.triples(name)) for name in GraphName}
+        if self.path.exists() and any(self.path.iterdir()):
+            graphs = {name: list({*triples, *self.memory().triples(name)}) for name, triples in graphs.items()}
+        inferred = self._consequences(graphs)
+        self.close()
+        import_dump(file, self.path)
+        self.memory().conclude(inferred)
 
     def layouts(self) -> tuple[LayoutConcept, ...]:
         """Every learned layout."""

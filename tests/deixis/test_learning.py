@@ -10,6 +10,8 @@ import pytest
 from commands import deixis
 
 from deixis.examples_data import example
+from deixis.grammar.rebuild import layout_script
+from deixis.learning import layout_concept, layout_name
 from deixis.memory.exchange import export_memory
 from deixis.memory.graphs import GraphName
 from deixis.ontology.skolem import with_blank_nodes
@@ -170,3 +172,35 @@ def test_the_memory_is_where_the_environment_says(monkeypatch: pytest.MonkeyPatc
     monkeypatch.delenv("DEIXIS_MEMORY")
     monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path))
     assert default_memory() == tmp_path / "deixis" / "memory"
+
+
+@pytest.mark.slow
+def test_an_import_that_contradicts_what_is_known_is_refused_and_changes_nothing(tmp_path: Path) -> None:
+    scene = formal_setting().without_labels()
+    says = "bread_plate top left of dinner_plate; thing on dinner_plate; butter_knife on bread_plate; thing is a "
+    for name, kind in (("first", "Napkin"), ("second", "Fork")):
+        with Session(tmp_path / name) as session:
+            session.learn(read_script(text=f"layout {name}\n{says} {kind}"), scene)
+            (tmp_path / f"{name}.trig").write_text(export_memory(session.memory()), encoding="utf-8")
+    code, _, err = deixis("memory", "import", tmp_path / "second.trig", "--memory", tmp_path / "first")
+    assert (code, "nothing can be a 'thing' any more" in err) == (2, True)
+    with Session(tmp_path / "first") as session:
+        assert export_memory(session.memory()) == (tmp_path / "first.trig").read_text(encoding="utf-8")
+
+
+@pytest.mark.slow
+def test_what_was_exported_comes_back_the_same(taught: Path, tmp_path: Path) -> None:
+    assert deixis("memory", "export", "-o", tmp_path / "all.trig", "--memory", taught)[0] == 0
+    assert deixis("memory", "import", tmp_path / "all.trig", "--memory", tmp_path / "new")[0] == 0
+    assert deixis("memory", "export", "-o", tmp_path / "again.trig", "--memory", tmp_path / "new")[0] == 0
+    assert (tmp_path / "again.trig").read_bytes() == (tmp_path / "all.trig").read_bytes()
+
+
+@pytest.mark.parametrize("file", ["2nd", "left", "is", ".hidden", "-dash", 'my layout "q"', "a b#c", "名"])
+def test_a_layout_named_by_its_file_can_be_shown_and_read(file: str, tmp_path: Path) -> None:
+    path = tmp_path / f"{file}.layout"
+    path.write_text("fork left of plate", encoding="utf-8")
+    script = read_script(path)
+    shown = layout_script(layout_concept(script, "x-1"), script.ontology)
+    assert read_script(text=shown).name == layout_name(script)
+    assert [str(fact) for fact in read_script(text=shown).facts] == ["left(fork, plate)"]
