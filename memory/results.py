@@ -33,7 +33,8 @@ class QueryKind(StrEnum):
 class QueryResult:
     """What a query found: rows of terms, a boolean, or triples, by its kind.
 
-    Rows and triples are sorted where the query states no order, so that the same memory gives the same answer.
+    Rows come as the store gives them; what is printed is sorted where the query states no order, so that the same
+    memory prints the same answer.
     """
 
     kind: QueryKind
@@ -41,6 +42,7 @@ class QueryResult:
     rows: tuple[tuple[Term | None, ...], ...] = ()
     boolean: bool | None = None
     triples: tuple[ox.Triple, ...] = ()
+    ordered: bool = False  # whether the query states an order
 
     @classmethod
     def of(
@@ -52,8 +54,12 @@ class QueryResult:
         if isinstance(answer, ox.QuerySolutions):
             variables = tuple(variable.value for variable in answer.variables)
             rows = [tuple(solution) for solution in answer]
-            return cls(kind, variables, tuple(rows if ordered else sorted(rows, key=_row_key)))
+            return cls(kind, variables, tuple(rows), ordered=ordered)
         return cls(kind, triples=tuple(sorted(set(answer), key=str)))
+
+    def printed(self) -> Sequence[Sequence[Term | None]]:
+        """The rows in the order in which they are printed."""
+        return self.rows if self.ordered else sorted(self.rows, key=_row_key)
 
     def to_table(self) -> list[str]:
         """Lines of aligned plain text; IRIs by their known prefixes."""
@@ -61,7 +67,7 @@ class QueryResult:
             return ["yes" if self.boolean else "no"]
         if self.kind is not QueryKind.SELECT:
             return [" ".join(_readable(term, quoted=True) for term in triple) + " ." for triple in self.triples]
-        cells = [[_readable(term) for term in row] for row in self.rows]
+        cells = [[_readable(term) for term in row] for row in self.printed()]
         widths = [max(map(len, column)) for column in zip(self.variables, *cells, strict=True)]
         lines = [self.variables, ["-" * width for width in widths], *cells]
         return [_padded(line, widths) for line in lines]
@@ -71,7 +77,7 @@ class QueryResult:
         if self.kind is QueryKind.ASK:
             answer: dict[str, Any] = {"head": {}, "boolean": self.boolean}
         elif self.kind is QueryKind.SELECT:
-            bound = [zip(self.variables, row, strict=True) for row in self.rows]
+            bound = [zip(self.variables, row, strict=True) for row in self.printed()]
             bindings = [{name: _json_term(term) for name, term in row if term is not None} for row in bound]
             answer = {"head": {"vars": list(self.variables)}, "results": {"bindings": bindings}}
         else:
@@ -85,7 +91,7 @@ class QueryResult:
         out = io.StringIO()
         writer = csv.writer(out, lineterminator="\r\n")
         writer.writerow(self.variables)
-        writer.writerows([[_csv_term(term) for term in row] for row in self.rows])
+        writer.writerows([[_csv_term(term) for term in row] for row in self.printed()])
         return out.getvalue()
 
     def to_turtle(self) -> str:

@@ -33,7 +33,7 @@ def test_the_default_graph_is_the_union_of_three(memory: SemanticMemory, read: R
     }
     memory.learn("one", graphs, read("<urn:a> <urn:p> 4 ."))
     answer = memory.query("SELECT ?o { <urn:a> <urn:p> ?o }")
-    assert [row[0].value for row in answer.rows if isinstance(row[0], ox.Literal)] == ["1", "2", "4"]
+    assert [row[0].value for row in answer.printed() if isinstance(row[0], ox.Literal)] == ["1", "2", "4"]
     by_graph = memory.query("SELECT ?g { GRAPH ?g { <urn:a> <urn:p> ?o } }")
     assert len(by_graph.rows) == 4
     assert memory.query("ASK { GRAPH dxg:episodes { ?s ?p 3 } }").boolean is True
@@ -61,10 +61,10 @@ def test_declared_prefixes_win(memory: SemanticMemory, read: Read) -> None:
     assert memory.query("ASK { dx:a dx:p 1 }").boolean is False
 
 
-def test_rows_are_sorted_unless_ordered(taught: SemanticMemory) -> None:
-    rows = [str(row[0]) for row in taught.query("SELECT ?r { ?r a dx:Role }").rows]
+def test_rows_are_printed_sorted_unless_ordered(taught: SemanticMemory) -> None:
+    rows = [str(row[0]) for row in taught.query("SELECT ?r { ?r a dx:Role }").printed()]
     assert rows == sorted(rows)
-    ordered = taught.query("SELECT ?p { ?r a dx:Role ; dx:position ?p } ORDER BY DESC(?p)").rows
+    ordered = taught.query("SELECT ?p { ?r a dx:Role ; dx:position ?p } ORDER BY DESC(?p)").printed()
     assert [row[0].value for row in ordered if isinstance(row[0], ox.Literal)] == list("44332211")
 
 
@@ -97,7 +97,7 @@ def test_json_csv_and_turtle(memory: SemanticMemory, read: Read) -> None:
     assert {"o": {"type": "literal", "value": "z", "xml:lang": "en"}} in told["results"]["bindings"]
     parsed = ox.parse_query_results(answer.to_json(), format=ox.QueryResultsFormat.JSON)
     assert isinstance(parsed, ox.QuerySolutions)
-    assert [tuple(row) for row in parsed] == list(answer.rows)
+    assert [tuple(row) for row in parsed] == list(answer.printed())
     rows = list(csv.reader(io.StringIO(answer.to_csv(), newline="")))
     assert rows[0] == ["o", "none"]
     assert ['x,"y', ""] in rows
