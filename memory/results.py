@@ -53,8 +53,7 @@ class QueryResult:
             return cls(kind, boolean=bool(answer))
         if isinstance(answer, ox.QuerySolutions):
             variables = tuple(variable.value for variable in answer.variables)
-            rows = [tuple(solution) for solution in answer]
-            return cls(kind, variables, tuple(rows), ordered=ordered)
+            return cls(kind, variables, tuple(map(tuple, answer)), ordered=ordered)
         return cls(kind, triples=tuple(sorted(set(answer), key=str)))
 
     def printed(self) -> Sequence[Sequence[Term | None]]:

@@ -19,7 +19,7 @@ from deixis.memory import ledger
 from deixis.memory.change import Change, arriving, concluding, departing, incoming
 from deixis.memory.errors import MemoryFormatError, RejectedWriteError, UnknownLessonError
 from deixis.memory.graphs import GraphName, graph_iri
-from deixis.memory.merged import merging
+from deixis.memory.merged import default_graph, merging
 from deixis.memory.opening import Opened, open_memory
 from deixis.memory.stats import MemoryStats, count
 from deixis.memory.writing import committed, reading
@@ -37,6 +37,7 @@ class SemanticMemory:
     def __init__(self, opened: Opened) -> None:
         self._opened: Opened | None = opened
         self._views: list[rdflib.Dataset] = []
+        self._union: list[ox.NamedNode] | None = None  # the graphs that a query looks at, since the last write
 
     @classmethod
     def open(cls, path: str | Path, create: bool = False) -> SemanticMemory:
@@ -126,6 +127,7 @@ class SemanticMemory:
         from deixis.memory.bulk import load_aside
 
         self._drop_views()
+        self._union = None
         load_aside(self._open, contributions)
 
     def lessons(self) -> tuple[str, ...]:
@@ -152,7 +154,9 @@ class SemanticMemory:
         from deixis.memory.sparql import run_query
 
         with reading(self.path):
-            return run_query(self.store, sparql)
+            if self._union is None:
+                self._union = default_graph(self.store)
+            return run_query(self.store, sparql, self._union)
 
     def dataset(self) -> rdflib.Dataset:
         """A live view of the six canonical graphs for rdflib; to be read only."""
@@ -172,6 +176,7 @@ class SemanticMemory:
         from deixis.memory.validation import check_change
 
         check_change(self.store, change)
+        self._union = None
         with committed(self.path):
             statements = [*change.statements, *merging(self.store, change.added, change.removed)]
             self.store.update(" ;\n".join(statements))

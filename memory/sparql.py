@@ -28,8 +28,10 @@ class Checked:
 
     text: str
     kind: QueryKind
-    names_graphs: bool
+    names_graphs: bool  # by FROM
+    asks_graphs: bool  # by GRAPH
     ordered: bool
+    prefixes: Mapping[str, str]  # of those that need no declaration, the ones that it uses
 
 
 class _Text:
@@ -55,12 +57,17 @@ class _Text:
         return min(sum(len(before) + 1 for before in lines[: line - 1]) + column - 1, len(self.text))
 
 
-def run_query(store: ox.Store, sparql: str) -> QueryResult:
-    """Runs a query over a memory's store. Raises QueryError for what is refused or cannot be understood."""
+def run_query(store: ox.Store, sparql: str, union: list[ox.NamedNode] | None = None) -> QueryResult:
+    """Runs a query over a memory's store. Raises QueryError for what is refused or cannot be understood.
+
+    ``union`` is what :func:`deixis.memory.merged.default_graph` says of the store, where the caller knows it already.
+    """
     checked = _admitted(sparql)
-    graphs = {} if checked.names_graphs else {"default_graph": default_graph(store), "named_graphs": [*CANONICAL]}
+    graphs = {} if checked.names_graphs else {"default_graph": union or default_graph(store)}
+    if checked.asks_graphs and graphs:
+        graphs["named_graphs"] = [*CANONICAL]
     try:
-        answer = store.query(checked.text, prefixes=PREFIXES, **graphs)  # type: ignore[arg-type]
+        answer = store.query(checked.text, prefixes=dict(checked.prefixes), **graphs)  # type: ignore[arg-type]
         return QueryResult.of(checked.kind, answer, checked.ordered)
     except SyntaxError as error:
         raise _syntax_error(_Text(sparql), error) from None
@@ -95,7 +102,10 @@ def _check(text: _Text, prefixes: Mapping[str, str]) -> Checked:
     if form is None:
         raise text.error(0, "no query: it must begin with SELECT, ASK, CONSTRUCT or DESCRIBE")
     names_graphs = _check_from(text, found, known)
-    return Checked(text.text, QueryKind(form.text.lower()), names_graphs, _ordered(found))
+    asks_graphs = any(token.kind is Kind.WORD and token.upper == "GRAPH" for token in found)
+    used = {token.text.partition(":")[0] for token in found if token.kind is Kind.NAME}
+    mine = {prefix: base for prefix, base in prefixes.items() if prefix in used and prefix not in declared}
+    return Checked(text.text, QueryKind(form.text.lower()), names_graphs, asks_graphs, _ordered(found), mine)
 
 
 def _declared(found: list[Token]) -> dict[str, str]:
