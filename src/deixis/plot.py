@@ -164,7 +164,7 @@ def _arrow(subject: PerceivedObject, object: PerceivedObject) -> tuple[tuple[flo
         low, high = max(a[0], b[0]), min(a[1], b[1])
         if low > high:
             near_a, near_b = (a[1], b[0]) if a[1] < b[0] else (a[0], b[1])
-            ends.append((near_a + 0.3 * (sum(a) / 2 - near_a), near_b + 0.15 * (sum(b) / 2 - near_b)))
+            ends.append((near_a + 0.3 * (sum(a) / 2 - near_a), near_b + 0.06 * (sum(b) / 2 - near_b)))
         elif a[0] >= b[0] and a[1] <= b[1] and _overlap_in_plan(subject, object):
             ends.append((a[0], b[0] + 0.3 * (a[0] - b[0])))
         else:
