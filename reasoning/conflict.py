@@ -1,21 +1,23 @@
-"""Contradictions in a relation graph: the smallest one found, made minimal by deletion.
+"""Contradictions in a relation graph: facts that no picture bears out together, none of which can be spared.
 
-A contradiction is a pair of which two relations are implied that no two boxes can bear at once, a relation that is
-implied and denied, or a choice of which nothing is left.
+Facts that leave no choice contradict each other where the orders between edges that they demand go round in a circle,
+and the circle of the fewest facts is reported. Where there are choices, no combination of them has a picture.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+import time
+from collections.abc import Sequence
 from dataclasses import dataclass
-
-import numpy as np
-from numpy.typing import NDArray
 
 from deixis.ontology.graph import Fact, RelationGraph
 from deixis.ontology.relation import Relation, Relations
-from deixis.reasoning.closure import FAR
 from deixis.reasoning.implications import Implications
+from deixis.reasoning.minimal import minimal_subset
+from deixis.reasoning.orders.closed import is_bare_circle, point_graph
+from deixis.reasoning.orders.closing import consistent
+from deixis.reasoning.orders.demands import Demands, demands_of_facts
+from deixis.reasoning.orders.paths import OrderPaths
 
 
 @dataclass(frozen=True)
@@ -39,7 +41,9 @@ def compatible(a: Relation, b: Relation) -> bool:
 
 
 def find_conflict(implied: Implications) -> Conflict | None:
-    """The contradiction that rests on the fewest stated facts, made minimal; None where the facts are consistent.
+    """A minimal contradiction; None where the facts are consistent, or where the time limit left that open.
+
+    Raises OutOfTimeError where there is a contradiction among choices, and the time limit strikes before it is minimal.
 
     >>> from deixis.ontology.tbox import default_ontology
     >>> r = default_ontology().relations
@@ -48,132 +52,58 @@ def find_conflict(implied: Implications) -> Conflict | None:
     >>> [str(fact) for fact in found.facts], found.reason
     (['left(a, b)', 'left(b, a)'], "'a' cannot be both left of and right of 'b'")
     """
-    best: tuple[tuple[Fact, ...], str] | None = None
-    for facts, reason in _candidates(implied):
-        if best is None or len(facts) < len(best[0]):
-            best = facts, reason
-        if len(best[0]) == 1:
-            break
-    return None if best is None else _minimised(best[0], best[1], implied.graph)
-
-
-def _candidates(implied: Implications) -> Iterator[tuple[tuple[Fact, ...], str]]:
-    yield from _self_relations(implied.graph)
-    yield from _clashes(implied)
-    yield from _denials(implied)
-    yield from _exhausted(implied)
-
-
-def _self_relations(graph: RelationGraph) -> Iterator[tuple[tuple[Fact, ...], str]]:
-    firm = graph.positive & ~graph.optional & (graph.weights >= 1.0)
-    for edge in np.flatnonzero((graph.subjects == graph.objects) & firm):
-        fact = graph.fact(int(edge))
-        yield (fact,), f"nothing can be related to itself, and '{fact.subject}' is"
-
-
-def _clashes(implied: Implications) -> Iterator[tuple[tuple[Fact, ...], str]]:
-    """For every two relations that no boxes bear at once: the pair for which both are implied by fewest steps."""
-    relations = list(implied.vocabulary.values())
-    for part in implied.parts():
-        stated = [r for r in relations if part.has(r)]
-        for i, a in enumerate(stated):
-            for b in stated[i + 1 :]:
-                if not compatible(a, b):
-                    pair = _closest(part.distance(a), part.distance(b))
-                    if pair is not None:
-                        s, o = (implied.graph.nodes[part.nodes[k]] for k in pair)
-                        yield _both(implied, a, b, s, o)
-
-
-def _closest(a: NDArray[np.int32], b: NDArray[np.int32]) -> tuple[int, int] | None:
-    steps = a + b
-    np.fill_diagonal(steps, np.iinfo(np.int32).max)
-    found = np.unravel_index(int(steps.argmin()), steps.shape)
-    both = a[found] < FAR and b[found] < FAR and found[0] != found[1]
-    return (int(found[0]), int(found[1])) if both else None
-
-
-def _both(implied: Implications, a: Relation, b: Relation, s: str, o: str) -> tuple[tuple[Fact, ...], str]:
-    facts = _stated(implied, [(a, s, o), (b, s, o)])
-    return facts, f"'{s}' cannot be both {a.phrase} and {b.phrase} '{o}'"
-
-
-def _stated(implied: Implications, goals: Sequence[tuple[Relation, str, str]]) -> tuple[Fact, ...]:
-    used: dict[Fact, None] = {}
-    for goal in goals:
-        derivation = implied.derive(*goal)
-        assert derivation is not None
-        used.update(dict.fromkeys(derivation.stated()))
-    return tuple(used)
-
-
-def _denials(implied: Implications) -> Iterator[tuple[tuple[Fact, ...], str]]:
-    for fact in _firm(implied.graph, positive=False):
-        for relation in fact.relations:
-            if implied.holds(relation, fact.subject, fact.object):
-                facts = _stated(implied, [(relation, fact.subject, fact.object)])
-                yield (
-                    (*facts, fact),
-                    f"'{fact.subject}' is {relation.phrase} '{fact.object}', and that is denied",
-                )
-
-
-def _exhausted(implied: Implications) -> Iterator[tuple[tuple[Fact, ...], str]]:
-    """Disjunctions none of whose alternatives is left."""
-    denied: dict[tuple[str, str, int], Fact] = {}
-    for fact in _firm(implied.graph, positive=False):
-        for relation in _with_narrower(fact.relations, implied.vocabulary):
-            inverse = implied.vocabulary[relation.inverse]
-            denied.setdefault((fact.subject, fact.object, relation.index), fact)
-            denied.setdefault((fact.object, fact.subject, inverse.index), fact)
-    for fact in _firm(implied.graph, positive=True):
-        if len(fact.relations) < 2:
-            continue
-        against = [_against(implied, relation, fact, denied) for relation in fact.relations]
-        if all(facts is not None for facts in against):
-            used = dict.fromkeys(f for facts in against if facts for f in facts)
-            names = " nor ".join(relation.phrase for relation in fact.relations)
-            yield (*used, fact), f"'{fact.subject}' can be neither {names} '{fact.object}'"
-
-
-def _with_narrower(relations: Sequence[Relation], vocabulary: Relations) -> list[Relation]:
-    """The relations and all that imply one of them: what is denied when they are."""
-    names = {relation.name for relation in relations}
-    return [other for other in vocabulary.values() if other.name in names or other.broader & names]
-
-
-def _against(
-    implied: Implications, relation: Relation, fact: Fact, denied: dict[tuple[str, str, int], Fact]
-) -> tuple[Fact, ...] | None:
-    """Stated facts that exclude one alternative of a disjunction, or None."""
-    key = (fact.subject, fact.object, relation.index)
-    if key in denied:
-        return (denied[key],)
-    for other in implied.vocabulary.values():
-        if not compatible(relation, other) and implied.holds(other, fact.subject, fact.object):
-            return _stated(implied, [(other, fact.subject, fact.object)])
-    return None
-
-
-def _firm(graph: RelationGraph, positive: bool) -> Iterator[Fact]:
-    chosen = (graph.positive == positive) & ~graph.optional & (graph.weights >= 1.0)
-    return (graph.fact(int(edge)) for edge in np.flatnonzero(chosen))
-
-
-def _minimised(facts: tuple[Fact, ...], reason: str, graph: RelationGraph) -> Conflict:
-    """Drops every fact without which the rest is still contradictory."""
-    kept = list(facts)
-    for fact in facts:
-        rest = [other for other in kept if other is not fact]
-        again = _first(rest, graph.vocabulary)
-        if again is not None:
-            kept, reason = rest, again
+    if implied.consistent:
+        return None
+    demands, deadline = implied.demands, time.monotonic() + implied.time_limit
+    graph = implied.graph
+    circle = OrderPaths(demands.bounds, len(graph.nodes)).circle()
+    edges = _group_edges(implied) if circle is None else sorted(circle)
+    facts = [graph.fact(edge) for edge in edges]
+    if circle is None or not _minimal_circle(demands, edges):
+        facts = minimal_subset(facts, lambda chosen: not _consistent(chosen, graph.vocabulary, deadline))
     if graph.sources:
-        kept.sort(key=lambda fact: (fact.source is None, fact.source))
-    return Conflict(tuple(kept), reason)
+        facts.sort(key=lambda fact: (fact.source is None, fact.source))
+    return Conflict(tuple(facts), _reason(facts, graph.vocabulary))
 
 
-def _first(facts: Sequence[Fact], vocabulary: Relations) -> str | None:
-    names = tuple(dict.fromkeys(name for fact in facts for name in (fact.subject, fact.object)))
-    found = next(_candidates(Implications(RelationGraph.from_facts(vocabulary, names, facts))), None)
-    return None if found is None else found[1]
+def _group_edges(implied: Implications) -> list[int]:
+    """The firm facts of the group that has no picture."""
+    graph, firm = implied.graph, implied.demands.firm
+    inside = implied.closed.groups.label[graph.subjects[firm]] == implied.closed.contradictory
+    edges: list[int] = firm[inside].tolist()
+    return edges
+
+
+def _minimal_circle(demands: Demands, edges: Sequence[int]) -> bool:
+    """Whether nothing but one circle is in the facts' bounds, so that every fact is needed to close it."""
+    few = demands.restricted(edges)
+    return not few.choices and is_bare_circle(point_graph(few.bounds, len(demands.graph.nodes)))
+
+
+def _consistent(facts: Sequence[Fact], vocabulary: Relations, deadline: float) -> bool:
+    return consistent(demands_of_facts(vocabulary, facts), deadline)
+
+
+def _reason(facts: Sequence[Fact], vocabulary: Relations) -> str:
+    """Why one of the facts cannot hold beside the others: a choice, else a denial, else the first."""
+    fact = next((f for f in facts if f.positive and len(f.relations) > 1), None)
+    fact = fact or next((f for f in facts if not f.positive), facts[0])
+    s, o = fact.subject, fact.object
+    phrases = [relation.phrase for relation in fact.relations]
+    if s == o:
+        return f"nothing can be related to itself, and '{s}' is"
+    if len(fact.relations) > 1 and fact.positive:
+        return f"'{s}' can be neither {' nor '.join(phrases)} '{o}'"
+    others = _implications([other for other in facts if other is not fact], (s, o), vocabulary)
+    if not fact.positive:
+        held = [relation.phrase for relation in fact.relations if others.holds(relation, s, o)]
+        return f"'{s}' is {' or '.join(held[:1] or phrases)} '{o}', and that is denied"
+    for other in vocabulary.values():
+        if not compatible(other, fact.relations[0]) and others.holds(other, s, o):
+            return f"'{s}' cannot be both {phrases[0]} and {other.phrase} '{o}'"
+    return f"'{s}' cannot be {phrases[0]} '{o}' where the other facts hold"
+
+
+def _implications(facts: Sequence[Fact], ends: tuple[str, str], vocabulary: Relations) -> Implications:
+    named = [name for fact in facts for name in (fact.subject, fact.object)]
+    return Implications(RelationGraph.from_facts(vocabulary, tuple(dict.fromkeys([*ends, *named])), facts))

@@ -20,9 +20,8 @@ from numpy.typing import NDArray
 from deixis.ontology.errors import UnknownTermError
 from deixis.ontology.graph import PaperGraph, RelationGraph
 from deixis.reasoning.assignment import assign, graph_similarity
-from deixis.reasoning.conflict import find_conflict
 from deixis.reasoning.evidence import UNMATCHED, Evidence
-from deixis.reasoning.implications import Implications
+from deixis.reasoning.same_word import with_same_word
 from deixis.reasoning.similarity import ITERATIONS, NodeSimilarity, node_similarity
 
 MAX_SUBGRAPHS = 5000
@@ -82,15 +81,8 @@ MAX_DESCRIBED = 20_000
 
 
 def described(description: RelationGraph) -> PaperGraph:
-    """The description as the paper's matcher sees it: with the inverses and transitive relations that it implies.
-
-    What follows from sub-properties is left out, since it names no exact relation. Facts that contradict each other
-    imply everything, so that from such a description nothing is inferred; nor is it where too much would follow.
-    """
-    implied = Implications(description, sub_properties=False)
-    if implied.count() > MAX_DESCRIBED or find_conflict(implied):
-        return description.paper_view()
-    return implied.completed().paper_view()
+    """The description as the paper's matcher sees it: with the inverses and what single words imply by transitivity."""
+    return with_same_word(description, MAX_DESCRIBED).paper_view()
 
 
 def paper_similarity(evidence: Evidence, members: NDArray[np.bool_] | None = None) -> NodeSimilarity:

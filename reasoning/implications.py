@@ -1,107 +1,127 @@
-"""What a relation graph implies, and why: inverses, sub-properties and transitivity, as the TBox declares them.
+"""What a relation graph implies, and why: everything that all its pictures share.
 
-Only firm facts are premises: affirmed, not optional, of weight 1, one relation each. Everything implied of a pair has
-a derivation down to stated facts, and the shortest one is given: a relation's facts, their inverses and what they are
-sub-properties of make a directed graph, in which a transitive conclusion is a path and its shortest derivation a
-shortest path.
-
-This is the seam for a full calculus: callers use :class:`Implications` and do not know how it closes the graph.
+A picture gives every object a box, and bears out every firm fact: those that are neither optional nor hedged. The facts
+are orders between the edges of boxes (:mod:`deixis.reasoning.orders`). Where they leave no choice they are closed by
+bit sets; the rest goes through the pieces of the rectangle algebra. Sound always; complete for facts that are convex on
+every axis, as every single relation of the TBox is, and with choices too, unless the time limit strikes (``complete``
+says so).
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+import time
+from collections.abc import Iterator
 from dataclasses import dataclass
-from enum import StrEnum
-from itertools import pairwise
+from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from deixis.ontology.errors import GraphError
 from deixis.ontology.graph import Fact, RelationGraph
 from deixis.ontology.relation import Relation, Relations
-from deixis.reasoning.closure import FAR, Component, base_edges, components, firm_edges
+from deixis.reasoning.derivation import Derivation, Rule
+from deixis.reasoning.orders.bounds import meaning
+from deixis.reasoning.orders.cases import derive_by_cases
+from deixis.reasoning.orders.choices import OutOfTimeError
+from deixis.reasoning.orders.closing import Closed, close
+from deixis.reasoning.orders.demands import Demands, demands_of
+from deixis.reasoning.orders.derivations import OrderDerivations
+
+TIME_LIMIT = 10.0
+"""Seconds for weighing the choices in the facts; facts that leave no choice need no search."""
 
 
-class Rule(StrEnum):
-    """Why a fact holds."""
+@dataclass(frozen=True, slots=True)
+class Support:
+    """What the shortest derivation of a fact rests on, without the derivation."""
 
-    STATED = "stated"
-    INVERSE = "inverse"  # owl:inverseOf
-    SUB_PROPERTY = "sub-property"  # rdfs:subPropertyOf
-    TRANSITIVITY = "transitivity"  # owl:TransitiveProperty
-
-
-@dataclass(frozen=True)
-class Derivation:
-    """A fact, the rule that gives it, and the derivations of what the rule needs."""
-
-    fact: Fact
     rule: Rule
-    premises: tuple[Derivation, ...] = ()
-
-    def stated(self) -> tuple[Fact, ...]:
-        """The stated facts that it rests on, without repetition, in the order of use."""
-        if self.rule is Rule.STATED:
-            return (self.fact,)
-        return tuple(dict.fromkeys(fact for premise in self.premises for fact in premise.stated()))
-
-    def lines(self, indent: str = "") -> Iterator[str]:
-        """The derivation as indented text, conclusion first."""
-        place = f"   [{self.fact.source}]" if self.rule is Rule.STATED and self.fact.source else ""
-        yield f"{indent}{self.fact}   by {self.rule}{place}"
-        for premise in self.premises:
-            yield from premise.lines(indent + "    ")
+    edges: tuple[int, ...]  # of the graph, in the order of use
 
 
 class Implications:
-    """Everything that follows from a relation graph; built at once, explained on demand.
+    """Everything that follows from a relation graph; closed at once, explained on demand.
 
     >>> from deixis.ontology.tbox import default_ontology
     >>> r = default_ontology().relations
-    >>> facts = [Fact("a", (r["left"],), "b"), Fact("c", (r["right"],), "b")]
-    >>> implied = Implications(RelationGraph.from_facts(r, ["a", "b", "c"], facts))
-    >>> print(*implied.derive(r["left"], "a", "c").lines(), sep="\\n")
-    left(a, c)   by transitivity
-        left(a, b)   by stated
-        left(b, c)   by inverse
-            right(c, b)   by stated
+    >>> facts = [Fact("fork", (r["left"],), "plate"), Fact("napkin", (r["on"],), "plate")]
+    >>> implied = Implications(RelationGraph.from_facts(r, ["fork", "plate", "napkin"], facts))
+    >>> print(*implied.derive(r["left"], "fork", "napkin").lines(), sep="\\n")
+    left(fork, napkin)   by composition
+        left(fork, plate)   by stated
+        under(plate, napkin)   by inverse
+            on(napkin, plate)   by stated
 
-    Raises LimitError where facts connect more than ``MAX_CONNECTED`` objects to one another.
+    From facts that contradict each other nothing is inferred (``consistent`` is False). Raises LimitError where facts
+    connect more objects to one another than can be closed.
     """
 
-    def __init__(self, graph: RelationGraph, sub_properties: bool = True) -> None:
+    def __init__(self, graph: RelationGraph, time_limit: float = TIME_LIMIT) -> None:
         self.graph = graph
         self.vocabulary: Relations = graph.vocabulary
-        self._base = base_edges(graph, sub_properties)
-        self._explained: dict[tuple[int, int, int], Derivation] = {}
-        self._place, self._components = components(graph, self._base)
+        self.time_limit = time_limit
+        self.demands: Demands = demands_of(graph)
+        self.closed: Closed = close(self.demands, time.monotonic() + time_limit)
+
+    @property
+    def consistent(self) -> bool:
+        """Whether there is a picture of the facts; True, too, where the time limit struck (see ``decided``)."""
+        return self.closed.orders is not None
+
+    @property
+    def decided(self) -> bool:
+        """Whether it is known that there is a picture, or that there is none."""
+        return self.closed.decided
+
+    @property
+    def complete(self) -> bool:
+        """Whether everything that all pictures share was found."""
+        return self.closed.complete
 
     def holds(self, relation: Relation, subject: str, object: str) -> bool:
-        """Whether the fact is stated or implied."""
-        part, s, o = self._locate(subject, object)
-        return part is not None and s != o and part.distance(relation)[s, o] < FAR
+        """Whether the fact holds in every picture."""
+        s, o = self.graph.index(subject), self.graph.index(object)
+        alternatives = meaning(relation)
+        if self.closed.orders is None or s == o or len(alternatives) != 1:
+            return False
+        orders = self.closed.orders
+        return all(orders.implies(bound, s, o) for bound in alternatives[0])
 
     def derive(self, relation: Relation, subject: str, object: str) -> Derivation | None:
-        """The shortest derivation of a fact, or None where it does not follow."""
-        part, s, o = self._locate(subject, object)
-        if part is None or s == o or part.distance(relation)[s, o] >= FAR:
+        """The shortest derivation found of a fact, or None where it does not follow.
+
+        Raises OutOfTimeError where it takes choices, and the time limit strikes.
+        """
+        if not self.holds(relation, subject, object):
             return None
-        path = part.path(relation, s, o)
-        steps = [self._explain_edge(relation, int(part.nodes[u]), int(part.nodes[v])) for u, v in pairwise(path)]
-        if len(steps) == 1:
-            return steps[0]
-        return Derivation(Fact(subject, (relation,), object), Rule.TRANSITIVITY, tuple(steps))
+        found = self._derivations.derive(relation, subject, object)
+        return found if found is not None else self._by_cases(Fact(subject, (relation,), object))
+
+    def _by_cases(self, goal: Fact) -> Derivation | None:
+        label = self.closed.groups.label
+        group = label[self.graph.index(goal.subject)]
+        firm = self.demands.firm
+        edges = firm[label[self.graph.subjects[firm]] == group]
+        facts = [self.graph.fact(int(edge)) for edge in edges]
+        return derive_by_cases(facts, goal, self.vocabulary, time.monotonic() + self.time_limit)
+
+    @cached_property
+    def _derivations(self) -> OrderDerivations:
+        facts = list(self.graph.facts())
+        return OrderDerivations(self.vocabulary, self.graph.nodes, facts, self.demands.bounds, len(facts))
+
+    def pairs(self, relation: Relation) -> NDArray[np.int64]:
+        """The pairs of nodes of which the relation holds in every picture, shape (k, 2), by subject, then by object."""
+        orders = self.closed.orders
+        return np.empty((0, 2), np.int64) if orders is None else orders.pairs(relation)
 
     def triples(self) -> Iterator[tuple[Relation, str, str]]:
         """Every fact that is stated or implied, by relation, subject and object in node order."""
+        nodes = self.graph.nodes
         for relation in self.vocabulary.values():
-            rows: list[tuple[int, int]] = []
-            for part in (part for part in self._components if part.has(relation)):
-                s, o = np.nonzero((part.distance(relation) < FAR) & ~np.eye(len(part.nodes), dtype=bool))
-                rows += zip(part.nodes[s].tolist(), part.nodes[o].tolist(), strict=True)
-            for u, v in sorted(rows):
-                yield relation, self.graph.nodes[u], self.graph.nodes[v]
+            for subject, object in self.pairs(relation).tolist():
+                yield relation, nodes[subject], nodes[object]
 
     def inferred(self) -> Iterator[Derivation]:
         """Every implied fact that is not stated itself, with its shortest derivation."""
@@ -112,75 +132,59 @@ class Implications:
 
     def implied(self) -> Iterator[Fact]:
         """Every implied fact that is not stated itself, without its derivation: cheap, however long that may be."""
-        stated = {
-            (self.graph.subjects[edge], self.graph.objects[edge], self.graph.relation_sets[edge])
-            for edge in firm_edges(self.graph)
-        }
-        for relation, subject, object in self.triples():
-            if (self.graph.index(subject), self.graph.index(object), relation.bit) not in stated:
-                yield Fact(subject, (relation,), object)
+        nodes = self.graph.nodes
+        for relation in self.vocabulary.values():
+            for subject, object in self._unstated(relation).tolist():
+                yield Fact(nodes[subject], (relation,), nodes[object])
 
-    def steps(self, fact: Fact) -> int:
-        """How many stated facts the shortest derivation of an implied fact takes; 0 where it does not follow."""
-        part, s, o = self._locate(fact.subject, fact.object)
-        distance = FAR if part is None or s == o else int(part.distance(fact.relations[0])[s, o])
-        return 0 if distance >= FAR else distance
+    def _unstated(self, relation: Relation) -> NDArray[np.int64]:
+        pairs, n = self.pairs(relation), len(self.graph.nodes)
+        firm = self.demands.firm
+        same = firm[self.graph.positive[firm] & (self.graph.relation_sets[firm] == relation.bit)]
+        stated = self.graph.subjects[same].astype(np.int64) * n + self.graph.objects[same]
+        return pairs[~np.isin(pairs[:, 0] * n + pairs[:, 1], stated)]
 
-    def support(self, fact: Fact) -> tuple[Rule, tuple[int, ...]]:
-        """By what rule an implied fact follows last, and the edges of the graph that its shortest derivation rests on.
+    def implied_with_steps(self) -> Iterator[tuple[Fact, int]]:
+        """Every implied fact that is not stated, and how many facts the longest of its shortest paths takes.
 
-        The same as :meth:`derive` says, without the derivation. Raises GraphError where the fact does not follow.
+        0 stands for one that follows by no path, but by cases.
         """
-        part, s, o = self._locate(fact.subject, fact.object)
-        relation = fact.relations[0]
-        if part is None or s == o or part.distance(relation)[s, o] >= FAR:
+        nodes = self.graph.nodes
+        for relation in self.vocabulary.values():
+            pairs = self._unstated(relation)
+            begins = np.flatnonzero(np.diff(pairs[:, 0], prepend=-1))
+            for some in np.split(pairs, begins[1:]) if len(pairs) else ():
+                subject, objects = int(some[0, 0]), some[:, 1]
+                steps = self._steps(relation, subject, objects)
+                for object, count in zip(objects.tolist(), steps.tolist(), strict=True):
+                    yield Fact(nodes[subject], (relation,), nodes[object]), count
+
+    def _steps(self, relation: Relation, subject: int, objects: NDArray[np.int64]) -> NDArray[np.int64]:
+        paths = self._derivations.paths
+        costs = np.stack([paths.costs(bound, subject, objects) for bound in meaning(relation)[0]]).max(axis=0)
+        return np.where(costs > len(self.graph), 0, costs)
+
+    def support(self, fact: Fact) -> Support:
+        """By what rule an implied fact follows last, and the edges of the graph that its derivation rests on.
+
+        The same as :meth:`derive` says. Raises GraphError where the fact does not follow.
+        """
+        relation, subject, object = fact.relations[0], fact.subject, fact.object
+        if not self.holds(relation, subject, object):
             raise GraphError(f"{fact} does not follow")
-        path = part.nodes[part.path(relation, s, o)].tolist()
-        if len(path) == 2:
-            return self._explain_edge(relation, path[0], path[1]).rule, (self._base[relation.index][path[0], path[1]],)
-        base = self._base[relation.index]
-        return Rule.TRANSITIVITY, tuple(dict.fromkeys(base[pair] for pair in pairwise(path)))
+        chains = self._derivations.chains(relation, subject, object)
+        if chains is not None:
+            used = dict.fromkeys(edge for path in chains.values() for edge in path)
+            return Support(self._derivations.of_chains(chains, relation, subject, object).rule, tuple(used))
+        derivation = self._by_cases(fact)
+        assert derivation is not None
+        stated = set(derivation.stated())
+        return Support(derivation.rule, tuple(k for k, other in enumerate(self.graph.facts()) if other in stated))
 
     def count(self) -> int:
         """How many facts are stated or implied."""
-        distances = (part.distance(r) for part in self._components for r in self.vocabulary.values() if part.has(r))
-        return sum(int(np.count_nonzero(d < FAR)) - int(np.count_nonzero(d.diagonal() < FAR)) for d in distances)
+        orders = self.closed.orders
+        return 0 if orders is None else sum(orders.count(relation) for relation in self.vocabulary.values())
 
-    def completed(self) -> RelationGraph:
-        """The graph with the implied facts as further edges, after the stated ones."""
-        return RelationGraph.from_facts(
-            self.vocabulary,
-            self.graph.nodes,
-            [*self.graph.facts(), *self.implied()],
-            kinds=self.graph.kinds,
-            boxes=self.graph.boxes,
-        )
 
-    def parts(self) -> Sequence[Component]:
-        """The connected parts of the graph, each with its closed relations."""
-        return self._components
-
-    def _locate(self, subject: str, object: str) -> tuple[Component | None, int, int]:
-        s, o = self.graph.index(subject), self.graph.index(object)
-        if self._place[s, 0] != self._place[o, 0]:
-            return None, 0, 0
-        return self._components[self._place[s, 0]], int(self._place[s, 1]), int(self._place[o, 1])
-
-    def _explain_edge(self, relation: Relation, subject: int, object: int) -> Derivation:
-        """One edge of a relation's graph: stated, an inverse, a sub-property, or the last two in turn."""
-        key = (relation.index, subject, object)
-        if key not in self._explained:
-            self._explained[key] = self._derive_edge(relation, subject, object)
-        return self._explained[key]
-
-    def _derive_edge(self, relation: Relation, subject: int, object: int) -> Derivation:
-        stated = self.graph.fact(self._base[relation.index][subject, object])
-        derivation = Derivation(stated, Rule.STATED)
-        current = stated.relations[0]
-        s, o = self.graph.nodes[subject], self.graph.nodes[object]
-        if (stated.subject, stated.object) != (s, o):
-            current = self.vocabulary[current.inverse]
-            derivation = Derivation(Fact(s, (current,), o), Rule.INVERSE, (derivation,))
-        if current != relation:
-            derivation = Derivation(Fact(s, (relation,), o), Rule.SUB_PROPERTY, (derivation,))
-        return derivation
+__all__ = ["TIME_LIMIT", "Derivation", "Implications", "OutOfTimeError", "Rule", "Support"]

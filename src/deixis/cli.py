@@ -6,24 +6,34 @@ Exit codes: 0 done, 1 the answer is no, 2 bad input, 3 undecided within the time
 from __future__ import annotations
 
 import io
-import json
 import os
 import signal
 import sys
 from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from deixis.cli_memory import HideLabels, Image, SceneFile, register
+from deixis.cli_common import (
+    BAD_INPUT,
+    NO,
+    UNDECIDED,
+    AsJson,
+    HideLabels,
+    Image,
+    SceneFile,
+    Script,
+    TimeLimit,
+    print_json,
+    print_lines,
+)
+from deixis.cli_infer import infer
+from deixis.cli_memory import register
+from deixis.cli_time import time_command
 
 if TYPE_CHECKING:
-    from deixis.inference import Inference
-    from deixis.ontology.graph import Fact
     from deixis.reasoning.grounding import Grounding
-
-NO, BAD_INPUT, UNDECIDED = 1, 2, 3
 
 app = typer.Typer(
     name="deixis",
@@ -47,10 +57,6 @@ class EngineName(StrEnum):
     SIMILARITY = "similarity"
 
 
-Script = Annotated[str, typer.Argument(metavar="SCRIPT", help="A layout script (.layout).")]
-AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
-
-
 @app.callback()
 def _root() -> None:
     pass
@@ -69,11 +75,11 @@ def parse(
     if as_json or format is GraphFormat.JSON:
         from deixis.report import script_to_dict
 
-        _print_json(script_to_dict(parsed))
+        print_json(script_to_dict(parsed))
     elif format is GraphFormat.TEXT:
         from deixis.show import script_lines
 
-        _print_lines(script_lines(parsed))
+        print_lines(script_lines(parsed))
     else:
         from deixis.ontology.export import graph_to_dot, graph_to_turtle
 
@@ -100,63 +106,15 @@ def fmt(
     if write and not same:
         _replace(Path(script), formatted)
     if as_json:
-        _print_json({"file": script, "canonical": same, "text": formatted})
+        print_json({"file": script, "canonical": same, "text": formatted})
     elif not check and not write:
         sys.stdout.write(formatted)
     if check and not same:
         raise typer.Exit(NO)
 
 
-@app.command()
-def infer(
-    script: Script,
-    explain: Annotated[str | None, typer.Option(help="Print why a fact holds: 'left(fork, plate)'.")] = None,
-    as_json: AsJson = False,
-) -> None:
-    """Print what a script states and implies, or the smallest contradiction in it (exit 1)."""
-    from deixis.report import inference_to_dict
-    from deixis.session import infer as run
-    from deixis.show import inference_lines
-
-    fact = None if explain is None else _one_fact(explain)
-    inference = run(script)
-    if fact is not None and inference.consistent:
-        _explain(inference, fact, as_json)
-        return
-    if as_json:
-        _print_json(inference_to_dict(inference))
-    else:
-        _print_lines(inference_lines(inference))
-    if not inference.consistent:
-        raise typer.Exit(NO)
-
-
-def _one_fact(text: str) -> Fact:
-    from deixis.grammar.parser import parse_script
-    from deixis.ontology.errors import DeixisError
-
-    facts = parse_script(text, "--explain").facts
-    if len(facts) != 1 or not facts[0].plain:
-        raise DeixisError(f"--explain: '{text}' is not one plain fact; write it like 'left(fork, plate)'")
-    return facts[0]
-
-
-def _explain(inference: Inference, fact: Fact, as_json: bool) -> None:
-    from deixis.ontology.errors import UnknownTermError
-    from deixis.report import derivation_to_dict
-
-    for name in (fact.subject, fact.object):
-        if name not in inference.implications.graph.nodes:
-            raise UnknownTermError(f"--explain: the script names no '{name}'")
-    derivation = inference.implications.derive(fact.relations[0], fact.subject, fact.object)
-    if as_json:
-        _print_json({"fact": str(fact), "derivation": derivation and derivation_to_dict(derivation)})
-    elif derivation is None:
-        print(f"{fact} does not follow from the script.")
-    else:
-        _print_lines(list(derivation.lines()))
-    if derivation is None:
-        raise typer.Exit(NO)
+app.command()(infer)
+app.command("time")(time_command)
 
 
 @app.command()
@@ -165,7 +123,7 @@ def ground(
     scene: SceneFile,
     engine: Annotated[EngineName, typer.Option(help="exact, or similarity: the paper's.")] = EngineName.EXACT,
     plot: Annotated[Path | None, typer.Option(metavar="FILE", help="Draw the scene with the names found.")] = None,
-    time_limit: Annotated[float, typer.Option(min=0.0, metavar="SECONDS", help="Answer by then.")] = 10.0,
+    time_limit: TimeLimit = 10.0,
     hide_labels: HideLabels = False,
     image: Image = None,
     as_json: AsJson = False,
@@ -187,9 +145,9 @@ def ground(
 
         plot_grounding(found, seen, plot, title=parsed.title or parsed.name)
     if as_json:
-        _print_json(grounding_to_dict(found))
+        print_json(grounding_to_dict(found))
     else:
-        _print_lines(grounding_lines(found))
+        print_lines(grounding_lines(found))
         if plot is not None:
             print(f"\nThe picture is in {plot}.")
     raise typer.Exit(_verdict(found))
@@ -217,9 +175,9 @@ def experiment(
 
     result = run_experiment(name, out, variants=variants, orders=orders, seed=seed)
     if as_json:
-        _print_json(result.to_dict())
+        print_json(result.to_dict())
     else:
-        _print_lines(result.lines())
+        print_lines(result.lines())
 
 
 @app.command()
@@ -245,14 +203,6 @@ def _replace(path: Path, text: str) -> None:
         draft.replace(target)
     finally:
         draft.unlink(missing_ok=True)
-
-
-def _print_json(data: Any) -> None:
-    print(json.dumps(data, indent=2, ensure_ascii=False))
-
-
-def _print_lines(lines: list[str]) -> None:
-    print("\n".join(lines))
 
 
 def main() -> None:

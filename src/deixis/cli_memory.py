@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import sys
 from enum import StrEnum
 from pathlib import Path
@@ -10,17 +9,17 @@ from typing import Annotated
 
 import typer
 
-MemoryDir = Annotated[
-    Path | None,
-    typer.Option("--memory", metavar="DIR", help="The memory (default: $DEIXIS_MEMORY, else a folder of yours)."),
-]
-AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
-SceneFile = Annotated[
-    str, typer.Argument(metavar="SCENE", help="A scene (.scene.json), or COCO or LabelMe annotations.")
-]
-TimeLimit = Annotated[float, typer.Option(min=0.0, metavar="SECONDS", help="Answer by then.")]
-HideLabels = Annotated[bool, typer.Option("--hide-labels", help="Look at the scene as if nothing in it were named.")]
-Image = Annotated[str | None, typer.Option(metavar="NAME", help="Which image of a COCO file.")]
+from deixis.cli_common import (
+    AsJson,
+    HideLabels,
+    Image,
+    MemoryDir,
+    SceneFile,
+    Script,
+    TimeLimit,
+    print_json,
+    print_lines,
+)
 
 memory_app = typer.Typer(help="Export, import, count, or forget what was learned.", no_args_is_help=True)
 
@@ -45,7 +44,7 @@ def register(app: typer.Typer) -> None:
 
 
 def learn(
-    script: Annotated[str, typer.Argument(metavar="SCRIPT", help="A layout script (.layout).")],
+    script: Script,
     scene: SceneFile,
     engine: Annotated[str, typer.Option(help="exact, or similarity: the paper's.")] = "exact",
     time_limit: TimeLimit = 10.0,
@@ -68,9 +67,9 @@ def learn(
             raise typer.Exit(1) from error
         where = session.path
     if as_json:
-        _print(json.dumps(learned_to_dict(learned), indent=2, ensure_ascii=False))
+        print_json(learned_to_dict(learned))
     else:
-        _print(*learned_lines(learned, str(where)))
+        print_lines(learned_lines(learned, str(where)))
 
 
 def show(
@@ -87,7 +86,7 @@ def show(
     if as_json:
         facts = [fact_to_dict(fact) for fact in concept.facts]
         head = {"name": concept.name, "title": concept.title, "viewpoint": concept.viewpoint, "lesson": concept.lesson}
-        _print(json.dumps({**head, "facts": facts, "text": text}, indent=2, ensure_ascii=False))
+        print_json({**head, "facts": facts, "text": text})
     else:
         sys.stdout.write(text)
 
@@ -126,9 +125,9 @@ def check(
     if turtle:
         sys.stdout.write(checked.report)
     elif as_json:
-        _print(json.dumps(check_to_dict(checked), indent=2, ensure_ascii=False))
+        print_json(check_to_dict(checked))
     else:
-        _print(*check_lines(checked))
+        print_lines(check_lines(checked))
     if not checked.table.grounding.proved_best:
         raise typer.Exit(3)
     if not checked.table.well:
@@ -153,13 +152,13 @@ def query(
     with Session(memory) as session:
         result = session.query(_text(file) if file is not None else sparql or "")
         if as_json or format is TableFormat.JSON:
-            _print(result.to_json())
+            print(result.to_json())
         elif format is TableFormat.CSV:
             sys.stdout.write(result.to_csv())
         elif format is TableFormat.TURTLE:
             sys.stdout.write(result.to_turtle())
         else:
-            _print(*result.to_table())
+            print_lines(result.to_table())
         if result.boolean is False:
             raise typer.Exit(1)
 
@@ -194,7 +193,7 @@ def import_(
 
     with Session(memory) as session:
         session.import_(dump)
-        _print(f"{dump} is in the memory {session.path}.")
+        print(f"{dump} is in the memory {session.path}.")
 
 
 @memory_app.command("stats")
@@ -209,9 +208,9 @@ def stats(memory: MemoryDir = None, as_json: AsJson = False) -> None:
         counted = asdict(session.memory().stats())
         lessons = session.memory().lessons()
     if as_json:
-        _print(json.dumps({**counted, "lesson_ids": list(lessons)}, indent=2, default=str))
+        print_json({**counted, "lesson_ids": list(lessons)})
     else:
-        _print(*stats_lines(counted, lessons))
+        print_lines(stats_lines(counted, lessons))
 
 
 @memory_app.command("forget")
@@ -224,7 +223,7 @@ def forget(
 
     with Session(memory) as session:
         session.forget(lesson)
-    _print(f"Forgotten: {lesson}.")
+    print(f"Forgotten: {lesson}.")
 
 
 def _text(file: Path) -> str:
@@ -234,7 +233,3 @@ def _text(file: Path) -> str:
         return file.read_text(encoding="utf-8")
     except UnicodeDecodeError as error:
         raise DeixisError(f"{file}: the file is not UTF-8 (byte {error.start})") from error
-
-
-def _print(*lines: str) -> None:
-    print("\n".join(lines))

@@ -8,9 +8,11 @@ from dataclasses import dataclass
 from deixis.grammar.script import Script
 from deixis.ontology.graph import Fact
 from deixis.reasoning.conflict import Conflict, find_conflict
-from deixis.reasoning.implications import Implications, Rule
+from deixis.reasoning.derivation import Rule
+from deixis.reasoning.implications import TIME_LIMIT, Implications
+from deixis.reasoning.orders.choices import OutOfTimeError
 
-MANY_STEPS = 40
+MANY_STEPS = 12
 """Stated facts of which an inferred one is listed with all its lines; ``--explain`` has the others."""
 
 
@@ -26,32 +28,47 @@ class Inferred:
 
 @dataclass(frozen=True)
 class Inference:
-    """What a script implies: every fact that follows without being stated, or the conflict that spoils it."""
+    """What a script implies: every fact that follows without being stated, or the conflict that spoils it.
+
+    Where the time limit struck, ``decided`` is False if it is not known whether there is a conflict, and ``complete``
+    if further facts may follow.
+    """
 
     stated: tuple[Fact, ...]
     implications: Implications
     conflict: Conflict | None
+    decided: bool
 
     @property
     def consistent(self) -> bool:
         return self.conflict is None
 
+    @property
+    def complete(self) -> bool:
+        return self.implications.complete
+
     def inferred(self) -> tuple[Inferred, ...]:
         """The facts that follow without being stated; none where the script contradicts itself."""
-        return tuple(self._inferred()) if self.consistent else ()
+        return tuple(self._inferred()) if self.consistent and self.decided else ()
 
     def _inferred(self) -> Iterator[Inferred]:
-        lines = [source.line if source else 0 for source in self.implications.graph.sources]
-        for fact in self.implications.implied():
-            steps = self.implications.steps(fact)
+        places = [source.line if source else 0 for source in self.implications.graph.sources]
+        for fact, steps in self.implications.implied_with_steps():
             if steps > MANY_STEPS:
-                yield Inferred(fact, Rule.TRANSITIVITY, steps, ())
+                yield Inferred(fact, Rule.COMPOSITION, steps, ())
                 continue
-            rule, edges = self.implications.support(fact)
-            yield Inferred(fact, rule, steps, tuple(sorted({lines[edge] for edge in edges})))
+            support = self.implications.support(fact)
+            lines = tuple(sorted({places[edge] for edge in support.edges}))
+            yield Inferred(fact, support.rule, len(support.edges), lines)
 
 
-def inference_of(script: Script) -> Inference:
-    """What follows from a script in the wide reading, and whether it contradicts itself."""
-    implications = Implications(script.graph())
-    return Inference(script.facts, implications, find_conflict(implications))
+def inference_of(script: Script, time_limit: float = TIME_LIMIT) -> Inference:
+    """What follows from a script, and whether it contradicts itself, within about ``time_limit`` seconds.
+
+    Only facts that leave a choice take a search, and so need a limit.
+    """
+    implications = Implications(script.graph(), time_limit)
+    try:
+        return Inference(script.facts, implications, find_conflict(implications), implications.decided)
+    except OutOfTimeError:
+        return Inference(script.facts, implications, None, decided=False)

@@ -9,8 +9,9 @@ from deixis.ontology.export import fact_to_dict, graph_to_dict
 if TYPE_CHECKING:
     from deixis.grammar.script import Script
     from deixis.inference import Inference, Inferred
+    from deixis.reasoning.derivation import Claim, Derivation
     from deixis.reasoning.grounding import FactOutcome, Grounding
-    from deixis.reasoning.implications import Derivation
+    from deixis.reasoning.why_not import WhyNot
     from deixis.session import Checked, Learned
 
 
@@ -34,7 +35,8 @@ def inference_to_dict(inference: Inference) -> dict[str, Any]:
         return {"consistent": False, "conflict": {"reason": inference.conflict.reason, "facts": facts}}
     stated = [fact_to_dict(fact) | {"status": "stated"} for fact in inference.stated]
     inferred = [_inferred_to_dict(entry) for entry in inference.inferred()]
-    return {"consistent": True, "facts": stated + inferred}
+    known = {"consistent": True if inference.decided else None, "complete": inference.complete}
+    return {**known, "facts": stated + inferred}
 
 
 def _inferred_to_dict(entry: Inferred) -> dict[str, Any]:
@@ -45,7 +47,32 @@ def _inferred_to_dict(entry: Inferred) -> dict[str, Any]:
 def derivation_to_dict(derivation: Derivation) -> dict[str, Any]:
     """A derivation, down to stated facts."""
     premises = [derivation_to_dict(premise) for premise in derivation.premises]
-    return {"fact": fact_to_dict(derivation.fact), "rule": derivation.rule.value, "premises": premises}
+    return {"fact": _claim_to_dict(derivation.fact), "rule": derivation.rule.value, "premises": premises}
+
+
+def _claim_to_dict(claim: Claim) -> dict[str, Any]:
+    """A fact as elsewhere; an order of two edges, or what is impossible, in words."""
+    from deixis.ontology.graph import Fact
+
+    return fact_to_dict(claim) if isinstance(claim, Fact) else {"claim": str(claim)}
+
+
+def why_not_to_dict(found: WhyNot) -> dict[str, Any]:
+    """Why a fact does not follow: what excludes it, or a picture without it."""
+    answer: dict[str, Any] = {"fact": str(found.fact), "follows": found.follows is not None}
+    if found.follows is not None:
+        answer["derivation"] = derivation_to_dict(found.follows)
+    if found.against is not None:
+        answer["excluded_by"] = derivation_to_dict(found.against)
+    if found.conflict is not None:
+        facts = [fact_to_dict(fact) for fact in found.conflict.facts]
+        answer["conflict"] = {"reason": found.conflict.reason, "facts": facts}
+    if found.picture is not None:
+        boxes = zip(found.picture.objects, found.picture.boxes.tolist(), strict=True)
+        answer["picture"] = [{"id": name, "min": box[0], "max": box[1]} for name, box in boxes]
+        answer["missing"] = [str(order) for order in found.missing]
+        answer["known"] = [fact_to_dict(fact) for fact in found.known]
+    return answer
 
 
 def grounding_to_dict(found: Grounding) -> dict[str, Any]:

@@ -25,7 +25,7 @@ from deixis.reasoning.errors import InconsistencyError, NothingFoundError, Setti
 from deixis.reasoning.evidence import Evidence
 from deixis.reasoning.grounding import DEFAULT_TIME_LIMIT, Grounding
 from deixis.reasoning.grounding import ground as ground_evidence
-from deixis.reasoning.implications import Implications
+from deixis.reasoning.implications import TIME_LIMIT, Implications
 from deixis.reasoning.labels import Label, label_evidence
 
 if TYPE_CHECKING:
@@ -46,9 +46,12 @@ def read_script(path: str | Path | None = None, *, text: str | None = None, onto
     return parse_script(text, ontology=ontology) if text is not None else read_script_file(str(path), ontology=ontology)
 
 
-def infer(script: Script | str | Path) -> Inference:
-    """What follows from a script in the wide reading, and whether it contradicts itself."""
-    return inference_of(_script(script))
+def infer(script: Script | str | Path, time_limit: float = TIME_LIMIT) -> Inference:
+    """What follows from a script in the wide reading, and whether it contradicts itself.
+
+    The time limit is for facts that leave a choice; the others need no search.
+    """
+    return inference_of(_script(script), time_limit)
 
 
 def evidence_of(script: Script, scene: Scene) -> Evidence:

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from deixis.ontology.graph import Fact
     from deixis.reasoning.checking import RoleCheck
     from deixis.reasoning.grounding import FactOutcome, Grounding, Match
+    from deixis.reasoning.why_not import WhyNot
     from deixis.session import Checked, Learned
 
 
@@ -53,11 +54,44 @@ def inference_lines(inference: Inference) -> list[str]:
         lines = [f"The script contradicts itself: {inference.conflict.reason}."]
         lines += [f"    {fact.source}: {fact}" for fact in inference.conflict.facts]
         return [*lines, "Leave out or change any one of these."]
+    if not inference.decided:
+        return ["Undecided within the time limit: whether the facts, among which some leave a choice, can all hold."]
     inferred = inference.inferred()
     lines = [f"Stated ({len(inference.stated)}):"]
     lines += [f"    {qualified(fact)}   line {fact.source.line if fact.source else '?'}" for fact in inference.stated]
     lines.append(f"Inferred ({len(inferred)}):")
-    return lines + [f"    {entry.fact}   by {entry.rule} from {_places(entry)}" for entry in inferred]
+    lines += [f"    {entry.fact}   by {entry.rule} from {_places(entry)}" for entry in inferred]
+    if not inference.complete:
+        lines.append("The time limit struck: more may follow from the facts that leave a choice.")
+    return lines
+
+
+def why_not_lines(found: WhyNot) -> list[str]:
+    """Why a fact does not follow; at the most ``MANY`` objects of a picture."""
+    if found.follows is not None:
+        return [f"{found.fact} does follow:", *(f"    {line}" for line in found.follows.lines())]
+    if found.against is not None:
+        return [f"{found.fact} cannot hold, since this does:", *(f"    {line}" for line in found.against.lines())]
+    if found.conflict is not None:
+        lines = [f"{found.fact} cannot hold beside these, for {found.conflict.reason}:"]
+        stated = [fact for fact in found.conflict.facts if fact.source is not None]
+        return lines + [f"    {fact.source}: {fact}" for fact in stated]
+    assert found.picture is not None
+    lines = [f"{found.fact} does not follow: every firm fact holds in this picture, and it does not."]
+    boxes = dict(zip(found.picture.objects, found.picture.boxes.astype(int).tolist(), strict=True))
+    ends = dict.fromkeys((found.fact.subject, found.fact.object))
+    shown = [*ends, *(name for name in boxes if name not in ends)][:MANY]
+    lines += [f"    {name:<24} {_extent(boxes[name])}" for name in shown]
+    if len(boxes) > len(shown):
+        lines.append(f"    and {len(boxes) - len(shown)} more (--json has them)")
+    lines += ["It would take:", *(f"    {order}" for order in found.missing)]
+    known = [f"    {fact}" for fact in found.known]
+    return [*lines, "What follows of the two:", *(known or ["    nothing"])]
+
+
+def _extent(box: list[list[int]]) -> str:
+    low, high = box
+    return "   ".join(f"{axis} {low[k]} to {high[k]}" for k, axis in enumerate("xyz"))
 
 
 def _places(entry: Inferred) -> str:

@@ -142,9 +142,68 @@ def test_explain_as_json() -> None:
 
 
 def test_what_does_not_follow_is_a_no() -> None:
-    code, out, err = deixis("infer", SCRIPT1, "--explain", "left(napkin, soup_spoon)")
+    code, out, err = deixis("infer", SCRIPT1, "--explain", "left(dessert_fork, soup_spoon)")
     assert (code, err) == (1, "")
-    assert out == "left(napkin, soup_spoon) does not follow from the script.\n"
+    assert out == "left(dessert_fork, soup_spoon) does not follow from the script (--why-not says why).\n"
+
+
+def test_what_lies_on_a_plate_shares_its_sides() -> None:
+    code, out, _ = deixis("infer", SCRIPT1, "--explain", "left(napkin, soup_spoon)")
+    assert code == 0
+    assert out.splitlines()[0] == "left(napkin, soup_spoon)   by composition"
+    assert {line.split("   ")[-1].strip("[]").rsplit(":", 2)[1] for line in out.splitlines() if "[" in line} == {
+        "5",
+        "13",
+        "14",
+    }
+
+
+def test_why_not_shows_a_picture_without_the_fact() -> None:
+    code, out, err = deixis("infer", SCRIPT1, "--why-not", "left(dessert_fork, soup_spoon)")
+    assert (code, err) == (0, "")
+    lines = out.splitlines()
+    assert lines[0].startswith("left(dessert_fork, soup_spoon) does not follow: every firm fact holds in this picture")
+    assert "    right edge of dessert_fork <= left edge of soup_spoon" in lines
+    _, out, _ = deixis("infer", SCRIPT1, "--why-not", "left(dessert_fork, soup_spoon)", "--json")
+    data = json.loads(out)
+    boxes = {box["id"]: box for box in data["picture"]}
+    assert not data["follows"]
+    assert boxes["dessert_fork"]["max"][0] > boxes["soup_spoon"]["min"][0]
+    assert boxes["soup_spoon"]["min"][0] >= boxes["fish_knife"]["max"][0]
+    assert {"min", "max", "id"} == boxes["napkin"].keys()
+
+
+def test_why_not_says_what_excludes_a_fact() -> None:
+    code, out, _ = deixis("infer", SCRIPT1, "--why-not", "right(salad_fork, soup_spoon)")
+    assert code == 0
+    lines = out.splitlines()
+    assert lines[0] == "right(salad_fork, soup_spoon) cannot hold, since this does:"
+    assert lines[1].startswith("    left(salad_fork, soup_spoon)   by ")
+    _, out, _ = deixis("infer", SCRIPT1, "--why-not", "right(salad_fork, soup_spoon)", "--json")
+    assert json.loads(out)["excluded_by"]["fact"]["relation"] == "left"
+
+
+def test_why_not_of_what_does_follow_is_a_no() -> None:
+    code, out, _ = deixis("infer", SCRIPT1, "--why-not", "left(salad_fork, soup_spoon)")
+    assert code == 1
+    assert out.splitlines()[0] == "left(salad_fork, soup_spoon) does follow:"
+
+
+def test_an_object_that_the_script_does_not_name_cannot_be_asked_about() -> None:
+    code, out, err = deixis("infer", SCRIPT1, "--why-not", "left(salad_frok, soup_spoon)")
+    assert (code, out) == (2, "")
+    assert err == "deixis: --why-not: the script names no 'salad_frok'; did you mean 'salad_fork'?\n"
+
+
+def test_choices_that_are_not_weighed_in_time_leave_it_undecided(tmp_path: Path) -> None:
+    script = tmp_path / "choices.layout"
+    script.write_text("a left or right of b\nb left or right of c\na is not left of c\n", encoding="utf-8")
+    code, out, err = deixis("infer", str(script), "--time-limit", "0")
+    assert (code, err) == (3, "")
+    assert out.startswith("Undecided within the time limit")
+    code, out, _ = deixis("infer", str(script), "--time-limit", "0", "--json")
+    assert (code, json.loads(out)["consistent"]) == (3, None)
+    assert deixis("infer", str(script))[0] == 0
 
 
 @pytest.mark.parametrize(
@@ -160,7 +219,7 @@ def test_a_contradiction_prints_its_minimal_conflict_only() -> None:
     code, out, err = deixis("infer", CONTRADICTION)
     assert (code, err) == (1, "")
     lines = out.splitlines()
-    assert lines[0] == "The script contradicts itself: 'dinner_plate' cannot be both left of and right of 'salad_fork'."
+    assert lines[0] == "The script contradicts itself: 'salad_fork' cannot be both left of and right of 'dinner_fork'."
     assert [line.partition(": ")[2] for line in lines[1:4]] == [
         "left(salad_fork, dinner_fork)",
         "left(dinner_fork, dinner_plate)",

@@ -1,0 +1,141 @@
+"""Bounds on times and on differences of times, exact: whole microseconds, each with a flag for *strictly less*.
+
+An upper bound *x <= b* or *x < b* is one integer, ``2 * b + 1`` or ``2 * b`` with b in microseconds, so that the
+smaller integer is the tighter bound, and the sum of two bounds is strict where either is. That is how difference
+bound matrices are kept for timed automata (Bengtsson & Yi 2004), and it does without an epsilon: *before*
+is really *less than*. Integers add up without rounding, so a chain of 0.1 s never contradicts its sum.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from fractions import Fraction
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.reasoning.errors import SettingError
+
+TICKS = 1_000_000
+"""Ticks in a second; a time between two ticks is rounded to the nearest."""
+
+FARTHEST = 4e9
+"""Seconds from the origin that a bound may lie at the most (some 126 years), so that all sums stay exact."""
+
+UNBOUNDED = 1 << 62
+"""The code of no bound at all."""
+
+ZERO = 1
+"""The code of *x <= 0*."""
+
+
+def to_ticks(seconds: float) -> int:
+    """The nearest whole number of microseconds.
+
+    Raises SettingError where the time is no finite number, or farther away than ``FARTHEST``.
+    """
+    if not math.isfinite(seconds):
+        raise SettingError(f"a time must be a finite number of seconds, not {seconds}")
+    if abs(seconds) > FARTHEST:
+        raise SettingError(f"a time of {seconds:g} s is beyond {FARTHEST:g} s; is the unit or the origin right?")
+    return round(Fraction(seconds) * TICKS)
+
+
+def encode(seconds: float, strict: bool = False) -> int:
+    """The code of *x <= seconds*, or of *x < seconds*; infinity is no bound.
+
+    >>> encode(0.0) == ZERO, encode(0.0, strict=True) < encode(0.0) < encode(0.000001, strict=True)
+    (True, True)
+    """
+    if seconds == math.inf:
+        return UNBOUNDED
+    return 2 * to_ticks(seconds) + (not strict)
+
+
+def add(a: int, b: int) -> int:
+    """The sum of two bounds: of *x <= a* and *y < b* the bound *x + y < a + b*."""
+    if a >= UNBOUNDED or b >= UNBOUNDED:
+        return UNBOUNDED
+    return (a & ~1) + (b & ~1) | (a & b & 1)
+
+
+def add_arrays(a: NDArray[np.int64], b: NDArray[np.int64] | int) -> NDArray[np.int64]:
+    """The same elementwise; the two broadcast."""
+    b = np.asarray(b, dtype=np.int64)
+    total = (a & ~1) + (b & ~1) | (a & b & 1)
+    return np.where((a >= UNBOUNDED) | (b >= UNBOUNDED), UNBOUNDED, total)
+
+
+def text_of_ticks(ticks: int) -> str:
+    """Microseconds as seconds, as short as they can be written.
+
+    >>> text_of_ticks(2_500_000), text_of_ticks(-3_000_000), text_of_ticks(1700000000_250000)
+    ('2.5', '-3', '1700000000.25')
+    """
+    whole, rest = divmod(abs(ticks), TICKS)
+    sign = "-" if ticks < 0 else ""
+    return f"{sign}{whole}" + (f".{rest:06d}".rstrip("0") if rest else "")
+
+
+def bound_text(tail: str, head: str, code: int, origin: str) -> str:
+    """In words that ``head - tail`` is bounded by a code; a difference to the origin is a time.
+
+    >>> bound_text("a.finish", "b.start", encode(5), "origin"), bound_text("a.start", "origin", encode(-2), "origin")
+    ('b.start <= a.finish + 5', 'a.start >= 2')
+    """
+    ticks, equal = code >> 1, "=" if code & 1 else ""
+    if tail == origin and head != origin:
+        return f"{head} <{equal} {text_of_ticks(ticks)}"
+    if head == origin and tail != origin:
+        return f"{tail} >{equal} {text_of_ticks(-ticks)}"
+    offset = "" if ticks == 0 else f" {'+' if ticks > 0 else '-'} {text_of_ticks(abs(ticks))}"
+    return f"{head} <{equal} {tail}{offset}"
+
+
+@dataclass(frozen=True, slots=True)
+class Bounds:
+    """What is known of a time or of a difference of times: it lies between ``lower`` and ``upper``, in seconds.
+
+    An infinite bound is an unknown one; a bound that is open is not reached. Raises SettingError where nothing lies
+    between the two, or a bound is no number.
+
+    >>> str(Bounds(0, 5)), str(Bounds(2.5)), str(Bounds(0, 5, upper_open=True))
+    ('[0, 5]', '[2.5, ∞)', '[0, 5)')
+    """
+
+    lower: float = -math.inf
+    upper: float = math.inf
+    lower_open: bool = False
+    upper_open: bool = False
+
+    def __post_init__(self) -> None:
+        if add(self.at_least, self.at_most) < ZERO:
+            raise SettingError(f"no time lies in {self}; is the lower bound above the upper one?")
+
+    @property
+    def at_most(self) -> int:
+        """The code of the upper bound."""
+        return encode(self.upper, self.upper_open)
+
+    @property
+    def at_least(self) -> int:
+        """The code of the lower bound, as an upper one of the negated value."""
+        return encode(-self.lower, self.lower_open)
+
+    @classmethod
+    def from_codes(cls, at_least: int, at_most: int) -> Bounds:
+        """The bounds that two codes stand for."""
+        lower = -math.inf if at_least >= UNBOUNDED else -(at_least >> 1) / TICKS
+        upper = math.inf if at_most >= UNBOUNDED else (at_most >> 1) / TICKS
+        return cls(lower, upper, at_least < UNBOUNDED and not at_least & 1, at_most < UNBOUNDED and not at_most & 1)
+
+    def __str__(self) -> str:
+        lower, upper = self.at_least, self.at_most
+        low = "(-∞" if lower >= UNBOUNDED else ("[" if lower & 1 else "(") + text_of_ticks(-(lower >> 1))
+        high = "∞)" if upper >= UNBOUNDED else text_of_ticks(upper >> 1) + ("]" if upper & 1 else ")")
+        return f"{low}, {high}"
+
+
+UNKNOWN = Bounds()
+"""Nothing is known."""

@@ -1,0 +1,191 @@
+"""What follows of the times of fluents, and the questions that can be asked of it.
+
+A fluent holds at t where start <= t < finish. A *scenario* is a choice of times that agrees with all that is stated.
+What is said plainly here (*held*) is so in every scenario; what *may* be is so in some.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.ontology.allen import Allen, members
+from deixis.reasoning.errors import SettingError
+from deixis.reasoning.temporal.bounds import ZERO, Bounds, add_arrays, encode, to_ticks
+from deixis.reasoning.temporal.errors import UnknownFluentError
+from deixis.reasoning.temporal.fluent import ANYTHING, Fluent, Pattern
+
+_ORIGIN, _START, _FINISH = range(3)
+_PRECEDES = 1 << Allen.BEFORE | 1 << Allen.MEETS
+_FOLLOWS = 1 << Allen.AFTER | 1 << Allen.MET_BY
+
+
+class Status(StrEnum):
+    """Whether all that is stated can hold together; what cannot raises TemporalConflictError instead."""
+
+    CONSISTENT = "consistent"
+    UNDECIDED = "undecided"  # the time limit came first
+
+
+class Order(StrEnum):
+    """What is certain of the order of two fluents."""
+
+    PRECEDES = "precedes"  # the first has finished when the second starts
+    FOLLOWS = "follows"
+    CONCURRENT = "concurrent"  # there is a time at which both hold
+
+
+@dataclass(frozen=True, slots=True)
+class Window:
+    """The times t with ``begin <= t < end``, in seconds since the origin.
+
+    Raises SettingError where there is no such time.
+    """
+
+    begin: float
+    end: float
+
+    def __post_init__(self) -> None:
+        if not to_ticks(self.begin) < to_ticks(self.end):
+            raise SettingError(f"a window begins before it ends, and this one goes from {self.begin:g} to {self.end:g}")
+
+
+@dataclass(frozen=True)
+class Chronology:
+    """What follows of n fluents.
+
+    ``spans`` (k, n, 3, 3), int64: for each of k cases that disjunctions leave, and each fluent, the minimal distances
+    among origin, start and finish, as codes of :mod:`deixis.reasoning.temporal.bounds`. ``masks`` (n, n), uint16: the
+    Allen relations that the row's fluent may bear to the column's. Where ``exact``, both are as tight as can be; else
+    disjunctions were left out of account, and what is certain is still certain, but what may be may not.
+    """
+
+    fluents: tuple[Fluent, ...]
+    spans: NDArray[np.int64]
+    masks: NDArray[np.uint16]
+    status: Status
+    exact: bool
+
+    @cached_property
+    def _places(self) -> dict[str, int]:
+        return {fluent.id: place for place, fluent in enumerate(self.fluents)}
+
+    def _place(self, id: str) -> int:
+        try:
+            return self._places[id]
+        except KeyError:
+            raise UnknownFluentError("fluent", id, self._places) from None
+
+    def start(self, id: str) -> Bounds:
+        """The tightened bounds of a fluent's start, in seconds."""
+        return self._bounds(id, _ORIGIN, _START)
+
+    def finish(self, id: str) -> Bounds:
+        """The tightened bounds of a fluent's finish, in seconds."""
+        return self._bounds(id, _ORIGIN, _FINISH)
+
+    def duration(self, id: str) -> Bounds:
+        """The tightened bounds of the time from a fluent's start to its finish, in seconds."""
+        return self._bounds(id, _START, _FINISH)
+
+    def _bounds(self, id: str, tail: int, head: int) -> Bounds:
+        span = self.spans[:, self._place(id)].max(axis=0)
+        return Bounds.from_codes(int(span[head, tail]), int(span[tail, head]))
+
+    def held_at(self, time: float, pattern: Pattern = ANYTHING) -> tuple[Fluent, ...]:
+        """The fluents that certainly held at a time: start <= time < finish in every scenario."""
+        return self._chosen(self._certain(encode(time), encode(-time, strict=True)), pattern)
+
+    def may_have_held(self, time: float, pattern: Pattern = ANYTHING) -> tuple[Fluent, ...]:
+        """The fluents that may have held at a time: start <= time < finish in some scenario."""
+        return self._chosen(self._possible(encode(time), encode(-time, strict=True)), pattern)
+
+    def held_throughout(self, window: Window, pattern: Pattern = ANYTHING) -> tuple[Fluent, ...]:
+        """The fluents that certainly held all the window: start <= begin and end <= finish in every scenario."""
+        return self._chosen(self._certain(*_throughout(window)), pattern)
+
+    def may_have_held_throughout(self, window: Window, pattern: Pattern = ANYTHING) -> tuple[Fluent, ...]:
+        """The fluents that may have held all the window: start <= begin and end <= finish in some scenario."""
+        return self._chosen(self._possible(*_throughout(window)), pattern)
+
+    def held_within(self, window: Window, pattern: Pattern = ANYTHING) -> tuple[Fluent, ...]:
+        """The fluents that certainly held at some time in the window: start < end and begin < finish in every one."""
+        return self._chosen(self._certain(*_within(window)), pattern)
+
+    def may_have_held_within(self, window: Window, pattern: Pattern = ANYTHING) -> tuple[Fluent, ...]:
+        """The fluents that may have held at some time in the window: start < end and begin < finish in some one."""
+        return self._chosen(self._possible(*_within(window)), pattern)
+
+    def _certain(self, start: int, finish: int) -> NDArray[np.bool_]:
+        """Whether start is under a bound, and the negated finish under another, in all cases: shape (n,)."""
+        below = self.spans[:, :, _ORIGIN, _START] <= start
+        certain = below & (self.spans[:, :, _FINISH, _ORIGIN] <= finish)
+        return np.asarray(certain.all(axis=0))
+
+    def _possible(self, start: int, finish: int) -> NDArray[np.bool_]:
+        """Whether both bounds can be added without a negative cycle in some case: shape (n,).
+
+        There are three simple cycles through new constraints: through the one, through the other, through both.
+        """
+        first = add_arrays(self.spans[:, :, _START, _ORIGIN], start) >= ZERO
+        second = add_arrays(self.spans[:, :, _ORIGIN, _FINISH], finish) >= ZERO
+        both = add_arrays(add_arrays(self.spans[:, :, _START, _FINISH], start), finish) >= ZERO
+        return np.asarray((first & second & both).any(axis=0))
+
+    def _chosen(self, which: NDArray[np.bool_], pattern: Pattern) -> tuple[Fluent, ...]:
+        return tuple(
+            f for f, chosen in zip(self.fluents, which, strict=True) if chosen and pattern.matches(f.statement)
+        )
+
+    def relations(self, a: str, b: str) -> tuple[Allen, ...]:
+        """The Allen relations that fluent a may bear to fluent b; where it is one, it is certain."""
+        return members(int(self.masks[self._place(a), self._place(b)]))
+
+    def certain_order(self, a: str, b: str) -> Order | None:
+        """What is certain of the order of two fluents; None where nothing is.
+
+        PRECEDES where a.finish <= b.start in every scenario, FOLLOWS where b.finish <= a.start, CONCURRENT where they
+        share a time in every scenario.
+        """
+        return _order(int(self.masks[self._place(a), self._place(b)]))
+
+    def certain_orders(
+        self, window: Window | None = None, pattern: Pattern = ANYTHING
+    ) -> tuple[tuple[Fluent, Order, Fluent], ...]:
+        """The certain order of each two fluents; given a window, of those that may have held at some time in it.
+
+        Each two fluents come once, the first as listed first, unless it follows: then they are exchanged.
+        """
+        everything = tuple(fluent for fluent in self.fluents if pattern.matches(fluent.statement))
+        chosen = everything if window is None else self.may_have_held_within(window, pattern)
+        found = []
+        for position, a in enumerate(chosen):
+            for b in chosen[position + 1 :]:
+                order = self.certain_order(a.id, b.id)
+                if order is Order.FOLLOWS:
+                    found.append((b, Order.PRECEDES, a))
+                elif order is not None:
+                    found.append((a, order, b))
+        return tuple(found)
+
+
+def _order(mask: int) -> Order | None:
+    if not mask & ~_PRECEDES:
+        return Order.PRECEDES
+    if not mask & ~_FOLLOWS:
+        return Order.FOLLOWS
+    return None if mask & (_PRECEDES | _FOLLOWS) else Order.CONCURRENT
+
+
+def _throughout(window: Window) -> tuple[int, int]:
+    """The bounds on start and on the negated finish that say: throughout the window."""
+    return encode(window.begin), encode(-window.end)
+
+
+def _within(window: Window) -> tuple[int, int]:
+    """The bounds on start and on the negated finish that say: at some time in the window."""
+    return encode(window.end, strict=True), encode(-window.begin, strict=True)

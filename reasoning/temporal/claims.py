@@ -1,0 +1,115 @@
+"""What is stated of time as difference constraints: fluents, differences, and Allen relations, disjunctive ones too."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+
+from deixis.ontology.allen import ALL_ALLEN
+from deixis.reasoning.temporal.bounds import ZERO, bound_text
+from deixis.reasoning.temporal.endpoints import convex_pieces, necessary_orders
+from deixis.reasoning.temporal.explanation import Explanation, Rule
+from deixis.reasoning.temporal.fluent import ORIGIN, AllenStatement, Difference, Fluent
+from deixis.reasoning.temporal.network import DifferenceConstraint, SimpleTemporalNetwork, difference
+
+
+@dataclass(frozen=True, slots=True)
+class Disjunction:
+    """A set of Allen relations between fluents a and b that is not convex, as a union of convex pieces."""
+
+    a: str
+    relations: int
+    b: str
+    why: Explanation
+
+    @property
+    def points(self) -> tuple[str, str, str, str]:
+        """The ends of a, then of b."""
+        return ends(self.a) + ends(self.b)
+
+    @property
+    def pieces(self) -> tuple[int, ...]:
+        """Convex masks whose union the relations are."""
+        return convex_pieces(self.relations)
+
+
+@dataclass(frozen=True, slots=True)
+class Claim:
+    """The smallest thing that is stated by itself: constraints that go together, or a disjunction of such.
+
+    ``why`` is the stated leaf on which all of it rests.
+    """
+
+    why: Explanation
+    constraints: tuple[DifferenceConstraint, ...] = ()
+    disjunction: Disjunction | None = None
+
+    @property
+    def fluents(self) -> tuple[str, ...]:
+        """The ids of the fluents that it is about."""
+        if self.disjunction is not None:
+            return self.disjunction.a, self.disjunction.b
+        named = (point for c in self.constraints for point in (c.tail, c.head) if point != ORIGIN)
+        return tuple(dict.fromkeys(point.rpartition(".")[0] for point in named))
+
+
+def ends(fluent: str) -> tuple[str, str]:
+    """The names of a fluent's two ends."""
+    return f"{fluent}.start", f"{fluent}.finish"
+
+
+def proper_interval(fluent: str) -> DifferenceConstraint:
+    """That a fluent starts before it finishes."""
+    start, finish = ends(fluent)
+    return DifferenceConstraint(finish, start, ZERO - 1, Explanation(f"{start} < {finish}", Rule.PROPER_INTERVAL))
+
+
+def allen_constraints(a: str, relations: int, b: str, why: Explanation) -> tuple[DifferenceConstraint, ...]:
+    """The difference constraints that a convex set of Allen relations is, by definition of it."""
+    names = ends(a) + ends(b)
+    found = []
+    for tail, head, code in necessary_orders(relations):
+        text = bound_text(names[tail], names[head], code, ORIGIN)
+        found.append(DifferenceConstraint(names[tail], names[head], code, Explanation(text, Rule.DEFINITION, (why,))))
+    return tuple(found)
+
+
+def claims_of(item: Fluent | AllenStatement | Difference) -> tuple[Claim, ...]:
+    """What a fluent's bounds, a difference or a relation claim, piece by piece."""
+    if isinstance(item, AllenStatement):
+        return (_allen_claim(item),) if item.relations != ALL_ALLEN else ()
+    if isinstance(item, Difference):
+        constraints = difference(item.tail, item.head, item.bounds, item.source)
+    else:
+        start, finish = item.points
+        source = item.source
+        constraints = difference(ORIGIN, start, item.start, f"{source}.start" if source else None)
+        constraints += difference(ORIGIN, finish, item.finish, f"{source}.finish" if source else None)
+    return tuple(Claim(constraint.why, (constraint,)) for constraint in constraints)
+
+
+def _allen_claim(item: AllenStatement) -> Claim:
+    why = Explanation(str(item), Rule.STATED, source=item.source)
+    if len(convex_pieces(item.relations)) == 1:
+        return Claim(why, allen_constraints(item.a, item.relations, item.b, why))
+    return Claim(why, disjunction=Disjunction(item.a, item.relations, item.b, why))
+
+
+def network_of(fluents: Iterable[str]) -> SimpleTemporalNetwork:
+    """A network with the ends of fluents, each of which starts before it finishes."""
+    network = SimpleTemporalNetwork()
+    for fluent in fluents:
+        add_fluent(network, fluent)
+    return network
+
+
+def add_fluent(network: SimpleTemporalNetwork, fluent: str) -> None:
+    """Adds a fluent's two ends, of which nothing else is known."""
+    for point in ends(fluent):
+        network.add_point(point)
+    network.add([proper_interval(fluent)])
+
+
+def disjunctions(claims: Iterable[Claim]) -> Iterator[Disjunction]:
+    """The claims that are disjunctions."""
+    return (claim.disjunction for claim in claims if claim.disjunction is not None)

@@ -1,0 +1,47 @@
+"""The errors of reasoning about time."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from difflib import get_close_matches
+
+from deixis.ontology.errors import DeixisError, UnknownTermError
+from deixis.reasoning.errors import InconsistencyError
+from deixis.reasoning.temporal.explanation import Explanation
+
+
+class FluentError(DeixisError, ValueError):
+    """A fluent or a relation between fluents that contradicts itself; the message names it."""
+
+
+class UnknownFluentError(UnknownTermError):
+    """A fluent or a time point that nobody stated; the message suggests the nearest of those that were."""
+
+    def __init__(self, kind: str, name: str, names: Iterable[str]) -> None:
+        close = get_close_matches(name[:100], list(names), n=1)
+        super().__init__(f"there is no {kind} '{name}'" + (f"; did you mean '{close[0]}'?" if close else ""))
+
+
+class TemporalConflictError(InconsistencyError):
+    """Statements about time that cannot all hold.
+
+    ``explanation`` is the proof: a negative cycle of the simple temporal network, or one for every alternative of the
+    disjunctions in question. ``statements`` are the stated leaves of it. Where ``minimal``, any one of them may be left
+    out and the rest is consistent; else time was up before that was made sure, and the proof alone stands.
+    """
+
+    def __init__(self, explanation: Explanation, minimal: bool) -> None:
+        super().__init__(explanation)
+        self.explanation = explanation
+        self.minimal = minimal
+
+    @property
+    def statements(self) -> tuple[Explanation, ...]:
+        """What was stated and cannot hold together."""
+        return self.explanation.stated()
+
+    def __str__(self) -> str:
+        return "these cannot all hold: " + "; ".join(
+            f"{stated.conclusion} [{stated.source}]" if stated.source else stated.conclusion
+            for stated in self.statements
+        )

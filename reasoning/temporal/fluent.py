@@ -1,0 +1,165 @@
+"""Fluents: statements that hold for a time, and what may be stated of when.
+
+A fluent is as the blackboard of RACE has it (Rockel et al. 2013): an instance with a statement and with a start and a
+finish, each known only to lie in an interval of seconds since an origin, or not known at all. It holds from its start
+on and no longer at its finish, so that of two fluents that meet just one holds at the instant between them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from deixis.ontology.allen import ALL_ALLEN, members
+from deixis.reasoning.temporal.bounds import UNKNOWN, ZERO, Bounds, add
+from deixis.reasoning.temporal.errors import FluentError
+
+ORIGIN = "origin"
+"""The point from which times are counted."""
+
+
+@dataclass(frozen=True, slots=True)
+class Statement:
+    """What holds: a subject, a predicate, and an object where there is one.
+
+    >>> str(Statement("cup", "on", "table")), str(Statement("door", "open"))
+    ('on(cup, table)', 'open(door)')
+    """
+
+    subject: str
+    predicate: str
+    object: str | None = None
+
+    def __str__(self) -> str:
+        return f"{self.predicate}({self.subject}{'' if self.object is None else f', {self.object}'})"
+
+
+@dataclass(frozen=True, slots=True)
+class Pattern:
+    """Which statements are meant: those with this subject, predicate and object, None standing for any.
+
+    >>> Pattern(predicate="on").matches(Statement("cup", "on", "table"))
+    True
+    """
+
+    subject: str | None = None
+    predicate: str | None = None
+    object: str | None = None
+
+    def matches(self, statement: Statement) -> bool:
+        """Whether a statement is one of them."""
+        return (
+            self.subject in (None, statement.subject)
+            and self.predicate in (None, statement.predicate)
+            and self.object in (None, statement.object)
+        )
+
+
+ANYTHING = Pattern()
+
+
+@dataclass(frozen=True, slots=True)
+class Fluent:
+    """A statement that holds from some time to some later time, both known within bounds.
+
+    ``source`` says where it was stated. Raises FluentError, which names the fluent, where its bounds leave no start
+    that is before a finish.
+
+    >>> str(Fluent("f1", Statement("cup", "on", "table"), Bounds(0, 2), Bounds(5)))
+    'f1: on(cup, table) from [0, 2] to [5, ∞)'
+    """
+
+    id: str
+    statement: Statement
+    start: Bounds = UNKNOWN
+    finish: Bounds = UNKNOWN
+    source: str | None = field(default=None, compare=False)
+
+    def __post_init__(self) -> None:
+        longest = add(self.start.at_least, self.finish.at_most)
+        if longest <= ZERO:
+            raise FluentError(
+                f"{_place(self.source)}the fluent '{self.id}' starts in {self.start} and finishes in {self.finish}, "
+                "and a fluent starts before it finishes"
+            )
+
+    @property
+    def points(self) -> tuple[str, str]:
+        """The names of its two ends."""
+        return f"{self.id}.start", f"{self.id}.finish"
+
+    def __str__(self) -> str:
+        return f"{self.id}: {self.statement} from {self.start} to {self.finish}"
+
+
+@dataclass(frozen=True, slots=True)
+class AllenStatement:
+    """That fluent ``a`` bears one of a set of Allen relations, a 13-bit mask, to fluent ``b``.
+
+    Raises FluentError where the set is empty, or a fluent is related to itself.
+
+    >>> str(AllenStatement("f1", 0b11, "f2"))
+    'before or meets(f1, f2)'
+    """
+
+    a: str
+    relations: int
+    b: str
+    source: str | None = field(default=None, compare=False)
+
+    def __post_init__(self) -> None:
+        where = _place(self.source)
+        if not 0 < self.relations <= ALL_ALLEN:
+            raise FluentError(f"{where}'{self.a}' and '{self.b}' must bear one or more of the thirteen relations")
+        if self.a == self.b:
+            raise FluentError(f"{where}the fluent '{self.a}' is related to itself")
+
+    @property
+    def fluents(self) -> tuple[str, ...]:
+        """The ids of the fluents that it is about."""
+        return self.a, self.b
+
+    def __str__(self) -> str:
+        return allen_text(self.a, self.relations, self.b)
+
+
+@dataclass(frozen=True, slots=True)
+class Difference:
+    """That the time from one point to another lies within bounds, in seconds.
+
+    A point is ``ID.start`` or ``ID.finish`` of a fluent, or ``origin``. Raises FluentError where both are the same.
+
+    >>> str(Difference("f1.finish", "f2.start", Bounds(0, 5)))
+    'f2.start - f1.finish in [0, 5]'
+    """
+
+    tail: str
+    head: str
+    bounds: Bounds
+    source: str | None = field(default=None, compare=False)
+
+    def __post_init__(self) -> None:
+        if self.tail == self.head:
+            raise FluentError(f"{_place(self.source)}the time from '{self.tail}' to itself is always 0")
+
+    @property
+    def fluents(self) -> tuple[str, ...]:
+        """The ids of the fluents that it is about."""
+        points = (point for point in (self.tail, self.head) if point != ORIGIN)
+        return tuple(dict.fromkeys(point.rpartition(".")[0] for point in points))
+
+    def __str__(self) -> str:
+        return f"{self.head} - {self.tail} in {self.bounds}"
+
+
+TemporalRelation = AllenStatement | Difference
+
+
+def _place(source: str | None) -> str:
+    return f"{source}: " if source else ""
+
+
+def allen_text(a: str, mask: int, b: str) -> str:
+    """A set of Allen relations between two fluents, in words."""
+    if mask == ALL_ALLEN:
+        return f"any relation({a}, {b})"
+    return " or ".join(relation.name.lower() for relation in members(mask)) + f"({a}, {b})"

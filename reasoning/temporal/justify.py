@@ -1,0 +1,122 @@
+"""Why a bound or a relation between fluents is certain, disjunctions included."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from deixis.ontology.allen import ALL_ALLEN, Allen, members
+from deixis.reasoning.temporal.bounds import bound_text
+from deixis.reasoning.temporal.claims import Disjunction, allen_constraints, ends
+from deixis.reasoning.temporal.endpoints import convex_hull, masks_of_pairs, necessary_orders
+from deixis.reasoning.temporal.explanation import Explanation, Rule
+from deixis.reasoning.temporal.fluent import ORIGIN, allen_text
+from deixis.reasoning.temporal.network import SimpleTemporalNetwork
+from deixis.reasoning.temporal.search import propagate, search
+
+
+class Question(Protocol):
+    """Something certain that a network can be asked for, as an integer, and the reasons for it."""
+
+    def answer(self, network: SimpleTemporalNetwork) -> int:
+        """What the network says."""
+
+    def joined(self, answers: Sequence[int]) -> int:
+        """What can still be said where it is one of several answers."""
+
+    def text(self, answer: int) -> str:
+        """An answer in words."""
+
+    def explain(self, network: SimpleTemporalNetwork) -> Explanation | None:
+        """Why the network says so; None where it says nothing."""
+
+
+@dataclass(frozen=True, slots=True)
+class BoundQuestion:
+    """By how much ``head`` is later than ``tail`` at the most."""
+
+    tail: str
+    head: str
+
+    def answer(self, network: SimpleTemporalNetwork) -> int:
+        return network.code(self.tail, self.head)
+
+    def joined(self, answers: Sequence[int]) -> int:
+        return max(answers)
+
+    def text(self, answer: int) -> str:
+        return bound_text(self.tail, self.head, answer, ORIGIN)
+
+    def explain(self, network: SimpleTemporalNetwork) -> Explanation | None:
+        return network.explain(self.tail, self.head)
+
+
+@dataclass(frozen=True, slots=True)
+class RelationQuestion:
+    """Which Allen relations fluent ``a`` may bear to fluent ``b``."""
+
+    a: str
+    b: str
+
+    def answer(self, network: SimpleTemporalNetwork) -> int:
+        pair = np.array([[network.index(point) for point in ends(self.a) + ends(self.b)]], dtype=np.int64)
+        return int(masks_of_pairs(network.distances, pair)[0]) if self.a != self.b else 1 << Allen.EQUALS
+
+    def joined(self, answers: Sequence[int]) -> int:
+        return int(np.bitwise_or.reduce(np.array(answers)))
+
+    def text(self, answer: int) -> str:
+        return allen_text(self.a, answer, self.b)
+
+    def explain(self, network: SimpleTemporalNetwork) -> Explanation | None:
+        """The orders of end points that say it; a relation that only several orders exclude together is refuted."""
+        mask = self.answer(network)
+        if mask == ALL_ALLEN or self.a == self.b:
+            return None
+        names = ends(self.a) + ends(self.b)
+        premises = []
+        for tail, head, _ in necessary_orders(convex_hull(mask)):
+            premise = network.explain(names[tail], names[head])
+            assert premise is not None
+            premises.append(premise)
+        for relation in members(convex_hull(mask) & ~mask):
+            assumed = Explanation(allen_text(self.a, 1 << relation, self.b), Rule.CASE)
+            premises.append(network.refutation(allen_constraints(self.a, 1 << relation, self.b, assumed)))
+        return Explanation(self.text(mask), Rule.DEFINITION, tuple(premises))
+
+
+def justify(
+    question: Question,
+    network: SimpleTemporalNetwork,
+    disjunctions: Sequence[Disjunction],
+    deadline: float,
+    most: int,
+) -> Explanation | None:
+    """Why the answer to a question is what it is; None where there is nothing to say, or the disjunctions conflict.
+
+    Disjunctions that stay open are gone through case by case, up to ``most`` cases and until the deadline, and where
+    the cases agree on more than the network alone says, they are the explanation. The network is changed.
+    """
+    propagation = propagate(network, disjunctions, deadline, explain=True)
+    if propagation.impossible is not None:
+        return None
+    open = [entry.disjunction for entry in propagation.open]
+    answers: list[int] = []
+    cases: list[Explanation] = []
+
+    def look() -> None:
+        case = question.explain(network)
+        answers.append(question.answer(network))
+        if case is not None:
+            cases.append(case)
+
+    found = search(network, open, look, deadline, most, explain=True) if open else None
+    if found is not None and found.complete and len(cases) == found.found > 0:
+        joined = question.joined(answers)
+        if joined != question.answer(network):
+            premises = (*(disjunction.why for disjunction in open), *cases)
+            return Explanation(question.text(joined), Rule.CASES, premises)
+    return question.explain(network)

@@ -1,0 +1,198 @@
+"""A timeline: what is stated of when fluents hold, kept consistent as it grows, and what follows from it.
+
+Fluents and convex relations go into the simple temporal network at once, and what contradicts it is refused. Relations
+that are a matter of choice (before or after) wait until the timeline is asked.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterable
+
+import numpy as np
+
+from deixis.reasoning.temporal.chronology import Chronology, Status
+from deixis.reasoning.temporal.claims import Claim, Disjunction, add_fluent, claims_of, disjunctions, ends, network_of
+from deixis.reasoning.temporal.conflict import minimal_conflict, refuted
+from deixis.reasoning.temporal.endpoints import allen_masks, converse_masks
+from deixis.reasoning.temporal.errors import FluentError, TemporalConflictError, UnknownFluentError
+from deixis.reasoning.temporal.explanation import Explanation, Rule
+from deixis.reasoning.temporal.fluent import Fluent, TemporalRelation
+from deixis.reasoning.temporal.justify import BoundQuestion, Question, RelationQuestion, justify
+from deixis.reasoning.temporal.network import SimpleTemporalNetwork
+from deixis.reasoning.temporal.search import propagate, search
+
+MAX_SCENARIOS = 64
+"""Scenarios of undecided disjunctions over which what is certain is worked out exactly."""
+
+
+class Timeline:
+    """Fluents, and what is stated of their times.
+
+    >>> from deixis.reasoning.temporal.bounds import Bounds
+    >>> from deixis.reasoning.temporal.fluent import AllenStatement, Difference, Statement
+    >>> timeline = Timeline([Fluent("f1", Statement("cup", "on", "tray"), Bounds(0, 2), Bounds(5, 9))])
+    >>> timeline.add(Fluent("f2", Statement("cup", "on", "table")))
+    >>> timeline.add(AllenStatement("f1", 0b11, "f2"))  # before or meets
+    >>> timeline.add(Difference("f1.finish", "f2.start", Bounds(1, 2)))
+    >>> str(timeline.chronology().start("f2"))
+    '[6, 11]'
+
+    Raises TemporalConflictError for a statement that contradicts the others, which is then not taken in; FluentError
+    where a fluent's id is taken; UnknownFluentError for a relation to a fluent that is not there.
+    """
+
+    def __init__(self, fluents: Iterable[Fluent] = (), relations: Iterable[TemporalRelation] = ()) -> None:
+        self._fluents: dict[str, Fluent] = {}
+        self._claims: dict[Fluent | TemporalRelation, tuple[Claim, ...]] = {}
+        self._network = SimpleTemporalNetwork()
+        for item in (*fluents, *relations):
+            self.add(item)
+
+    @property
+    def fluents(self) -> tuple[Fluent, ...]:
+        """The fluents, in the order in which they were added."""
+        return tuple(self._fluents.values())
+
+    @property
+    def network(self) -> SimpleTemporalNetwork:
+        """The network of all that is no matter of choice; not to be changed."""
+        return self._network
+
+    def add(self, item: Fluent | TemporalRelation, time_limit: float = 10.0) -> None:
+        """Takes in a fluent or a relation; one that is stated already changes nothing.
+
+        The time limit, in seconds, is for making the explanation of a contradiction minimal.
+        """
+        if item in self._claims:
+            return
+        if isinstance(item, Fluent):
+            if item.id in self._fluents:
+                raise FluentError(f"the fluent '{item.id}' is stated twice; give every fluent an id of its own")
+            add_fluent(self._network, item.id)
+        else:
+            for fluent in item.fluents:
+                self.fluent(fluent)
+        claims = claims_of(item)
+        constraints = [constraint for claim in claims for constraint in claim.constraints]
+        if self._network.try_add(constraints) is None:
+            proof = self._network.refutation(constraints)
+            raise minimal_conflict([*self._all_claims(), *claims], proof, time.monotonic() + time_limit)
+        self._claims[item] = claims
+        if isinstance(item, Fluent):
+            self._fluents[item.id] = item
+
+    def fluent(self, id: str) -> Fluent:
+        """A fluent by its id; raises UnknownFluentError where there is none."""
+        try:
+            return self._fluents[id]
+        except KeyError:
+            raise UnknownFluentError("fluent", id, self._fluents) from None
+
+    def retract(self, item: Fluent | TemporalRelation) -> None:
+        """Takes back what was stated, and works the rest out again.
+
+        Raises UnknownFluentError where it was not stated, FluentError for a fluent to which relations are stated.
+        """
+        if item not in self._claims:
+            raise UnknownFluentError("statement", str(item), map(str, self._claims))
+        if isinstance(item, Fluent):
+            self._require_unrelated(item.id)
+            del self._fluents[item.id], self._claims[item]
+            self._network = network_of(self._fluents)
+            self._network.add([c for claim in self._all_claims() for c in claim.constraints])
+        else:
+            self._network.retract(c for claim in self._claims.pop(item) for c in claim.constraints)
+
+    def _require_unrelated(self, fluent: str) -> None:
+        related = [item for item in self._claims if not isinstance(item, Fluent) and fluent in item.fluents]
+        if related:
+            raise FluentError(f"take back '{related[0]}' first: it is about the fluent '{fluent}'")
+
+    def _all_claims(self) -> list[Claim]:
+        return [claim for claims in self._claims.values() for claim in claims]
+
+    def chronology(self, time_limit: float = 10.0) -> Chronology:
+        """What follows of the times of all fluents: tightened bounds, and the relations left to every pair.
+
+        Raises TemporalConflictError where the disjunctions cannot be satisfied together; to prove it in as few
+        statements as can be may take as long again. Where the time limit, in seconds, comes before that is known, the
+        status is UNDECIDED, and the chronology holds what is certain without the disjunctions that are left open.
+        """
+        deadline = time.monotonic() + time_limit
+        claims = self._all_claims()
+        network = self._network.copy()
+        propagation = propagate(network, list(disjunctions(claims)), deadline)
+        if propagation.impossible is not None:
+            raise self._conflict(claims, time_limit)
+        open = [entry.disjunction for entry in propagation.open]
+        views = _Views(self.fluents, network)
+        if not open:
+            views.look()
+            return views.chronology(Status.CONSISTENT, exact=True)
+        found = search(network, open, views.look, deadline, MAX_SCENARIOS)
+        if found.complete and not found.found:
+            raise self._conflict(claims, time_limit)
+        if not found.complete:
+            views.forget()
+            views.look()
+            views.restrict(open)
+        return views.chronology(Status.CONSISTENT if found.found else Status.UNDECIDED, found.complete)
+
+    def _conflict(self, claims: list[Claim], time_limit: float) -> TemporalConflictError:
+        """The conflict between disjunctions: proved again with its reasons, then made minimal, as time allows."""
+        deadline = time.monotonic() + time_limit
+        proof = refuted(claims, deadline)
+        if proof is None:
+            everything = Explanation("no alternative is left", Rule.CASES, tuple(claim.why for claim in claims))
+            return TemporalConflictError(everything, minimal=False)
+        return minimal_conflict(claims, proof, deadline)
+
+    def explain_relation(self, a: str, b: str, time_limit: float = 10.0) -> Explanation | None:
+        """Why fluent a bears to fluent b one of the relations that are left to them; None where all are."""
+        return self._justify(RelationQuestion(self.fluent(a).id, self.fluent(b).id), time_limit)
+
+    def explain_bound(self, tail: str, head: str, time_limit: float = 10.0) -> Explanation | None:
+        """Why ``head - tail`` is at most what it is, for two points; None where nothing bounds it.
+
+        A point is ``ID.start`` or ``ID.finish``, or ``origin``: the upper bound of a fluent's start is
+        ``explain_bound("origin", "f1.start")``, its lower bound ``explain_bound("f1.start", "origin")``.
+        """
+        self._network.index(tail), self._network.index(head)
+        return self._justify(BoundQuestion(tail, head), time_limit)
+
+    def _justify(self, question: Question, time_limit: float) -> Explanation | None:
+        deadline = time.monotonic() + time_limit
+        return justify(question, self._network.copy(), list(disjunctions(self._all_claims())), deadline, MAX_SCENARIOS)
+
+
+class _Views:
+    """What the network says of the fluents in each scenario, gathered while it is in that scenario."""
+
+    def __init__(self, fluents: tuple[Fluent, ...], network: SimpleTemporalNetwork) -> None:
+        self._fluents = fluents
+        self._network = network
+        points = np.array([[network.index(p) for p in ends(f.id)] for f in fluents], dtype=np.int64).reshape(-1, 2)
+        self._starts, self._finishes = points.T
+        self.forget()
+
+    def forget(self) -> None:
+        self._spans: list[np.ndarray[tuple[int, ...], np.dtype[np.int64]]] = []
+        self._masks = np.zeros((len(self._fluents), len(self._fluents)), dtype=np.uint16)
+
+    def look(self) -> None:
+        distances = self._network.distances
+        points = np.stack([np.zeros_like(self._starts), self._starts, self._finishes], axis=1)
+        self._spans.append(distances[points[:, :, None], points[:, None, :]])
+        self._masks |= allen_masks(distances, self._starts, self._finishes)
+
+    def restrict(self, disjunctions: Iterable[Disjunction]) -> None:
+        """Leaves to the pairs of disjunctions no more than these say."""
+        places = {fluent.id: place for place, fluent in enumerate(self._fluents)}
+        for disjunction in disjunctions:
+            a, b = places[disjunction.a], places[disjunction.b]
+            self._masks[a, b] &= disjunction.relations
+            self._masks[b, a] = converse_masks(self._masks[a : a + 1, b])[0]
+
+    def chronology(self, status: Status, exact: bool) -> Chronology:
+        return Chronology(self._fluents, np.stack(self._spans), self._masks, status, exact)

@@ -1,0 +1,103 @@
+"""The command ``deixis infer``: what follows from a script, why, and why something does not."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from deixis.cli_common import NO, UNDECIDED, AsJson, Script, TimeLimit, print_json, print_lines
+
+if TYPE_CHECKING:
+    from deixis.inference import Inference
+    from deixis.ontology.graph import Fact
+
+
+def infer(
+    script: Script,
+    explain: Annotated[
+        str | None, typer.Option(metavar="FACT", help="Print why a fact holds: 'left(fork, plate)'.")
+    ] = None,
+    why_not: Annotated[
+        str | None, typer.Option("--why-not", metavar="FACT", help="Print why a fact does not follow.")
+    ] = None,
+    time_limit: TimeLimit = 10.0,
+    as_json: AsJson = False,
+) -> None:
+    """Print what a script states and implies, or the smallest contradiction in it (exit 1)."""
+    from deixis.ontology.errors import DeixisError
+    from deixis.report import inference_to_dict
+    from deixis.session import infer as run
+    from deixis.show import inference_lines
+
+    if explain is not None and why_not is not None:
+        raise DeixisError("infer: --explain and --why-not exclude each other")
+    fact = _one_fact(explain, "--explain") or _one_fact(why_not, "--why-not")
+    inference = run(script, time_limit)
+    if fact is not None and inference.consistent and inference.decided:
+        (_explain if explain is not None else _why_not)(inference, fact, as_json)
+        return
+    if as_json:
+        print_json(inference_to_dict(inference))
+    else:
+        print_lines(inference_lines(inference))
+    if not inference.consistent:
+        raise typer.Exit(NO)
+    if not inference.decided or not inference.complete:
+        raise typer.Exit(UNDECIDED)
+
+
+def _one_fact(text: str | None, option: str) -> Fact | None:
+    from deixis.grammar.parser import parse_script
+    from deixis.ontology.errors import DeixisError
+
+    if text is None:
+        return None
+    facts = parse_script(text, option).facts
+    if len(facts) != 1 or not facts[0].plain:
+        raise DeixisError(f"{option}: '{text}' is not one plain fact; write it like 'left(fork, plate)'")
+    return facts[0]
+
+
+def _require_names(inference: Inference, fact: Fact, option: str) -> None:
+    from deixis.ontology.errors import UnknownTermError
+    from deixis.ontology.relation import nearest
+
+    nodes = inference.implications.graph.nodes
+    for name in (fact.subject, fact.object):
+        if name not in nodes:
+            hint = nearest(name, nodes)
+            raise UnknownTermError(
+                f"{option}: the script names no '{name}'" + (f"; did you mean '{hint}'?" if hint else "")
+            )
+
+
+def _explain(inference: Inference, fact: Fact, as_json: bool) -> None:
+    from deixis.report import derivation_to_dict
+
+    _require_names(inference, fact, "--explain")
+    derivation = inference.implications.derive(fact.relations[0], fact.subject, fact.object)
+    if as_json:
+        print_json({"fact": str(fact), "derivation": derivation and derivation_to_dict(derivation)})
+    elif derivation is None:
+        print(f"{fact} does not follow from the script (--why-not says why).")
+    else:
+        print_lines(derivation.lines())
+    if derivation is None:
+        raise typer.Exit(NO)
+
+
+def _why_not(inference: Inference, fact: Fact, as_json: bool) -> None:
+    """Exit code 0 where it does not follow, and 1 where it does after all."""
+    from deixis.reasoning.why_not import why_not
+    from deixis.report import why_not_to_dict
+    from deixis.show import why_not_lines
+
+    _require_names(inference, fact, "--why-not")
+    found = why_not(inference.implications, fact)
+    if as_json:
+        print_json(why_not_to_dict(found))
+    else:
+        print_lines(why_not_lines(found))
+    if found.follows is not None:
+        raise typer.Exit(NO)

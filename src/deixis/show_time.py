@@ -1,0 +1,139 @@
+"""What is known of when things held: as lines of text, and as plain data for JSON."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from deixis.reasoning.temporal.bounds import Bounds
+    from deixis.reasoning.temporal.chronology import Chronology
+    from deixis.reasoning.temporal.errors import TemporalConflictError
+    from deixis.reasoning.temporal.explanation import Explanation
+    from deixis.reasoning.temporal.fluent import Fluent
+
+
+def chronology_lines(file: str, origin: str, chronology: Chronology, fluents: Sequence[Fluent]) -> list[str]:
+    """Each fluent with the tightened bounds of its start, its finish and its duration."""
+    rows = [
+        (
+            fluent.id,
+            str(fluent.statement),
+            f"start {chronology.start(fluent.id)}",
+            f"finish {chronology.finish(fluent.id)}",
+            f"duration {chronology.duration(fluent.id)}",
+        )
+        for fluent in fluents
+    ]
+    head = f"{file}: {len(fluents)} fluent{'' if len(fluents) == 1 else 's'}, in seconds since: {origin}"
+    return [head, *_aligned(rows), *_caveat(chronology)]
+
+
+def _aligned(rows: Sequence[tuple[str, ...]]) -> list[str]:
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    return ["  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows]
+
+
+def _caveat(chronology: Chronology) -> list[str]:
+    from deixis.reasoning.temporal.chronology import Status
+
+    if chronology.status is Status.UNDECIDED:
+        return ["Undecided within the time limit: what is certain here is so if the statements can hold together."]
+    if not chronology.exact:
+        return ["There are too many alternatives to go through: more may be certain than is said here."]
+    return []
+
+
+def held_lines(certain: Sequence[Fluent], possible: Sequence[Fluent], chronology: Chronology) -> list[str]:
+    """Which fluents certainly held, and which others may have."""
+    rows = [("certain" if fluent in certain else "possible", fluent.id, str(fluent.statement)) for fluent in possible]
+    return [*(_aligned(rows) if rows else ["Nothing can have held then."]), *_caveat(chronology)]
+
+
+def relation_lines(a: str, b: str, chronology: Chronology) -> list[str]:
+    """The Allen relations that one fluent may bear to another, and what order is certain."""
+    names = [relation.name.lower() for relation in chronology.relations(a, b)]
+    order = chronology.certain_order(a, b)
+    lines = [f"certain: {names[0]}({a}, {b})" if len(names) == 1 else f"possible: {', '.join(names)} ({a}, {b})"]
+    return [*lines, *([f"certain order: {a} {order} {b}"] if order else []), *_caveat(chronology)]
+
+
+def explanation_lines(explanations: Sequence[Explanation], a: str, b: str) -> list[str]:
+    """Why what is certain of two fluents or points is certain."""
+    if not explanations:
+        return [f"Nothing is certain of '{a}' and '{b}'."]
+    return [line for explanation in explanations for line in explanation.lines()]
+
+
+def conflict_lines(conflict: TemporalConflictError) -> list[str]:
+    """The statements that contradict one another, and the proof."""
+    lines = ["These cannot all hold:"]
+    lines += [
+        f"    {f'{stated.source}: ' if stated.source else ''}{stated.conclusion}" for stated in conflict.statements
+    ]
+    minimal, unsure = "Leave out or change any one of these.", "Time was up before it was known whether all are needed."
+    return [*lines, minimal if conflict.minimal else unsure, "The proof:", *conflict.explanation.lines("    ")]
+
+
+def chronology_to_dict(chronology: Chronology, fluents: Sequence[Fluent]) -> dict[str, Any]:
+    """Each fluent with its tightened bounds; a bound that is not known is null."""
+    return {
+        "status": chronology.status.value,
+        "exact": chronology.exact,
+        "fluents": [
+            {
+                "id": fluent.id,
+                "statement": str(fluent.statement),
+                "start": _bounds(chronology.start(fluent.id)),
+                "finish": _bounds(chronology.finish(fluent.id)),
+                "duration": _bounds(chronology.duration(fluent.id)),
+            }
+            for fluent in fluents
+        ],
+    }
+
+
+def _bounds(bounds: Bounds) -> dict[str, Any]:
+    from math import isinf
+
+    ends = [None if isinf(bound) else bound for bound in (bounds.lower, bounds.upper)]
+    return {"lower": ends[0], "upper": ends[1], "lower_open": bounds.lower_open, "upper_open": bounds.upper_open}
+
+
+def held_to_dict(certain: Sequence[Fluent], possible: Sequence[Fluent], chronology: Chronology) -> dict[str, Any]:
+    """The ids of the fluents that certainly held, and of all that may have."""
+    standing = {"status": chronology.status.value, "exact": chronology.exact}
+    return {**standing, "certain": [fluent.id for fluent in certain], "possible": [fluent.id for fluent in possible]}
+
+
+def relation_to_dict(a: str, b: str, chronology: Chronology) -> dict[str, Any]:
+    """The Allen relations that one fluent may bear to another; ``certain`` where it is one."""
+    names = [relation.name.lower() for relation in chronology.relations(a, b)]
+    order = chronology.certain_order(a, b)
+    return {
+        "status": chronology.status.value,
+        "exact": chronology.exact,
+        "a": a,
+        "b": b,
+        "possible": names,
+        "certain": names[0] if len(names) == 1 else None,
+        "order": order.value if order else None,
+    }
+
+
+def explanation_to_dict(explanation: Explanation) -> dict[str, Any]:
+    """An explanation, down to what was stated."""
+    return {
+        "conclusion": explanation.conclusion,
+        "rule": explanation.rule.value,
+        "source": explanation.source,
+        "premises": [explanation_to_dict(premise) for premise in explanation.premises],
+    }
+
+
+def conflict_to_dict(conflict: TemporalConflictError) -> dict[str, Any]:
+    """The statements that contradict one another, and the proof."""
+    statements = [{"statement": stated.conclusion, "source": stated.source} for stated in conflict.statements]
+    proof = explanation_to_dict(conflict.explanation)
+    return {"status": "inconsistent", "minimal": conflict.minimal, "statements": statements, "explanation": proof}

@@ -1,0 +1,104 @@
+"""Allen's relations from bounds: exact, against every choice of end points on a grid that is fine enough."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from deixis.ontology.allen import ALL_ALLEN, Allen, members
+from deixis.reasoning.allen import allen_relations
+from deixis.reasoning.temporal.bounds import Bounds
+from deixis.reasoning.temporal.endpoints import (
+    converse_masks,
+    convex_hull,
+    convex_pieces,
+    masks_from_bounds,
+    necessary_orders,
+)
+from deixis.reasoning.temporal.fluent import Fluent, Statement
+
+STEP = 5  # four end points between two bounds need no more than five steps to take any order
+LAST = 3
+MASKS = st.integers(1, ALL_ALLEN)
+
+
+@st.composite
+def some_bounds(draw: st.DrawFn) -> Bounds:
+    lower, upper = sorted(draw(st.tuples(st.integers(0, LAST), st.integers(0, LAST))))
+    if lower == upper:
+        return Bounds(lower, upper)
+    return Bounds(lower, upper, draw(st.booleans()), draw(st.booleans()))
+
+
+@st.composite
+def fluent(draw: st.DrawFn) -> Fluent:
+    start, finish = draw(st.tuples(some_bounds(), some_bounds()).filter(lambda ends: ends[0].lower < ends[1].upper))
+    return Fluent("f", Statement("a", "b"), start, finish)
+
+
+def grid(bounds: Bounds) -> list[int]:
+    """The points of the grid within bounds."""
+    low, high = int(bounds.lower * STEP), int(bounds.upper * STEP)
+    return list(range(low + bounds.lower_open, high + 1 - bounds.upper_open))
+
+
+def brute_force(a: Fluent, b: Fluent) -> int:
+    ends = np.meshgrid(grid(a.start), grid(a.finish), grid(b.start), grid(b.finish), indexing="ij")
+    flat = np.stack([end.ravel() for end in ends]).astype(np.float64)
+    proper = flat[:, (flat[0] < flat[1]) & (flat[2] < flat[3])]
+    return sum(1 << int(code) for code in np.unique(allen_relations(*proper)))
+
+
+@settings(max_examples=60, deadline=None)
+@given(fluent(), fluent())
+def test_a_relation_is_admitted_just_where_some_end_points_realise_it(a: Fluent, b: Fluent) -> None:
+    masks = masks_from_bounds([a.start, b.start], [a.finish, b.finish])
+    assert members(int(masks[0, 1])) == members(brute_force(a, b))
+
+
+@settings(max_examples=30, deadline=None)
+@given(st.lists(fluent(), max_size=6))
+def test_the_masks_of_a_pair_are_converses(fluents: list[Fluent]) -> None:
+    masks = masks_from_bounds([f.start for f in fluents], [f.finish for f in fluents])
+    assert masks.shape == (len(fluents), len(fluents))
+    assert masks.dtype == np.uint16
+    assert np.array_equal(masks.T, converse_masks(masks))
+    assert (masks.diagonal() == 1 << Allen.EQUALS).all()
+
+
+def test_unknown_bounds_admit_everything() -> None:
+    assert masks_from_bounds([Bounds()] * 2, [Bounds()] * 2)[0, 1] == ALL_ALLEN
+
+
+def test_orders_that_are_possible_one_by_one_are_not_taken_together() -> None:
+    """a in [0, 1] to [1, 2], b the same: each start may be 1 and each finish 1, and no interval may be both."""
+    masks = masks_from_bounds([Bounds(0, 1), Bounds(1, 1)], [Bounds(1, 2), Bounds(2, 2)])
+    assert [relation.symbol for relation in members(int(masks[0, 1]))] == ["m", "o", "fi", "s", "="]
+
+
+def test_there_are_82_convex_relations() -> None:
+    """Counted by all orders of the four pairs of ends, and by hulls: the two definitions agree."""
+    convex = [mask for mask in range(1, ALL_ALLEN + 1) if convex_hull(mask) == mask]
+    assert len(convex) == 82
+    assert all(convex_pieces(mask) == (mask,) for mask in convex)
+
+
+@given(MASKS)
+def test_pieces_are_convex_and_make_up_the_whole(mask: int) -> None:
+    pieces = convex_pieces(mask)
+    assert all(convex_hull(piece) == piece for piece in pieces)
+    assert int(np.bitwise_or.reduce(pieces)) == mask
+    assert (len(pieces) == 1) == (convex_hull(mask) == mask)
+
+
+@pytest.mark.parametrize(
+    ("relation", "count"), [(Allen.BEFORE, 1), (Allen.MEETS, 2), (Allen.OVERLAPS, 3), (Allen.EQUALS, 4)]
+)
+def test_a_relation_is_few_constraints(relation: Allen, count: int) -> None:
+    assert len(necessary_orders(1 << relation)) == count
+
+
+def test_saying_nothing_takes_no_constraint() -> None:
+    assert necessary_orders(ALL_ALLEN) == ()
