@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 from urllib.parse import quote
+
+import numpy as np
+from numpy.typing import NDArray
 
 from deixis.ontology.errors import GraphError
 from deixis.ontology.graph import Fact, RelationGraph
@@ -53,8 +56,6 @@ def _full(fact: Fact) -> dict[str, Any]:
 
 def graph_from_dict(data: Mapping[str, Any], vocabulary: Relations) -> RelationGraph:
     """The graph that :func:`graph_to_dict` wrote; raises GraphError where ``data`` is no such thing."""
-    import numpy as np
-
     try:
         nodes = data["nodes"]
         facts = [_fact_from_dict(entry, vocabulary) for entry in data["facts"]]
@@ -95,11 +96,14 @@ PREFIXES = {
     "xsd": "http://www.w3.org/2001/XMLSchema#",
 }
 
+GRAPH_BASE = "urn:deixis:graph:"
+"""Under which the objects of a graph by itself have their IRIs."""
+
 IRI_SIGNS = ":/?#[]@!$&'()*+,;=%"
 """What an IRI may have unescaped besides letters, digits and ``-._~``."""
 
 
-def graph_to_turtle(graph: RelationGraph, base: str = "urn:deixis:graph:") -> str:
+def graph_to_turtle(graph: RelationGraph, base: str = GRAPH_BASE) -> str:
     """The graph as Turtle: each object under ``base``, each edge a ``dx:RelationStatement`` under ``base`` + ``fact/``.
 
     Names become percent-encoded IRIs (so that none has a slash) and escaped literals: no name can add a statement of
@@ -122,6 +126,23 @@ def graph_to_turtle(graph: RelationGraph, base: str = "urn:deixis:graph:") -> st
         lines.append(f"    {_dx(DX.POSITIVE)} {str(fact.positive).lower()} ;")
         lines.append(f"    {_dx(DX.WEIGHT)} {fact.weight:.6f} .")
     return "\n".join(lines) + "\n"
+
+
+def pairs_to_ntriples(relation: Relation, pairs: NDArray[np.int64], iris: Sequence[str]) -> str:
+    """One N-Triples line a pair, shape (k, 2), sorted by subject; ``iris`` are the nodes' IRIs in angle brackets."""
+    chunks: list[str] = []
+    if not len(pairs):
+        return ""
+    subjects, begins = np.unique(pairs[:, 0], return_index=True)
+    for subject, objects in zip(subjects.tolist(), np.split(pairs[:, 1], begins[1:]), strict=True):
+        head = f"{iris[subject]} <{relation.iri}> "
+        chunks.append(head + f" .\n{head}".join([iris[object] for object in objects.tolist()]) + " .\n")
+    return "".join(chunks)
+
+
+def node_iris(graph: RelationGraph, base: str = GRAPH_BASE) -> list[str]:
+    """The nodes' IRIs as :func:`graph_to_turtle` writes them, in angle brackets."""
+    return [_iri(base, name) for name in graph.nodes]
 
 
 def _dx(term: DX) -> str:

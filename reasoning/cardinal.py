@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 CARDINAL_DIRECTIONS: tuple[str, ...] = ("n", "ne", "e", "se", "s", "sw", "w", "nw")
 SAME_PLACE = "eq"
+CONES: tuple[str, ...] = (*CARDINAL_DIRECTIONS, SAME_PLACE)
 
 
 def cardinal_directions(boxes: NDArray[np.float64]) -> NDArray[np.str_]:
@@ -18,10 +19,14 @@ def cardinal_directions(boxes: NDArray[np.float64]) -> NDArray[np.str_]:
     >>> cardinal_directions(np.array([[[0.0, 2], [1, 3]], [[0, 0], [1, 1]]])).tolist()
     [['eq', 'n'], ['s', 'eq']]
     """
+    return np.array(CONES)[cardinal_cones(boxes)]
+
+
+def cardinal_cones(boxes: NDArray[np.float64]) -> NDArray[np.int16]:
+    """The same as positions in CONES, shape (n, n)."""
     centres = boxes.mean(axis=1)
     east = centres[:, None, 0] - centres[None, :, 0]
     north = centres[:, None, 1] - centres[None, :, 1]
     clockwise = np.degrees(np.arctan2(east, north))
-    cone = np.floor((clockwise + 22.5) / 45.0).astype(int) % 8
-    names = np.array(CARDINAL_DIRECTIONS)[cone]
-    return np.where((east == 0) & (north == 0), SAME_PLACE, names)
+    cone = np.floor((clockwise + 22.5) / 45.0).astype(np.int16) % 8
+    return np.where((east == 0) & (north == 0), np.int16(8), cone)

@@ -19,3 +19,23 @@ class SettingError(DeixisError, ValueError):
 
 class NothingFoundError(DeixisError, LookupError):
     """A script of which a scene shows nothing."""
+
+
+class UnknownAtomError(DeixisError, LookupError):
+    """A sign that stands for no atom of a calculus."""
+
+
+class UnknownCalculusError(DeixisError, LookupError):
+    """A name that stands for no calculus."""
+
+
+class TriplesError(DeixisError, ValueError):
+    """Text that is no N-Triples, or triples that say no ontology."""
+
+
+class ReasonerError(DeixisError, RuntimeError):
+    """A reasoner that could not read an ontology, or could not be run."""
+
+
+class NotEntailedError(DeixisError, ValueError):
+    """A statement of which a justification was asked, and which does not follow."""

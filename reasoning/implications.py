@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.ontology.errors import GraphError
+from deixis.ontology.export import node_iris, pairs_to_ntriples
 from deixis.ontology.graph import Fact, RelationGraph
 from deixis.ontology.relation import Relation, Relations
 from deixis.reasoning.derivation import Derivation, Rule
@@ -25,7 +26,7 @@ from deixis.reasoning.orders.bounds import meaning
 from deixis.reasoning.orders.cases import derive_by_cases
 from deixis.reasoning.orders.choices import OutOfTimeError
 from deixis.reasoning.orders.closing import Closed, close
-from deixis.reasoning.orders.demands import Demands, demands_of
+from deixis.reasoning.orders.demands import Demands, EdgeFacts, demands_of
 from deixis.reasoning.orders.derivations import OrderDerivations
 
 TIME_LIMIT = 10.0
@@ -108,8 +109,12 @@ class Implications:
 
     @cached_property
     def _derivations(self) -> OrderDerivations:
-        facts = list(self.graph.facts())
+        facts = EdgeFacts(self.graph)
         return OrderDerivations(self.vocabulary, self.graph.nodes, facts, self.demands.bounds, len(facts))
+
+    def prepare_explanations(self) -> None:
+        """Builds the graph in which derivations are searched; the first derivation does it otherwise."""
+        self._derivations.paths.prepare()
 
     def pairs(self, relation: Relation) -> NDArray[np.int64]:
         """The pairs of nodes of which the relation holds in every picture, shape (k, 2), by subject, then by object."""
@@ -122,6 +127,11 @@ class Implications:
         for relation in self.vocabulary.values():
             for subject, object in self.pairs(relation).tolist():
                 yield relation, nodes[subject], nodes[object]
+
+    def ntriples(self) -> str:
+        """Every fact that is stated firmly or implied as one plain N-Triples line, under the IRIs of the graph's Turtle."""
+        iris = node_iris(self.graph)
+        return "".join(pairs_to_ntriples(r, self.pairs(r), iris) for r in self.vocabulary.values())
 
     def inferred(self) -> Iterator[Derivation]:
         """Every implied fact that is not stated itself, with its shortest derivation."""
@@ -181,10 +191,14 @@ class Implications:
         stated = set(derivation.stated())
         return Support(derivation.rule, tuple(k for k, other in enumerate(self.graph.facts()) if other in stated))
 
+    def counts(self) -> dict[Relation, int]:
+        """How many pairs are stated or implied to bear each relation."""
+        orders = self.closed.orders
+        return {relation: 0 if orders is None else orders.count(relation) for relation in self.vocabulary.values()}
+
     def count(self) -> int:
         """How many facts are stated or implied."""
-        orders = self.closed.orders
-        return 0 if orders is None else sum(orders.count(relation) for relation in self.vocabulary.values())
+        return sum(self.counts().values())
 
 
 __all__ = ["TIME_LIMIT", "Derivation", "Implications", "OutOfTimeError", "Rule", "Support"]

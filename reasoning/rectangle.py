@@ -60,7 +60,7 @@ def box_relations(
     >>> related.atom(0, 1), relations.members(1 << int(related.names[0, 1]))[0].name
     ('<,d', 'exactly_left')
     """
-    _require_boxes(boxes)
+    require_boxes(boxes)
     low, high = boxes[:, 0], boxes[:, 1]
     codes = [
         allen_relations(low[:, None, axis], high[:, None, axis], low[None, :, axis], high[None, :, axis], tolerance)
@@ -103,7 +103,7 @@ def perceived_graph(
     )
 
 
-def _require_boxes(boxes: NDArray[np.float64]) -> None:
+def require_boxes(boxes: NDArray[np.float64]) -> None:
     if boxes.ndim != 3 or boxes.shape[1] != 2 or boxes.shape[2] not in (2, 3):
         raise GraphError(f"boxes must have shape (n, 2, 2) or (n, 2, 3), not {boxes.shape}")
     if not np.isfinite(boxes).all():

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import overload
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,6 +41,30 @@ class Demands:
             self.bounds.of_premises(chosen),
             tuple(choice for choice in self.choices if chosen[choice.premise]),
         )
+
+
+class EdgeFacts(Sequence[Fact]):
+    """A graph's edges as facts, each made when it is asked for and kept."""
+
+    def __init__(self, graph: RelationGraph) -> None:
+        self._graph = graph
+        self._made: dict[int, Fact] = {}
+
+    def __len__(self) -> int:
+        return len(self._graph)
+
+    @overload
+    def __getitem__(self, edge: int) -> Fact: ...
+    @overload
+    def __getitem__(self, edge: slice) -> list[Fact]: ...
+    def __getitem__(self, edge: int | slice) -> Fact | list[Fact]:
+        if isinstance(edge, slice):
+            return [self[k] for k in range(*edge.indices(len(self)))]
+        if edge not in self._made:
+            if not -len(self) <= edge < len(self):
+                raise IndexError(edge)
+            self._made[edge] = self._graph.fact(edge)
+        return self._made[edge]
 
 
 def demands_of(graph: RelationGraph) -> Demands:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import cached_property
 
 import numpy as np
 
@@ -42,12 +43,20 @@ class OrderDerivations:
         self._premises = premises
         self._assumed = assumed
         self._bounds = bounds
-        self._index = {name: k for k, name in enumerate(names)}
-        self._stated: dict[tuple[str, int, str], int] = {}
-        for k, fact in enumerate(premises):
-            if isinstance(fact, Fact) and fact.positive:
-                self._stated.setdefault((fact.subject, fact.relation_set, fact.object), k)
         self.paths = OrderPaths(bounds, len(names))
+
+    @cached_property
+    def _index(self) -> dict[str, int]:
+        return {name: k for k, name in enumerate(self._names)}
+
+    @cached_property
+    def _stated(self) -> dict[tuple[str, int, str], int]:
+        """Where a fact is stated just so: by subject, relation set and object."""
+        stated: dict[tuple[str, int, str], int] = {}
+        for k, fact in enumerate(self._premises):
+            if isinstance(fact, Fact) and fact.positive:
+                stated.setdefault((fact.subject, fact.relation_set, fact.object), k)
+        return stated
 
     def chains(self, relation: Relation, subject: str, object: str) -> dict[Bound, Path] | None:
         """For every bound of a relation the facts that lead to it, as few as found; None where one has none."""

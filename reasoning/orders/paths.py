@@ -72,6 +72,10 @@ class OrderPaths:
         self._n = n
         self._trees: OrderedDict[tuple[int, bool], _Tree] = OrderedDict()
 
+    def prepare(self) -> None:
+        """Builds both graphs, which the first search does otherwise."""
+        assert self._onward.size == self._back.size
+
     @cached_property
     def _onward(self) -> PointGraph:
         return point_graph(self._bounds, self._n)

@@ -30,6 +30,7 @@ from deixis.cli_common import (
 )
 from deixis.cli_infer import infer
 from deixis.cli_memory import register
+from deixis.cli_relate import relate
 from deixis.cli_time import time_command
 
 if TYPE_CHECKING:
@@ -114,6 +115,7 @@ def fmt(
 
 
 app.command()(infer)
+app.command()(relate)
 app.command("time")(time_command)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -21,6 +22,7 @@ def infer(
     why_not: Annotated[
         str | None, typer.Option("--why-not", metavar="FACT", help="Print why a fact does not follow.")
     ] = None,
+    ntriples: Annotated[bool, typer.Option("--ntriples", help="Print all that holds as N-Triples.")] = False,
     time_limit: TimeLimit = 10.0,
     as_json: AsJson = False,
 ) -> None:
@@ -37,7 +39,9 @@ def infer(
     if fact is not None and inference.consistent and inference.decided:
         (_explain if explain is not None else _why_not)(inference, fact, as_json)
         return
-    if as_json:
+    if ntriples and inference.consistent and inference.decided:
+        sys.stdout.write(inference.implications.ntriples())
+    elif as_json:
         print_json(inference_to_dict(inference))
     else:
         print_lines(inference_lines(inference))

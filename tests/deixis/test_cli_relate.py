@@ -1,0 +1,112 @@
+"""``deixis relate``: pairs, one pair, a matrix, JSON, and what it refuses."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from commands import deixis
+
+from deixis.examples_data import example
+
+SCENE = example("place_setting.scene.json")
+
+
+@pytest.fixture
+def table(tmp_path: Path) -> Path:
+    """A fork (2 by 20 cm) left of a plate (27 by 27 cm), with heights."""
+    path = tmp_path / "table.scene.json"
+    fork = {"id": "fork", "min": [0, 0, 0], "max": [2, 20, 1]}
+    plate = {"id": "plate", "min": [5, -2, 0], "max": [32, 25, 3]}
+    path.write_text(json.dumps({"unit": "cm", "objects": [fork, plate]}), encoding="utf-8")
+    return path
+
+
+def test_every_ordered_pair_is_printed_in_rectangle_algebra_unless_told_otherwise(table: Path) -> None:
+    assert deixis("relate", table) == (0, "fork   <,d   plate\nplate  >,di  fork\n", "")
+
+
+@pytest.mark.parametrize(
+    ("name", "options", "relation"),
+    [
+        ("ra", (), "<,d"),
+        ("ba", (), "<,d,s"),
+        ("allen", ("--axis", "z"), "s"),
+        ("point", ("--axis", "y"), "<"),
+        ("cd", (), "SW"),
+        ("cd", ("--tolerance", "0.02"), "W"),
+        ("cardir", (), "w"),
+        ("rcc8", (), "DC"),
+        ("ten", (), "left"),
+        ("distance", ("--reference", "0.1"), "medium"),
+    ],
+)
+def test_one_pair_in_each_calculus(table: Path, name: str, options: tuple[str, ...], relation: str) -> None:
+    code, out, err = deixis("relate", table, "--calculus", name, "--of", "fork", "--of", "plate", *options)
+    assert (code, out, err) == (0, f"fork  {relation}  plate\n", "")
+
+
+def test_one_subject() -> None:
+    code, out, err = deixis("relate", SCENE, "-c", "ten", "--of", "o1", "--json")
+    assert (code, err) == (0, "")
+    answer = json.loads(out)
+    assert answer["calculus"] == "ten"
+    assert {pair["subject"] for pair in answer["pairs"]} == {"o1"}
+    assert len(answer["pairs"]) == len(answer["objects"]) - 1
+
+
+def test_json_has_every_ordered_pair(table: Path) -> None:
+    code, out, _ = deixis("relate", table, "--calculus", "rcc8", "--json")
+    assert code == 0
+    assert json.loads(out) == {
+        "calculus": "rcc8",
+        "objects": ["fork", "plate"],
+        "pairs": [
+            {"subject": "fork", "relation": "DC", "object": "plate"},
+            {"subject": "plate", "relation": "DC", "object": "fork"},
+        ],
+    }
+
+
+def test_a_matrix_has_subjects_in_rows(table: Path) -> None:
+    assert deixis("relate", table, "--matrix")[1].splitlines() == [
+        "       fork  plate",
+        "fork   .     <,d",
+        "plate  >,di  .",
+    ]
+
+
+def test_an_empty_scene_has_no_pairs(tmp_path: Path) -> None:
+    path = tmp_path / "empty.scene.json"
+    path.write_text('{"objects": []}', encoding="utf-8")
+    assert deixis("relate", path) == (0, "There are no pairs.\n", "")
+    assert deixis("relate", path, "--matrix") == (0, "There are no objects.\n", "")
+    assert json.loads(deixis("relate", path, "--json")[1])["pairs"] == []
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (("--calculus", "rcc"), "boxes are not related in 'rcc'; did you mean 'rcc8'?"),
+        (("--of", "frok"), "nothing here is called 'frok'; did you mean 'fork'?"),
+        (("--of", "fork", "--of", "spoon"), "nothing here is called 'spoon'"),
+        (("--of", "a", "--of", "b", "--of", "c"), "--of takes a subject"),
+        (("--matrix", "--of", "fork"), "does not go with --matrix"),
+        (("--calculus", "distance"), "a reference length"),
+        (("--calculus", "allen", "--axis", "q"), "an axis is x, y or z, not 'q'"),
+        (("--image", "x.jpg"), "an image ('x.jpg') is chosen in annotation files"),
+    ],
+)
+def test_what_it_refuses(table: Path, options: tuple[str, ...], message: str) -> None:
+    code, out, err = deixis("relate", table, *options)
+    assert (code, out) == (2, "")
+    assert message in err
+    assert err.startswith("deixis: ")
+    assert err.count("\n") == 1
+
+
+def test_a_file_that_is_no_scene_is_refused(tmp_path: Path) -> None:
+    code, out, err = deixis("relate", tmp_path / "none.json")
+    assert (code, out) == (2, "")
+    assert "none.json" in err
