@@ -24,6 +24,8 @@ _PREFIXES = {
     "http://www.w3.org/2004/02/skos/core#": "skos:",
     _DCTERMS: "dcterms:",
     "http://purl.org/vocab/vann/": "vann:",
+    "http://qudt.org/schema/qudt/": "qudt:",
+    "http://qudt.org/vocab/unit/": "unit:",
 }
 _PROPERTIES = {
     "Object properties": _OWL + "ObjectProperty",
@@ -56,6 +58,13 @@ _EXACT = """\
 
 The name of a pair of boxes: of these ten every ordered pair bears exactly one. None is transitive, and each implies the
 wide relation that it stands under."""
+
+_SIZES = """\
+## Usual sizes
+
+How large things usually are, in centimetres: least, typical, greatest. The length is the longer side of the outline,
+seen from above, the width the shorter one; of a circle both are the diameter. A kind of which nothing stands here is as
+large as the nearest broader one that does."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,6 +117,8 @@ def term_document(turtle: str) -> str:
         _allen_relations(own),
         "## Kinds of things",
         "\n".join(_tree(DX.THING, own)),
+        _SIZES,
+        _sizes(own),
         _hedges(own),
         _other_classes(own),
         *(_properties(title, kind, own, terms) for title, kind in _PROPERTIES.items()),
@@ -194,6 +205,26 @@ def _entry(term: Term) -> str:
     label, *others = term.words or (_code(term.iri),)
     also = f" Also: {', '.join(others)}." if others else ""
     return f"**{label}** ({_code(term.iri)}): {_definition(term)}{also}"
+
+
+def _sizes(own: Iterable[Term]) -> str:
+    ends = ("length", "width", "height")
+    rows = [
+        (term.value(W3C.RDFS_LABEL), term.value(DX.OUTLINE), *(_extent(term, end) for end in ends), _source(term))
+        for term in own
+        if term.values(DX.OUTLINE)
+    ]
+    return _table(("kind", "outline", *ends, "source"), rows)
+
+
+def _extent(term: Term, end: str) -> str:
+    """The three numbers of a length, a width or a height in centimetres; empty where none are stated."""
+    metres = (term.value(f"{BASE}{which}{end.capitalize()}") for which in ("least", "typical", "greatest"))
+    return ", ".join(f"{100 * float(text):g}" for text in metres if text)
+
+
+def _source(term: Term) -> str:
+    return term.value(W3C.DCTERMS_SOURCE)
 
 
 def _hedges(own: Iterable[Term]) -> str:

@@ -11,6 +11,7 @@ from pathlib import Path
 from deixis.ontology.errors import OntologyError
 from deixis.ontology.kinds import Kind, Kinds
 from deixis.ontology.relation import Relation, Relations, relation_from_triples
+from deixis.ontology.sizes import Sizes, sizes_from_triples
 from deixis.ontology.vocabulary import DX, W3C
 
 TBOX_FILE = Path(__file__).with_name("deixis.ttl")
@@ -54,11 +55,12 @@ class Triples:
 
 @dataclass(frozen=True)
 class Ontology:
-    """What the TBox says, ready for use: relations, kinds of things, and hedges with their weights."""
+    """What the TBox says, ready for use: relations, kinds of things with their usual sizes, and hedges with weights."""
 
     relations: Relations
     kinds: Kinds
     hedges: dict[str, float]
+    sizes: Sizes
 
 
 def load_ontology(*extra: str) -> Ontology:
@@ -78,7 +80,7 @@ def load_ontology(*extra: str) -> Ontology:
     for text in (TBOX_FILE.read_text(encoding="utf-8"), *extra):
         for subject, predicate, value in _parse(text):
             triples.add(subject, predicate, value)
-    return Ontology(_relations(triples), _kinds(triples), _hedges(triples))
+    return Ontology(_relations(triples), _kinds(triples), _hedges(triples), sizes_from_triples(triples))
 
 
 @lru_cache(maxsize=1)

@@ -28,6 +28,16 @@ class DX(StrEnum):
     ALLEN_SYMBOL = BASE + "allenSymbol"
     PHRASE = BASE + "phrase"
     RELATION = BASE + "relation"
+    OUTLINE = BASE + "outline"
+    LEAST_LENGTH = BASE + "leastLength"
+    TYPICAL_LENGTH = BASE + "typicalLength"
+    GREATEST_LENGTH = BASE + "greatestLength"
+    LEAST_WIDTH = BASE + "leastWidth"
+    TYPICAL_WIDTH = BASE + "typicalWidth"
+    GREATEST_WIDTH = BASE + "greatestWidth"
+    LEAST_HEIGHT = BASE + "leastHeight"
+    TYPICAL_HEIGHT = BASE + "typicalHeight"
+    GREATEST_HEIGHT = BASE + "greatestHeight"
     # readings
     WIDE = BASE + "wide"
     EXACT = BASE + "exact"
@@ -108,11 +118,13 @@ class W3C(StrEnum):
     OWL_ON_PROPERTY = "http://www.w3.org/2002/07/owl#onProperty"
     OWL_SOME_VALUES_FROM = "http://www.w3.org/2002/07/owl#someValuesFrom"
     DCTERMS_TITLE = "http://purl.org/dc/terms/title"
+    DCTERMS_SOURCE = "http://purl.org/dc/terms/source"
 
 
 class PROV(StrEnum):
     """The terms of PROV-O that code refers to."""
 
+    ACTIVITY = "http://www.w3.org/ns/prov#Activity"
     ENTITY = "http://www.w3.org/ns/prov#Entity"
     SOFTWARE_AGENT = "http://www.w3.org/ns/prov#SoftwareAgent"
     USED = "http://www.w3.org/ns/prov#used"

@@ -28,6 +28,7 @@ from deixis.cli_common import (
     print_json,
     print_lines,
 )
+from deixis.cli_imagine import register as register_imagine
 from deixis.cli_infer import infer
 from deixis.cli_memory import register
 from deixis.cli_relate import relate
@@ -193,6 +194,7 @@ def demo(
 
 
 register(app)
+register_imagine(app)
 
 
 def _replace(path: Path, text: str) -> None:

@@ -9,10 +9,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-import typer
 from commands import deixis
 
-from deixis.cli_time import time_command
 from deixis.examples_data import example
 
 FILE = "serving.fluents.json"
@@ -23,11 +21,7 @@ NEVER = ["before", "after"]
 
 @pytest.fixture(autouse=True)
 def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A folder with the shipped example, and a command line that has this command."""
-    app = typer.Typer(pretty_exceptions_enable=False, rich_markup_mode=None)
-    app.callback()(lambda: None)
-    app.command("time")(time_command)
-    monkeypatch.setattr("deixis.cli.app", app)
+    """A folder with the shipped example."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / FILE).write_bytes(example(FILE).read_bytes())
     return tmp_path

@@ -1,0 +1,136 @@
+"""Usual sizes of kinds of things, in metres, as the TBox states them with their sources."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import TYPE_CHECKING
+
+from deixis.ontology.errors import OntologyError
+from deixis.ontology.vocabulary import DX, W3C
+
+if TYPE_CHECKING:
+    from deixis.ontology.tbox import Triples
+
+
+class Outline(StrEnum):
+    """The shape of a thing seen from above."""
+
+    CIRCLE = "circle"
+    RECTANGLE = "rectangle"
+
+
+@dataclass(frozen=True, slots=True)
+class Extent:
+    """A range of lengths in metres, with what is typical."""
+
+    least: float
+    typical: float
+    greatest: float
+
+    def __str__(self) -> str:
+        return f"{100 * self.least:g} to {100 * self.greatest:g} cm"
+
+    def admits(self, metres: float, tolerance: float = 0.0) -> bool:
+        """Whether a length is usual.
+
+        >>> Extent(0.2, 0.25, 0.3).admits(0.31), Extent(0.2, 0.25, 0.3).admits(0.31, tolerance=0.02)
+        (False, True)
+        """
+        return self.least - tolerance <= metres <= self.greatest + tolerance
+
+
+@dataclass(frozen=True, slots=True)
+class SizeRange:
+    """How large things of a kind usually are: ``length`` is the longer side in the plan, ``width`` the shorter one.
+
+    Of a circle both are the diameter. ``stated_of`` is the IRI of the kind of which the TBox states it, the kind
+    itself or the nearest broader one; ``source`` says where the numbers are from.
+    """
+
+    outline: Outline
+    length: Extent
+    width: Extent
+    height: Extent
+    stated_of: str
+    source: str
+
+    def __str__(self) -> str:
+        if self.outline is Outline.CIRCLE:
+            return f"{self.length} across"
+        return f"{self.length} long and {self.width} wide"
+
+
+class Sizes:
+    """The size range of every kind, by IRI; of a kind that states none, what its nearest broader kind states.
+
+    >>> from deixis.ontology.tbox import default_ontology
+    >>> ontology = default_ontology()
+    >>> print(ontology.sizes.of(ontology.kinds.of_word("soup spoon").iri))
+    15 to 20 cm long and 3 to 5.5 cm wide
+    >>> ontology.sizes.of(ontology.kinds.of_word("salt shaker").iri).stated_of.rsplit("#")[-1]
+    'Shaker'
+    """
+
+    def __init__(self, stated: Mapping[str, SizeRange], parents: Mapping[str, Iterable[str]]) -> None:
+        self._stated = dict(stated)
+        self._parents = {iri: tuple(above) for iri, above in parents.items()}
+
+    def of(self, kind: str | None) -> SizeRange:
+        """The size range of a kind; what is stated of all things where the kind is not known (None).
+
+        Raises OntologyError where the TBox states none for all things.
+        """
+        level = [kind or DX.THING.value]
+        seen: set[str] = set()
+        while level:
+            for iri in sorted(level):
+                if iri in self._stated:
+                    return self._stated[iri]
+            seen.update(level)
+            level = [above for iri in level for above in self._parents.get(iri, ()) if above not in seen]
+        if DX.THING in self._stated:
+            return self._stated[DX.THING]
+        raise OntologyError(f"no usual size is stated of <{DX.THING}>, so that unknown things have none; state one")
+
+
+_EXTENTS = {
+    "length": (DX.LEAST_LENGTH, DX.TYPICAL_LENGTH, DX.GREATEST_LENGTH),
+    "width": (DX.LEAST_WIDTH, DX.TYPICAL_WIDTH, DX.GREATEST_WIDTH),
+    "height": (DX.LEAST_HEIGHT, DX.TYPICAL_HEIGHT, DX.GREATEST_HEIGHT),
+}
+
+
+def sizes_from_triples(triples: Triples) -> Sizes:
+    """Reads all sizes; raises OntologyError where one is not whole or out of order."""
+    classes = triples.subjects(W3C.RDF_TYPE, W3C.OWL_CLASS)
+    stated = {iri: _size_range(iri, triples) for iri in classes if triples.values(iri, DX.OUTLINE)}
+    return Sizes(stated, {iri: triples.values(iri, W3C.RDFS_SUB_CLASS_OF) for iri in classes})
+
+
+def _size_range(iri: str, triples: Triples) -> SizeRange:
+    named = triples.value(iri, DX.OUTLINE)
+    if named not in list(Outline):
+        raise OntologyError(f"<{iri}>: an outline is one of {', '.join(Outline)}, not '{named}'")
+    outline = Outline(named)
+    length = _extent(iri, "length", triples)
+    return SizeRange(
+        outline=outline,
+        length=length,
+        width=length if outline is Outline.CIRCLE else _extent(iri, "width", triples),
+        height=_extent(iri, "height", triples),
+        stated_of=iri,
+        source=triples.value(iri, W3C.DCTERMS_SOURCE),
+    )
+
+
+def _extent(iri: str, name: str, triples: Triples) -> Extent:
+    texts = [triples.value(iri, term) for term in _EXTENTS[name]]
+    try:
+        least, typical, greatest = map(float, texts)
+    except ValueError:
+        raise OntologyError(f"<{iri}>: its {name} must be given in numbers, not as {', '.join(texts)}") from None
+    if not 0 < least <= typical <= greatest < float("inf"):
+        raise OntologyError(f"<{iri}>: its least, typical and greatest {name} must be above 0 and in that order")
+    return Extent(least, typical, greatest)

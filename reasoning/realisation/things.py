@@ -1,0 +1,54 @@
+"""The things of a picture: how large each may be, should be, and which way round it lies, in millimetres."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.ontology.sizes import Outline, SizeRange
+
+UPRIGHT, LYING = (1, 0), (0, 1)
+"""Which of length (0) and width (1) is the side along x and the side along y."""
+
+
+@dataclass(frozen=True, eq=False)
+class Things:
+    """Sizes of n things, millimetres; column 0: length, column 1: width."""
+
+    least: NDArray[np.int64]  # (n, 2)
+    wanted: NDArray[np.int64]  # (n, 2)
+    greatest: NDArray[np.int64]  # (n, 2)
+    round: NDArray[np.bool_]  # (n,) circles, as long as wide
+    lying: NDArray[np.bool_]  # (n,) rather lies along x than along y
+
+    def __len__(self) -> int:
+        return len(self.least)
+
+    def ways(self, thing: int) -> tuple[tuple[int, int], ...]:
+        """Which way round it may be laid, the preferred way first; one way where it makes no difference."""
+        if (self.least[thing, 0], self.greatest[thing, 0]) == (self.least[thing, 1], self.greatest[thing, 1]):
+            return (UPRIGHT,)
+        return (LYING, UPRIGHT) if self.lying[thing] else (UPRIGHT, LYING)
+
+
+def things_of(ranges: Sequence[SizeRange], lying: Sequence[bool], rng: np.random.Generator | None = None) -> Things:
+    """The things whose sizes are in these ranges: of typical size, or with ``rng`` of a size drawn from the range."""
+    extents = [(size.length, size.width) for size in ranges]
+    metres = np.array([[(e.least, e.typical, e.greatest) for e in pair] for pair in extents]).reshape(-1, 2, 3)
+    least, wanted, greatest = np.moveaxis(np.rint(1000 * metres).astype(np.int64), 2, 0)
+    round = np.array([size.outline is Outline.CIRCLE for size in ranges], dtype=np.bool_)
+    if rng is not None:
+        wanted = np.rint(_drawn(least, wanted, greatest, rng)).astype(np.int64)
+        wanted[round, 1] = wanted[round, 0]
+    return Things(np.maximum(least, 1), wanted, greatest, round, np.array(lying, dtype=np.bool_))
+
+
+def _drawn(
+    least: NDArray[np.int64], typical: NDArray[np.int64], greatest: NDArray[np.int64], rng: np.random.Generator
+) -> NDArray[np.float64]:
+    """From the middle of each range, most often near what is typical: the ends of wide ranges are odd sizes."""
+    left, right = (typical + least) / 2, np.minimum((typical + greatest) / 2, 1.3 * typical)
+    return rng.triangular(left, typical, np.maximum(right, left + 1e-6)) if len(least) else typical.astype(np.float64)

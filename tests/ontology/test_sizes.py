@@ -1,0 +1,109 @@
+"""Usual sizes: every kind has one, from a source, and none is larger than what is broader allows."""
+
+from __future__ import annotations
+
+import pytest
+
+from deixis.ontology.errors import OntologyError
+from deixis.ontology.kinds import Kind
+from deixis.ontology.sizes import Extent, Outline, Sizes
+from deixis.ontology.tbox import default_ontology, load_ontology
+
+ONTOLOGY = default_ontology()
+KINDS, SIZES = ONTOLOGY.kinds, ONTOLOGY.sizes
+PREFIX = "@prefix dx: <https://w3id.org/deixis/onto#> .\n"
+OWL = "@prefix owl: <http://www.w3.org/2002/07/owl#> . @prefix rdfs: <http://www.w3.org/2000/01/rdf-schema#> .\n"
+
+
+def kind(word: str) -> Kind:
+    found = KINDS.of_word(word)
+    assert found is not None
+    return found
+
+
+@pytest.mark.parametrize("some", list(KINDS), ids=lambda some: some.name)
+def test_every_kind_has_a_size_with_a_source_and_a_width_that_is_no_longer_than_the_length(some: Kind) -> None:
+    size = SIZES.of(some.iri)
+    assert size.source
+    assert size.stated_of == some.iri or size.stated_of in some.broader
+    assert size.width.typical <= size.length.typical
+    assert size.width.least <= size.length.least
+    assert size.width.greatest <= size.length.greatest
+    assert (size.width == size.length) == (size.outline is Outline.CIRCLE)
+
+
+@pytest.mark.parametrize("some", list(KINDS), ids=lambda some: some.name)
+def test_a_kind_is_never_larger_or_smaller_than_a_broader_kind_can_be(some: Kind) -> None:
+    size = SIZES.of(some.iri)
+    for iri in some.broader:
+        above = SIZES.of(iri)
+        for narrow, broad in ((size.length, above.length), (size.width, above.width), (size.height, above.height)):
+            assert broad.least <= narrow.least
+            assert narrow.greatest <= broad.greatest, f"{some.name} under {iri}"
+
+
+def test_sizes_are_those_of_the_sources() -> None:
+    """Dinner plates of 9 to 12 inches, soup spoons about 7 inches long, wine bottles 7.5 cm across and 30 cm high."""
+    plate, spoon = SIZES.of(kind("dinner plate").iri), SIZES.of(kind("soup spoon").iri)
+    assert (plate.length.least, plate.length.greatest) == pytest.approx((9 * 0.0254, 12 * 0.0254), abs=1e-3)
+    assert spoon.length.typical == pytest.approx(7 * 0.0254, abs=1e-3)
+    bottle = SIZES.of(kind("wine bottle").iri)
+    assert bottle.length.admits(0.075)
+    assert bottle.height.admits(0.3)
+
+
+def test_a_soup_spoon_is_no_plate() -> None:
+    spoon, plate = SIZES.of(kind("soup spoon").iri), SIZES.of(kind("plate").iri)
+    assert spoon.width.greatest < plate.width.least
+
+
+def test_a_kind_without_a_size_has_that_of_the_nearest_broader_kind_that_has_one() -> None:
+    assert SIZES.of(kind("salt shaker").iri) == SIZES.of(kind("shaker").iri)
+    extra = load_ontology(
+        PREFIX + OWL + "dx:Ladle a owl:Class ; rdfs:label 'ladle' ; rdfs:subClassOf dx:Spoon ."
+        "dx:SilverLadle a owl:Class ; rdfs:label 'silver ladle' ; rdfs:subClassOf dx:Ladle ."
+    )
+    assert extra.sizes.of(extra.kinds.of_word("silver ladle").iri).stated_of == kind("spoon").iri  # type: ignore[union-attr]
+
+
+def test_an_unknown_thing_may_have_any_size_that_is_listed() -> None:
+    unknown = SIZES.of(None)
+    assert unknown == SIZES.of("https://example.org/Gadget")
+    assert unknown.length.greatest >= SIZES.of(kind("table").iri).length.greatest
+
+
+def test_a_size_of_an_extra_text_is_taken() -> None:
+    numbers = " ; ".join(
+        f"dx:{which}{end} {metres}"
+        for end in ("Length", "Height")
+        for which, metres in (("least", 0.1), ("typical", 0.2), ("greatest", 0.3))
+    )
+    source = "<http://purl.org/dc/terms/source> 'measured'"
+    extra = load_ontology(f"{PREFIX} dx:SaltShaker dx:outline 'circle' ; {numbers} ; {source} .")
+    assert extra.sizes.of(kind("salt shaker").iri).width == Extent(0.1, 0.2, 0.3)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("dx:SaltShaker dx:outline 'star' .", "an outline is one of circle, rectangle, not 'star'"),
+        ("dx:SaltShaker dx:outline 'circle' .", "must have exactly one <https://w3id.org/deixis/onto#leastLength>"),
+        ("dx:Mug dx:typicalLength 2.0 .", "must have exactly one <https://w3id.org/deixis/onto#typicalLength>"),
+        (
+            "dx:SaltShaker dx:outline 'circle' ; dx:leastLength 1.0 ; dx:typicalLength 0.5 ; dx:greatestLength 2.0 .",
+            "must be above 0 and in that order",
+        ),
+        (
+            "dx:SaltShaker dx:outline 'circle' ; dx:leastLength 'wee' ; dx:typicalLength 0.5 ; dx:greatestLength 2.0 .",
+            "must be given in numbers, not as wee",
+        ),
+    ],
+)
+def test_a_size_that_is_not_whole_is_an_ontology_error(text: str, message: str) -> None:
+    with pytest.raises(OntologyError, match=message):
+        load_ontology(PREFIX + text)
+
+
+def test_where_nothing_is_stated_of_all_things_an_unknown_thing_has_no_size() -> None:
+    with pytest.raises(OntologyError, match="state one"):
+        Sizes({}, {}).of(None)
