@@ -32,6 +32,7 @@ from deixis.cli_imagine import register as register_imagine
 from deixis.cli_infer import infer
 from deixis.cli_memory import register
 from deixis.cli_relate import relate
+from deixis.cli_solve import solve
 from deixis.cli_time import time_command
 
 if TYPE_CHECKING:
@@ -117,6 +118,7 @@ def fmt(
 
 app.command()(infer)
 app.command()(relate)
+app.command()(solve)
 app.command("time")(time_command)
 
 

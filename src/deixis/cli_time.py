@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-import json
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+
+from deixis.cli_common import NO, UNDECIDED, AsJson, TimeLimit, print_json, print_lines
 
 if TYPE_CHECKING:
     from deixis.reasoning.temporal.chronology import Chronology
@@ -15,7 +16,6 @@ if TYPE_CHECKING:
     from deixis.reasoning.temporal.timeline import Timeline
 
 ANY = "*"
-NO, UNDECIDED = 1, 3
 
 
 def time_command(
@@ -36,8 +36,8 @@ def time_command(
         tuple[str, str, str],
         typer.Option(metavar="S P O", help="Only statements with this subject, predicate and object; * is any."),
     ] = (ANY, ANY, ANY),
-    time_limit: Annotated[float, typer.Option(min=0.0, metavar="SECONDS", help="Answer by then.")] = 10.0,
-    as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+    time_limit: TimeLimit = 10.0,
+    as_json: AsJson = False,
 ) -> None:
     """Print when things held, as far as it is known, and what follows; exit 1 where that contradicts itself."""
     from deixis.grammar.fluent_file import read_fluents
@@ -134,4 +134,4 @@ def _print_chronology(file: str, origin: str, chronology: Chronology, pattern: P
 
 def _print(answer: dict[str, Any] | list[str]) -> None:
     """Data as JSON, lines as they are."""
-    print("\n".join(answer) if isinstance(answer, list) else json.dumps(answer, indent=2, ensure_ascii=False))
+    print_lines(answer) if isinstance(answer, list) else print_json(answer)

@@ -1,0 +1,1 @@
+"""Qualitative constraint networks over any calculus: closure, search, scenarios, minimal conflicts."""

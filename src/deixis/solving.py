@@ -1,0 +1,134 @@
+"""Solves the networks of a file, one by one: the verdict, what it rests on, and what else was asked for."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from deixis.ontology.errors import DeixisError
+from deixis.reasoning.networks.closure import close
+from deixis.reasoning.networks.combination import joint_conflict, solve_jointly
+from deixis.reasoning.networks.conflict import minimal_conflict
+from deixis.reasoning.networks.derivation import explain
+from deixis.reasoning.networks.link import Link, links_between
+from deixis.reasoning.networks.network import Constraint, Network
+from deixis.reasoning.networks.search import Verdict, solve
+from deixis.reasoning.networks.state import Progress, State
+
+if TYPE_CHECKING:
+    from deixis.grammar.network_file import NetworkText
+    from deixis.reasoning.calculi.calculus import Calculus
+    from deixis.reasoning.networks.combination import Contribution
+    from deixis.reasoning.networks.step import Step
+
+
+@dataclass(frozen=True)
+class Wish:
+    """What is asked about each network, beside the verdict."""
+
+    closure: bool = False
+    scenario: bool = False
+    explain: tuple[int, int] | None = None
+    time_limit: float = 60.0
+
+
+@dataclass(frozen=True, eq=False)
+class Solved:
+    """One network of a file, and what was found about it.
+
+    ``shown`` are the networks that were asked for, the closure or the scenario, one for each calculus.
+    """
+
+    text: NetworkText
+    verdict: Verdict
+    reason: str
+    narrowed: int
+    seconds: float
+    conflict: tuple[tuple[Network, Constraint], ...] = ()
+    minimal: bool = True
+    contributions: tuple[Contribution, ...] = ()
+    shown: tuple[Network, ...] = ()
+    step: Step | None = None
+    asked: tuple[int, int] | None = None
+
+
+def calculi_named(text: str) -> tuple[Calculus, ...]:
+    """The calculi of ``ra+rcc8``; raises DeixisError where two are the same, or one is joined to no other."""
+    from deixis.reasoning.calculi.registry import calculus
+
+    names = [name.strip() for name in text.split("+")]
+    if len(set(names)) < len(names):
+        raise DeixisError(f"--calculus {text}: name each calculus once")
+    calculi = tuple(calculus(name) for name in names)
+    joined = {end.name for link in links_between(calculi) for end in (link.source, link.target)}
+    for each in calculi:
+        if len(calculi) > 1 and each.name not in joined:
+            raise DeixisError(f"--calculus {text}: nothing joins {each.name} to the others")
+    return calculi
+
+
+def solve_text(text: NetworkText, wish: Wish, progress: Progress | None = None) -> Solved:
+    """Solves one network of a file; raises LimitError where it would not fit in memory."""
+    return _alone(text, wish, progress) if len(text.networks) == 1 else _jointly(text, wish, progress)
+
+
+def _alone(text: NetworkText, wish: Wish, progress: Progress | None) -> Solved:
+    started, deadline = time.perf_counter(), time.monotonic() + wish.time_limit
+    small, things = text.network.compact()
+    closure = close(small, deadline, progress)
+    found = solve(small, max(0.0, deadline - time.monotonic()), progress, wish.scenario)
+    solved = Solved(text, found.verdict, found.reason, closure.narrowed, 0.0)
+    if found.verdict is Verdict.INCONSISTENT:
+        conflict = minimal_conflict(text.network, wish.time_limit)
+        if conflict is not None:
+            stated = tuple((text.network, c) for c in conflict.constraints)
+            solved = replace(solved, conflict=stated, minimal=conflict.minimal)
+    elif wish.scenario and found.scenario is not None:
+        solved = replace(solved, shown=(_renumbered(text.network, found.scenario.constraints, things.tolist()),))
+    elif wish.closure and closure.complete:
+        relations = (
+            Constraint(i, j, closure.relation(i, j)) for i in range(small.size) for j in range(i + 1, small.size)
+        )
+        solved = replace(solved, shown=(_renumbered(text.network, relations, things.tolist()),))
+    if wish.explain is not None and found.verdict is not Verdict.INCONSISTENT:
+        step = explain(text.network, *wish.explain, wish.time_limit)
+        solved = replace(solved, step=step, asked=wish.explain)
+    return replace(solved, seconds=time.perf_counter() - started)
+
+
+def _jointly(text: NetworkText, wish: Wish, progress: Progress | None) -> Solved:
+    started = time.perf_counter()
+    if wish.scenario or wish.explain is not None:
+        raise DeixisError("--scenario and --explain are for one calculus at a time")
+    links: Sequence[Link] = links_between([network.calculus for network in text.networks])
+    found = solve_jointly(text.networks, links, wish.time_limit, progress)
+    contributions = found.closure.contributions
+    narrowed = sum(each.pairs for each in contributions)
+    solved = Solved(text, found.verdict, found.reason, narrowed, 0.0, contributions=contributions)
+    if found.verdict is Verdict.INCONSISTENT:
+        conflict = joint_conflict(text.networks, links, wish.time_limit)
+        if conflict is not None:
+            by_name = {network.calculus.name: network for network in text.networks}
+            stated = tuple((by_name[name], c) for name, c in conflict.constraints)
+            solved = replace(solved, conflict=stated, minimal=conflict.minimal)
+    elif wish.closure:
+        pairs = zip(text.networks, found.closure.states, strict=True)
+        solved = replace(solved, shown=tuple(_closed(network, state) for network, state in pairs))
+    return replace(solved, seconds=time.perf_counter() - started)
+
+
+def _closed(network: Network, state: State) -> Network:
+    relations = (
+        Constraint(i, j, state.relation(i, j)) for i in range(network.size) for j in range(i + 1, network.size)
+    )
+    return _renumbered(network, relations, list(range(network.size)))
+
+
+def _renumbered(network: Network, constraints: Iterable[Constraint], things: list[int]) -> Network:
+    """What says something of what was said about the things that constraints are about, in their own numbers."""
+    universal = network.calculus.universal
+    return network.only(
+        Constraint(things[c.first], things[c.second], c.relation) for c in constraints if c.relation != universal
+    )
