@@ -75,8 +75,9 @@ def oxigraph(pairs: Pairs) -> Callable[[], int]:
     query = f"SELECT (COUNT(*) AS ?n) {{ ?a <{LEFT.iri}>+ ?b }}"
 
     def count() -> int:
-        (row,) = store.query(query)
-        return int(row["n"].value)
+        found = store.query(query)
+        assert isinstance(found, ox.QuerySolutions)
+        return int(str(next(found)["n"].value))
 
     return count
 

@@ -12,6 +12,7 @@ from functools import cache, cached_property
 from itertools import product
 
 from deixis.reasoning.calculi.calculus import bits
+from deixis.reasoning.convex import convex_hull
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,15 +70,7 @@ def convex_closure(relation: int) -> int:
     >>> bin(convex_closure(0b101))
     '0b111'
     """
-    places = [_PLACES[code] for code in bits(relation)]
-    if not places:
-        return 0
-    begins, ends = zip(*places, strict=True)
-    closed = 0
-    for code, (begin, end) in enumerate(_PLACES):
-        if min(begins) <= begin <= max(begins) and min(ends) <= end <= max(ends):
-            closed |= 1 << code
-    return closed
+    return convex_hull(relation).mask if relation else 0
 
 
 def _is_convex(relation: int) -> bool:

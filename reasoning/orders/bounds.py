@@ -1,17 +1,16 @@
 """What a relation says of end points: every convex Allen relation is a conjunction of bounds between them.
 
 On each axis a box has a low and a high edge, the low one before the high one. A *bound* says that one edge lies before
-another, or not after it. An Allen relation that is convex (Nökel 1989; Ligozat 1996) is a conjunction of bounds, any
-other one a disjunction of such conjunctions, its *alternatives*. A relation word is one product of Allen relations, so
-that it is a conjunction of bounds over two axes, or three: what lies *on* something lies within its outline and reaches
-higher. The denial of a conjunction is the disjunction of the bounds' denials.
+another, or not after it. A set of Allen relations that is convex (:mod:`deixis.reasoning.convex`) is a conjunction of
+bounds, any other one a disjunction of such conjunctions, its *alternatives*. A relation word is one product of Allen
+relations, so that it is a conjunction of bounds over two axes, or three: what lies *on* something lies within its
+outline and reaches higher. The denial of a conjunction is the disjunction of the bounds' denials.
 
 A *point* is a number: ``(2 * axis + side) * n + object`` for n objects, side 0 low and 1 high.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import product
@@ -19,9 +18,10 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.ontology.allen import ALL_ALLEN, Allen
+from deixis.ontology.allen import ALL_ALLEN
 from deixis.ontology.graph import Fact
 from deixis.ontology.relation import Relation
+from deixis.reasoning.convex import EndOrder, convex_pieces
 
 AXES = 3
 """x to the viewer's right, y away from the viewer, z up."""
@@ -147,64 +147,9 @@ def claims(fact: Fact) -> tuple[Alternatives, ...]:
 @lru_cache(maxsize=1024)
 def convex_parts(axis: int, mask: int) -> Alternatives:
     """A set of Allen relations as a disjunction of conjunctions of bounds on an axis, the largest parts first."""
-    parts: list[Conjunction] = []
-    left = mask
-    inside = [(candidate, bounds) for candidate, bounds in _convex_masks() if candidate and candidate & ~mask == 0]
-    while left:
-        best, bounds = max(inside, key=lambda found: (found[0] & left).bit_count())
-        parts.append(tuple(Bound(axis, *ends) for ends in bounds))
-        left &= ~best
-    return tuple(parts)
+    return tuple(tuple(_bound(axis, order) for order in piece.orders) for piece in convex_pieces(mask))
 
 
-_End = tuple[int, int, int, int, bool]
-"""tail, tail_side, head, head_side, strict"""
-
-
-@lru_cache(maxsize=1)
-def _convex_masks() -> tuple[tuple[int, tuple[_End, ...]], ...]:
-    """Every convex Allen relation with the fewest bounds that say the same."""
-    options: list[list[tuple[_End, ...]]] = []
-    for side, other in product((0, 1), repeat=2):
-        before, after = (0, side, 1, other), (1, other, 0, side)
-        options.append([(), ((*before, True),), ((*before, False),), ((*after, True),), ((*after, False),)])
-        options[-1].append(((*before, False), (*after, False)))
-    found: dict[int, tuple[_End, ...]] = {}
-    for parts in sorted(product(*options), key=lambda parts: sum(len(part) for part in parts)):
-        bounds = tuple(end for part in parts for end in part)
-        found.setdefault(_admitted(bounds), bounds)
-    return tuple(found.items())
-
-
-def _admitted(bounds: tuple[_End, ...]) -> int:
-    mask = 0
-    for relation, ends in _pictures():
-        if all(_holds(ends, bound) for bound in bounds):
-            mask |= 1 << relation
-    return mask
-
-
-def _holds(ends: tuple[tuple[int, int], tuple[int, int]], bound: _End) -> bool:
-    tail, tail_side, head, head_side, strict = bound
-    difference = ends[tail][tail_side] - ends[head][head_side]
-    return difference < 0 if strict else difference <= 0
-
-
-def _pictures() -> Iterator[tuple[Allen, tuple[tuple[int, int], tuple[int, int]]]]:
-    """One pair of intervals for every Allen relation, the object from 2 to 5."""
-    subjects = {
-        Allen.BEFORE: (0, 1),
-        Allen.MEETS: (0, 2),
-        Allen.OVERLAPS: (0, 3),
-        Allen.FINISHED_BY: (0, 5),
-        Allen.CONTAINS: (0, 6),
-        Allen.STARTS: (2, 3),
-        Allen.EQUALS: (2, 5),
-        Allen.STARTED_BY: (2, 6),
-        Allen.DURING: (3, 4),
-        Allen.FINISHES: (3, 5),
-        Allen.OVERLAPPED_BY: (3, 6),
-        Allen.MET_BY: (5, 6),
-        Allen.AFTER: (6, 7),
-    }
-    return ((relation, (ends, (2, 5))) for relation, ends in subjects.items())
+def _bound(axis: int, order: EndOrder) -> Bound:
+    """An order of two of the four end points: two are the subject's, then two the object's, the low one first."""
+    return Bound(axis, *divmod(order.lesser, 2), *divmod(order.greater, 2), order.strict)

@@ -163,9 +163,9 @@ class OrderDerivations:
         return steps
 
     def _turned(self, fact: Fact | Order, leaf: Derivation) -> Derivation:
-        """The premise with its ends exchanged; an order of edges reads the same from either end."""
+        """The premise with its ends exchanged; an order of edges is the same claim from either end."""
         if isinstance(fact, Order):
-            return leaf
+            return Derivation(Order(fact.object, fact.subject, fact.bound.reversed()), leaf.rule)
         inverse = tuple(self._vocabulary[relation.inverse] for relation in fact.relations)
         return Derivation(Fact(fact.object, inverse, fact.subject, positive=fact.positive), Rule.INVERSE, (leaf,))
 

@@ -1,7 +1,6 @@
 """Relations as choices between conjunctions of end-point inequalities.
 
-A set of Allen relations is *convex* where it is what some comparisons between the end points of two intervals admit
-(Nökel 1989; van Beek and Cohen 1990); there are 82. A set of rectangle-algebra atoms is covered by products of two
+A set of rectangle-algebra atoms is covered by products of two
 convex sets, and each product is one *piece*: inequalities all of which hold. So every fact is a choice of pieces.
 """
 
@@ -10,17 +9,16 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache
-from itertools import product
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.ontology.allen import Allen
+from deixis.ontology.allen import mask_array
 from deixis.ontology.graph import Fact
 from deixis.ontology.relation import Relation
+from deixis.reasoning.convex import ConvexSet, EndOrder, admitted, convex_hull, convex_sets
 
-LOW_A, HIGH_A, LOW_B, HIGH_B = range(4)
 X, Y = 0, 1
 
 
@@ -34,58 +32,6 @@ class Inequality(NamedTuple):
 
 
 Piece = tuple[Inequality, ...]
-
-_COMPARED = ((LOW_A, LOW_B), (HIGH_A, HIGH_B), (HIGH_A, LOW_B), (LOW_A, HIGH_B))
-_SIGN_SETS: tuple[frozenset[int], ...] = tuple(
-    frozenset(signs) for signs in ((-1, 0, 1), (-1, 0), (0, 1), (-1,), (1,), (0,))
-)
-
-
-@dataclass(frozen=True, slots=True)
-class ConvexSet:
-    """A convex set of Allen relations: a 13-bit mask, and which signs each of four differences of end points has."""
-
-    mask: int
-    signs: tuple[frozenset[int], ...]
-
-    def inequalities(self, axis: int) -> Piece:
-        """The comparisons between the end points of a and b that admit just these relations."""
-        found: list[Inequality] = []
-        for (a, b), signs in zip(_COMPARED, self.signs, strict=True):
-            if 1 not in signs:
-                found.append(Inequality(axis, a, b, 0 not in signs))
-            if -1 not in signs:
-                found.append(Inequality(axis, b, a, 0 not in signs))
-        return tuple(found)
-
-
-@lru_cache(maxsize=1)
-def convex_sets() -> tuple[ConvexSet, ...]:
-    """All 82 convex sets, each with as few comparisons as do.
-
-    >>> len(convex_sets())
-    82
-    """
-    found: dict[int, ConvexSet] = {}
-    signatures = [_signature(relation) for relation in Allen]
-    for signs in sorted(product(_SIGN_SETS, repeat=4), key=lambda signs: sum(len(s) < 3 for s in signs)):
-        mask = 0
-        for code, signature in enumerate(signatures):
-            if all(sign in admitted for sign, admitted in zip(signature, signs, strict=True)):
-                mask |= 1 << code
-        if mask:
-            found.setdefault(mask, ConvexSet(mask, signs))
-    return tuple(found.values())
-
-
-_EXAMPLES = ((0, 1), (0, 2), (0, 3), (0, 4), (0, 5), (2, 3), (2, 4), (2, 5), (3, 3.5), (3, 4), (3, 5), (4, 5), (5, 6))
-"""An interval in each relation, by code, to the interval from 2 to 4."""
-
-
-def _signature(relation: Allen) -> tuple[int, ...]:
-    """The signs of the four compared differences of two proper intervals in a relation."""
-    points = (*_EXAMPLES[relation], 2, 4)
-    return tuple((points[a] > points[b]) - (points[a] < points[b]) for a, b in _COMPARED)
 
 
 def region(fact: Fact) -> NDArray[np.bool_]:
@@ -137,15 +83,17 @@ def _choice(key: bytes) -> Choice:
     if not wanted.any():
         return Choice((), ())
     used_x, used_y = np.flatnonzero(wanted.any(axis=1)), np.flatnonzero(wanted.any(axis=0))
-    always = _hull(used_x).inequalities(X) + _hull(used_y).inequalities(Y)
+    always = _inequalities(X, convex_hull(_mask(used_x))) + _inequalities(Y, convex_hull(_mask(used_y)))
     pieces = tuple(tuple(i for i in piece if i not in always) for piece in _cover(wanted))
     return Choice(always, ((),) if () in pieces else pieces)
 
 
-def _hull(codes: NDArray[np.int64]) -> ConvexSet:
-    """The least convex set that has all these Allen relations; convex sets meet in convex sets."""
-    mask = sum(1 << code for code in codes.tolist())
-    return min((s for s in convex_sets() if s.mask & mask == mask), key=lambda s: s.mask.bit_count())
+def _mask(codes: NDArray[np.int64]) -> int:
+    return sum(1 << code for code in codes.tolist())
+
+
+def _inequalities(axis: int, convex: ConvexSet) -> Piece:
+    return tuple(Inequality(axis, *order) for order in convex.orders)
 
 
 def _cover(wanted: NDArray[np.bool_]) -> Iterator[Piece]:
@@ -157,7 +105,7 @@ def _cover(wanted: NDArray[np.bool_]) -> Iterator[Piece]:
         gain = np.where(outside == 0, member @ left.astype(np.int64) @ member.T, 0)
         best = np.argwhere(gain == gain.max())
         x, y = max(best.tolist(), key=lambda pair: (_size(sets[pair[0]], sets[pair[1]]), -pair[0], -pair[1]))
-        yield sets[x].inequalities(X) + sets[y].inequalities(Y)
+        yield _inequalities(X, sets[x]) + _inequalities(Y, sets[y])
         left &= ~(member[x][:, None] & member[y][None, :]).astype(np.bool_)
 
 
@@ -167,20 +115,6 @@ def _size(x: ConvexSet, y: ConvexSet) -> int:
 
 def admitted_by(piece: Piece) -> NDArray[np.bool_]:
     """The atoms that inequalities admit together, shape (13, 13): the inverse of :func:`choice`."""
-    axes = [np.array([_holds(piece, axis, relation) for relation in Allen]) for axis in (X, Y)]
-    found: NDArray[np.bool_] = axes[X][:, None] & axes[Y][None, :]
+    masks = [admitted(tuple(EndOrder(*i[1:]) for i in piece if i.axis == axis)) for axis in (X, Y)]
+    found: NDArray[np.bool_] = mask_array(masks[X])[:, None] & mask_array(masks[Y])[None, :]
     return found
-
-
-def _holds(piece: Piece, axis: int, relation: Allen) -> bool:
-    points = (*_EXAMPLES[relation], 2, 4)
-    return all(_satisfied(points, inequality) for inequality in _on(piece, axis))
-
-
-def _on(piece: Piece, axis: int) -> Iterator[Inequality]:
-    return (inequality for inequality in piece if inequality.axis == axis)
-
-
-def _satisfied(points: tuple[float, ...], inequality: Inequality) -> bool:
-    lesser, greater = points[inequality.lesser], points[inequality.greater]
-    return lesser < greater if inequality.strict else lesser <= greater

@@ -6,8 +6,9 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from deixis.ontology.allen import ALL_ALLEN
+from deixis.reasoning.convex import convex_pieces
 from deixis.reasoning.temporal.bounds import ZERO, bound_text
-from deixis.reasoning.temporal.endpoints import convex_pieces, necessary_orders
+from deixis.reasoning.temporal.endpoints import necessary_orders
 from deixis.reasoning.temporal.explanation import Explanation, Rule
 from deixis.reasoning.temporal.fluent import ORIGIN, AllenStatement, Difference, Fluent
 from deixis.reasoning.temporal.network import DifferenceConstraint, SimpleTemporalNetwork, difference
@@ -30,7 +31,7 @@ class Disjunction:
     @property
     def pieces(self) -> tuple[int, ...]:
         """Convex masks whose union the relations are."""
-        return convex_pieces(self.relations)
+        return tuple(piece.mask for piece in convex_pieces(self.relations))
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,94 +1,27 @@
 """Allen's relations as orders of end points, and which of them given distances admit.
 
-Of two proper intervals a and b four pairs of end points say everything: (a.start, b.start), (a.finish, b.finish),
-(a.finish, b.start) and (a.start, b.finish). A set of Allen relations is *convex* where it is just what an order of
-each pair out of <, <=, =, >=, > or nothing says: then it is a few difference constraints (Vilain & Kautz 1986;
-Nökel 1989). Any other set is a union of convex ones.
+A convex set of Allen relations (:mod:`deixis.reasoning.convex`) is a few orders of end points, and each of them a
+difference constraint. Any other set is a union of convex ones.
 """
 
 from __future__ import annotations
 
 from functools import cache
-from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.ontology.allen import Allen, members
+from deixis.ontology.allen import Allen
+from deixis.reasoning.convex import HIGH_A, HIGH_B, LOW_A, LOW_B, convex_hull
 from deixis.reasoning.temporal.bounds import UNBOUNDED, ZERO, Bounds, add_arrays
 
-START_A, FINISH_A, START_B, FINISH_B = range(4)
+START_A, FINISH_A, START_B, FINISH_B = LOW_A, HIGH_A, LOW_B, HIGH_B
 """The four points of two fluents, in the order of all arrays here."""
 
-PAIRS = ((START_A, START_B), (FINISH_A, FINISH_B), (FINISH_A, START_B), (START_A, FINISH_B))
-_BEFORE, _SAME, _AFTER = 1, 2, 4
 _STRICT = ZERO - 1
 
 Constraint = tuple[int, int, int]
 """Tail, head, code: head minus tail is bounded."""
-
-
-@cache
-def _signs() -> NDArray[np.uint8]:
-    """For each Allen relation and each of PAIRS, the order as one of three bits; shape (13, 4)."""
-    from deixis.reasoning.allen import allen_relations
-
-    ends = np.array([(a, b, c, d) for a, b in combinations(range(4), 2) for c, d in combinations(range(4), 2)])
-    codes = allen_relations(*ends.T.astype(np.float64))
-    signs = np.zeros((13, 4), dtype=np.uint8)
-    for column, (p, q) in enumerate(PAIRS):
-        signs[codes, column] = 1 << (1 + np.sign(ends[:, p] - ends[:, q]))
-    return signs
-
-
-def _satisfying(orders: tuple[int, ...]) -> int:
-    """The mask of the Allen relations whose every order is among the bits allowed to its pair."""
-    fits = (_signs() & np.array(orders, dtype=np.uint8) != 0).all(axis=1)
-    return sum(1 << int(relation) for relation in np.flatnonzero(fits))
-
-
-@cache
-def _orders(mask: int) -> tuple[int, ...]:
-    """The weakest order of each of PAIRS that every relation of a mask keeps; *< or >* is no convex one."""
-    bits = np.bitwise_or.reduce(_signs()[[int(relation) for relation in members(mask)]], axis=0)
-    return tuple(7 if order == _BEFORE | _AFTER else int(order) for order in bits)
-
-
-def convex_hull(mask: int) -> int:
-    """The smallest convex set of Allen relations around a set that is not empty.
-
-    >>> from deixis.ontology.allen import allen_mask
-    >>> [r.symbol for r in members(convex_hull(allen_mask([Allen.BEFORE, Allen.OVERLAPS])))]
-    ['<', 'm', 'o']
-    """
-    return _satisfying(_orders(mask))
-
-
-@cache
-def convex_pieces(mask: int) -> tuple[int, ...]:
-    """A set of Allen relations as a union of convex sets, greedily few of them, the largest first.
-
-    >>> from deixis.ontology.allen import allen_mask
-    >>> convex_pieces(allen_mask([Allen.BEFORE, Allen.MEETS])) == (0b11,)
-    True
-    >>> [[r.symbol for r in members(piece)] for piece in convex_pieces(allen_mask([Allen.AFTER, Allen.BEFORE]))]
-    [['<'], ['>']]
-    """
-    inside = [convex for convex in _convex_sets() if convex & ~mask == 0]
-    pieces: list[int] = []
-    missing = mask
-    while missing:
-        best = max(inside, key=lambda convex: ((convex & missing).bit_count(), convex.bit_count(), -convex))
-        pieces.append(best)
-        missing &= ~best
-    return tuple(pieces)
-
-
-@cache
-def _convex_sets() -> tuple[int, ...]:
-    orders = (1, 2, 4, 3, 6, 7)
-    sets = {_satisfying((a, b, c, d)) for a in orders for b in orders for c in orders for d in orders}
-    return tuple(sorted(sets - {0}))
 
 
 @cache
@@ -98,24 +31,7 @@ def necessary_orders(mask: int) -> tuple[Constraint, ...]:
     >>> necessary_orders(1 << Allen.BEFORE) == ((START_B, FINISH_A, 0),)  # a.finish - b.start < 0
     True
     """
-    orders, hull = _orders(mask), convex_hull(mask)
-    for size in range(5):
-        for kept in combinations(range(4), size):
-            weakened = tuple(order if pair in kept else 7 for pair, order in enumerate(orders))
-            if _satisfying(weakened) == hull:
-                return tuple(c for pair in kept for c in _order_constraints(PAIRS[pair], orders[pair]))
-    raise AssertionError("all four orders give the hull")
-
-
-def _order_constraints(pair: tuple[int, int], order: int) -> tuple[Constraint, ...]:
-    """One order, given as bits, of two points: at most two difference constraints."""
-    p, q = pair
-    found = []
-    if not order & _AFTER:
-        found.append((q, p, ZERO if order & _SAME else _STRICT))
-    if not order & _BEFORE:
-        found.append((p, q, ZERO if order & _SAME else _STRICT))
-    return tuple(found)
+    return tuple((order.greater, order.lesser, _STRICT if order.strict else ZERO) for order in convex_hull(mask).orders)
 
 
 @cache
@@ -168,6 +84,7 @@ def masks_from_bounds(starts: list[Bounds], finishes: list[Bounds]) -> NDArray[n
 
     Exact: a relation is in the mask just where some times within the bounds, each start before its finish, realise it.
 
+    >>> from deixis.ontology.allen import members
     >>> masks = masks_from_bounds([Bounds(0, 1), Bounds(2, 3)], [Bounds(1, 2), Bounds(5, 5)])
     >>> [relation.symbol for relation in members(int(masks[0, 1]))]
     ['<', 'm']

@@ -9,9 +9,10 @@ from typing import Protocol
 import numpy as np
 
 from deixis.ontology.allen import ALL_ALLEN, Allen, members
+from deixis.reasoning.convex import convex_hull
 from deixis.reasoning.temporal.bounds import bound_text
 from deixis.reasoning.temporal.claims import Disjunction, allen_constraints, ends
-from deixis.reasoning.temporal.endpoints import convex_hull, masks_of_pairs, necessary_orders
+from deixis.reasoning.temporal.endpoints import masks_of_pairs, necessary_orders
 from deixis.reasoning.temporal.explanation import Explanation, Rule
 from deixis.reasoning.temporal.fluent import ORIGIN, allen_text
 from deixis.reasoning.temporal.network import SimpleTemporalNetwork
@@ -78,11 +79,11 @@ class RelationQuestion:
             return None
         names = ends(self.a) + ends(self.b)
         premises = []
-        for tail, head, _ in necessary_orders(convex_hull(mask)):
+        for tail, head, _ in necessary_orders(mask):
             premise = network.explain(names[tail], names[head])
             assert premise is not None
             premises.append(premise)
-        for relation in members(convex_hull(mask) & ~mask):
+        for relation in members(convex_hull(mask).mask & ~mask):
             assumed = Explanation(allen_text(self.a, 1 << relation, self.b), Rule.CASE)
             premises.append(network.refutation(allen_constraints(self.a, 1 << relation, self.b, assumed)))
         return Explanation(self.text(mask), Rule.DEFINITION, tuple(premises))

@@ -22,6 +22,7 @@ from deixis.ontology.tbox import TBOX_FILE, default_ontology
 from deixis.reasoning.calculi.calculus import ProductCalculus
 from deixis.reasoning.calculi.registry import calculus
 from deixis.reasoning.conflict import find_conflict
+from deixis.reasoning.convex import EndOrder, admitted
 from deixis.reasoning.derivation import Derivation, Impossible, Rule
 from deixis.reasoning.errors import LimitError
 from deixis.reasoning.implications import Implications
@@ -143,15 +144,12 @@ def claimed(claim: Fact | Order | Impossible) -> int:
     """The atoms that a claim admits."""
     assert not isinstance(claim, Impossible)
     if isinstance(claim, Fact):
-        admitted = 0
+        wanted = 0
         for relation in claim.relations:
-            admitted |= atoms(relation)
-        return admitted if claim.positive else BA.universal & ~admitted
-    from deixis.reasoning.orders.bounds import _convex_masks
-
+            wanted |= atoms(relation)
+        return wanted if claim.positive else BA.universal & ~wanted
     bound = claim.bound
-    end = (bound.tail, bound.tail_side, bound.head, bound.head_side, bound.strict)
-    mask = next(mask for mask, bounds in _convex_masks() if bounds == (end,))
+    mask = admitted((EndOrder(2 * bound.tail + bound.tail_side, 2 * bound.head + bound.head_side, bound.strict),))
     assert isinstance(BA, ProductCalculus)
     return BA.of_axes([mask if axis == bound.axis else (1 << 13) - 1 for axis in range(3)])
 

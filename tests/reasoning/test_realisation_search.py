@@ -14,7 +14,7 @@ from deixis.ontology.allen import Allen
 from deixis.ontology.graph import Fact
 from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.realisation.differences import FREE, Difference, Differences
-from deixis.reasoning.realisation.pieces import admitted_by, choice, convex_sets, region
+from deixis.reasoning.realisation.pieces import admitted_by, choice, region
 from deixis.reasoning.realisation.search import Clause, Refuted, Solved, TimedOut, solve
 
 R = default_ontology().relations
@@ -26,19 +26,6 @@ def in_time() -> float:
 
 
 # ---- pieces -----------------------------------------------------------------------------------------------------
-
-
-def test_there_are_82_convex_sets_and_they_meet_in_convex_sets() -> None:
-    """82 is the published number (van Beek and Cohen 1990), without the empty set."""
-    masks = {convex.mask for convex in convex_sets()}
-    assert len(masks) == 82
-    assert {a & b for a in masks for b in masks} - {0} <= masks
-
-
-def test_every_relation_alone_and_all_together_are_convex() -> None:
-    masks = {convex.mask for convex in convex_sets()}
-    assert {1 << relation for relation in Allen} <= masks
-    assert (1 << 13) - 1 in masks
 
 
 @settings(max_examples=100, deadline=None)

@@ -12,8 +12,6 @@ from deixis.reasoning.allen import allen_relations
 from deixis.reasoning.temporal.bounds import Bounds
 from deixis.reasoning.temporal.endpoints import (
     converse_masks,
-    convex_hull,
-    convex_pieces,
     masks_from_bounds,
     necessary_orders,
 )
@@ -21,7 +19,6 @@ from deixis.reasoning.temporal.fluent import Fluent, Statement
 
 STEP = 5  # four end points between two bounds need no more than five steps to take any order
 LAST = 3
-MASKS = st.integers(1, ALL_ALLEN)
 
 
 @st.composite
@@ -76,21 +73,6 @@ def test_orders_that_are_possible_one_by_one_are_not_taken_together() -> None:
     """a in [0, 1] to [1, 2], b the same: each start may be 1 and each finish 1, and no interval may be both."""
     masks = masks_from_bounds([Bounds(0, 1), Bounds(1, 1)], [Bounds(1, 2), Bounds(2, 2)])
     assert [relation.symbol for relation in members(int(masks[0, 1]))] == ["m", "o", "fi", "s", "="]
-
-
-def test_there_are_82_convex_relations() -> None:
-    """Counted by all orders of the four pairs of ends, and by hulls: the two definitions agree."""
-    convex = [mask for mask in range(1, ALL_ALLEN + 1) if convex_hull(mask) == mask]
-    assert len(convex) == 82
-    assert all(convex_pieces(mask) == (mask,) for mask in convex)
-
-
-@given(MASKS)
-def test_pieces_are_convex_and_make_up_the_whole(mask: int) -> None:
-    pieces = convex_pieces(mask)
-    assert all(convex_hull(piece) == piece for piece in pieces)
-    assert int(np.bitwise_or.reduce(pieces)) == mask
-    assert (len(pieces) == 1) == (convex_hull(mask) == mask)
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,111 @@
+"""Convex sets of Allen relations: what some orders between the end points of two proper intervals admit.
+
+A set is convex where it is just what a choice of <, <=, =, >= and > between ends of the one and ends of the other says
+(Nökel 1989; an interval in the lattice of Ligozat 1996); there are 82 that are not empty. Closure decides networks of
+them and finds all that follows (van Beek 1992). Any other set is a union of convex ones.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from itertools import product
+from typing import NamedTuple
+
+from deixis.ontology.allen import Allen
+
+LOW_A, HIGH_A, LOW_B, HIGH_B = range(4)
+"""The end points of two intervals a and b."""
+
+_COMPARED = ((LOW_A, LOW_B), (HIGH_A, HIGH_B), (HIGH_A, LOW_B), (LOW_A, HIGH_B))
+
+
+class EndOrder(NamedTuple):
+    """One end point is before another (``strict``), or not after it."""
+
+    lesser: int
+    greater: int
+    strict: bool
+
+
+class ConvexSet(NamedTuple):
+    """A convex set as a 13-bit mask, and as few orders of end points as say the same."""
+
+    mask: int
+    orders: tuple[EndOrder, ...]
+
+
+@cache
+def convex_sets() -> tuple[ConvexSet, ...]:
+    """All convex sets that are not empty, those of few orders first.
+
+    >>> len(convex_sets())
+    82
+    """
+    options = [_options(a, b) for a, b in _COMPARED]
+    found: dict[int, ConvexSet] = {}
+    for parts in sorted(product(*options), key=lambda parts: (sum(map(bool, parts)), sum(map(len, parts)))):
+        orders = tuple(order for part in parts for order in part)
+        mask = admitted(orders)
+        if mask:
+            found.setdefault(mask, ConvexSet(mask, orders))
+    return tuple(found.values())
+
+
+def _options(a: int, b: int) -> tuple[tuple[EndOrder, ...], ...]:
+    """Nothing, <, <=, >, >= and = between two end points."""
+    before, after = EndOrder(a, b, False), EndOrder(b, a, False)
+    strictly = (before._replace(strict=True),), (after._replace(strict=True),)
+    return ((), *strictly, (before,), (after,), (before, after))
+
+
+@cache
+def convex_hull(mask: int) -> ConvexSet:
+    """The least convex set around a set that is not empty; convex sets meet in convex sets.
+
+    >>> from deixis.ontology.allen import allen_mask, members
+    >>> [relation.symbol for relation in members(convex_hull(allen_mask([Allen.BEFORE, Allen.OVERLAPS])).mask)]
+    ['<', 'm', 'o']
+    """
+    return min((found for found in convex_sets() if mask & ~found.mask == 0), key=lambda found: found.mask.bit_count())
+
+
+@cache
+def convex_pieces(mask: int) -> tuple[ConvexSet, ...]:
+    """A set of Allen relations as a union of convex sets, greedily few of them, the largest first.
+
+    >>> from deixis.ontology.allen import allen_mask, members
+    >>> pieces = convex_pieces(allen_mask([Allen.AFTER, Allen.BEFORE, Allen.MEETS]))
+    >>> [[relation.symbol for relation in members(piece.mask)] for piece in pieces]
+    [['<', 'm'], ['>']]
+    """
+    inside = [found for found in convex_sets() if found.mask & ~mask == 0]
+    pieces: list[ConvexSet] = []
+    missing = mask
+    while missing:
+        best = max(inside, key=lambda s: ((s.mask & missing).bit_count(), s.mask.bit_count(), -s.mask))
+        pieces.append(best)
+        missing &= ~best.mask
+    return tuple(pieces)
+
+
+_EXAMPLES = ((0, 1), (0, 2), (0, 3), (0, 5), (0, 6), (2, 3), (2, 5), (2, 6), (3, 4), (3, 5), (3, 6), (5, 6), (6, 7))
+"""An interval in each relation, by code, to the interval from 2 to 5."""
+
+
+def admitted(orders: tuple[EndOrder, ...]) -> int:
+    """The Allen relations in which all orders hold, as a mask.
+
+    >>> admitted((EndOrder(HIGH_A, LOW_B, strict=True),)) == 1 << Allen.BEFORE
+    True
+    """
+    mask = 0
+    for relation in Allen:
+        points = (*_EXAMPLES[relation], 2, 5)
+        if all(_holds(points, order) for order in orders):
+            mask |= 1 << relation
+    return mask
+
+
+def _holds(points: tuple[int, ...], order: EndOrder) -> bool:
+    lesser, greater = points[order.lesser], points[order.greater]
+    return lesser < greater if order.strict else lesser <= greater
