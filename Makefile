@@ -16,7 +16,7 @@ demo: $(STAMP)
 	@$(BIN)/deixis demo
 
 test: $(STAMP)
-	@$(BIN)/python -m pytest
+	@$(BIN)/python -m pytest -n auto --dist loadfile
 
 lint: $(STAMP)
 	$(BIN)/ruff check .
@@ -36,7 +36,7 @@ $(STAMP): requirements.lock pyproject.toml
 	rm -rf $(VENV) && "$$python" -m venv $(VENV)
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements.lock
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation --editable .
-	@$(BIN)/python -c 'from deixis.reasoning.branch_and_bound import warm; warm()'
+	@$(BIN)/python -m deixis.warm
 	@touch $(STAMP)
 
 # Writes the lock anew: name==version and hashes, no address. Needs uv.

@@ -120,6 +120,12 @@ class _Compiler:
             checks=(*self._shape(said), *checks),
         )
 
+    def condition(self, node: Node) -> Check:
+        """The check that the shape at a node is, whatever it targets."""
+        said = self._said[node]
+        parts = [self._said[part] for part in said[_sh("property")]]
+        return _all_of([check for part in (said, *parts) for check in self._shape(part)])
+
     def _shape(self, said: Said) -> list[Check]:
         """The checks of a node shape or a property shape, if it rejects anything."""
         if said[_sh("severity")] not in ([], [_sh("Violation")]):
@@ -192,3 +198,9 @@ def _backwards(predicate: ox.NamedNode) -> Values:
 
 def _all_of(checks: Sequence[Check]) -> Check:
     return lambda view, node: all(check(view, node) for check in checks)
+
+
+def compile_conditions(quads: Iterable[ox.Quad], nodes: Iterable[Node]) -> dict[Node, Check]:
+    """Checks of the shapes at some nodes of a shapes graph. Raises OntologyError as :func:`compile_shapes` does."""
+    compiler = _Compiler(quads)
+    return {node: compiler.condition(node) for node in nodes}

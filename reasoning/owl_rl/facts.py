@@ -1,0 +1,98 @@
+"""Facts as triples of whole numbers, indexed; and the joins of a rule's patterns with them.
+
+In a pattern a number from 0 is a term, and a negative one a variable.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator, Sequence
+
+Fact = tuple[int, int, int]
+Atom = tuple[int, int, int]
+Binding = dict[int, int]
+
+
+class FactIndex:
+    """Facts by predicate and subject, and by predicate and object."""
+
+    def __init__(self) -> None:
+        self.facts: set[Fact] = set()
+        self._objects: dict[int, dict[int, set[int]]] = defaultdict(lambda: defaultdict(set))
+        self._subjects: dict[int, dict[int, set[int]]] = defaultdict(lambda: defaultdict(set))
+
+    def add(self, fact: Fact) -> None:
+        subject, predicate, object = fact
+        self.facts.add(fact)
+        self._objects[predicate][subject].add(object)
+        self._subjects[predicate][object].add(subject)
+
+    def objects(self, subject: int, predicate: int) -> set[int]:
+        """The objects of a subject under a predicate; to be read only."""
+        return self._objects[predicate].get(subject, set()) if predicate in self._objects else set()
+
+    def matches(self, atom: Atom) -> Iterator[Fact]:
+        """The facts that fit a pattern, each variable standing for anything."""
+        s, p, o = atom
+        for predicate in (p,) if p >= 0 else tuple(self._objects):
+            if predicate not in self._objects:
+                continue
+            if s >= 0 and o >= 0:
+                if (s, predicate, o) in self.facts:
+                    yield s, predicate, o
+            elif s >= 0:
+                yield from ((s, predicate, y) for y in tuple(self._objects[predicate].get(s, ())))
+            elif o >= 0:
+                yield from ((x, predicate, o) for x in tuple(self._subjects[predicate].get(o, ())))
+            else:
+                yield from [(x, predicate, y) for x, ys in self._objects[predicate].items() for y in ys]
+
+    def solutions(self, atoms: Sequence[Atom], binding: Binding, found: dict[Atom, Fact]) -> Iterator[Binding]:
+        """The bindings under which every pattern is a fact; ``found`` says which, for as long as one is looked at."""
+        if not atoms:
+            yield binding
+            return
+        atom = max(atoms, key=lambda a: sum(v >= 0 or v in binding for v in a))
+        rest = [other for other in atoms if other is not atom]
+        for fact in self.matches(substituted(atom, binding)):
+            bound = unified(atom, fact, binding)
+            if bound is not None:
+                found[atom] = fact
+                yield from self.solutions(rest, bound, found)
+
+
+def substituted(atom: Atom, binding: Binding) -> Atom:
+    """A pattern with what its variables are bound to."""
+    s, p, o = atom
+    return binding.get(s, s), binding.get(p, p), binding.get(o, o)
+
+
+def unified(atom: Atom, fact: Fact, binding: Binding) -> Binding | None:
+    """The binding, extended so that the pattern is the fact; None where that cannot be."""
+    bound = dict(binding)
+    for want, have in zip(atom, fact, strict=True):
+        if want >= 0:
+            if want != have:
+                return None
+        elif bound.setdefault(want, have) != have:
+            return None
+    return bound
+
+
+def copy_of(head: Atom, atom: Atom) -> Atom | None:
+    """What follows from one fact, as a copy of its parts: place 0, 1 or 2 of the fact as -1, -2 or -3.
+
+    None where fitting the pattern takes more than its predicate and object, so that it has to be looked at.
+    """
+    s, p, o = atom
+    if s >= 0 or p < 0 or s == o:
+        return None
+    place = {s: -1, o: -3} if o < 0 else {s: -1}
+    a, b, c = head
+    return place.get(a, a), place.get(b, b), place.get(c, c)
+
+
+def copied(copy: Atom, fact: Fact) -> Fact:
+    """The fact that a copy makes of another."""
+    a, b, c = copy
+    return fact[~a] if a < 0 else a, fact[~b] if b < 0 else b, fact[~c] if c < 0 else c

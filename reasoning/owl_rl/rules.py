@@ -1,0 +1,142 @@
+"""The rules of OWL 2 RL, as data, by the names that the W3C gives them.
+
+Source: OWL 2 Web Ontology Language Profiles (second edition), section 4.3, tables 4 to 9. A rule is written
+``name: schema | facts => conclusion``; ``schema`` is matched once for each axiom, and leaves a rule about the axiom's
+own properties and classes; ``false`` is a contradiction. Rules over lists are in :mod:`deixis.reasoning.owl_rl.lists`.
+
+Left out: the datatype rules (table 8), and rules that only state tautologies (``eq-ref``, ``prp-ap``, ``cls-thing``,
+``cls-nothing1``, ``scm-cls``, ``scm-op``, ``scm-dp``). Where another rule needs such a tautology as a premise, a
+second line with the same name says what then follows.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from deixis.reasoning.owl.terms import term
+
+RULES = """
+eq-sym: | ?x owl:sameAs ?y => ?y owl:sameAs ?x
+eq-trans: | ?x owl:sameAs ?y , ?y owl:sameAs ?z => ?x owl:sameAs ?z
+eq-rep-s: ?s owl:sameAs ?t | ?s ?p ?o => ?t ?p ?o
+eq-rep-p: ?p owl:sameAs ?q | ?s ?p ?o => ?s ?q ?o
+eq-rep-o: ?o owl:sameAs ?t | ?s ?p ?o => ?s ?p ?t
+eq-diff1: | ?x owl:sameAs ?y , ?x owl:differentFrom ?y => false
+eq-diff1: | ?x owl:differentFrom ?x => false
+
+prp-dom: ?p rdfs:domain ?c | ?x ?p ?y => ?x rdf:type ?c
+prp-rng: ?p rdfs:range ?c | ?x ?p ?y => ?y rdf:type ?c
+prp-fp: ?p rdf:type owl:FunctionalProperty | ?x ?p ?y , ?x ?p ?z => ?y owl:sameAs ?z
+prp-ifp: ?p rdf:type owl:InverseFunctionalProperty | ?x ?p ?z , ?y ?p ?z => ?x owl:sameAs ?y
+prp-irp: ?p rdf:type owl:IrreflexiveProperty | ?x ?p ?x => false
+prp-symp: ?p rdf:type owl:SymmetricProperty | ?x ?p ?y => ?y ?p ?x
+prp-asyp: ?p rdf:type owl:AsymmetricProperty | ?x ?p ?y , ?y ?p ?x => false
+prp-trp: ?p rdf:type owl:TransitiveProperty | ?x ?p ?y , ?y ?p ?z => ?x ?p ?z
+prp-spo1: ?p rdfs:subPropertyOf ?q | ?x ?p ?y => ?x ?q ?y
+prp-eqp1: ?p owl:equivalentProperty ?q | ?x ?p ?y => ?x ?q ?y
+prp-eqp2: ?p owl:equivalentProperty ?q | ?x ?q ?y => ?x ?p ?y
+prp-pdw: ?p owl:propertyDisjointWith ?q | ?x ?p ?y , ?x ?q ?y => false
+prp-inv1: ?p owl:inverseOf ?q | ?x ?p ?y => ?y ?q ?x
+prp-inv2: ?p owl:inverseOf ?q | ?x ?q ?y => ?y ?p ?x
+prp-npa1: ?n owl:sourceIndividual ?x , ?n owl:assertionProperty ?p , ?n owl:targetIndividual ?y | ?x ?p ?y => false
+prp-npa2: ?n owl:sourceIndividual ?x , ?n owl:assertionProperty ?p , ?n owl:targetValue ?y | ?x ?p ?y => false
+
+cls-nothing2: | ?x rdf:type owl:Nothing => false
+cls-com: ?c owl:complementOf ?d | ?x rdf:type ?c , ?x rdf:type ?d => false
+cls-svf1: ?c owl:someValuesFrom ?d , ?c owl:onProperty ?p | ?x ?p ?y , ?y rdf:type ?d => ?x rdf:type ?c
+cls-svf2: ?c owl:someValuesFrom owl:Thing , ?c owl:onProperty ?p | ?x ?p ?y => ?x rdf:type ?c
+cls-avf: ?c owl:allValuesFrom ?d , ?c owl:onProperty ?p | ?x rdf:type ?c , ?x ?p ?y => ?y rdf:type ?d
+cls-hv1: ?c owl:hasValue ?y , ?c owl:onProperty ?p | ?x rdf:type ?c => ?x ?p ?y
+cls-hv2: ?c owl:hasValue ?y , ?c owl:onProperty ?p | ?x ?p ?y => ?x rdf:type ?c
+cls-maxc1: ?c owl:maxCardinality 0 , ?c owl:onProperty ?p | ?x rdf:type ?c , ?x ?p ?y => false
+cls-maxc2: ?c owl:maxCardinality 1 , ?c owl:onProperty ?p | ?x rdf:type ?c , ?x ?p ?y , ?x ?p ?z => ?y owl:sameAs ?z
+cls-maxqc1: ?c owl:maxQualifiedCardinality 0 , ?c owl:onProperty ?p , ?c owl:onClass ?d \
+| ?x rdf:type ?c , ?x ?p ?y , ?y rdf:type ?d => false
+cls-maxqc2: ?c owl:maxQualifiedCardinality 0 , ?c owl:onProperty ?p , ?c owl:onClass owl:Thing \
+| ?x rdf:type ?c , ?x ?p ?y => false
+cls-maxqc3: ?c owl:maxQualifiedCardinality 1 , ?c owl:onProperty ?p , ?c owl:onClass ?d \
+| ?x rdf:type ?c , ?x ?p ?y , ?y rdf:type ?d , ?x ?p ?z , ?z rdf:type ?d => ?y owl:sameAs ?z
+cls-maxqc4: ?c owl:maxQualifiedCardinality 1 , ?c owl:onProperty ?p , ?c owl:onClass owl:Thing \
+| ?x rdf:type ?c , ?x ?p ?y , ?x ?p ?z => ?y owl:sameAs ?z
+
+cax-sco: ?c rdfs:subClassOf ?d | ?x rdf:type ?c => ?x rdf:type ?d
+cax-eqc1: ?c owl:equivalentClass ?d | ?x rdf:type ?c => ?x rdf:type ?d
+cax-eqc2: ?c owl:equivalentClass ?d | ?x rdf:type ?d => ?x rdf:type ?c
+cax-dw: ?c owl:disjointWith ?d | ?x rdf:type ?c , ?x rdf:type ?d => false
+
+scm-sco: | ?c rdfs:subClassOf ?d , ?d rdfs:subClassOf ?e => ?c rdfs:subClassOf ?e
+scm-eqc1: | ?c owl:equivalentClass ?d => ?c rdfs:subClassOf ?d
+scm-eqc1: | ?c owl:equivalentClass ?d => ?d rdfs:subClassOf ?c
+scm-eqc2: | ?c rdfs:subClassOf ?d , ?d rdfs:subClassOf ?c => ?c owl:equivalentClass ?d
+scm-spo: | ?p rdfs:subPropertyOf ?q , ?q rdfs:subPropertyOf ?r => ?p rdfs:subPropertyOf ?r
+scm-eqp1: | ?p owl:equivalentProperty ?q => ?p rdfs:subPropertyOf ?q
+scm-eqp1: | ?p owl:equivalentProperty ?q => ?q rdfs:subPropertyOf ?p
+scm-eqp2: | ?p rdfs:subPropertyOf ?q , ?q rdfs:subPropertyOf ?p => ?p owl:equivalentProperty ?q
+scm-dom1: | ?p rdfs:domain ?c , ?c rdfs:subClassOf ?d => ?p rdfs:domain ?d
+scm-dom2: | ?q rdfs:domain ?c , ?p rdfs:subPropertyOf ?q => ?p rdfs:domain ?c
+scm-rng1: | ?p rdfs:range ?c , ?c rdfs:subClassOf ?d => ?p rdfs:range ?d
+scm-rng2: | ?q rdfs:range ?c , ?p rdfs:subPropertyOf ?q => ?p rdfs:range ?c
+scm-hv: ?c owl:hasValue ?i , ?c owl:onProperty ?p , ?d owl:hasValue ?i , ?d owl:onProperty ?q \
+| ?p rdfs:subPropertyOf ?q => ?c rdfs:subClassOf ?d
+scm-hv: ?c owl:hasValue ?i , ?c owl:onProperty ?p , ?d owl:hasValue ?i , ?d owl:onProperty ?p \
+| => ?c rdfs:subClassOf ?d
+scm-svf1: ?c owl:someValuesFrom ?y , ?c owl:onProperty ?p , ?d owl:someValuesFrom ?z , ?d owl:onProperty ?p \
+| ?y rdfs:subClassOf ?z => ?c rdfs:subClassOf ?d
+scm-svf1: ?c owl:someValuesFrom ?y , ?c owl:onProperty ?p , ?d owl:someValuesFrom ?y , ?d owl:onProperty ?p \
+| => ?c rdfs:subClassOf ?d
+scm-svf2: ?c owl:someValuesFrom ?y , ?c owl:onProperty ?p , ?d owl:someValuesFrom ?y , ?d owl:onProperty ?q \
+| ?p rdfs:subPropertyOf ?q => ?c rdfs:subClassOf ?d
+scm-avf1: ?c owl:allValuesFrom ?y , ?c owl:onProperty ?p , ?d owl:allValuesFrom ?z , ?d owl:onProperty ?p \
+| ?y rdfs:subClassOf ?z => ?c rdfs:subClassOf ?d
+scm-avf1: ?c owl:allValuesFrom ?y , ?c owl:onProperty ?p , ?d owl:allValuesFrom ?y , ?d owl:onProperty ?p \
+| => ?c rdfs:subClassOf ?d
+scm-avf2: ?c owl:allValuesFrom ?y , ?c owl:onProperty ?p , ?d owl:allValuesFrom ?y , ?d owl:onProperty ?q \
+| ?p rdfs:subPropertyOf ?q => ?d rdfs:subClassOf ?c
+"""
+
+LIST_RULES = (
+    "cax-adc", "cls-int1", "cls-int2", "cls-oo", "cls-uni", "eq-diff2", "eq-diff3", "prp-adp", "prp-key", "prp-spo2",
+    "scm-int", "scm-uni",
+)  # fmt: skip
+
+TermAtom = tuple[str, str, str]
+"""A pattern: three terms, each an N-Triples spelling or a variable such as ``?x``."""
+
+
+class TextRule(NamedTuple):
+    """A rule of the table; a conclusion of None is a contradiction."""
+
+    name: str
+    schema: tuple[TermAtom, ...]
+    body: tuple[TermAtom, ...]
+    head: TermAtom | None
+
+
+def rules() -> Iterator[TextRule]:
+    """The table's rules, in its order.
+
+    >>> next(rules()).name
+    'eq-sym'
+    """
+    for line in RULES.strip().splitlines():
+        if line:
+            name, text = line.split(":", 1)
+            premises, head = text.split("=>")
+            schema, body = premises.split("|")
+            yield TextRule(name, _atoms(schema), _atoms(body), None if head.strip() == "false" else _atoms(head)[0])
+
+
+def _atoms(text: str) -> tuple[TermAtom, ...]:
+    return tuple(_atom(part) for part in text.split(",") if part.strip())
+
+
+def _atom(text: str) -> TermAtom:
+    subject, predicate, object = (_term(word) for word in text.split())
+    return subject, predicate, object
+
+
+def _term(word: str) -> str:
+    if word.startswith("?"):
+        return word
+    return f'"{word}"^^{term("xsd:nonNegativeInteger")}' if word.isdigit() else term(word)

@@ -1,0 +1,54 @@
+"""Compiles every kernel once, so that no command has to wait for it: ``python -m deixis.warm``, after an installation."""
+
+from __future__ import annotations
+
+
+def warm() -> None:
+    """Runs one tiny job of each kind; the compiled code is kept on disk."""
+    from deixis.reasoning.branch_and_bound import warm as warm_engine
+
+    warm_engine()
+    _infer()
+    _solve()
+    _tell_time()
+
+
+def _infer() -> None:
+    from deixis.inference import inference_of
+    from deixis.reasoning.why_not import why_not
+    from deixis.session import read_script
+
+    inference = inference_of(read_script(text="a left of b\nb left or above c\nc is not right of d\n"))
+    inference.inferred()
+    relations = inference.implications.vocabulary
+    why_not(inference.implications, read_script(text="a left of c").facts[0])
+    inference.implications.derive(relations["left"], "a", "b")
+    inference_of(read_script(text="a left of b\nb left of a\n"))
+
+
+def _solve() -> None:
+    from deixis.grammar.network_file import parse_networks
+    from deixis.reasoning.calculi.registry import calculus
+    from deixis.reasoning.networks.search import solve
+
+    for name, text in (("allen", "1 #\n0 1 ( < m )\n.\n"), ("ra", "2 #\n0 1 ( <,m >,< )\n1 2 ( <,< )\n.\n")):
+        for parsed in parse_networks(text, [calculus(name)], "warm"):
+            for network in parsed.networks:
+                solve(network, scenario=True)
+
+
+def _tell_time() -> None:
+    from deixis.grammar.fluent_file import parse_fluents
+    from deixis.reasoning.temporal.timeline import Timeline
+
+    fluents = ",".join(f'{{"id": "{id}", "statement": ["cup", "on", "table"]}}' for id in "ab")
+    relations = '{"a": "a", "allen": ["before", "after"], "b": "b"}'
+    content = parse_fluents(f'{{"origin": "now", "fluents": [{fluents}], "relations": [{relations}]}}', "warm")
+    timeline = Timeline()
+    for item in (*content.fluents, *content.relations):
+        timeline.add(item)
+    timeline.chronology()
+
+
+if __name__ == "__main__":
+    warm()
