@@ -40,10 +40,11 @@ def compatible(a: Relation, b: Relation) -> bool:
     return bool(a.x_atoms & b.x_atoms) and bool(a.y_atoms & b.y_atoms) and height
 
 
-def find_conflict(implied: Implications) -> Conflict | None:
+def find_conflict(implied: Implications, deadline: float | None = None) -> Conflict | None:
     """A minimal contradiction; None where the facts are consistent, or where the time limit left that open.
 
-    Raises OutOfTimeError where there is a contradiction among choices, and the time limit strikes before it is minimal.
+    Searches end at ``deadline`` (``time.monotonic``; without one, after the time limit of ``implied``). Raises
+    OutOfTimeError where there is a contradiction among choices, and the time is up before it is minimal.
 
     >>> from deixis.ontology.tbox import default_ontology
     >>> r = default_ontology().relations
@@ -54,13 +55,14 @@ def find_conflict(implied: Implications) -> Conflict | None:
     """
     if implied.consistent:
         return None
-    demands, deadline = implied.demands, time.monotonic() + implied.time_limit
+    until = time.monotonic() + implied.time_limit if deadline is None else deadline
+    demands = implied.demands
     graph = implied.graph
     circle = OrderPaths(demands.bounds, len(graph.nodes)).circle()
     edges = _group_edges(implied) if circle is None else sorted(circle)
     facts = [graph.fact(edge) for edge in edges]
     if circle is None or not _minimal_circle(demands, edges):
-        facts = minimal_subset(facts, lambda chosen: not _consistent(chosen, graph.vocabulary, deadline))
+        facts = minimal_subset(facts, lambda chosen: not _consistent(chosen, graph.vocabulary, until))
     if graph.sources:
         facts.sort(key=lambda fact: (fact.source is None, fact.source))
     return Conflict(tuple(facts), _reason(facts, graph.vocabulary))

@@ -23,7 +23,7 @@ from deixis.ontology.graph import Fact, RelationGraph
 from deixis.ontology.relation import Relation, Relations
 from deixis.reasoning.derivation import Derivation, Rule
 from deixis.reasoning.orders.bounds import meaning
-from deixis.reasoning.orders.cases import derive_by_cases
+from deixis.reasoning.orders.cases import derive_by_cases, needed_facts
 from deixis.reasoning.orders.choices import OutOfTimeError
 from deixis.reasoning.orders.closing import Closed, close
 from deixis.reasoning.orders.demands import Demands, EdgeFacts, demands_of
@@ -100,12 +100,14 @@ class Implications:
         return found if found is not None else self._by_cases(Fact(subject, (relation,), object))
 
     def _by_cases(self, goal: Fact) -> Derivation | None:
-        label = self.closed.groups.label
-        group = label[self.graph.index(goal.subject)]
-        firm = self.demands.firm
-        edges = firm[label[self.graph.subjects[firm]] == group]
-        facts = [self.graph.fact(int(edge)) for edge in edges]
+        facts = [self.graph.fact(edge) for edge in self._edges_around(goal.subject)]
         return derive_by_cases(facts, goal, self.vocabulary, time.monotonic() + self.time_limit)
+
+    def _edges_around(self, name: str) -> list[int]:
+        """The firm facts of everything that is connected with an object."""
+        label, firm = self.closed.groups.label, self.demands.firm
+        edges: list[int] = firm[label[self.graph.subjects[firm]] == label[self.graph.index(name)]].tolist()
+        return edges
 
     @cached_property
     def _derivations(self) -> OrderDerivations:
@@ -129,7 +131,7 @@ class Implications:
                 yield relation, nodes[subject], nodes[object]
 
     def ntriples(self) -> str:
-        """Every fact that is stated firmly or implied as one plain N-Triples line, under the IRIs of the graph's Turtle."""
+        """Every fact that is stated firmly or implied as a plain N-Triples line, under the IRIs of the graph's Turtle."""
         iris = node_iris(self.graph)
         return "".join(pairs_to_ntriples(r, self.pairs(r), iris) for r in self.vocabulary.values())
 
@@ -146,6 +148,10 @@ class Implications:
         for relation in self.vocabulary.values():
             for subject, object in self._unstated(relation).tolist():
                 yield Fact(nodes[subject], (relation,), nodes[object])
+
+    def unstated(self) -> int:
+        """How many facts are implied without being stated."""
+        return sum(len(self._unstated(relation)) for relation in self.vocabulary.values())
 
     def _unstated(self, relation: Relation) -> NDArray[np.int64]:
         pairs, n = self.pairs(relation), len(self.graph.nodes)
@@ -174,10 +180,11 @@ class Implications:
         costs = np.stack([paths.costs(bound, subject, objects) for bound in meaning(relation)[0]]).max(axis=0)
         return np.where(costs > len(self.graph), 0, costs)
 
-    def support(self, fact: Fact) -> Support:
+    def support(self, fact: Fact, deadline: float | None = None) -> Support:
         """By what rule an implied fact follows last, and the edges of the graph that its derivation rests on.
 
-        The same as :meth:`derive` says. Raises GraphError where the fact does not follow.
+        The same as :meth:`derive` says. A search ends at ``deadline`` (``time.monotonic``; without one, after the time
+        limit). Raises GraphError where the fact does not follow, and OutOfTimeError.
         """
         relation, subject, object = fact.relations[0], fact.subject, fact.object
         if not self.holds(relation, subject, object):
@@ -186,10 +193,11 @@ class Implications:
         if chains is not None:
             used = dict.fromkeys(edge for path in chains.values() for edge in path)
             return Support(self._derivations.of_chains(chains, relation, subject, object).rule, tuple(used))
-        derivation = self._by_cases(fact)
-        assert derivation is not None
-        stated = set(derivation.stated())
-        return Support(derivation.rule, tuple(k for k, other in enumerate(self.graph.facts()) if other in stated))
+        until = time.monotonic() + self.time_limit if deadline is None else deadline
+        edges = self._edges_around(subject)
+        facts = [self.graph.fact(edge) for edge in edges]
+        needed = {id(chosen) for chosen in needed_facts(facts, fact, self.vocabulary, until)}
+        return Support(Rule.CASES, tuple(e for e, f in zip(edges, facts, strict=True) if id(f) in needed))
 
     def counts(self) -> dict[Relation, int]:
         """How many pairs are stated or implied to bear each relation."""

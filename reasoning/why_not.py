@@ -15,9 +15,10 @@ from deixis.reasoning.derivation import Derivation
 from deixis.reasoning.implications import Implications
 from deixis.reasoning.orders.bounds import Order, meaning
 from deixis.reasoning.orders.choices import Search, base_state
+from deixis.reasoning.orders.closed import groups_of, orders_of
 from deixis.reasoning.orders.closing import local_problem
 from deixis.reasoning.orders.demands import demands_of
-from deixis.reasoning.orders.pictures import picture_of
+from deixis.reasoning.orders.pictures import picture_of, picture_of_group
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,14 +89,19 @@ def _with(graph: RelationGraph, fact: Fact) -> RelationGraph:
 def _counter_example(implied: Implications, fact: Fact) -> CounterExample:
     """The objects that facts connect with the two, in a picture without the fact."""
     graph = _with(implied.graph, replace(fact, positive=False))
-    label = implied.closed.groups.label
-    groups = {int(label[graph.index(name)]) for name in (fact.subject, fact.object)}
-    nodes = np.flatnonzero(np.isin(label, list(groups)))
     demands = demands_of(graph)
-    choices = [choice for choice in demands.choices if label[choice.subject] in groups]
+    groups = groups_of(graph.subjects[demands.firm], graph.objects[demands.firm], len(graph.nodes))
+    group = int(groups.label[graph.index(fact.subject)])
+    nodes = groups.members(group)
+    names = tuple(graph.nodes[k] for k in nodes)
+    choices = [choice for choice in demands.choices if groups.label[choice.subject] == group]
+    if not choices:
+        orders = orders_of(demands.bounds, groups)
+        assert orders is not None, "a fact that does not follow has a picture without it"
+        return CounterExample(names, picture_of_group(orders, group))
     problem = local_problem(demands, nodes, choices)
     base = base_state(problem.rows, len(nodes))
     deadline = time.monotonic() + implied.time_limit
     state = None if base is None else Search(problem.choices, len(nodes), deadline).picture(base)
     assert state is not None, "a fact that does not follow has a picture without it"
-    return CounterExample(tuple(graph.nodes[k] for k in nodes), picture_of(state, len(nodes)))
+    return CounterExample(names, picture_of(state, len(nodes)))

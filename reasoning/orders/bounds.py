@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from deixis.ontology.allen import ALL_ALLEN
 from deixis.ontology.graph import Fact
 from deixis.ontology.relation import Relation
-from deixis.reasoning.convex import EndOrder, convex_pieces
+from deixis.reasoning.convex import EndOrder, admitted, convex_hull, convex_pieces
 
 AXES = 3
 """x to the viewer's right, y away from the viewer, z up."""
@@ -137,6 +137,24 @@ def denial(relation: Relation) -> Alternatives:
     return tuple(tuple(dict.fromkeys(part)) for part in parts)
 
 
+@lru_cache(maxsize=1024)
+def common(alternatives: Alternatives) -> Conjunction:
+    """What holds whichever alternative does, as far as bounds can say it: the convex hull on every axis.
+
+    >>> from deixis.ontology.tbox import default_ontology
+    >>> r = default_ontology().relations
+    >>> [str(Order("a", "b", bound)) for bound in common((*meaning(r["left"]), *meaning(r["top_left"])))]
+    ['right edge of a <= left edge of b']
+    """
+    shared: list[Bound] = []
+    for axis in range(AXES):
+        mask = 0
+        for part in alternatives:
+            mask |= admitted(tuple(_end_order(bound) for bound in part if bound.axis == axis))
+        shared += [_bound(axis, order) for order in convex_hull(mask).orders] if mask else []
+    return tuple(shared)
+
+
 def claims(fact: Fact) -> tuple[Alternatives, ...]:
     """What a fact demands, each of which must hold: one demand, but one for every relation that it denies."""
     if not fact.positive:
@@ -148,6 +166,11 @@ def claims(fact: Fact) -> tuple[Alternatives, ...]:
 def convex_parts(axis: int, mask: int) -> Alternatives:
     """A set of Allen relations as a disjunction of conjunctions of bounds on an axis, the largest parts first."""
     return tuple(tuple(_bound(axis, order) for order in piece.orders) for piece in convex_pieces(mask))
+
+
+def _end_order(bound: Bound) -> EndOrder:
+    """A bound as an order of two of the four end points."""
+    return EndOrder(2 * bound.tail + bound.tail_side, 2 * bound.head + bound.head_side, bound.strict)
 
 
 def _bound(axis: int, order: EndOrder) -> Bound:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -10,7 +11,7 @@ from deixis.ontology.relation import Reading, Relation, Relations
 from deixis.reasoning.derivation import Derivation, Impossible, Rule
 from deixis.reasoning.minimal import minimal_subset
 from deixis.reasoning.orders.bounds import Bounds, Conjunction, Order, bounds_of, denial, meaning
-from deixis.reasoning.orders.choices import Choice
+from deixis.reasoning.orders.choices import Choice, OutOfTimeError
 from deixis.reasoning.orders.closing import consistent
 from deixis.reasoning.orders.demands import Demands, demands_of, demands_of_facts
 from deixis.reasoning.orders.derivations import OrderDerivations
@@ -25,6 +26,14 @@ def follows(facts: Sequence[Fact], goal: Fact, vocabulary: Relations, deadline: 
     return not consistent(demands_of_facts(vocabulary, [*facts, replace(goal, positive=False)]), deadline)
 
 
+def needed_facts(facts: Sequence[Fact], goal: Fact, vocabulary: Relations, deadline: float) -> list[Fact]:
+    """Facts from which a goal that follows from all of them follows, and none of which can be spared.
+
+    Raises OutOfTimeError.
+    """
+    return minimal_subset(facts, lambda chosen: follows(chosen, goal, vocabulary, deadline))
+
+
 def derive_by_cases(facts: Sequence[Fact], goal: Fact, vocabulary: Relations, deadline: float) -> Derivation | None:
     """A proof of a plain fact from facts, among them choices; None where it does not follow.
 
@@ -32,11 +41,11 @@ def derive_by_cases(facts: Sequence[Fact], goal: Fact, vocabulary: Relations, de
     """
     if not follows(facts, goal, vocabulary, deadline):
         return None
-    needed = minimal_subset(facts, lambda chosen: follows(chosen, goal, vocabulary, deadline))
+    needed = needed_facts(facts, goal, vocabulary, deadline)
     ends = Fact(goal.subject, goal.relations, goal.object)
     names = dict.fromkeys(name for fact in [*needed, ends] for name in (fact.subject, fact.object))
     graph = RelationGraph.from_facts(vocabulary, tuple(names), needed)
-    return _Proof(demands_of(graph), ends).run()
+    return _Proof(demands_of(graph), ends, deadline).run()
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,8 +61,9 @@ class _Assumption:
 class _Proof:
     """Proves one goal from few facts, splitting choices until every case is settled by orders alone."""
 
-    def __init__(self, demands: Demands, goal: Fact) -> None:
+    def __init__(self, demands: Demands, goal: Fact, deadline: float) -> None:
         self._demands = demands
+        self._deadline = deadline
         self._goal = goal
         self._graph = demands.graph
         self._facts = list(demands.graph.facts())
@@ -63,6 +73,8 @@ class _Proof:
         return self._prove([], list(self._demands.choices))
 
     def _prove(self, assumed: list[_Assumption], choices: list[Choice]) -> Derivation:
+        if time.monotonic() > self._deadline:
+            raise OutOfTimeError("the time limit struck before every case was written down")
         orders = self._orders(assumed)
         circle = orders.paths.circle()
         if circle is not None:

@@ -15,13 +15,16 @@ from numpy.typing import NDArray
 
 from deixis.ontology.graph import Fact, RelationGraph
 from deixis.ontology.relation import Relations
-from deixis.reasoning.orders.bounds import Bounds, bounds_of, claims, meaning
+from deixis.reasoning.orders.bounds import Bounds, bounds_of, claims, common, meaning
 from deixis.reasoning.orders.choices import Choice
 
 
 @dataclass(frozen=True, eq=False)
 class Demands:
-    """The demands of a graph's firm facts; premises are numbered as the graph's edges."""
+    """The demands of a graph's firm facts; premises are numbered as the graph's edges.
+
+    What all alternatives of a choice have in common is among the bounds, so that much follows without a search.
+    """
 
     graph: RelationGraph
     bounds: Bounds
@@ -82,6 +85,7 @@ def demands_of(graph: RelationGraph) -> Demands:
                 rows += [(*bound.points(s, o, n), bound.strict, edge) for bound in alternatives[0]]
             else:
                 choices.append(Choice(alternatives, s, o, edge))
+                rows += [(*bound.points(s, o, n), bound.strict, edge) for bound in common(alternatives)]
     return Demands(graph, bounds.joined(bounds_of(rows)) if rows else bounds, tuple(choices))
 
 

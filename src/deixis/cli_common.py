@@ -30,4 +30,5 @@ def print_json(data: Any) -> None:
 
 
 def print_lines(lines: Iterable[str]) -> None:
-    print("\n".join(lines))
+    for line in lines:
+        print(line)

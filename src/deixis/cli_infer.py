@@ -34,6 +34,8 @@ def infer(
 
     if explain is not None and why_not is not None:
         raise DeixisError("infer: --explain and --why-not exclude each other")
+    if ntriples and (as_json or explain is not None or why_not is not None):
+        raise DeixisError("infer: --ntriples goes with none of --json, --explain and --why-not")
     fact = _one_fact(explain, "--explain") or _one_fact(why_not, "--why-not")
     inference = run(script, time_limit)
     if fact is not None and inference.consistent and inference.decided:
@@ -58,8 +60,8 @@ def _one_fact(text: str | None, option: str) -> Fact | None:
     if text is None:
         return None
     facts = parse_script(text, option).facts
-    if len(facts) != 1 or not facts[0].plain:
-        raise DeixisError(f"{option}: '{text}' is not one plain fact; write it like 'left(fork, plate)'")
+    if len(facts) != 1 or not facts[0].plain or facts[0].optional or facts[0].weight < 1:
+        raise DeixisError(f"{option}: '{text}' is not one plain, firm fact; write it like 'left(fork, plate)'")
     return facts[0]
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -18,7 +19,10 @@ MANY_STEPS = 12
 
 @dataclass(frozen=True, slots=True)
 class Inferred:
-    """A fact that follows, by what rule last, and from what: how many stated facts, and their lines unless too many."""
+    """A fact that follows, by what rule last, and from what: how many stated facts, and their lines unless too many.
+
+    0 facts: which they are was not found out within the time limit.
+    """
 
     fact: Fact
     rule: Rule
@@ -38,6 +42,7 @@ class Inference:
     implications: Implications
     conflict: Conflict | None
     decided: bool
+    deadline: float  # time.monotonic: searches for what facts rest on end then
 
     @property
     def consistent(self) -> bool:
@@ -49,15 +54,22 @@ class Inference:
 
     def inferred(self) -> tuple[Inferred, ...]:
         """The facts that follow without being stated; none where the script contradicts itself."""
-        return tuple(self._inferred()) if self.consistent and self.decided else ()
+        return tuple(self.each_inferred())
 
-    def _inferred(self) -> Iterator[Inferred]:
+    def each_inferred(self) -> Iterator[Inferred]:
+        """The same one by one: there may be millions."""
+        if not self.consistent or not self.decided:
+            return
         places = [source.line if source else 0 for source in self.implications.graph.sources]
         for fact, steps in self.implications.implied_with_steps():
             if steps > MANY_STEPS:
                 yield Inferred(fact, Rule.COMPOSITION, steps, ())
                 continue
-            support = self.implications.support(fact)
+            try:
+                support = self.implications.support(fact, self.deadline)
+            except OutOfTimeError:
+                yield Inferred(fact, Rule.CASES, 0, ())
+                continue
             lines = tuple(sorted({places[edge] for edge in support.edges}))
             yield Inferred(fact, support.rule, len(support.edges), lines)
 
@@ -67,8 +79,10 @@ def inference_of(script: Script, time_limit: float = TIME_LIMIT) -> Inference:
 
     Only facts that leave a choice take a search, and so need a limit.
     """
+    deadline = time.monotonic() + time_limit
     implications = Implications(script.graph(), time_limit)
     try:
-        return Inference(script.facts, implications, find_conflict(implications), implications.decided)
+        conflict = find_conflict(implications, deadline)
     except OutOfTimeError:
-        return Inference(script.facts, implications, None, decided=False)
+        return Inference(script.facts, implications, None, False, deadline)
+    return Inference(script.facts, implications, conflict, implications.decided, deadline)

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence, Sized
+from collections.abc import Iterator, Sequence, Sized
+from itertools import islice
 from typing import TYPE_CHECKING, Any
 
 MANY = 12
 """Lines that are listed one by one."""
+
+MOST = 20_000
+"""Inferred facts that are listed."""
 
 if TYPE_CHECKING:
     from deixis.grammar.script import Script
@@ -48,22 +52,27 @@ def _count(things: Sized, noun: str) -> str:
     return f"{number} {noun}" + ("" if number == 1 else "s")
 
 
-def inference_lines(inference: Inference) -> list[str]:
+def inference_lines(inference: Inference) -> Iterator[str]:
     """What is stated and what follows, each with its lines; of a contradiction only the minimal conflict."""
     if inference.conflict is not None:
-        lines = [f"The script contradicts itself: {inference.conflict.reason}."]
-        lines += [f"    {fact.source}: {fact}" for fact in inference.conflict.facts]
-        return [*lines, "Leave out or change any one of these."]
+        yield f"The script contradicts itself: {inference.conflict.reason}."
+        yield from (f"    {fact.source}: {fact}" for fact in inference.conflict.facts)
+        yield "Leave out or change any one of these."
+        return
     if not inference.decided:
-        return ["Undecided within the time limit: whether the facts, among which some leave a choice, can all hold."]
-    inferred = inference.inferred()
-    lines = [f"Stated ({len(inference.stated)}):"]
-    lines += [f"    {qualified(fact)}   line {fact.source.line if fact.source else '?'}" for fact in inference.stated]
-    lines.append(f"Inferred ({len(inferred)}):")
-    lines += [f"    {entry.fact}   by {entry.rule} from {_places(entry)}" for entry in inferred]
+        yield "Undecided within the time limit: whether the facts, among which some leave a choice, can all hold."
+        return
+    yield f"Stated ({len(inference.stated)}):"
+    for fact in inference.stated:
+        yield f"    {qualified(fact)}   line {fact.source.line if fact.source else '?'}"
+    count = inference.implications.unstated()
+    yield f"Inferred ({count}):"
+    for entry in islice(inference.each_inferred(), MOST):
+        yield f"    {entry.fact}   by {entry.rule} from {_places(entry)}"
+    if count > MOST:
+        yield f"    and {count - MOST} more: --ntriples prints all that holds, --json everything"
     if not inference.complete:
-        lines.append("The time limit struck: more may follow from the facts that leave a choice.")
-    return lines
+        yield "The time limit struck: more may follow from the facts that leave a choice."
 
 
 def why_not_lines(found: WhyNot) -> list[str]:
@@ -96,6 +105,8 @@ def _extent(box: list[list[int]]) -> str:
 
 def _places(entry: Inferred) -> str:
     lines = entry.lines
+    if not entry.steps:
+        return "facts that leave a choice"
     if not lines or len(lines) > MANY:
         return f"{entry.steps} facts"
     return ("line " if len(lines) == 1 else "lines ") + ", ".join(map(str, lines))

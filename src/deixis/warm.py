@@ -1,4 +1,4 @@
-"""Compiles every kernel once, so that no command has to wait for it: ``python -m deixis.warm``, after an installation."""
+"""Compiles every kernel once, so that no command waits for it: ``python -m deixis.warm`` after an installation."""
 
 from __future__ import annotations
 

@@ -189,6 +189,28 @@ def test_why_not_of_what_does_follow_is_a_no() -> None:
     assert out.splitlines()[0] == "left(salad_fork, soup_spoon) does follow:"
 
 
+def test_all_that_holds_as_ntriples(tmp_path: Path) -> None:
+    script = tmp_path / "row.layout"
+    script.write_text("a left of b\nb left of c\n", encoding="utf-8")
+    code, out, _ = deixis("infer", str(script), "--ntriples")
+    assert code == 0
+    left = "<https://w3id.org/deixis/onto#left>"
+    assert [line for line in out.splitlines() if left in line] == [
+        f"<urn:deixis:graph:{s}> {left} <urn:deixis:graph:{o}> ." for s, o in ("ab", "ac", "bc")
+    ]
+    assert deixis("infer", str(script), "--ntriples", "--json")[0] == 2
+
+
+def test_a_long_listing_is_cut_with_its_count(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("deixis.show.MOST", 3)
+    script = tmp_path / "row.layout"
+    script.write_text("left to right: a, b, c, d\n", encoding="utf-8")
+    code, out, _ = deixis("infer", str(script))
+    assert code == 0
+    assert "Inferred (9):" in out
+    assert out.splitlines()[-1] == "    and 6 more: --ntriples prints all that holds, --json everything"
+
+
 def test_an_object_that_the_script_does_not_name_cannot_be_asked_about() -> None:
     code, out, err = deixis("infer", SCRIPT1, "--why-not", "left(salad_frok, soup_spoon)")
     assert (code, out) == (2, "")

@@ -399,6 +399,15 @@ def test_more_connected_objects_than_the_limit_are_an_error(
     assert isinstance(caught.value, OverflowError)
 
 
+def test_what_all_alternatives_of_a_choice_say_follows_without_a_search(graph_of: MakeGraph) -> None:
+    sentences = [f"left or top_left(a{k}, a{k + 1})" for k in range(30)]
+    implied = Implications(graph_of(*sentences), time_limit=0.0)
+    assert implied.holds(R["left"], "a0", "a30")
+    derivation = implied.derive(R["left"], "a0", "a30")
+    assert derivation is not None
+    assert (derivation.rule, len(derivation.stated())) == (Rule.COMPOSITION, 30)
+
+
 def test_where_the_time_limit_strikes_what_follows_without_choices_is_known(graph_of: MakeGraph) -> None:
     implied = Implications(graph_of("left or top(a, b)", "not top(a, b)", "left(b, c)"), time_limit=0.0)
     assert not implied.complete and not implied.decided
