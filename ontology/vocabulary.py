@@ -100,6 +100,17 @@ class DX(StrEnum):
     SCRIPT_FILE = BASE + "scriptFile"
     SCRIPT_TEXT = BASE + "scriptText"
     SCENE_TEXT = BASE + "sceneText"
+    RELATION_MODEL = BASE + "RelationModel"
+    MODEL_TERM = BASE + "ModelTerm"
+    TERM_OF = BASE + "termOf"
+    MODEL_NAME = BASE + "modelName"
+    OUTLIER_RATE = BASE + "outlierRate"
+    CHANCE_DEGREE = BASE + "chanceDegree"
+    EXAMPLE_COUNT = BASE + "exampleCount"
+    FEATURE = BASE + "feature"
+    KNOTS = BASE + "knots"
+    LOG_DEGREES = BASE + "logDegrees"
+    TREND = BASE + "trend"
 
 
 class W3C(StrEnum):

@@ -51,6 +51,7 @@ class Alignment:
     notes: tuple[str, ...] = ()
     margins: NDArray[np.float64] | None = None  # (n1,) what the next best choice for each would lose; nan: not known
     runners_up: NDArray[np.int64] | None = None  # (n1,) that choice, or UNMATCHED
+    decisive: float = 1e-9  # a match with a larger margin is decided
 
     @property
     def graph_similarity(self) -> float:
@@ -64,16 +65,22 @@ class Engine(Protocol):
 
 
 def engine_named(name: str, select: Select = Select.FACTS) -> Engine:
-    """The engine of that name: ``exact`` or ``similarity``; raises UnknownTermError for another."""
+    """The engine of that name: ``exact``, ``graded`` or ``similarity``; raises UnknownTermError for another."""
     if name == "exact":
         from deixis.reasoning.branch_and_bound import warm
         from deixis.reasoning.exact import ExactEngine
 
         warm()  # so that a time limit is spent on searching, not on compiling
         return ExactEngine()
+    if name == "graded":
+        from deixis.reasoning.graded_engine import GradedEngine
+        from deixis.reasoning.matching.exact import warm as warm_matching
+
+        warm_matching()
+        return GradedEngine()
     if name == "similarity":
         return SimilarityEngine(select)
-    raise UnknownTermError(f"there is no engine '{name}'; the engines are: exact, similarity")
+    raise UnknownTermError(f"there is no engine '{name}'; the engines are: exact, graded, similarity")
 
 
 MAX_DESCRIBED = 20_000

@@ -204,7 +204,7 @@ def _matches(
             perceived=evidence.scene.nodes[p],
             score=held[name] / said[name] if said[name] else 1.0,
             similarity=float(alignment.matrix[i, p]),
-            decided=bool(only or (margin > 1e-9 and name not in grouped)),
+            decided=bool(only or (margin > alignment.decisive and name not in grouped)),
             alternatives=_alternatives(evidence, alignment, int(i), margin, groups),
         )
     return matches

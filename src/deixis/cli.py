@@ -33,6 +33,7 @@ from deixis.cli_infer import infer
 from deixis.cli_memory import register
 from deixis.cli_reason import reason
 from deixis.cli_relate import relate
+from deixis.cli_relation import register as register_relation
 from deixis.cli_solve import solve
 from deixis.cli_time import time_command
 
@@ -58,6 +59,7 @@ class GraphFormat(StrEnum):
 
 class EngineName(StrEnum):
     EXACT = "exact"
+    GRADED = "graded"
     SIMILARITY = "similarity"
 
 
@@ -128,7 +130,7 @@ app.command("time")(time_command)
 def ground(
     script: Script,
     scene: SceneFile,
-    engine: Annotated[EngineName, typer.Option(help="exact, or similarity: the paper's.")] = EngineName.EXACT,
+    engine: Annotated[EngineName, typer.Option(help="exact; graded; or similarity: the paper's.")] = EngineName.EXACT,
     plot: Annotated[Path | None, typer.Option(metavar="FILE", help="Draw the scene with the names found.")] = None,
     time_limit: TimeLimit = 10.0,
     hide_labels: HideLabels = False,
@@ -163,7 +165,7 @@ def ground(
 def _verdict(found: Grounding) -> int:
     if not found.matches:
         return NO
-    return UNDECIDED if found.engine == EngineName.EXACT and not found.proved_best else 0
+    return UNDECIDED if found.engine != EngineName.SIMILARITY and not found.proved_best else 0
 
 
 @app.command()
@@ -199,6 +201,7 @@ def demo(
 
 register(app)
 register_imagine(app)
+register_relation(app)
 
 
 def _replace(path: Path, text: str) -> None:
@@ -220,7 +223,7 @@ def main() -> None:
     try:
         app()
     except DeixisError as error:
-        _fail(str(error))
+        _fail(str(error), UNDECIDED if isinstance(error, TimeoutError) else BAD_INPUT)
     except OSError as error:
         _fail(f"{error.filename or 'standard output'}: {error.strerror or error}")
     except Exception as error:
@@ -229,9 +232,9 @@ def main() -> None:
         _fail(f"a defect in Deixis, please report it: {type(error).__name__}: {error} (DEIXIS_DEBUG=1 shows where)")
 
 
-def _fail(message: str) -> None:
+def _fail(message: str, code: int = BAD_INPUT) -> None:
     print(f"deixis: {message}", file=sys.stderr)
-    sys.exit(BAD_INPUT)
+    sys.exit(code)
 
 
 def run() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tempfile
+from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -105,6 +106,6 @@ def _say(console: Console, *lines: str) -> None:
         console.print(f"   {line}", markup=False)
 
 
-def _listing(console: Console, lines: list[str]) -> None:
+def _listing(console: Console, lines: Iterable[str]) -> None:
     for line in lines:
         console.print(f"   [dim]│[/dim] {line}" if "[" not in line else f"   │ {line}", markup="[" not in line)

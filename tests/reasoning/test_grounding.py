@@ -320,7 +320,7 @@ def test_facts_that_the_similarity_cannot_see_are_listed(graph_of: MakeGraph, fu
 
 
 def test_an_unknown_engine_is_an_error_that_names_the_known_ones() -> None:
-    with pytest.raises(UnknownTermError, match="no engine 'magic'; the engines are: exact, similarity"):
+    with pytest.raises(UnknownTermError, match="no engine 'magic'; the engines are: exact, graded, similarity"):
         engine_named("magic")
 
 

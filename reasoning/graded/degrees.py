@@ -1,0 +1,77 @@
+"""Degrees of words, and what they weigh as evidence.
+
+A term is a piecewise linear log degree; the degree of a word is exp of the sum of its terms: 1 at the prototype. A
+speaker says the word of a pair as far as it fits, except that a share ``outliers`` of facts is said of anything:
+P(word | pair) is proportional to outliers + (1 - outliers) * degree. Its ratio to the same for a random pair is the
+likelihood ratio; the outliers bound what a single fact can say against a pair, ``chance`` what it can say for it.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.ontology.relation import Reading, Relation
+from deixis.ontology.relation_models import FAMILIES, SAYING, RelationModel, RelationModels
+from deixis.reasoning.graded.geometry import PairGeometry
+from deixis.reasoning.graded.views import View, view
+
+Array = NDArray[np.float64]
+
+
+def degree_of_view(model: RelationModel, features: View) -> Array:
+    """exp of the sum of terms, shape (n, n), in (0, 1]; terms of features that are not there count as fitting."""
+    logs = [
+        np.interp(features[term.feature], term.knots, term.values) for term in model.terms if term.feature in features
+    ]
+    result: Array = np.exp(np.sum(logs, axis=0)) if logs else np.ones_like(next(iter(features.values())))
+    return result
+
+
+def word_degree(pairs: PairGeometry, word: str, models: RelationModels) -> Array:
+    """How well one of the ten words describes each ordered pair, wide reading, shape (n, n), in (0, 1].
+
+    >>> import numpy as np
+    >>> from deixis.reasoning.graded.geometry import pair_geometry
+    >>> from deixis.reasoning.graded.shipped import shipped_models
+    >>> fork, plate = [[0.0, 0.0], [0.02, 0.2]], [[0.05, -0.02], [0.32, 0.25]]
+    >>> pairs = pair_geometry(np.array([fork, plate]))
+    >>> [word_degree(pairs, word, shipped_models())[0, 1].round(2).item() for word in ("left", "bottom_left", "right")]
+    [0.85, 0.01, 0.0]
+    """
+    return degree_of_view(models[FAMILIES[word]], view(pairs, word))
+
+
+def relation_degree(pairs: PairGeometry, relation: Relation, models: RelationModels) -> Array:
+    """The degree of a relation, shape (n, n), in [0, 1]; raises UnknownTermError where its word has no model.
+
+    In the exact reading the word has to fit better than the other nine: its degree times its share of the best one.
+    """
+    models.of(relation)
+    own = word_degree(pairs, relation.word, models)
+    if relation.reading is Reading.WIDE:
+        return own
+    best = np.max([word_degree(pairs, word, models) for word in FAMILIES], axis=0)
+    exact: Array = own * (own / best)
+    return exact
+
+
+def saying_degree(pairs: PairGeometry, models: RelationModels) -> Array:
+    """How readily people speak of a pair with this one of the two as the subject, whatever the word, shape (n, n)."""
+    return degree_of_view(models[SAYING], view(pairs, SAYING))
+
+
+def log_likelihood_ratio(degree: Array, outliers: float, chance: float) -> Array:
+    """log P(said | pair) - log P(said | random pair), natural logarithm, finite.
+
+    >>> log_likelihood_ratio(np.array([1.0, 0.0]), outliers=0.01, chance=0.1).round(2).tolist()
+    [2.22, -2.39]
+    """
+    ratio: Array = np.log(outliers + (1 - outliers) * degree) - np.log(outliers + (1 - outliers) * chance)
+    return ratio
+
+
+def relation_evidence(pairs: PairGeometry, relation: Relation, models: RelationModels) -> Array:
+    """The log-likelihood ratio of a word alone, shape (n, n): that of ``left`` is that of ``right`` transposed."""
+    model = models.of(relation)
+    return log_likelihood_ratio(relation_degree(pairs, relation, models), model.outliers, model.chance)

@@ -1,0 +1,166 @@
+"""What is known of the things themselves, as log-likelihood ratios against chance: labels, sizes and proportions.
+
+Each source of evidence weighs as stated in :class:`UnaryWeights`; all are added up. Densities are mixed with
+``OUTLIERS`` of chance, so that a size never rules a thing out; only a certain label does (-inf).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.ontology.graph import RelationGraph
+from deixis.ontology.kinds import Kinds
+from deixis.ontology.sizes import SizeRange, Sizes
+from deixis.reasoning.errors import SettingError
+from deixis.reasoning.graded.geometry import pair_geometry
+from deixis.reasoning.labels import Label, named_objects
+
+Array = NDArray[np.float64]
+
+OUTLIERS = 0.05
+"""Share of things whose size says nothing of their kind."""
+
+LEAST_SPREAD = 0.05
+"""Standard deviation of a logarithm below which no learned range falls: 5 per cent of a length."""
+
+
+@dataclass(frozen=True, slots=True)
+class UnaryWeights:
+    """By how much labels and sizes are multiplied; 1 takes them at their word, 0 leaves them out."""
+
+    labels: float = 1.0
+    sizes: float = 1.0
+
+    def __post_init__(self) -> None:
+        if not (0 <= self.labels < np.inf and 0 <= self.sizes < np.inf):
+            raise SettingError("a weight of evidence is finite and at least 0")
+
+
+@dataclass(frozen=True, slots=True)
+class SizeModel:
+    """Log-normal length (longer side in the plan) and aspect (shorter by longer side) of a kind of thing.
+
+    ``relative``: the length is in units of the scene's median length, as it must be where scenes are in pixels.
+    """
+
+    length: tuple[float, float]  # mean and standard deviation of the natural logarithm
+    aspect: tuple[float, float]
+    relative: bool = False
+    views: float = 0.0
+
+
+def size_model(usual: SizeRange) -> SizeModel:
+    """The model of a usual size: the typical length is the median, least and greatest lie two deviations off.
+
+    >>> from deixis.ontology.tbox import default_ontology
+    >>> ontology = default_ontology()
+    >>> plate = size_model(ontology.sizes.of(ontology.kinds.of_word("dinner plate").iri))
+    >>> round(float(np.exp(plate.length[0])), 2), plate.aspect[0]
+    (0.27, 0.0)
+    """
+    length, width = usual.length, usual.width
+    spread = max(float(np.log(length.greatest / length.least)) / 4, LEAST_SPREAD)
+    across = max(float(np.log(width.greatest / width.least)) / 4, LEAST_SPREAD)
+    aspect = min(float(np.log(width.typical / length.typical)), 0.0)
+    square = usual.outline == "circle"
+    return SizeModel((float(np.log(length.typical)), spread), (aspect, LEAST_SPREAD if square else across))
+
+
+def learn_size(views: Sequence[tuple[NDArray[np.float64], int]], relative: bool = False) -> SizeModel:
+    """The size of a kind from labelled views: each a scene's boxes (n, 2, d) and which of them is of the kind.
+
+    Median and 1.4826 times the median absolute deviation of the logarithms, robust to a view that is wrong (Rousseeuw
+    and Croux 1993). ``relative`` measures against the median length of each scene. Raises SettingError without a view.
+    """
+    if not views:
+        raise SettingError("a size is learned from one view at least")
+    measured = np.array([log_sizes(boxes, relative)[index] for boxes, index in views])
+    centre = np.median(measured, axis=0)
+    spread = np.maximum(1.4826 * np.median(np.abs(measured - centre), axis=0), LEAST_SPREAD * (1 + 4 / len(views)))
+    length, aspect = zip(centre.tolist(), spread.tolist(), strict=True)
+    return SizeModel(length, aspect, relative, float(len(views)))
+
+
+def log_sizes(boxes: NDArray[np.float64], relative: bool) -> Array:
+    """Natural logarithms of length and aspect of n boxes, shape (n, 2); of nothing's length, a millionth is taken."""
+    extents = np.sort(pair_geometry(boxes).boxes[:, 1, :2] - boxes[:, 0, :2], axis=1)
+    scale = float(np.median(extents[:, 1])) if relative and len(extents) else 1.0
+    length = np.maximum(extents[:, 1] / (scale or 1.0), 1e-6)
+    aspect = np.maximum(extents[:, 0], 1e-6 * extents[:, 1]) / np.where(extents[:, 1] > 0, extents[:, 1], 1.0)
+    logs: Array = np.log(np.stack([length, np.where(extents[:, 1] > 0, aspect, 1.0)], axis=1))
+    return logs
+
+
+def size_evidence(
+    kinds: Sequence[str | None],
+    boxes: NDArray[np.float64],
+    sizes: Sizes,
+    learned: Mapping[str, SizeModel] | None = None,
+    metric: bool = True,
+) -> Array:
+    """What sizes say of n1 objects of some kinds (class IRIs) being each of n2 boxes, shape (n1, n2), finite.
+
+    A learned model takes the place of the usual size. Where units are pixels (not ``metric``) only relative ones
+    speak. Chance is what things of any kind are like: the scene's own spread around its median, or wider.
+    """
+    evidence = np.zeros((len(kinds), len(boxes)))
+    for row, kind in enumerate(kinds):
+        model = (learned or {}).get(kind or "") or (size_model(sizes.of(kind)) if kind and metric else None)
+        if model is not None and (model.relative or metric) and len(boxes):
+            evidence[row] = _density_ratio(log_sizes(boxes, model.relative), model)
+    return evidence
+
+
+def _density_ratio(measured: Array, model: SizeModel) -> Array:
+    """log of (1 - outliers) * p(size | kind) / p(size) + outliers, for n boxes (n, 2)."""
+    ratio = np.zeros(len(measured))
+    for column, (mean, spread) in enumerate((model.length, model.aspect)):
+        chance_mean = float(np.median(measured[:, column]))
+        chance_spread = max(float(np.std(measured[:, column])), 2 * spread)
+        near = ((measured[:, column] - mean) / spread) ** 2
+        usual = ((measured[:, column] - chance_mean) / chance_spread) ** 2
+        ratio += (usual - near) / 2 + np.log(chance_spread / spread)
+    result: Array = np.logaddexp(np.log1p(-OUTLIERS) + ratio, np.log(OUTLIERS))
+    return result
+
+
+def label_ratios(description: RelationGraph, labels: Sequence[Label | None], kinds: Kinds) -> Array:
+    """What labels say of n1 objects being each of n2 things, shape (n1, n2); -inf where a certain one rules it out.
+
+    A label of confidence c names k of n1 objects: it is right with probability c, else drawn from all objects, so that
+    its ratio is c n1 / k + 1 - c for those, and 1 - c for the others.
+    """
+    n1 = len(description.nodes)
+    ratios = np.ones((n1, len(labels)))
+    for column, label in enumerate(labels):
+        if label is not None and label.confidence > 0:
+            named = named_objects(description, label.text, kinds)
+            ratios[:, column] = 1 - label.confidence
+            ratios[named, column] += label.confidence * n1 / max(int(named.sum()), 1)
+    with np.errstate(divide="ignore"):
+        logs: Array = np.log(ratios)
+    return logs
+
+
+def unary_evidence(
+    description: RelationGraph,
+    boxes: NDArray[np.float64],
+    labels: Sequence[Label | None],
+    kinds: Kinds,
+    sizes: Sizes,
+    *,
+    learned: Mapping[str, SizeModel] | None = None,
+    metric: bool = True,
+    weights: UnaryWeights | None = None,
+) -> Array:
+    """Labels and sizes together, shape (n1, n2), as :class:`deixis.reasoning.matching.problem.Problem` takes them."""
+    by = weights or UnaryWeights()
+    of_kinds = description.kinds or (None,) * len(description.nodes)
+    total = by.sizes * size_evidence(of_kinds, boxes, sizes, learned, metric)
+    if by.labels > 0:
+        total = total + by.labels * label_ratios(description, labels, kinds)
+    return total

@@ -1,0 +1,104 @@
+"""A pair of boxes as a word looks at it: features in the word's own frame.
+
+*Left* looks along -x, *top left* along both -x and y; what is found is named the same for all, so that words that
+mirror each other share a model, and an inverse looks at the exchanged pair and sees the same.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.reasoning.graded.geometry import PairGeometry
+
+Array = NDArray[np.float64]
+View = dict[str, Array]
+
+HEADINGS = {
+    "left": (-1, 0),
+    "right": (1, 0),
+    "top": (0, 1),
+    "bottom": (0, -1),
+    "top_left": (-1, 1),
+    "top_right": (1, 1),
+    "bottom_left": (-1, -1),
+    "bottom_right": (1, -1),
+}
+
+NEARBY = 0.5
+"""Offset below which a direction counts for less and less: boxes with one centre lie in no direction (90 degrees)."""
+
+
+def view(pairs: PairGeometry, word: str) -> View:
+    """The features of every ordered pair for a word of the ten, or for ``saying``; arrays of shape (n, n).
+
+    Of a direction: ``deviation`` (radians from where the word points), ``clear`` (how far the near edges are apart),
+    ``trail`` and ``lead`` (which is less, which more far along: the starts or the ends of the boxes), ``forward`` and
+    ``lateral`` (offsets along and across), ``abreast`` (share of the smaller extent across that the
+    other covers), ``gap``, ``alike`` (difference of sizes). Of support: see :func:`_support`. Of saying: ``crowd`` and
+    ``figure``.
+    """
+    if word == "saying":
+        return {"crowd": pairs.crowd, "figure": pairs.smaller}
+    if word == "on":
+        return _support(pairs)
+    if word == "under":
+        return {name: feature.T for name, feature in _support(pairs).items()}
+    return _direction(pairs, HEADINGS[word])
+
+
+def _direction(pairs: PairGeometry, heading: tuple[int, int]) -> View:
+    axes = [axis for axis in (0, 1) if heading[axis]]
+    clear, trail, lead = (
+        np.min(found, axis=0) for found in zip(*(_along(pairs, a, heading[a]) for a in axes), strict=True)
+    )
+    to = np.array(heading) / np.hypot(*heading)
+    forward = pairs.offset @ to
+    length = np.maximum(np.linalg.norm(pairs.offset, axis=2), NEARBY)
+    lateral = np.abs(pairs.offset @ np.array([-to[1], to[0]]))
+    across = [0, 1] if len(axes) == 2 else [1 - axes[0]]
+    covered = np.maximum(pairs.inside, pairs.inside.transpose(1, 0, 2))[:, :, across].max(axis=2)
+    return {
+        "deviation": np.arccos(np.clip(forward / length, -1.0, 1.0)),
+        "clear": clear,
+        "trail": trail,
+        "lead": lead,
+        "forward": forward / (1 + np.abs(forward)),
+        "lateral": lateral / (1 + lateral),
+        "abreast": covered,
+        "gap": pairs.gap,
+        "alike": np.abs(pairs.smaller),
+    }
+
+
+def _along(pairs: PairGeometry, axis: int, sign: int) -> tuple[Array, Array, Array]:
+    """Near edges, and the lesser and the greater of the offsets of starts and ends, along one axis."""
+    clear, upper, lower = pairs.edges[:, :, :, axis]
+    if sign < 0:
+        clear, upper, lower = clear.T, upper.T, lower.T
+    return clear, np.minimum(upper, lower), np.maximum(upper, lower)
+
+
+def _support(pairs: PairGeometry) -> View:
+    """How the subject lies on the object.
+
+    ``across`` and ``along``: shares of its extents on x and y within the object's; ``bears`` and
+    ``spans``: shares of the object's within its own; ``foot`` and, with heights, ``rise``: see the geometry; ``rest``:
+    its lower edge less the object's upper one; ``upper`` and ``lower``: less the edge of the same side;
+    ``level``: offset on y; ``gap``.
+    """
+    found = {
+        "across": pairs.inside[:, :, 0],
+        "along": pairs.inside[:, :, 1],
+        "bears": pairs.inside[:, :, 0].T,
+        "foot": pairs.foot,
+        "rest": pairs.edges[0, :, :, 1],
+        "upper": pairs.edges[1, :, :, 1],
+        "lower": pairs.edges[2, :, :, 1],
+        "spans": pairs.inside[:, :, 1].T,
+        "level": pairs.offset[:, :, 1] / (1 + np.abs(pairs.offset[:, :, 1])),
+        "gap": pairs.gap,
+    }
+    if pairs.rise is not None:
+        found["rise"] = pairs.rise
+    return found

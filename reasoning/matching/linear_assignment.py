@@ -1,0 +1,116 @@
+"""The best partial assignment of rows to columns, with prices that prove it; compiled.
+
+Successive shortest augmenting paths (Jonker and Volgenant 1987), for rows that may also stay without a column: a path
+then ends at the worth of that. The prices v >= 0 of the columns and the profits of the rows, the largest of gain less
+price, are the dual solution: their sum is the value, and any v >= 0 gives an upper bound.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+
+@njit(cache=True)
+def solve_assignment(gain, column_of, price, profit):  # type: ignore[no-untyped-def]
+    """Fills in each row's column, the prices (c,) and the profits (r,), and returns the value.
+
+    ``gain`` (r, c + 1): its last column is the worth of staying without; -inf rules a pair out. Where no assignment is
+    left the value is -inf, and what was filled in says nothing.
+    """
+    rows, columns = gain.shape[0], gain.shape[1] - 1
+    row_of = np.full(columns + 1, -1)
+    price[:] = 0.0
+    waiting = _take_the_best(gain, column_of, row_of, profit)
+    distance, before = np.empty(columns), np.empty(columns, np.int64)
+    done = np.empty(columns, np.bool_)
+    for row in waiting:
+        if not _augment(row, gain, column_of, row_of, price, profit, distance, before, done):
+            return -np.inf
+    value = 0.0
+    for row in range(rows):
+        value += gain[row, column_of[row]]
+    return value
+
+
+@njit(cache=True)
+def _take_the_best(gain, column_of, row_of, profit):  # type: ignore[no-untyped-def]
+    """Gives every row its best column where nobody has it yet; returns the rows that wait."""
+    rows, columns = gain.shape[0], gain.shape[1] - 1
+    waiting = np.empty(rows, np.int64)
+    count = 0
+    for row in range(rows):
+        best = columns
+        for column in range(columns):
+            if gain[row, column] > gain[row, best] or (
+                gain[row, column] == gain[row, best] and row_of[best] >= 0 and row_of[column] < 0
+            ):
+                best = column
+        profit[row] = gain[row, best]
+        column_of[row] = -1
+        if best == columns or row_of[best] < 0:
+            column_of[row] = best
+            if best < columns:
+                row_of[best] = row
+        else:
+            waiting[count] = row
+            count += 1
+    return waiting[:count]
+
+
+@njit(cache=True)
+def _augment(start, gain, column_of, row_of, price, profit, distance, before, done):  # type: ignore[no-untyped-def]
+    """Moves along the cheapest path from a waiting row to a free column or to staying without; false without one."""
+    columns = gain.shape[1] - 1
+    distance[:] = np.inf
+    done[:] = False
+    row, so_far, without, leaver, column = start, 0.0, np.inf, -1, -1
+    while True:
+        base = so_far + profit[row]
+        if base - gain[row, columns] < without:
+            without, leaver = base - gain[row, columns], row
+        nearest, column = np.inf, -1
+        for c in range(columns):
+            if done[c]:
+                continue
+            d = base - (gain[row, c] - price[c])
+            if d < distance[c]:
+                distance[c], before[c] = d, row
+            if distance[c] < nearest or (distance[c] == nearest and column >= 0 and row_of[c] < 0 <= row_of[column]):
+                nearest, column = distance[c], c
+        if without <= nearest or row_of[column] < 0:
+            break
+        done[column] = True
+        row, so_far = row_of[column], nearest
+    length = min(without, nearest)
+    if length == np.inf:
+        return False
+    _reprice(start, length, row_of, price, profit, distance, done)
+    _move(start, leaver if without <= nearest else -1, column, columns, column_of, row_of, before)
+    return True
+
+
+@njit(cache=True)
+def _reprice(start, length, row_of, price, profit, distance, done):  # type: ignore[no-untyped-def]
+    profit[start] -= length
+    for column in range(len(price)):
+        if done[column]:
+            price[column] += length - distance[column]
+            profit[row_of[column]] -= length - distance[column]
+
+
+@njit(cache=True)
+def _move(start, leaver, column, columns, column_of, row_of, before):  # type: ignore[no-untyped-def]
+    """Shifts the rows on the path by one; ``leaver`` ends without a column, where it is none the path ends in one."""
+    if leaver >= 0:
+        column = column_of[leaver]
+        column_of[leaver] = columns
+        if leaver == start:
+            return
+    while True:
+        row = before[column]
+        following = column_of[row]
+        column_of[row], row_of[column] = column, row
+        if row == start:
+            return
+        column = following

@@ -1,0 +1,95 @@
+"""What a relation word means, as lines and as plain data."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from deixis.ontology.allen import SYMBOLS
+from deixis.ontology.relation import Relation, Relations
+from deixis.ontology.relation_models import RelationModel, RelationModels
+
+
+def relation_lines(relation: Relation, relations: Relations, models: RelationModels) -> list[str]:
+    """The word's atoms in both readings, its inverse and synonyms, and the parameters of its graded model."""
+    wide = relations[relation.word]
+    lines = [f"{wide.name}: {wide.phrase}", f"inverse     {wide.inverse}", f"words       {', '.join(wide.words)}"]
+    for one in (wide, relations.exact(wide)):
+        lines.append(f"{one.reading.value:<11} x {_signs(one.x_atoms)}; y {_signs(one.y_atoms)}{_height(one)}")
+    model = models.of(wide)
+    lines.append(f"graded      model '{model.name}', {_origin(model)}")
+    lines.append(f"            outliers {model.outliers:g}, degree by chance {model.chance:.3f}")
+    for term in model.terms:
+        points = ", ".join(f"{knot:g}: {_degree(value)}" for knot, value in zip(term.knots, term.values, strict=True))
+        lines.append(f"  {term.feature:<10}{points}")
+    return lines
+
+
+def relation_to_dict(relation: Relation, relations: Relations, models: RelationModels) -> dict[str, Any]:
+    """The same as plain data; ``log_degrees`` are natural logarithms."""
+    wide = relations[relation.word]
+    return {
+        "word": wide.name,
+        "phrase": wide.phrase,
+        "inverse": wide.inverse,
+        "synonyms": list(wide.words),
+        "readings": {one.reading.value: _atoms(one) for one in (wide, relations.exact(wide))},
+        "graded": model_to_dict(models.of(wide)),
+    }
+
+
+def model_to_dict(model: RelationModel) -> dict[str, Any]:
+    """A model's parameters and where they come from."""
+    origin = model.provenance
+    return {
+        "model": model.name,
+        "outliers": model.outliers,
+        "chance": model.chance,
+        "terms": [
+            {
+                "feature": term.feature,
+                "knots": list(term.knots),
+                "log_degrees": list(term.values),
+                "trend": term.trend.name.lower(),
+            }
+            for term in model.terms
+        ],
+        "learned_from": list(origin.sources),
+        "examples": origin.examples,
+        "made": origin.made.isoformat() if origin.made else None,
+    }
+
+
+def learned_lines(models: RelationModels, learned: list[str], path: str) -> list[str]:
+    """What was learned of which words, and where it was written."""
+    lines = [f"{name:<11} learned from {models[name].provenance.examples:g} facts" for name in learned]
+    return [*lines, f"Written: {path}"]
+
+
+def _atoms(relation: Relation) -> dict[str, list[str]]:
+    masks = {"x": relation.x_atoms, "y": relation.y_atoms, "z": relation.z_atoms}
+    return {axis: _members(mask) for axis, mask in masks.items() if mask}
+
+
+def _members(mask: int) -> list[str]:
+    return [sign for code, sign in enumerate(SYMBOLS) if mask >> code & 1]
+
+
+def _signs(mask: int) -> str:
+    return "any" if mask == (1 << 13) - 1 else " ".join(_members(mask))
+
+
+def _height(relation: Relation) -> str:
+    return f"; settled on z by {_signs(relation.z_atoms)}" if relation.z_atoms else ""
+
+
+def _origin(model: RelationModel) -> str:
+    origin = model.provenance
+    if origin.made is None:
+        return "shipped, from prototypes"
+    return f"learned from {origin.examples:g} facts of {len(origin.sources)} scenes on {origin.made:%Y-%m-%d}"
+
+
+def _degree(value: float) -> str:
+    from math import exp
+
+    return f"{exp(value):.2g}"

@@ -1,0 +1,99 @@
+"""What labels, sizes and proportions say of who is who."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from deixis.ontology.graph import RelationGraph
+from deixis.ontology.tbox import default_ontology
+from deixis.reasoning.errors import SettingError
+from deixis.reasoning.graded.unary import (
+    SizeModel,
+    UnaryWeights,
+    label_ratios,
+    learn_size,
+    size_evidence,
+    size_model,
+    unary_evidence,
+)
+from deixis.reasoning.labels import Label
+
+ONTOLOGY = default_ontology()
+R, KINDS, SIZES = ONTOLOGY.relations, ONTOLOGY.kinds, ONTOLOGY.sizes
+SPOON, PLATE = (kind.iri for word in ("soup spoon", "dinner plate") if (kind := KINDS.of_word(word)))
+TABLE = np.array([[[0.0, 0.0], [0.04, 0.18]], [[0.1, 0.0], [0.37, 0.27]], [[0.5, 0.0], [0.5, 0.0]]])
+TWO = RelationGraph.from_facts(R, ["soup_spoon", "dinner_plate"], [], kinds=[SPOON, PLATE])
+
+
+def test_a_soup_spoon_is_no_plate() -> None:
+    found = size_evidence([SPOON, PLATE], TABLE, SIZES)
+    assert found.argmax(axis=1).tolist() == [0, 1]
+    assert found[0, 1] < 0 < found[0, 0] and found[1, 0] < 0 < found[1, 1]
+
+
+def test_sizes_are_finite_of_points_and_never_rule_out() -> None:
+    found = size_evidence([SPOON, PLATE, None], TABLE, SIZES)
+    assert np.isfinite(found).all()
+    assert found.min() >= np.log(0.05) - 1e-9
+    assert (found[2] == 0).all()
+
+
+def test_a_spoon_lies_as_well_across() -> None:
+    turned = TABLE[:, :, ::-1]
+    assert size_evidence([SPOON], turned, SIZES) == pytest.approx(size_evidence([SPOON], TABLE, SIZES))
+
+
+def test_pixels_say_nothing_until_relative_sizes_are_learned_and_these_know_no_scale() -> None:
+    assert (size_evidence([SPOON], TABLE * 900, SIZES, metric=False) == 0).all()
+    relative = {SPOON: learn_size([(TABLE[:2], 0), (TABLE[:2] * 3, 0)], relative=True)}
+    here, there = (size_evidence([SPOON], TABLE[:2] * f, SIZES, relative, metric=False) for f in (1, 900))
+    assert here == pytest.approx(there)
+    assert here[0, 0] > 0 > here[0, 1]
+
+
+def test_a_learned_range_is_robust_and_replaces_the_shipped_one() -> None:
+    views = [(TABLE * f, 0) for f in (0.48, 0.5, 0.52, 40.0)]
+    learned = learn_size(views)
+    assert np.exp(learned.length[0]) == pytest.approx(0.09, rel=0.05)
+    assert learned.views == 4
+    small = TABLE * 0.5
+    assert size_evidence([SPOON], small, SIZES, {SPOON: learned})[0, 0] > size_evidence([SPOON], small, SIZES)[0, 0]
+
+
+def test_the_shipped_range_is_two_deviations_wide() -> None:
+    usual, model = SIZES.of(SPOON), size_model(SIZES.of(SPOON))
+    assert isinstance(model, SizeModel)
+    assert np.exp(model.length[0]) == pytest.approx(usual.length.typical)
+    assert 4 * model.length[1] == pytest.approx(np.log(usual.length.greatest / usual.length.least))
+
+
+def test_labels_weigh_by_confidence_and_a_certain_one_decides() -> None:
+    labels = [Label("soup spoon", 0.8), None, Label("dinner plate", 1.0)]
+    found = label_ratios(TWO, labels, KINDS)
+    assert np.exp(found[:, 0]) == pytest.approx([0.8 * 2 + 0.2, 0.2])
+    assert found[:, 1].tolist() == [0.0, 0.0]
+    assert found[0, 2] == -np.inf and found[1, 2] == pytest.approx(np.log(2))
+
+
+def test_a_label_of_no_confidence_says_nothing() -> None:
+    assert (label_ratios(TWO, [Label("soup spoon", 0.0)], KINDS) == 0).all()
+
+
+def test_all_evidence_adds_up_with_its_weights() -> None:
+    labels = [Label("soup spoon", 0.8), None, None]
+    both = unary_evidence(TWO, TABLE, labels, KINDS, SIZES)
+    sizes = size_evidence([SPOON, PLATE], TABLE, SIZES)
+    assert both == pytest.approx(label_ratios(TWO, labels, KINDS) + sizes)
+    half = UnaryWeights(labels=0.0, sizes=0.5)
+    certain = [Label("dinner plate", 1.0), None, None]
+    assert unary_evidence(TWO, TABLE, certain, KINDS, SIZES, weights=half) == pytest.approx(sizes / 2)
+
+
+def test_what_cannot_be_is_refused() -> None:
+    with pytest.raises(SettingError, match="one view"):
+        learn_size([])
+    with pytest.raises(SettingError, match="at least 0"):
+        UnaryWeights(labels=-1.0)
+    with pytest.raises(SettingError, match="finite"):
+        UnaryWeights(sizes=np.nan)
