@@ -18,6 +18,7 @@ from deixis.grammar.errors import shortened
 from deixis.grammar.files import read_text
 from deixis.ontology.allen import SYMBOLS, Allen, allen_mask, members
 from deixis.ontology.errors import DeixisError
+from deixis.ontology.json_text import parse_json
 from deixis.reasoning.errors import SettingError
 from deixis.reasoning.temporal.bounds import FARTHEST, UNKNOWN, Bounds
 from deixis.reasoning.temporal.fluent import (
@@ -32,7 +33,6 @@ from deixis.reasoning.temporal.fluent import (
 UNITS = {"s": 1.0, "ms": 0.001, "min": 60.0, "h": 3600.0}
 """Accepted units, and how many seconds one is."""
 
-MAX_DIGITS = 400
 _ALLEN = {relation.name.lower(): relation for relation in Allen} | dict(zip(SYMBOLS, Allen, strict=True))
 _BOUNDS_KEYS = ("lower", "upper", "lower_open", "upper_open")
 
@@ -71,7 +71,8 @@ def parse_fluents(text: str, file: str = "<fluents>") -> FluentFile:
 
     Raises FluentFileError, with line and column where the text is no JSON, else with the path to the place.
     """
-    data = _object(_parsed(text, file), file, ("origin", "unit", "fluents", "relations"), ("origin", "fluents"))
+    parsed = parse_json(text, file, FluentFileError, "is no time; write null for a bound that is not known")
+    data = _object(parsed, file, ("origin", "unit", "fluents", "relations"), ("origin", "fluents"))
     origin = _text(data["origin"], f"{file}: origin")
     unit = _text(data.get("unit", "s"), f"{file}: unit")
     if unit not in UNITS:
@@ -88,41 +89,6 @@ def parse_fluents(text: str, file: str = "<fluents>") -> FluentFile:
         for position, entry in enumerate(_list(data.get("relations", []), f"{file}: relations"))
     )
     return FluentFile(origin, tuple(fluents.values()), relations, file)
-
-
-def _parsed(text: str, file: str) -> Any:
-    try:
-        return json.loads(
-            text.removeprefix("\ufeff"),
-            parse_constant=_refuse_constant,
-            parse_int=_whole_number,
-            object_pairs_hook=_without_repeats,
-        )
-    except json.JSONDecodeError as error:
-        raise FluentFileError(f"{file}:{error.lineno}:{error.colno}: this is no JSON: {error.msg}") from error
-    except RecursionError as error:
-        raise FluentFileError(f"{file}: the JSON is nested too deeply") from error
-    except ValueError as error:
-        raise FluentFileError(f"{file}: {error}") from error
-
-
-def _refuse_constant(name: str) -> float:
-    raise ValueError(f"{name} is no time; write null for a bound that is not known")
-
-
-def _whole_number(digits: str) -> int:
-    if len(digits) > MAX_DIGITS:
-        raise ValueError(f"a number of {len(digits)} digits is too large")
-    return int(digits)
-
-
-def _without_repeats(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    found = dict(pairs)
-    if len(found) != len(pairs):
-        keys = [key for key, _ in pairs]
-        twice = next(key for key in keys if keys.count(key) > 1)
-        raise ValueError(f"the key '{shortened(twice)}' stands twice in one object")
-    return found
 
 
 def _fluent(data: Any, where: str, scale: float) -> Fluent:

@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from deixis.ontology.json_text import parse_json
 from deixis.perception.annotations import annotation_reader
 from deixis.perception.checks import mapping, number, shown, text
 from deixis.perception.errors import SceneError
@@ -55,34 +56,7 @@ def _parsed(path: Path) -> Any:
         raise SceneError(f"{path}: the file is not UTF-8 (byte {error.start})") from error
     except ValueError as error:
         raise SceneError(f"{path}: cannot be read: {error}") from error
-    try:
-        return json.loads(
-            content, parse_constant=_refuse_constant, parse_int=_whole_number, object_pairs_hook=_without_repeats
-        )
-    except json.JSONDecodeError as error:
-        raise SceneError(f"{path}:{error.lineno}:{error.colno}: this is no JSON: {error.msg}") from error
-    except RecursionError as error:
-        raise SceneError(f"{path}: the JSON is nested too deeply") from error
-    except ValueError as error:
-        raise SceneError(f"{path}: {error}") from error
-
-
-def _refuse_constant(name: str) -> float:
-    raise ValueError(f"{name} is no number that a coordinate can be; leave the object out")
-
-
-def _whole_number(digits: str) -> int:
-    if len(digits) > 4000:
-        raise ValueError(f"a number of {len(digits)} digits is too large")
-    return int(digits)
-
-
-def _without_repeats(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    found = dict(pairs)
-    if len(found) != len(pairs):
-        keys = [key for key, _ in pairs]
-        raise ValueError(f"the key '{next(key for key in keys if keys.count(key) > 1)}' stands twice in one object")
-    return found
+    return parse_json(content, str(path), SceneError, "is no number that a coordinate can be; leave the object out")
 
 
 def scene_from_dict(data: Any, file: str, image: str | int | None = None) -> Scene:

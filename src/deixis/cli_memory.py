@@ -46,7 +46,7 @@ def register(app: typer.Typer) -> None:
 def learn(
     script: Script,
     scene: SceneFile,
-    engine: Annotated[str, typer.Option(help="exact, or similarity: the paper's.")] = "exact",
+    engine: Annotated[str, typer.Option(help="exact, graded, or similarity: the paper's.")] = "exact",
     time_limit: TimeLimit = 10.0,
     hide_labels: HideLabels = False,
     image: Image = None,
