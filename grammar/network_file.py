@@ -28,7 +28,7 @@ from deixis.reasoning.networks.network import Constraint, Network
 
 MOST_DIGITS = 15  # of an index
 HEADER = re.compile(r"\s*(\d+)\s*(?:#\s*(.*?)|(\S.*?)?)\s*$")
-LINE = re.compile(r"\s*(\d+)\s+(\d+)\s*\((.*)\)\s*(?:#.*)?$")
+LINE = re.compile(r"\s*(\d+)\s+(\d+)\s*\((.*?)\)\s*(?:#.*)?$")
 ATOM = re.compile(r"[^\s()]*\([^()]*\)|[^\s()]+")
 
 
@@ -100,8 +100,8 @@ class _Reader:
                 self._constraint(number, line, header[1], constraints)
             if len(self._problems) >= SHOWN:
                 break
-        if header is not None:
-            found.append(self._network(header, constraints))
+        if header is not None and len(self._problems) < SHOWN:
+            self._unended(header[0])
         if not found and not self._problems:
             self._wrong(
                 1, "", 0, 0, "here is no network", "the first line is the largest index, as in '9 # ten things'"
@@ -139,8 +139,21 @@ class _Reader:
             source = Source(self._file, number, match.start(1) + 1, number, len(line) + 1)
             constraints[relation[0]].append(Constraint(int(match[1]), int(match[2]), relation[1], source))
 
+    def _unended(self, header: int) -> None:
+        """A network without its dot may be the beginning of one that was cut off."""
+        number = max(k for k, line in enumerate(self._lines, start=1) if line.strip())
+        line = self._lines[number - 1]
+        message = f"this is the last line, and the network of line {header} has not ended"
+        hint = "a line with a dot ends a network: add it if the file is all there, else get the rest of the file"
+        self._wrong(number, line, 0, len(line), message, hint)
+
     def _relation(self, number: int, line: str, match: re.Match[str]) -> tuple[str, int] | None:
         """The name of the calculus, and the relation in it."""
+        stray = re.search(r"[()]", ATOM.sub(lambda atom: " " * len(atom[0]), match[3]))
+        if stray is not None:
+            start, hint = match.start(3) + stray.start(), "write one pair of parentheses, as in '0 1 ( < m )'"
+            self._wrong(number, line, start, start + 1, "a constraint has one list of relations", hint)
+            return None
         names, mask, well = set(), 0, True
         for atom in ATOM.finditer(match[3]):
             start = match.start(3) + atom.start()

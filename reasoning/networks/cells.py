@@ -42,6 +42,10 @@ class Cells(ABC):
         """What all pairs may still be, (n, n, words of 64 atoms)."""
 
     @abstractmethod
+    def relations_of(self, firsts: NDArray[np.int64], seconds: NDArray[np.int64]) -> Words:
+        """What pairs (m,), (m,) may still be, (m, words of 64 atoms)."""
+
+    @abstractmethod
     def next_open(self, start: int) -> int:
         """The first pair i < k that may be several things, as i * n + k, from ``start`` on; n * n where none is."""
 
@@ -78,6 +82,9 @@ class Masks(Cells):
 
     def relations(self) -> Words:
         return self.masks.astype(np.uint64)[:, :, None]
+
+    def relations_of(self, firsts: NDArray[np.int64], seconds: NDArray[np.int64]) -> Words:
+        return self.masks[firsts, seconds].astype(np.uint64)[:, None]
 
     def next_open(self, start: int) -> int:
         from deixis.reasoning.networks.mask_kernels import next_open
@@ -127,6 +134,13 @@ class Planes(Cells):
         size = len(self.planes)
         out = np.empty((size, size, (self._tables.atoms + 63) // 64), dtype=np.uint64)
         relations(self.planes, out)
+        return out
+
+    def relations_of(self, firsts: NDArray[np.int64], seconds: NDArray[np.int64]) -> Words:
+        from deixis.reasoning.networks.kernels import relations_of
+
+        out = np.empty((len(firsts), (self._tables.atoms + 63) // 64), dtype=np.uint64)
+        relations_of(firsts, seconds, self.planes, out)
         return out
 
     def next_open(self, start: int) -> int:

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from deixis.reasoning.calculi.calculus import Calculus, ProductCalculus
 from deixis.reasoning.networks.network import Network, on_axes
 from deixis.reasoning.networks.state import Progress, State
-from deixis.reasoning.networks.tables import relation_of
+from deixis.reasoning.networks.tables import relation_of, words_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,6 +42,14 @@ class Closure:
     def consistent(self) -> bool:
         """Whether no contradiction was found; that none exists, only a tractable subclass or a search can tell."""
         return self.emptied is None
+
+    def told(self) -> NDArray[np.int64]:
+        """The pairs i < j, (m, 2), of which something is known."""
+        calculus = self.network.calculus
+        axes = calculus.axes if isinstance(calculus, ProductCalculus) and len(self.parts) > 1 else (calculus,)
+        everything = [words_of((axis.universal,), len(axis.atoms))[0] for axis in axes]
+        known = [(part != full).any(axis=2) for part, full in zip(self.parts, everything, strict=True)]
+        return np.argwhere(np.triu(np.logical_or.reduce(known), 1))
 
     def relation(self, first: int, second: int) -> int:
         """The relation of two things as a set of atoms."""

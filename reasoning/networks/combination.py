@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from deixis.reasoning.networks.conflict import deletion_minimal
 from deixis.reasoning.networks.errors import NetworkError
 from deixis.reasoning.networks.link import Link
-from deixis.reasoning.networks.network import Constraint, Network
+from deixis.reasoning.networks.network import Constraint, Network, compacted
 from deixis.reasoning.networks.search import Verdict, solve
 from deixis.reasoning.networks.state import Progress, State
 
@@ -184,7 +184,10 @@ def solve_jointly(
 
 @dataclass(frozen=True)
 class JointConflict:
-    """Constraints, each with the name of its calculus, that cannot all hold; ``minimal`` as in Conflict."""
+    """Constraints, each with the name of its calculus, that cannot all hold.
+
+    ``minimal`` says that joint closure finds no contradiction after leaving out any one of them.
+    """
 
     constraints: tuple[tuple[str, Constraint], ...]
     minimal: bool
@@ -198,7 +201,7 @@ def joint_conflict(
     stated = tuple((n.calculus.name, c) for n in networks for c in n.constraints)
 
     def narrow(kept: tuple[tuple[str, Constraint], ...]) -> tuple[tuple[str, Constraint], ...] | None:
-        chosen = [n.only(c for name, c in kept if name == n.calculus.name) for n in networks]
+        chosen, _ = compacted([n.only(c for name, c in kept if name == n.calculus.name) for n in networks])
         return kept if close_jointly(chosen, bridges, deadline).emptied is not None else None
 
     if narrow(stated) is None:

@@ -2,6 +2,7 @@
 
 What a failed closure rests on is read off its trail; then constraints are left out, first many at once and then fewer,
 as long as the rest is inconsistent (the deletion filter of Chinneck and Dravnieks 1991, in chunks as Junker 2004).
+Closure does this fast, and where it does not decide, search goes on with what it left.
 """
 
 from __future__ import annotations
@@ -16,25 +17,29 @@ import numpy as np
 from deixis.reasoning.errors import LimitError
 from deixis.reasoning.networks.closure import close, closed_states
 from deixis.reasoning.networks.network import Constraint, Network
-from deixis.reasoning.networks.search import Verdict, solve
+from deixis.reasoning.networks.search import Verdict, decider, solve
 from deixis.reasoning.networks.state import State
 
 Core = tuple[Constraint, ...]
 Item = TypeVar("Item")
-Narrow = Callable[[Core], Core | None]
-"""Constraints that still do it among the given ones, or None where these do not."""
 
 
 @dataclass(frozen=True)
 class Conflict:
-    """Constraints that cannot all hold; ``minimal`` where leaving out any one of them was seen to cure it."""
+    """Constraints that cannot all hold.
+
+    ``minimal`` says that after leaving out any one of them no contradiction is left; it is False where time ran out
+    before that was seen. Where the calculus does not decide (``decided_by_closure`` is False), none is left to find.
+    """
 
     constraints: Core
     minimal: bool
 
 
-def minimal_conflict(network: Network, time_limit: float = 10.0) -> Conflict | None:
+def minimal_conflict(network: Network, time_limit: float = 10.0, inconsistent: bool = False) -> Conflict | None:
     """A deletion-minimal set of inconsistent constraints; None where none was found within ``time_limit`` seconds.
+
+    ``inconsistent`` says that the whole is known to be so: there is a conflict then, however little time there is.
 
     >>> from deixis.reasoning.calculi.registry import calculus
     >>> point = calculus("point")
@@ -52,12 +57,27 @@ def minimal_conflict(network: Network, time_limit: float = 10.0) -> Conflict | N
     def by_search(stated: Core) -> Core | None:
         return _searched(network.only(stated), deadline)
 
-    narrow: Narrow = by_closure
-    core = narrow(network.constraints)
+    core = by_closure(network.constraints)
+    if core is not None:
+        core, minimal = deletion_minimal(core, by_closure, deadline)
+        if closure_decides(network.only(core)):
+            return Conflict(core, minimal)
+    else:
+        core = network.constraints if inconsistent else by_search(network.constraints)
     if core is None:
-        narrow = by_search
-        core = narrow(network.constraints)
-    return None if core is None else Conflict(*deletion_minimal(core, narrow, deadline))
+        return None
+    try:
+        return Conflict(*deletion_minimal(core, by_search, deadline))
+    except LimitError:  # too long a search
+        return Conflict(core, False)
+
+
+def closure_decides(network: Network) -> bool:
+    """Whether closure alone tells if these constraints, and any part of them, are consistent."""
+    chosen = network.calculus
+    if decider(chosen) is not None or not chosen.decided_by_closure:
+        return False
+    return all(len(chosen.pieces(relation)) <= 1 for relation in network.arrays.relations)
 
 
 def deletion_minimal(

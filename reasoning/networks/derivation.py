@@ -23,11 +23,17 @@ FEW = 40  # things among which the shortest way is looked for right away
 
 def explain(network: Network, first: int, second: int, time_limit: float = 10.0) -> Step | None:
     """Why closure leaves of a pair what it does; None where it leaves everything, or time ran out."""
-    _require_pair(network, first, second)
-    closure = close(network, time.monotonic() + time_limit)
+    require_pair(network, first, second)
+    deadline = time.monotonic() + time_limit
+    small, things = network.compact()
+    if first not in things or second not in things:
+        return None
+    i, j = (int(np.searchsorted(things, thing)) for thing in (first, second))
+    closure = close(small, deadline)
     if not closure.complete or not closure.consistent:
         return None
-    return derive(network, first, second, closure.relation(first, second), time_limit)
+    step = derive(small, i, j, closure.relation(i, j), deadline - time.monotonic())
+    return None if step is None else _renumbered(step, things.tolist())
 
 
 def derive(network: Network, first: int, second: int, goal: int, time_limit: float = 10.0) -> Step | None:
@@ -43,7 +49,7 @@ def derive(network: Network, first: int, second: int, goal: int, time_limit: flo
         a ( < ) b   stated
         b ( < ) c   stated
     """
-    _require_pair(network, first, second)
+    require_pair(network, first, second)
     if first == second or not network.calculus.universal & ~goal:
         return None
     deadline = time.monotonic() + time_limit
@@ -81,7 +87,8 @@ def contradiction(network: Network, time_limit: float = 10.0) -> Step | None:
     return _in_rounds(network, -1, -1, 0, deadline)
 
 
-def _require_pair(network: Network, first: int, second: int) -> None:
+def require_pair(network: Network, first: int, second: int) -> None:
+    """Raises NetworkError where one of two things is none of the network."""
     for thing in (first, second):
         if not 0 <= thing < network.size:
             raise NetworkError(f"there is no thing {thing}; the network has {network.size}, numbered from 0")

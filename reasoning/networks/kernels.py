@@ -288,6 +288,15 @@ def relations(planes, out):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
+def relations_of(firsts, seconds, planes, out):  # type: ignore[no-untyped-def]
+    """Writes the relations of pairs (m,), (m,), (m, 64-bit words of atoms)."""
+    out[:] = NONE
+    for m in range(len(firsts)):
+        for atom in range(planes.shape[2]):
+            out[m, atom >> 6] |= may(planes, firsts[m], atom, seconds[m]) << np.uint64(atom & 63)
+
+
+@njit(cache=True)
 def next_open(planes, start):  # type: ignore[no-untyped-def]
     """The first pair i < k, counted i * n + k from ``start`` on, that may bear several atoms; n * n where none."""
     n, _, atoms = planes.shape

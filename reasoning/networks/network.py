@@ -89,11 +89,8 @@ class Network:
 
     def compact(self) -> tuple[Network, NDArray[np.int64]]:
         """The network of just the things that constraints are about, and their numbers here, in order."""
-        kept = np.unique(np.concatenate([self.arrays.firsts, self.arrays.seconds]))
-        place = {int(thing): position for position, thing in enumerate(kept)}
-        constraints = tuple(Constraint(place[c.first], place[c.second], c.relation, c.source) for c in self.constraints)
-        names = None if self.names is None else tuple(self.names[thing] for thing in kept)
-        return Network(self.calculus, len(kept), constraints, names), kept
+        (small,), kept = compacted([self])
+        return small, kept
 
     def stated(self, first: int, second: int) -> int:
         """What the constraints on one pair leave, read from first to second; the identity for a thing and itself."""
@@ -104,6 +101,21 @@ class Network:
             elif (constraint.second, constraint.first) == (first, second):
                 relation &= self.calculus.converse(constraint.relation)
         return relation
+
+
+def compacted(networks: Sequence[Network]) -> tuple[tuple[Network, ...], NDArray[np.int64]]:
+    """Networks over the same things, of just those that constraints of any are about; their numbers here, in order."""
+    ends = [end for network in networks for end in (network.arrays.firsts, network.arrays.seconds)]
+    kept = np.unique(np.concatenate(ends))
+    place = {int(thing): position for position, thing in enumerate(kept)}
+    return tuple(_placed(network, place) for network in networks), kept
+
+
+def _placed(network: Network, place: dict[int, int]) -> Network:
+    stated = network.constraints
+    constraints = tuple(Constraint(place[c.first], place[c.second], c.relation, c.source) for c in stated)
+    names = None if network.names is None else tuple(network.names[thing] for thing in place)
+    return Network(network.calculus, len(place), constraints, names)
 
 
 def on_axes(network: Network) -> tuple[Network, ...] | None:

@@ -38,7 +38,7 @@ class Rounds:
             pair = (first, second) if first >= 0 else self._emptied()
             if pair is not None and not self._at(*pair, len(self._tables) - 1) & ~goal:
                 return self._step(*pair, len(self._tables) - 1, goal)
-            if time.monotonic() > deadline or not self._next_round():
+            if not self._next_round(deadline):
                 return None
 
     def _emptied(self) -> tuple[int, int] | None:
@@ -65,10 +65,13 @@ class Rounds:
                     between[k] = relation
         return between
 
-    def _next_round(self) -> bool:
+    def _next_round(self, deadline: float) -> bool:
+        """Whether there is another round, and was time for it."""
         last, changed = len(self._tables) - 1, False
         table = [list(row) for row in self._tables[last]]
         for i in range(len(table)):
+            if time.monotonic() > deadline:
+                return False
             for j in range(i + 1, len(table)):
                 relation = table[i][j]
                 for other in self._between(i, j, last).values():

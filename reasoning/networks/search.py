@@ -9,13 +9,14 @@ be inconsistent (``decided_by_closure`` is False) a contradiction is still a pro
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from enum import StrEnum
 
 import numpy as np
 
-from deixis.reasoning.calculi.calculus import Calculus, bits
+from deixis.reasoning.calculi.calculus import Calculus
+from deixis.reasoning.networks.choices import Choices, FewestPieces, NextAtoms
 from deixis.reasoning.networks.closure import closed_states, whole_relation
 from deixis.reasoning.networks.link import Link
 from deixis.reasoning.networks.network import Constraint, Network
@@ -52,9 +53,14 @@ class _OutOfTime(Exception):
     """The deadline came first."""
 
 
-Open = tuple[int, int, tuple[int, ...]]
-"""A pair, and the relations to try for it."""
-Pick = Callable[[State], Open | None]
+@dataclass(frozen=True)
+class _Choice:
+    """A pair i < j that is chosen for, what is still to be tried, and where the trail was before."""
+
+    first: int
+    second: int
+    pieces: Iterator[int]
+    mark: int
 
 
 @dataclass
@@ -63,6 +69,10 @@ class _Tally:
     progress: Progress | None
     choices: int = 0
     dead_ends: int = 0
+
+    def check_clock(self) -> None:
+        if self.deadline is not None and time.monotonic() > self.deadline:
+            raise _OutOfTime
 
 
 def solve(
@@ -123,12 +133,12 @@ def _decided(network: Network, tally: _Tally, scenario: bool) -> tuple[Verdict, 
         if not complete:
             raise _OutOfTime
         for state in states:
-            if not _refine(state, _fewest_pieces(state.calculus), tally):
+            if not _refine(state, FewestPieces(state, tally.check_clock), tally):
                 return Verdict.INCONSISTENT, "", None, False
         if scenario:
             for state in states:
-                _refine(state, _next_atoms, tally)
-        found = atomic_network(network, states) if scenario else None
+                _refine(state, NextAtoms(state), tally)
+        found = atomic_network(network, states, tally) if scenario else None
     except _OutOfTime:
         return Verdict.UNDECIDED, "the time limit was reached", None, False
     if not network.calculus.decided_by_closure:
@@ -137,84 +147,49 @@ def _decided(network: Network, tally: _Tally, scenario: bool) -> tuple[Verdict, 
     return Verdict.CONSISTENT, "", found, False
 
 
-def _refine(state: State, pick: Pick, tally: _Tally) -> bool:
+def _refine(state: State, choices: Choices, tally: _Tally) -> bool:
     """Chooses until nothing is left to pick; False where every way leads to a contradiction."""
-    stack: list[tuple[int, int, Iterator[int], int]] = []
+    stack: list[_Choice] = []
     while True:
-        found = pick(state)
+        tally.check_clock()
+        found = choices.pick()
         if found is None:
             return True
-        stack.append((found[0], found[1], iter(found[2]), state.mark))
-        if not _next_choice(state, stack, tally):
+        stack.append(_Choice(found[0], found[1], iter(found[2]), state.mark))
+        if not _next_choice(state, choices, stack, tally):
             return False
+        choices.note(state.changed(stack[-1].mark))
 
 
-def _next_choice(state: State, stack: list[tuple[int, int, Iterator[int], int]], tally: _Tally) -> bool:
+def _next_choice(state: State, choices: Choices, stack: list[_Choice], tally: _Tally) -> bool:
     """Makes the next choice that closure lets stand, going back where none is left; False where none is at all."""
     while stack:
-        first, second, pieces, mark = stack[-1]
-        for piece in pieces:
+        last = stack[-1]
+        for piece in last.pieces:
+            tally.check_clock()
             tally.choices += 1
-            state.assign(first, second, piece)
+            state.assign(last.first, last.second, piece)
             if not state.close(tally.deadline, tally.progress):
                 raise _OutOfTime
             if state.emptied is None:
                 return True
             tally.dead_ends += 1
-            state.undo(mark)
-            _check_clock(tally)
+            state.undo(last.mark)
         stack.pop()
         if stack:
-            state.undo(stack[-1][3])
+            given_back = state.changed(stack[-1].mark)
+            state.undo(stack[-1].mark)
+            choices.note(np.append(given_back, last.first * state.size + last.second))
     return False
 
 
-def _check_clock(tally: _Tally) -> None:
-    if tally.deadline is not None and time.monotonic() > tally.deadline:
-        raise _OutOfTime
-
-
-def _fewest_pieces(calculus: Calculus) -> Pick:
-    """Picks the pair with the fewest tractable pieces among those with several; atoms where no subclass decides."""
-    known: dict[int, tuple[int, ...]] = {}
-
-    def pieces(relation: int) -> tuple[int, ...]:
-        if relation not in known:
-            known[relation] = calculus.pieces(relation) if calculus.decided_by_closure else atoms_of(relation)
-        return known[relation]
-
-    def pick(state: State) -> Open | None:
-        relations, ids = state.distinct()
-        counts = np.array([len(pieces(relation)) for relation in relations])
-        choices = np.triu(counts[ids], 1)
-        several = choices > 1
-        if not several.any():
-            return None
-        position = int(np.where(several, choices, np.iinfo(np.int64).max).argmin())
-        first, second = divmod(position, state.size)
-        return first, second, pieces(relations[ids[first, second]])
-
-    return pick
-
-
-def _next_atoms(state: State) -> Open | None:
-    position = state.next_open(0)
-    if position == state.size**2:
-        return None
-    first, second = divmod(position, state.size)
-    return first, second, atoms_of(state.relation(first, second))
-
-
-def atoms_of(relation: int) -> tuple[int, ...]:
-    """The atoms of a relation, each as a relation.
-
-    >>> atoms_of(0b101)
-    (1, 4)
-    """
-    return tuple(1 << code for code in bits(relation))
-
-
-def atomic_network(network: Network, states: tuple[State, ...]) -> Network:
+def atomic_network(network: Network, states: tuple[State, ...], tally: _Tally) -> Network:
     """The network of what the states of its axes say of every pair i < j."""
-    pairs = ((i, j) for i in range(network.size) for j in range(i + 1, network.size))
-    return network.only(Constraint(i, j, whole_relation(network.calculus, states, i, j)) for i, j in pairs)
+    return network.only(_atomic(network, states, tally))
+
+
+def _atomic(network: Network, states: tuple[State, ...], tally: _Tally) -> Iterator[Constraint]:
+    for i in range(network.size):
+        tally.check_clock()
+        for j in range(i + 1, network.size):
+            yield Constraint(i, j, whole_relation(network.calculus, states, i, j))

@@ -136,17 +136,32 @@ class State:
     def distinct(self) -> tuple[tuple[int, ...], NDArray[np.int64]]:
         """The relations that occur, and for each pair (n, n) the position of its own among them."""
         words = self.relations()
-        if words.shape[2] == 1:
-            values, ids = np.unique(words[:, :, 0], return_inverse=True)
-            return tuple(int(value) for value in values), ids.reshape(self.size, self.size).astype(np.int64)
-        rows = np.ascontiguousarray(words.reshape(-1, words.shape[2]))
-        packed = rows.view([("", rows.dtype)] * rows.shape[1]).ravel()
-        _, first, ids = np.unique(packed, return_index=True, return_inverse=True)
-        return tuple(relation_of(rows[k]) for k in first), ids.reshape(self.size, self.size).astype(np.int64)
+        relations, ids = distinct_rows(words.reshape(-1, words.shape[2]))
+        return relations, ids.reshape(self.size, self.size)
+
+    def relations_of(self, positions: NDArray[np.int64]) -> NDArray[np.uint64]:
+        """What pairs (m,), counted i * n + k, may still be, (m, words of 64 atoms)."""
+        return self._cells.relations_of(positions // self.size, positions % self.size)
+
+    def changed(self, mark: int) -> NDArray[np.int64]:
+        """The pairs i < k narrowed since the trail was ``mark`` long, each once, counted i * n + k."""
+        ends = self._trail[mark : self.mark, :2].astype(np.int64)
+        return np.unique(ends.min(axis=1) * self.size + ends.max(axis=1))
 
     def next_open(self, start: int) -> int:
         """The first pair i < k that may be several things, as i * n + k, from ``start`` on; n * n where none is."""
         return self._cells.next_open(start)
+
+
+def distinct_rows(words: NDArray[np.uint64]) -> tuple[tuple[int, ...], NDArray[np.int64]]:
+    """The relations among rows (m, words of 64 atoms), and for each row (m,) the position of its own among them."""
+    if words.shape[1] == 1:
+        values, ids = np.unique(words[:, 0], return_inverse=True)
+        return tuple(int(value) for value in values), ids.astype(np.int64)
+    rows = np.ascontiguousarray(words)
+    packed = rows.view([("", rows.dtype)] * rows.shape[1]).ravel()
+    _, first, ids = np.unique(packed, return_index=True, return_inverse=True)
+    return tuple(relation_of(rows[k]) for k in first), ids.astype(np.int64)
 
 
 def require_size(calculus: Calculus, size: int) -> None:

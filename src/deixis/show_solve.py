@@ -30,12 +30,14 @@ def solved_lines(solved: Solved) -> Iterator[str]:
         yield f"    {each.name}: {_count(each.pairs, 'pair')} narrowed, {_count(each.atoms, 'atom')} taken"
     if solved.conflict:
         yield from _conflict_lines(solved)
+    elif solved.verdict == "inconsistent":
+        yield "    which constraints are to blame was not found in the time that was left"
     if solved.asked is not None:
         yield from _step_lines(solved, *solved.asked)
 
 
 def _conflict_lines(solved: Solved) -> Iterator[str]:
-    kind = "" if solved.minimal else " (perhaps not all of them are needed: time ran out)"
+    kind = "" if solved.minimal else " (not proved minimal: time ran out before it was clear that all are needed)"
     yield f"These cannot all hold{kind}:"
     for network, c in solved.conflict[:MANY]:
         yield f"    {c.source}: {c.first} {c.second} ( {' '.join(network.calculus.members(c.relation))} )"
@@ -45,7 +47,11 @@ def _conflict_lines(solved: Solved) -> Iterator[str]:
 
 
 def _step_lines(solved: Solved, first: int, second: int) -> Iterator[str]:
-    if solved.step is None:
+    if solved.verdict == "inconsistent":
+        yield f"There is nothing to explain about {first} and {second}: what is stated cannot all hold."
+    elif not solved.explained:
+        yield f"Time ran out before it was clear why {first} and {second} are related as they are."
+    elif solved.step is None:
         yield f"Nothing follows about {first} and {second}."
     else:
         yield from solved.step.lines(solved.text.network)

@@ -11,9 +11,9 @@ from deixis.ontology.errors import DeixisError
 from deixis.reasoning.networks.closure import close
 from deixis.reasoning.networks.combination import joint_conflict, solve_jointly
 from deixis.reasoning.networks.conflict import minimal_conflict
-from deixis.reasoning.networks.derivation import explain
+from deixis.reasoning.networks.derivation import explain, require_pair
 from deixis.reasoning.networks.link import Link, links_between
-from deixis.reasoning.networks.network import Constraint, Network
+from deixis.reasoning.networks.network import Constraint, Network, compacted
 from deixis.reasoning.networks.search import Verdict, solve
 from deixis.reasoning.networks.state import Progress, State
 
@@ -24,6 +24,10 @@ if TYPE_CHECKING:
     from deixis.reasoning.networks.step import Step
 
 
+LAST_SHARE = 0.1
+"""Of the time limit, for saying why, where solving took all of it."""
+
+
 @dataclass(frozen=True)
 class Wish:
     """What is asked about each network, beside the verdict."""
@@ -32,6 +36,10 @@ class Wish:
     scenario: bool = False
     explain: tuple[int, int] | None = None
     time_limit: float = 60.0
+
+    def left(self, deadline: float) -> float:
+        """Seconds for saying why, when there is that verdict."""
+        return max(deadline - time.monotonic(), LAST_SHARE * self.time_limit)
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,6 +60,7 @@ class Solved:
     shown: tuple[Network, ...] = ()
     step: Step | None = None
     asked: tuple[int, int] | None = None
+    explained: bool = True  # False where time ran out before it was clear why
 
 
 def calculi_named(text: str) -> tuple[Calculus, ...]:
@@ -76,54 +85,65 @@ def solve_text(text: NetworkText, wish: Wish, progress: Progress | None = None) 
 
 def _alone(text: NetworkText, wish: Wish, progress: Progress | None) -> Solved:
     started, deadline = time.perf_counter(), time.monotonic() + wish.time_limit
+    if wish.explain is not None:
+        require_pair(text.network, *wish.explain)
     small, things = text.network.compact()
     closure = close(small, deadline, progress)
     found = solve(small, max(0.0, deadline - time.monotonic()), progress, wish.scenario)
-    solved = Solved(text, found.verdict, found.reason, closure.narrowed, 0.0)
+    solved = Solved(text, found.verdict, found.reason, closure.narrowed, 0.0, asked=wish.explain)
     if found.verdict is Verdict.INCONSISTENT:
-        conflict = minimal_conflict(text.network, wish.time_limit)
+        conflict = minimal_conflict(text.network, wish.left(deadline), inconsistent=True)
         if conflict is not None:
             stated = tuple((text.network, c) for c in conflict.constraints)
             solved = replace(solved, conflict=stated, minimal=conflict.minimal)
     elif wish.scenario and found.scenario is not None:
         solved = replace(solved, shown=(_renumbered(text.network, found.scenario.constraints, things.tolist()),))
     elif wish.closure and closure.complete:
-        relations = (
-            Constraint(i, j, closure.relation(i, j)) for i in range(small.size) for j in range(i + 1, small.size)
-        )
+        relations = (Constraint(i, j, closure.relation(i, j)) for i, j in closure.told().tolist())
         solved = replace(solved, shown=(_renumbered(text.network, relations, things.tolist()),))
     if wish.explain is not None and found.verdict is not Verdict.INCONSISTENT:
-        step = explain(text.network, *wish.explain, wish.time_limit)
-        solved = replace(solved, step=step, asked=wish.explain)
+        ending = time.monotonic() + wish.left(deadline)
+        step = explain(text.network, *wish.explain, ending - time.monotonic())
+        solved = replace(solved, step=step, explained=step is not None or time.monotonic() <= ending)
     return replace(solved, seconds=time.perf_counter() - started)
 
 
 def _jointly(text: NetworkText, wish: Wish, progress: Progress | None) -> Solved:
-    started = time.perf_counter()
+    started, deadline = time.perf_counter(), time.monotonic() + wish.time_limit
     if wish.scenario or wish.explain is not None:
         raise DeixisError("--scenario and --explain are for one calculus at a time")
     links: Sequence[Link] = links_between([network.calculus for network in text.networks])
-    found = solve_jointly(text.networks, links, wish.time_limit, progress)
+    networks, things = compacted(text.networks)
+    found = solve_jointly(networks, links, wish.time_limit, progress)
     contributions = found.closure.contributions
     narrowed = sum(each.pairs for each in contributions)
     solved = Solved(text, found.verdict, found.reason, narrowed, 0.0, contributions=contributions)
     if found.verdict is Verdict.INCONSISTENT:
-        conflict = joint_conflict(text.networks, links, wish.time_limit)
-        if conflict is not None:
-            by_name = {network.calculus.name: network for network in text.networks}
-            stated = tuple((by_name[name], c) for name, c in conflict.constraints)
-            solved = replace(solved, conflict=stated, minimal=conflict.minimal)
+        solved = _blamed(solved, links, wish.left(deadline))
     elif wish.closure:
         pairs = zip(text.networks, found.closure.states, strict=True)
-        solved = replace(solved, shown=tuple(_closed(network, state) for network, state in pairs))
+        solved = replace(solved, shown=tuple(_closed(network, state, things.tolist()) for network, state in pairs))
     return replace(solved, seconds=time.perf_counter() - started)
 
 
-def _closed(network: Network, state: State) -> Network:
-    relations = (
-        Constraint(i, j, state.relation(i, j)) for i in range(network.size) for j in range(i + 1, network.size)
-    )
-    return _renumbered(network, relations, list(range(network.size)))
+def _blamed(solved: Solved, links: Sequence[Link], seconds: float) -> Solved:
+    """With the conflict that joint closure finds, else with that of a network which is inconsistent by itself."""
+    deadline, networks = time.monotonic() + seconds, solved.text.networks
+    joint = joint_conflict(networks, links, seconds / 2)
+    if joint is not None:
+        by_name = {network.calculus.name: network for network in networks}
+        stated = tuple((by_name[name], c) for name, c in joint.constraints)
+        return replace(solved, conflict=stated, minimal=joint.minimal)
+    for network in networks:
+        own = minimal_conflict(network, deadline - time.monotonic())
+        if own is not None:
+            return replace(solved, conflict=tuple((network, c) for c in own.constraints), minimal=own.minimal)
+    return solved
+
+
+def _closed(network: Network, state: State, things: list[int]) -> Network:
+    relations = (Constraint(i, j, state.relation(i, j)) for i in range(state.size) for j in range(i + 1, state.size))
+    return _renumbered(network, relations, things)
 
 
 def _renumbered(network: Network, constraints: Iterable[Constraint], things: list[int]) -> Network:

@@ -11,6 +11,9 @@ from commands import deixis
 from deixis.examples_data import example
 from deixis.grammar.network_file import parse_networks
 from deixis.reasoning.calculi.registry import calculus
+from deixis.reasoning.networks.search import Verdict
+from deixis.show_solve import solved_lines
+from deixis.solving import Solved
 
 FIGURE_5, SETTING = example("closed_but_inconsistent.csp"), example("place_setting.csp")
 JOINT = example("boxes_and_regions.csp")
@@ -109,6 +112,46 @@ def test_things_that_nothing_is_said_about_cost_nothing(tmp_path: Path) -> None:
     assert code == 0 and "100,000,000 things" in out
 
 
+def test_gaps_in_the_numbering_cost_nothing_to_explain_or_to_close_jointly(tmp_path: Path) -> None:
+    path = write(tmp_path, "50000000\n0 7 ( < )\n7 50000000 ( < )\n.")
+    code, out, _ = deixis("solve", path, "--calculus", "allen", "--explain", 0, 50_000_000)
+    assert code == 0 and out.splitlines()[1] == "0 ( < ) 50000000   composed"
+    code, out, _ = deixis("solve", path, "--calculus", "allen", "--explain", 0, 8)
+    assert code == 0 and "Nothing follows about 0 and 8" in out
+    joint = "50000000\n0 7 ( ra:<,< )\n7 50000000 ( ra:<,< )\n{}.".format
+    code, out, _ = deixis("solve", write(tmp_path, joint("0 50000000 ( rcc8:EC )\n")), "--calculus", "ra+rcc8")
+    assert code == 1 and "network.csp:4:1: 0 50000000 ( EC )" in out and "any one of these" in out
+    code, out, _ = deixis("solve", write(tmp_path, joint("")), "--calculus", "ra+rcc8", "--closure")
+    assert code == 0 and "0 50000000 ( ra:<,< )" in [" ".join(line.split()) for line in out.splitlines()]
+
+
+def test_of_what_is_inconsistent_there_is_nothing_to_explain(tmp_path: Path) -> None:
+    path = write(tmp_path, CIRCLE)
+    code, out, _ = deixis("solve", path, "--calculus", "point", "--explain", 0, 1)
+    assert code == 1 and "These cannot all hold" in out
+    assert out.splitlines()[-1] == "There is nothing to explain about 0 and 1: what is stated cannot all hold."
+    code, _, err = deixis("solve", path, "--calculus", "point", "--explain", 0, 9)
+    assert code == 2 and "no thing 9" in err
+
+
+def test_one_calculus_that_only_search_refutes_is_blamed_among_several(tmp_path: Path) -> None:
+    lines = ["3 0 m s", "3 1 o", "3 2 m s", "0 1 d di", "1 2 d di", "0 2 f fi"]
+    parts = (line.split(maxsplit=2) for line in lines)
+    said = [f"{i} {j} ( {' '.join(f'ra:{sign},=' for sign in signs.split())} )" for i, j, signs in parts]
+    path = write(tmp_path, "\n".join(["4", *said, "0 4 ( rcc8:DC )", "."]))
+    code, out, _ = deixis("solve", path, "--calculus", "ra+rcc8")
+    assert code == 1
+    assert len([line for line in out.splitlines() if ".csp:" in line]) == 6 and "any one of these" in out
+
+
+def test_a_conflict_for_which_time_was_short_says_that_it_may_not_be_minimal() -> None:
+    (text,) = parse_networks(FIGURE_5.read_text(encoding="utf-8"), [calculus("allen")])
+    stated = tuple((text.network, c) for c in text.network.constraints)
+    solved = Solved(text, Verdict.INCONSISTENT, "", 0, 0.0, conflict=stated, minimal=False)
+    lines = list(solved_lines(solved))
+    assert "not proved minimal" in lines[1] and lines[-1] == "Leave out or change some of these."
+
+
 @pytest.mark.parametrize(
     ("text", "options", "says"),
     [
@@ -120,6 +163,8 @@ def test_things_that_nothing_is_said_about_cost_nothing(tmp_path: Path) -> None:
         (CHAIN, ["--calculus", "allen", "--explain", "0", "7"], "no thing 7"),
         ("1\n0 1 ( ovrlaps )\n.", ["--calculus", "allen"], "did you mean 'overlaps'"),
         ("", ["--calculus", "allen"], "no network"),
+        ("2\n0 1 ( < )\n1 2 ( < )\n", ["--calculus", "allen"], "has not ended"),
+        ("1\n0 1 ( < ) ( > )\n.", ["--calculus", "allen"], "one list of relations"),
     ],
 )
 def test_bad_input_is_one_message(tmp_path: Path, text: str, options: list[str], says: str) -> None:

@@ -41,7 +41,8 @@ def test_several_networks_comments_and_empty_lines() -> None:
 
 
 @pytest.mark.parametrize(
-    "text", ["1\n0 1 (<)", "1\n0 1 (<)\n", "\ufeff1\r\n0 1 (<)\r\n.\r\n", "\n\n 1 #\n0\t1\t( < ) # why\n."]
+    "text",
+    ["1\n0 1 (<)\n.", "1\n0 1 (<) # why (not)\n.\n", "\ufeff1\r\n0 1 (<)\r\n.\r\n", "\n\n 1 #\n0\t1\t( < ) # why\n."],
 )
 def test_forms_that_say_the_same(text: str) -> None:
     assert read(text, "point") == [(0, 1, ("<",))]
@@ -79,6 +80,10 @@ def test_an_empty_relation_is_read_as_the_contradiction_it_is() -> None:
         ("2\n  0 1 ( < ) m\n.", ":2:3:", "expected a constraint"),
         ("2\n0 1 ( < \n.", ":2:1:", "expected a constraint"),
         ("2\n0 1 ( rcc8:EC )\n.", ":2:7:", "no relation"),
+        ("2\n0 1 ( < ) ( > )\n.", ":2:9:", "one list of relations"),
+        ("2\n0 1 ( < m ) (= )\n.", ":2:11:", "one list of relations"),
+        ("2\n0 1 ( < )\n1 2 ( < )\n\n", ":3:1:", "the network of line 1 has not ended"),
+        ("2\n0 1 ( < )\n.\n1\n# cut off", ":5:1:", "the network of line 4 has not ended"),
     ],
 )
 def test_what_is_wrong_is_shown_in_its_place(text: str, place: str, says: str) -> None:
@@ -92,7 +97,7 @@ def test_what_is_wrong_is_shown_in_its_place(text: str, place: str, says: str) -
 
 def test_all_that_is_wrong_is_shown_at_once_and_not_more_than_can_be_read() -> None:
     with pytest.raises(NetworkFileError) as error:
-        parse_networks("1\n0 1 (?)\n0 2 (<)\n0 1 (!)\n", [POINT])
+        parse_networks("1\n0 1 (?)\n0 2 (<)\n0 1 (!)\n.", [POINT])
     assert [problem.source.line for problem in error.value.problems] == [2, 3, 4]
     with pytest.raises(NetworkFileError) as error:
         parse_networks("1\n" + "x\n" * 100_000, [POINT])

@@ -48,6 +48,38 @@ def test_a_conflict_that_only_search_finds_is_minimal_too() -> None:
     assert_minimal(Network(ALLEN, 7, constraints), conflict)
 
 
+# Allen's (1983) Figure 5, which only search finds inconsistent, and one of its pairs once more
+FIGURE_5 = ((3, 0, "m s"), (3, 1, "o"), (3, 2, "m s"), (0, 1, "d di"), (1, 2, "d di"), (0, 2, "f fi"))
+STATED = tuple(Constraint(i, j, ALLEN.relation(signs.split())) for i, j, signs in FIGURE_5)
+
+
+def test_what_closure_refutes_is_thinned_out_by_search() -> None:
+    network = Network(ALLEN, 4, (*STATED, Constraint(0, 1, ALLEN.relation(["o", "di"]))))
+    assert solve(network).refuted
+    conflict = minimal_conflict(network)
+    assert conflict == Conflict(STATED, True)
+    assert_minimal(network, conflict)
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.lists(st.tuples(st.integers(0, 4), st.integers(0, 4), st.integers(0, ALLEN.universal)), max_size=4))
+def test_conflicts_around_one_that_closure_misses_are_minimal_by_search(more: list[tuple[int, int, int]]) -> None:
+    network = Network(ALLEN, 5, STATED + tuple(Constraint(i, j, r) for i, j, r in more if i != j))
+    assert_minimal(network, minimal_conflict(network))
+
+
+def test_a_conflict_that_is_known_to_be_there_is_named_however_little_time_there_is() -> None:
+    conflict = minimal_conflict(Network(ALLEN, 4, STATED), time_limit=0.0, inconsistent=True)
+    assert conflict == Conflict(STATED, False)
+
+
+def test_the_ten_names_are_thinned_out_in_the_calculus_that_decides_them() -> None:
+    ten = calculus("ten")
+    circle = [(0, 1), (1, 2), (2, 0), (0, 3)]
+    network = Network(ten, 4, tuple(Constraint(i, j, ten.relation(["left"])) for i, j in circle))
+    assert_minimal(network, minimal_conflict(network))
+
+
 @pytest.mark.parametrize("things", [2, 150, 2000])
 def test_ten_thousand_contradictory_constraints_take_bounded_time(things: int) -> None:
     rng = np.random.default_rng(things)

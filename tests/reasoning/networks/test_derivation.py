@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import time
+
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -12,6 +14,7 @@ from deixis.reasoning.networks.closure import close
 from deixis.reasoning.networks.conflict import minimal_conflict
 from deixis.reasoning.networks.derivation import contradiction, derive, explain
 from deixis.reasoning.networks.network import Constraint, Network
+from deixis.reasoning.networks.rounds import Rounds
 from deixis.reasoning.networks.step import Step
 
 POINT, ALLEN, RA = calculus("point"), calculus("allen"), calculus("ra")
@@ -64,7 +67,11 @@ def test_every_minimal_conflict_that_closure_finds_is_derived_to_nothing(network
     if not close(network).consistent:
         conflict = minimal_conflict(network)
         assert conflict is not None
-        step = contradiction(network.only(conflict.constraints))
+        thinned = network.only(conflict.constraints)
+        step = contradiction(thinned)
+        if close(thinned).consistent:  # search left out what closure needs
+            assert step is None
+            return
         assert step is not None and step.relation == 0
         assert_sound(step, network)
 
@@ -90,6 +97,14 @@ def test_a_wide_goal_needs_no_more_than_what_gives_it() -> None:
     assert next(iter(step.lines(network))) == "fork ( <; any ) spoon   composed"
     assert derive(network, 0, 2, exact) is None
     assert derive(network, 0, 2, RA.universal) is None
+
+
+def test_rounds_keep_to_their_deadline() -> None:
+    before = POINT.relation(["<"])
+    network = Network(POINT, 300, tuple(Constraint(i, i + 1, before) for i in range(299)))
+    started = time.monotonic()
+    assert Rounds(network).derive(0, 299, before, started + 0.2) is None
+    assert time.monotonic() - started < 2.0
 
 
 def test_a_long_chain_is_derived_in_time() -> None:

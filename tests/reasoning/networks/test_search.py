@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from itertools import combinations, product
 
 import numpy as np
@@ -10,11 +11,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from deixis.reasoning.calculi.calculus import ProductCalculus, bits
+from deixis.reasoning.calculi.calculus import Calculus, ProductCalculus, bits
 from deixis.reasoning.calculi.registry import calculus
+from deixis.reasoning.networks.choices import FewestPieces, atoms_of
 from deixis.reasoning.networks.closure import close
 from deixis.reasoning.networks.network import Constraint, Network
-from deixis.reasoning.networks.search import Verdict, atoms_of, scenario, solve
+from deixis.reasoning.networks.search import Verdict, scenario, solve
+from deixis.reasoning.networks.state import State
 
 ALLEN, RCC8, RA = calculus("allen"), calculus("rcc8"), calculus("ra")
 PAIRS = list(combinations(range(4), 2))
@@ -127,6 +130,47 @@ def test_the_ten_names_are_decided_in_the_rectangle_algebra() -> None:
     found = scenario(Network(ten, 3, (*circle[:2], Constraint(2, 0, left | right))))
     assert found is not None
     assert [ten.members(found.stated(2, 0))] == [("right",)]
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.sampled_from([ALLEN, RCC8, RA]), st.integers(0, 2**32 - 1))
+def test_the_pair_picked_is_that_of_looking_through_all(chosen: Calculus, seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    state = State(chosen, 7, traced=True)
+    choices = FewestPieces(state, lambda: None)
+    marks: list[int] = []
+    for _ in range(25):
+        if marks and (state.emptied is not None or rng.random() < 0.3):
+            mark = marks.pop(int(rng.integers(len(marks))))
+            marks = [other for other in marks if other <= mark]
+            changed = state.changed(mark)
+            state.undo(mark)
+        else:
+            marks.append(state.mark)
+            i, k = rng.choice(7, 2, replace=False)
+            codes = rng.integers(len(chosen.atoms), size=4)
+            state.assign(int(i), int(k), sum(1 << int(code) for code in set(codes)))
+            state.close()
+            changed = state.changed(marks[-1])
+        choices.note(changed)
+        counts = {(i, k): len(chosen.pieces(state.relation(i, k))) for i, k in combinations(range(7), 2)}
+        best = min(((count, pair) for pair, count in counts.items() if count > 1), default=None)
+        picked = choices.pick()
+        assert (None if best is None else best[1]) == (None if picked is None else picked[:2])
+        if picked is not None:
+            choices.note(np.array([picked[0] * 7 + picked[1]]))
+
+
+@pytest.mark.parametrize("scenario", [False, True])
+def test_a_large_network_keeps_to_its_time_limit(scenario: bool) -> None:
+    """Sparse, and half of all relations are outside the tractable class, so that choices abound."""
+    rng = np.random.default_rng(3)
+    pairs = [(int(i), int(j)) for i, j in rng.integers(0, 1500, (4000, 2)) if i != j]
+    stated = tuple(Constraint(i, j, int(rng.integers(1, ALLEN.universal)) | 0x111) for i, j in pairs)
+    solve(FIGURE_5)  # compiles
+    started = time.perf_counter()
+    solve(Network(ALLEN, 1500, stated), time_limit=1.0, scenario=scenario)
+    assert time.perf_counter() - started < 3.0
 
 
 def test_a_time_limit_of_nothing_leaves_it_undecided() -> None:
