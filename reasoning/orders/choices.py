@@ -87,35 +87,46 @@ class Search:
         self._tails = np.array([row[0] for row in rows], np.int64)
         self._heads = np.array([row[1] for row in rows], np.int64)
         self._strict = np.array([row[2] for row in rows], np.bool_)
+        self._bounds = self._first_part, self._first_bound, self._tails, self._heads, self._strict
+        self._taken = np.full(len(choices), -1, np.int64)
 
     def picture(self, state: State) -> State | None:
         """A state below ``state`` in which every choice is settled; None where there is none.
 
-        Raises OutOfTimeError at the deadline.
+        A single dive that takes what the last picture took comes first, since most pictures are found so. Raises
+        OutOfTimeError at the deadline.
         """
-        alive = np.ones(self._first_part[-1], np.bool_)
-        pending = np.ones(len(self._first_part) - 1, np.bool_)
-        return self._search(state.copy(), alive, pending)
+        from deixis.reasoning.orders.kernels import dive
+
+        self._check_clock()
+        below = state.copy()
+        if dive(below.weak, below.strong, *self._bounds, *self._open(), self._taken):
+            return below
+        return self._search(state.copy(), *self._open())
+
+    def _open(self) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+        """All alternatives left, and all choices to be made."""
+        return np.ones(self._first_part[-1], np.bool_), np.ones(len(self._first_part) - 1, np.bool_)
+
+    def _check_clock(self) -> None:
+        if time.monotonic() > self._deadline:
+            raise OutOfTimeError("the time limit struck before every choice in the facts was weighed")
 
     def settled(self, state: State) -> State | None:
         """The state with everything added that single choices force; None where one has nothing left."""
         below = state.copy()
-        alive = np.ones(self._first_part[-1], np.bool_)
-        pending = np.ones(len(self._first_part) - 1, np.bool_)
-        return None if self._propagate(below, alive, pending) == -2 else below
+        return None if self._propagate(below, *self._open()) == -2 else below
 
     def _propagate(self, state: State, alive: NDArray[np.bool_], pending: NDArray[np.bool_]) -> int:
         from deixis.reasoning.orders.kernels import propagate
 
-        bounds = (self._first_part, self._first_bound, self._tails, self._heads, self._strict)
-        return int(propagate(state.weak, state.strong, *bounds, alive, pending))
+        return int(propagate(state.weak, state.strong, *self._bounds, alive, pending))
 
     def _search(self, state: State, alive: NDArray[np.bool_], pending: NDArray[np.bool_]) -> State | None:
         """Depth first with a stack of its own, so that many choices are no deep recursion."""
         stack = [(state, alive, pending)]
         while stack:
-            if time.monotonic() > self._deadline:
-                raise OutOfTimeError("the time limit struck before every choice in the facts was weighed")
+            self._check_clock()
             state, alive, pending = stack.pop()
             choice = self._propagate(state, alive, pending)
             if choice == -1:

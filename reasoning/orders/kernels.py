@@ -310,3 +310,26 @@ def propagate(weak, strong, first_part, first_bound, tails, heads, strict, alive
             elif left < fewest:
                 best, fewest = c, left
     return best
+
+
+@njit(cache=True)
+def dive(weak, strong, first_part, first_bound, tails, heads, strict, alive, pending, taken):  # type: ignore[no-untyped-def]
+    """Settles all choices without ever going back: each takes the alternative that it took last, else the first left.
+
+    False where that ends in a contradiction, which says nothing of other ways. ``taken`` (choices,) holds what was
+    taken (-1: nothing yet) and is written.
+    """
+    while True:
+        choice = propagate(weak, strong, first_part, first_bound, tails, heads, strict, alive, pending)
+        if choice < 0:
+            return choice == -1
+        part = taken[choice]
+        if part < 0 or not alive[part]:
+            part = first_part[choice]
+            while not alive[part]:
+                part += 1
+        for b in range(first_bound[part], first_bound[part + 1]):
+            if not add_bound(weak, strong, tails[b], heads[b], strict[b]):
+                return False
+        taken[choice] = part
+        pending[choice] = False
