@@ -6,9 +6,8 @@ the plane (all but ``ba``) look at x and y only.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,6 +29,8 @@ from deixis.reasoning.errors import SettingError, UnknownCalculusError
 from deixis.reasoning.rectangle import require_boxes
 
 AXES = "xyz"
+ALONG_AN_AXIS = ("point", "allen")
+"""The calculi that look along one axis only."""
 Codes = NDArray[np.int16]  # (n, n), row: subject, column: object
 
 
@@ -92,18 +93,25 @@ class Related:
 
         Raises UnknownTermError for a name that nothing has.
         """
-        subjects, objects = self._chosen(subject), self._chosen(object)
-        for i, j in product(subjects, objects):
-            if i != j:
-                yield self.ids[i], self.signs[self.codes[i, j]], self.ids[j]
+        subjects, objects, signs = self.places(subject), self.places(object), self.signs
+        for i in subjects:
+            row = self.codes[i].tolist()
+            for j in objects:
+                if i != j:
+                    yield self.ids[i], signs[row[j]], self.ids[j]
 
-    def _chosen(self, id: str | None) -> Iterable[int]:
+    def places(self, id: str | None) -> range:
+        """The place of a thing among the ids; of all where none is named.
+
+        Raises UnknownTermError for a name that nothing has.
+        """
         if id is None:
             return range(len(self.ids))
         if id not in self.ids:
             hint = nearest(id, self.ids)
             raise UnknownTermError(f"nothing here is called '{id}'" + (f"; did you mean '{hint}'?" if hint else ""))
-        return (self.ids.index(id),)
+        place = self.ids.index(id)
+        return range(place, place + 1)
 
 
 def signs_of(name: str) -> tuple[str, ...]:

@@ -6,6 +6,7 @@ line, what lies on a thing in its middle, and a small table. All of it is soft; 
 
 from __future__ import annotations
 
+import time
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 
@@ -18,6 +19,10 @@ from deixis.reasoning.realisation.things import Things
 
 SIZE, ROUND, GAP, NEAR, MIDDLE, INSIDE, IN_LINE, TABLE = 8.0, 30.0, 20.0, 1.0, 3.0, 5.0, 0.7, 0.8
 """What a millimetre costs by which a wish is not met."""
+
+PULLS = 4.0
+"""How many facts about one thing count in full for where it is: all together, more do not count for more. Else the
+many that want to be near would press together what lies between, which :data:`SIZE` should withstand."""
 
 RIM = 5
 """Millimetres that are liked between the edge of a thing and what lies on it."""
@@ -56,7 +61,7 @@ class _Program:
         self.costs.append(cost)
         return len(self.costs) - 1
 
-    def solution(self, seconds: float) -> NDArray[np.float64] | None:
+    def solution(self, deadline: float) -> NDArray[np.float64] | None:
         from scipy.optimize import linprog
         from scipy.sparse import csr_array
 
@@ -64,21 +69,23 @@ class _Program:
         rows, columns, values = (np.array(part) for part in zip(*entries, strict=True))
         matrix = csr_array((values, (rows, columns)), shape=(len(self.rows), len(self.costs)))
         bounds = np.array([bound for _, bound in self.rows])
-        found = linprog(self.costs, matrix, bounds, method="highs", options={"time_limit": max(seconds, 0.01)})
+        seconds = max(deadline - time.monotonic(), 0.01)
+        found = linprog(self.costs, matrix, bounds, method="highs", options={"time_limit": seconds})
         return None if found.x is None else np.asarray(found.x, dtype=np.float64)
 
 
-def compose(differences: Differences, wishes: Wishes, seconds: float) -> NDArray[np.int64]:
+def compose(differences: Differences, wishes: Wishes, deadline: float) -> NDArray[np.int64]:
     """Places of all edges in millimetres, shape (2, 2 n), which satisfy every constraint exactly.
 
     What the program finds is rounded, and then moved to the nearest solution of the constraints, so that nothing
-    rests on its arithmetic. Where it finds nothing within about ``seconds`` the things stand where they can.
+    rests on its arithmetic. Where it finds nothing before the deadline, of ``time.monotonic()``, the things stand where
+    they can.
     Round things are made as long as wide where that can be; ``differences`` has these constraints afterwards.
     """
     points = 2 * len(wishes.things)
     if not points:
         return np.zeros((2, 0), dtype=np.int64)
-    found = _program(differences, wishes, points).solution(seconds)
+    found = _program(differences, wishes, points).solution(deadline) if time.monotonic() < deadline else None
     if found is None:
         return differences.nearest(np.zeros((2, points), dtype=np.int64))
     return _made_round(differences, wishes.things, _whole(found[: 2 * points].reshape(2, points)))
@@ -117,10 +124,22 @@ def _program(differences: Differences, wishes: Wishes, points: int) -> _Program:
     _wish_sizes(program, wishes, points)
     for a, b in wishes.apart:
         _wish_gap(program, differences, a, b, wishes.gap)
-    for a, b in wishes.related:
-        for axis in (0, 1):
-            _wish_near(program, differences, wishes, axis, a, b)
+    partners = np.bincount(np.array(wishes.related, dtype=np.int64).reshape(-1), minlength=points // 2)
+    pulls = np.minimum(1.0, PULLS / np.maximum(partners, 1))
+    for axis in (0, 1):
+        apart = _between(differences, axis)
+        for a, b in wishes.related:
+            if not apart[a, b]:
+                _wish_near(program, differences, wishes, axis, a, b, float(min(pulls[a], pulls[b])))
     return program
+
+
+def _between(differences: Differences, axis: int) -> NDArray[np.bool_]:
+    """The pairs (n, n) of things between which a third lies: it is near to both, and they need not be."""
+    before = differences.distances[axis, 0::2, 1::2].T <= 0  # [first, second]: see _before
+    chains = before.astype(np.float32) @ before.astype(np.float32)
+    found: NDArray[np.bool_] = (chains > 0) | (chains.T > 0)
+    return found
 
 
 def _wish_sizes(program: _Program, wishes: Wishes, points: int) -> None:
@@ -148,7 +167,9 @@ def _wish_gap(program: _Program, differences: Differences, a: int, b: int, gap: 
                 return
 
 
-def _wish_near(program: _Program, differences: Differences, wishes: Wishes, axis: int, a: int, b: int) -> None:
+def _wish_near(
+    program: _Program, differences: Differences, wishes: Wishes, axis: int, a: int, b: int, pull: float
+) -> None:
     """Two things that a fact relates: near where they are apart, else in line, or one in the middle of the other."""
     points = differences.distances.shape[1]
     start = axis * points
@@ -156,20 +177,20 @@ def _wish_near(program: _Program, differences: Differences, wishes: Wishes, axis
         if _before(differences, axis, first, second):
             between = {start + low(second): 1.0, start + high(first): -1.0}
             program.at_least(between, wishes.gap, GAP)
-            program.equal(between, wishes.gap, NEAR)
+            program.equal(between, wishes.gap, NEAR * pull)
             return
     centres = {start + low(a): 0.5, start + high(a): 0.5, start + low(b): -0.5, start + high(b): -0.5}
     for inner, outer in ((a, b), (b, a)):
         if within(differences, axis, inner, outer):
-            program.equal(centres, 0.0, MIDDLE)
+            program.equal(centres, 0.0, MIDDLE * pull)
             program.at_least({start + low(inner): 1.0, start + low(outer): -1.0}, RIM, INSIDE)
             program.at_least({start + high(outer): 1.0, start + high(inner): -1.0}, RIM, INSIDE)
             return
     oblong = ~wishes.things.round[[a, b]] & wishes.lengthwise[[a, b]]
     if axis == 1 and oblong.all():
-        program.equal({start + low(a): 1.0, start + low(b): -1.0}, 0.0, IN_LINE)
+        program.equal({start + low(a): 1.0, start + low(b): -1.0}, 0.0, IN_LINE * pull)
     else:
-        program.equal(centres, 0.0, IN_LINE)
+        program.equal(centres, 0.0, IN_LINE * pull)
 
 
 def within(differences: Differences, axis: int, inner: int, outer: int) -> bool:

@@ -45,6 +45,7 @@ class Differences:
         self._last = np.full((2, points, points), -1, dtype=np.int32)
         self._added: list[tuple[Difference, int]] = []
         self._changes: list[_Change | None] = []
+        self._kept = 0
 
     def __len__(self) -> int:
         """How many constraints were added; :meth:`back` goes back to such a number."""
@@ -61,30 +62,17 @@ class Differences:
         if distances[tail, head] <= bound:
             self._changes.append(None)
             return None
-        rows = np.flatnonzero(distances[:, tail] + bound < distances[:, head])
-        columns = np.flatnonzero(distances[head] + bound < distances[tail])
-        through = distances[rows, tail][:, None] + (bound + distances[head, columns])[None, :]
-        better = (through < distances[np.ix_(rows, columns)]) & (through < FREE // 2)
-        self._write(axis, rows, columns, through, better, head)
+        from deixis.reasoning.realisation.kernels import tighten
+
+        number = len(self._added) - 1
+        free = int(FREE) // 2
+        self._changes.append(_Change(axis, *tighten(distances, self._last[axis], tail, head, bound, number, free)))
         return None
 
-    def _write(
-        self,
-        axis: int,
-        rows: NDArray[np.int64],
-        columns: NDArray[np.int64],
-        through: NDArray[np.int64],
-        better: NDArray[np.bool_],
-        head: int,
-    ) -> None:
-        """Takes the better distances, each with the last constraint on its way, and remembers the old ones."""
-        points = self.distances.shape[1]
-        cells = (rows[:, None] * points + columns[None, :])[better]
-        distances, last = self.distances[axis].reshape(-1), self._last[axis].reshape(-1)
-        self._changes.append(_Change(axis, cells, distances[cells], last[cells]))
-        ends = np.where(columns == head, np.int32(len(self._added) - 1), self._last[axis][head, columns])
-        distances[cells] = through[better]
-        last[cells] = np.broadcast_to(ends, better.shape)[better]
+    def keep(self) -> None:
+        """Forgets how to take back what was added so far: it must not be gone back beyond this."""
+        self._changes[self._kept :] = [None] * (len(self._changes) - self._kept)
+        self._kept = len(self._changes)
 
     def back(self, length: int) -> None:
         """Takes back the constraints added last, until ``length`` are left."""

@@ -27,7 +27,7 @@ from deixis.reasoning.realisation.demands import (
 )
 from deixis.reasoning.realisation.differences import Differences
 from deixis.reasoning.realisation.relaxation import Contradiction, Dropped, Relaxed, minimised, relaxed, satisfy
-from deixis.reasoning.realisation.search import TimedOut
+from deixis.reasoning.realisation.search import Solved, TimedOut
 from deixis.reasoning.realisation.things import Things, things_of
 from deixis.reasoning.realisation.verification import facts_that_are_named, facts_that_hold, partly_overlapping
 
@@ -121,23 +121,22 @@ class _Task:
         self.gap = 12.0 if rng is None else float(rng.uniform(8, 25))
 
     def impossible(self, deadline: float) -> Impossible | Undecided | None:
-        """The proof that there is no picture: first with whatever sizes, then with those that are usual."""
-        for demands in (self.firm, [*self.firm, *self.sizes]):
-            found = satisfy(self.points, self.base, demands, deadline)
-            if isinstance(found, TimedOut):
-                return Undecided()
-            if isinstance(found, tuple):
-                return _impossible(minimised(self.points, self.base, found, deadline))
-        return None
+        """The proof that there is no picture: with whatever sizes if it can be, else with those that are usual."""
+        found = satisfy(self.points, self.base, [*self.firm, *self.sizes], deadline)
+        if isinstance(found, TimedOut):
+            return Undecided()
+        if isinstance(found, Solved):
+            self.solved = found
+            return None
+        if any(demand.about is About.SIZE for demand in found):
+            without = satisfy(self.points, self.base, self.firm, deadline)
+            found = without if isinstance(without, tuple) else found
+        return _impossible(minimised(self.points, self.base, found, deadline))
 
-    def picture(self, deadline: float) -> Picture | Undecided:
+    def picture(self, deadline: float) -> Picture:
         """Boxes, made better in rounds: what overlaps is told apart, and all is put in its place again."""
         named = name_demands(self.graph, [d.key[0] for d in self.firm])
-        best = self._relaxed([*self.soft, *named], deadline)
-        if isinstance(best, TimedOut):
-            best = self._relaxed([], deadline + 1.0)
-        if isinstance(best, TimedOut):
-            return Undecided()
+        best = self._liked([*self.soft, *named], deadline)
         soft, apart = [d for d in best.kept if d.about is not About.APART], list[Demand]()
         edges, finished = self._composed(best, apart, deadline), best.finished
         dropped = list(best.dropped)
@@ -155,6 +154,11 @@ class _Task:
             dropped += closer.dropped
             edges, finished = self._composed(best, apart, deadline), closer.finished and time.monotonic() < deadline
         return self._checked(edges, dropped, finished)
+
+    def _liked(self, soft: Sequence[Demand], deadline: float) -> Relaxed:
+        """What of all that is liked holds; what is known to be possible where there is nothing more or no time."""
+        found = self._relaxed(soft, deadline) if soft else Relaxed(self.solved, (), ())
+        return Relaxed(self.solved, (), (), finished=False) if isinstance(found, TimedOut) else found
 
     def _relaxed(self, soft: Sequence[Demand], deadline: float) -> Relaxed | TimedOut:
         found = relaxed(self.points, self.base, [*self.firm, *self.sizes], soft, deadline)
@@ -177,7 +181,7 @@ class _Task:
             apart=tuple((d.key[0], d.key[1]) for d in apart),
             gap=self.gap,
         )
-        return compose(differences, wishes, max(deadline - time.monotonic(), 0.5))
+        return compose(differences, wishes, deadline)
 
     def _lengthwise(self, differences: Differences) -> NDArray[np.bool_]:
         """Which things have their length along y: as was chosen, or as is preferred where it was not."""

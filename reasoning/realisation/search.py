@@ -98,6 +98,7 @@ class _Search:
         self.differences = Differences(points)
         self.levels: list[_Level] = []
         self.chosen: dict[int, int] = {}
+        self.forced = 0  # so many levels, the first, are of clauses with one piece
 
     def run(self, deadline: float) -> Solved | Refuted | TimedOut:
         while True:
@@ -111,6 +112,13 @@ class _Search:
             core = self._decide()
             if core is not None:
                 return Refuted(frozenset(core))
+            self._keep_what_was_no_choice()
+
+    def _keep_what_was_no_choice(self) -> None:
+        """Saves the memory to take back what is never taken back: there is no other piece to go back for."""
+        if len(self.levels) == self.forced + 1 and len(self.clauses[self.levels[-1].clause].pieces) == 1:
+            self.forced += 1
+            self.differences.keep()
 
     def _next(self) -> int | None:
         """The open clause with the fewest pieces left; None where all hold."""

@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import StrEnum
 from functools import cached_property
+from math import isfinite
 
 import numpy as np
 from numpy.typing import NDArray
@@ -43,13 +44,15 @@ class Order(StrEnum):
 class Window:
     """The times t with ``begin <= t < end``, in seconds since the origin.
 
-    Raises SettingError where there is no such time.
+    Raises SettingError where there is no such time, or a bound is not finite.
     """
 
     begin: float
     end: float
 
     def __post_init__(self) -> None:
+        if not (isfinite(self.begin) and isfinite(self.end)):
+            raise SettingError(f"a window goes from one finite time to another, not from {self.begin} to {self.end}")
         if not to_ticks(self.begin) < to_ticks(self.end):
             raise SettingError(f"a window begins before it ends, and this one goes from {self.begin:g} to {self.end:g}")
 
@@ -97,12 +100,15 @@ class Chronology:
         return Bounds.from_codes(int(span[head, tail]), int(span[tail, head]))
 
     def held_at(self, time: float, pattern: Pattern = ANYTHING) -> tuple[Fluent, ...]:
-        """The fluents that certainly held at a time: start <= time < finish in every scenario."""
-        return self._chosen(self._certain(encode(time), encode(-time, strict=True)), pattern)
+        """The fluents that certainly held at a time: start <= time < finish in every scenario.
+
+        Raises SettingError for a time that is not finite, as :meth:`may_have_held` does.
+        """
+        return self._chosen(self._certain(*_at(time)), pattern)
 
     def may_have_held(self, time: float, pattern: Pattern = ANYTHING) -> tuple[Fluent, ...]:
         """The fluents that may have held at a time: start <= time < finish in some scenario."""
-        return self._chosen(self._possible(encode(time), encode(-time, strict=True)), pattern)
+        return self._chosen(self._possible(*_at(time)), pattern)
 
     def held_throughout(self, window: Window, pattern: Pattern = ANYTHING) -> tuple[Fluent, ...]:
         """The fluents that certainly held all the window: start <= begin and end <= finish in every scenario."""
@@ -179,6 +185,13 @@ def _order(mask: int) -> Order | None:
     if not mask & ~_FOLLOWS:
         return Order.FOLLOWS
     return None if mask & (_PRECEDES | _FOLLOWS) else Order.CONCURRENT
+
+
+def _at(time: float) -> tuple[int, int]:
+    """The bounds on start and on the negated finish that say: at the time."""
+    if not isfinite(time):
+        raise SettingError(f"a time is a finite number of seconds, not {time}")
+    return encode(time), encode(-time, strict=True)
 
 
 def _throughout(window: Window) -> tuple[int, int]:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from deixis.ontology.allen import ALL_ALLEN
 from deixis.reasoning.convex import convex_pieces
-from deixis.reasoning.temporal.bounds import ZERO, bound_text
+from deixis.reasoning.temporal.bounds import ZERO, Bounds, bound_text
 from deixis.reasoning.temporal.endpoints import necessary_orders
 from deixis.reasoning.temporal.explanation import Explanation, Rule
 from deixis.reasoning.temporal.fluent import ORIGIN, AllenStatement, Difference, Fluent
@@ -36,14 +36,19 @@ class Disjunction:
 
 @dataclass(frozen=True, slots=True)
 class Claim:
-    """The smallest thing that is stated by itself: constraints that go together, or a disjunction of such.
+    """What is stated at one place: both bounds of a time, or a relation, as constraints or as a disjunction of such.
 
-    ``why`` is the stated leaf on which all of it rests.
+    ``why`` is the statement as a whole; explanations rest on the part of it that they need, one of ``leaves``.
     """
 
     why: Explanation
     constraints: tuple[DifferenceConstraint, ...] = ()
     disjunction: Disjunction | None = None
+
+    @property
+    def leaves(self) -> frozenset[Explanation]:
+        """The stated leaves of explanations that rest on it."""
+        return frozenset(leaf for constraint in self.constraints for leaf in constraint.why.stated()) | {self.why}
 
     @property
     def fluents(self) -> tuple[str, ...]:
@@ -76,17 +81,25 @@ def allen_constraints(a: str, relations: int, b: str, why: Explanation) -> tuple
 
 
 def claims_of(item: Fluent | AllenStatement | Difference) -> tuple[Claim, ...]:
-    """What a fluent's bounds, a difference or a relation claim, piece by piece."""
+    """What a fluent's bounds, a difference or a relation claim, statement by statement."""
     if isinstance(item, AllenStatement):
         return (_allen_claim(item),) if item.relations != ALL_ALLEN else ()
     if isinstance(item, Difference):
-        constraints = difference(item.tail, item.head, item.bounds, item.source)
-    else:
-        start, finish = item.points
-        source = item.source
-        constraints = difference(ORIGIN, start, item.start, f"{source}.start" if source else None)
-        constraints += difference(ORIGIN, finish, item.finish, f"{source}.finish" if source else None)
-    return tuple(Claim(constraint.why, (constraint,)) for constraint in constraints)
+        return _bounds_claim(item.tail, item.head, item.bounds, str(item), item.source)
+    start, finish = item.points
+    places = [f"{item.source}.{end}" if item.source else None for end in ("start", "finish")]
+    return (
+        *_bounds_claim(ORIGIN, start, item.start, f"{start} in {item.start}", places[0]),
+        *_bounds_claim(ORIGIN, finish, item.finish, f"{finish} in {item.finish}", places[1]),
+    )
+
+
+def _bounds_claim(tail: str, head: str, bounds: Bounds, text: str, source: str | None) -> tuple[Claim, ...]:
+    """The claim that a difference lies within bounds; none where nothing bounds it."""
+    constraints = difference(tail, head, bounds, source)
+    if len(constraints) < 2:
+        return tuple(Claim(constraint.why, (constraint,)) for constraint in constraints)
+    return (Claim(Explanation(text, Rule.STATED, source=source), constraints),)
 
 
 def _allen_claim(item: AllenStatement) -> Claim:

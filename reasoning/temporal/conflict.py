@@ -18,17 +18,18 @@ def minimal_conflict(claims: Sequence[Claim], proof: Explanation, deadline: floa
     says that it may not be minimal.
     """
     stated = set(proof.stated())
-    kept = [claim for claim in claims if claim.why in stated]
+    kept = [claim for claim in claims if stated & claim.leaves]
     minimal = True
     for claim in tuple(kept):
         rest = [other for other in kept if other is not claim]
-        if time.monotonic() > deadline:
-            minimal = False
-            break
-        again = refuted(rest, deadline)
+        again = refuted(rest, deadline) if time.monotonic() < deadline else None
         if again is not None:
             kept, proof = rest, again
-    return TemporalConflictError(proof, minimal)
+        elif time.monotonic() > deadline:  # it is not known whether the rest could hold
+            minimal = False
+            break
+    whole = {leaf: claim.why for claim in kept for leaf in claim.leaves}
+    return TemporalConflictError(proof, minimal, tuple(dict.fromkeys(whole[leaf] for leaf in proof.stated())))
 
 
 def refuted(claims: Sequence[Claim], deadline: float) -> Explanation | None:

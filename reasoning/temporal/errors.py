@@ -26,19 +26,16 @@ class TemporalConflictError(InconsistencyError):
     """Statements about time that cannot all hold.
 
     ``explanation`` is the proof: a negative cycle of the simple temporal network, or one for every alternative of the
-    disjunctions in question. ``statements`` are the stated leaves of it. Where ``minimal``, any one of them may be left
-    out and the rest is consistent; else time was up before that was made sure, and the proof alone stands.
+    disjunctions in question. ``statements`` are what it rests on, each with all that is stated at its place. Where
+    ``minimal``, any one of them may be left out and the rest is consistent; else time was up before that was made
+    sure, and the proof alone stands.
     """
 
-    def __init__(self, explanation: Explanation, minimal: bool) -> None:
+    def __init__(self, explanation: Explanation, minimal: bool, statements: tuple[Explanation, ...] = ()) -> None:
         super().__init__(explanation)
         self.explanation = explanation
         self.minimal = minimal
-
-    @property
-    def statements(self) -> tuple[Explanation, ...]:
-        """What was stated and cannot hold together."""
-        return self.explanation.stated()
+        self.statements = statements or explanation.stated()
 
     def __str__(self) -> str:
         return "these cannot all hold: " + "; ".join(

@@ -16,6 +16,7 @@ class Rule(StrEnum):
     SHORTEST_PATH = "shortest path"  # difference constraints added up (Dechter, Meiri, Pearl 1991)
     NEGATIVE_CYCLE = "negative cycle"  # the same, back to where it began: a contradiction
     ELIMINATION = "elimination"  # all other alternatives of a disjunction are refuted
+    INTERSECTION = "intersection"  # of sets of relations that all hold
     CASES = "cases"  # so it is in every alternative
     CASE = "case"  # assumed, within CASES
 

@@ -12,7 +12,7 @@ from deixis.ontology.allen import ALL_ALLEN, Allen, members
 from deixis.reasoning.convex import convex_hull
 from deixis.reasoning.temporal.bounds import bound_text
 from deixis.reasoning.temporal.claims import Disjunction, allen_constraints, ends
-from deixis.reasoning.temporal.endpoints import masks_of_pairs, necessary_orders
+from deixis.reasoning.temporal.endpoints import converse_masks, masks_of_pairs, necessary_orders
 from deixis.reasoning.temporal.explanation import Explanation, Rule
 from deixis.reasoning.temporal.fluent import ORIGIN, allen_text
 from deixis.reasoning.temporal.network import SimpleTemporalNetwork
@@ -34,6 +34,11 @@ class Question(Protocol):
     def explain(self, network: SimpleTemporalNetwork) -> Explanation | None:
         """Why the network says so; None where it says nothing."""
 
+    def restricted(
+        self, why: Explanation | None, network: SimpleTemporalNetwork, open: Sequence[Disjunction]
+    ) -> Explanation | None:
+        """The explanation by the network, and by open disjunctions taken each by itself."""
+
 
 @dataclass(frozen=True, slots=True)
 class BoundQuestion:
@@ -53,6 +58,12 @@ class BoundQuestion:
 
     def explain(self, network: SimpleTemporalNetwork) -> Explanation | None:
         return network.explain(self.tail, self.head)
+
+    def restricted(
+        self, why: Explanation | None, network: SimpleTemporalNetwork, open: Sequence[Disjunction]
+    ) -> Explanation | None:
+        """An open choice by itself bounds no time."""
+        return why
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,7 +86,9 @@ class RelationQuestion:
     def explain(self, network: SimpleTemporalNetwork) -> Explanation | None:
         """The orders of end points that say it; a relation that only several orders exclude together is refuted."""
         mask = self.answer(network)
-        if mask == ALL_ALLEN or self.a == self.b:
+        if self.a == self.b:
+            return Explanation(self.text(mask), Rule.DEFINITION)
+        if mask == ALL_ALLEN:
             return None
         names = ends(self.a) + ends(self.b)
         premises = []
@@ -87,6 +100,22 @@ class RelationQuestion:
             assumed = Explanation(allen_text(self.a, 1 << relation, self.b), Rule.CASE)
             premises.append(network.refutation(allen_constraints(self.a, 1 << relation, self.b, assumed)))
         return Explanation(self.text(mask), Rule.DEFINITION, tuple(premises))
+
+    def restricted(
+        self, why: Explanation | None, network: SimpleTemporalNetwork, open: Sequence[Disjunction]
+    ) -> Explanation | None:
+        """What is stated of the two fluents counts too."""
+        left = before = self.answer(network)
+        premises = [] if why is None else [why]
+        for disjunction in open:
+            if {disjunction.a, disjunction.b} != {self.a, self.b}:
+                continue
+            stated = np.array([disjunction.relations], dtype=np.uint16)
+            narrower = left & int((stated if disjunction.a == self.a else converse_masks(stated))[0])
+            if narrower != left:
+                left = narrower
+                premises.append(disjunction.why)
+        return why if left == before else Explanation(self.text(left), Rule.INTERSECTION, tuple(premises))
 
 
 def justify(
@@ -120,4 +149,4 @@ def justify(
         if joined != question.answer(network):
             premises = (*(disjunction.why for disjunction in open), *cases)
             return Explanation(question.text(joined), Rule.CASES, premises)
-    return question.explain(network)
+    return question.restricted(question.explain(network), network, open)

@@ -144,8 +144,9 @@ class Timeline:
         deadline = time.monotonic() + time_limit
         proof = refuted(claims, deadline)
         if proof is None:
-            everything = Explanation("no alternative is left", Rule.CASES, tuple(claim.why for claim in claims))
-            return TemporalConflictError(everything, minimal=False)
+            statements = tuple(claim.why for claim in claims)
+            everything = Explanation("no alternative is left", Rule.CASES, statements)
+            return TemporalConflictError(everything, minimal=False, statements=statements)
         return minimal_conflict(claims, proof, deadline)
 
     def explain_relation(self, a: str, b: str, time_limit: float = 10.0) -> Explanation | None:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import sys
 from typing import Annotated
 
 import typer
 
-from deixis.cli_common import AsJson, Image, SceneFile, print_json, print_lines
+from deixis.cli_common import AsJson, Image, SceneFile
 
 
 def relate(
@@ -23,7 +24,9 @@ def relate(
     of: Annotated[
         list[str] | None, typer.Option(metavar="ID", help="Only this subject; given twice, this subject and object.")
     ] = None,
-    axis: Annotated[str, typer.Option(metavar="AXIS", help="What point and allen look along: x, y or z.")] = "x",
+    axis: Annotated[
+        str | None, typer.Option(metavar="AXIS", help="What point and allen look along: x, y or z; x if not said.")
+    ] = None,
     tolerance: Annotated[
         float, typer.Option(min=0.0, metavar="LENGTH", help="Coordinates that differ by no more are equal.")
     ] = 0.0,
@@ -36,18 +39,23 @@ def relate(
 ) -> None:
     """Print how every two things of a scene are related; lengths are in metres (pixels for annotations)."""
     from deixis.reasoning.errors import SettingError
-    from deixis.reasoning.relate import Related
+    from deixis.reasoning.relate import ALONG_AN_AXIS, RELATED, Related
     from deixis.reasoning.relate import relate as codes_of
     from deixis.session import load_scene
-    from deixis.show_relate import matrix_lines, pair_lines, related_to_dict
+    from deixis.show_relate import json_lines, matrix_lines, pair_lines
 
     chosen = of or []
     if len(chosen) > 2 or (matrix and chosen):
         raise SettingError("--of takes a subject, and once more an object, and does not go with --matrix")
+    if len(chosen) == 2 and chosen[0] == chosen[1]:
+        raise SettingError(f"--of names a subject and another object, not '{chosen[0]}' twice")
+    if axis is not None and calculus not in ALONG_AN_AXIS and calculus in RELATED:
+        raise SettingError(f"--axis goes with {' and '.join(ALONG_AN_AXIS)} only; {calculus} does not look along one")
     seen = load_scene(scene, image=image)
-    codes = codes_of(seen.boxes, calculus, axis=axis, tolerance=tolerance, reference=reference)
+    codes = codes_of(seen.boxes, calculus, axis=axis or "x", tolerance=tolerance, reference=reference)
     related = Related(calculus, seen.ids, codes)
     if as_json:
-        print_json(related_to_dict(related, *chosen))
+        lines = json_lines(related, *chosen)
     else:
-        print_lines(matrix_lines(related) if matrix else pair_lines(related, *chosen))
+        lines = matrix_lines(related) if matrix else pair_lines(related, *chosen)
+    sys.stdout.writelines(f"{line}\n" for line in lines)

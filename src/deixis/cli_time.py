@@ -39,7 +39,7 @@ def time_command(
     time_limit: TimeLimit = 10.0,
     as_json: AsJson = False,
 ) -> None:
-    """Print when things held, as far as it is known, and what follows; exit 1 where that contradicts itself."""
+    """Print when things held, as far as it is known, and what follows; exit 1 where it contradicts itself."""
     from deixis.grammar.fluent_file import read_fluents
     from deixis.ontology.errors import DeixisError
     from deixis.reasoning.temporal.errors import TemporalConflictError
@@ -48,6 +48,8 @@ def time_command(
     asked = [name for name, value in (("--at", at), ("--window", window), ("--relate", relate)) if value is not None]
     if len(asked) + (explain is not None) > 1:
         raise DeixisError("time: --at, --window, --relate and --explain exclude one another")
+    if pattern != (ANY, ANY, ANY) and (relate is not None or explain is not None):
+        raise DeixisError("time: --pattern goes with --at, with --window or with none; --relate and --explain name two")
     content = read_fluents(fluents)
     try:
         timeline = Timeline()
@@ -65,7 +67,7 @@ def time_command(
         _print_held(chronology, at, window, _pattern(*pattern), as_json)
     else:
         _print_chronology(content.file, content.origin, chronology, _pattern(*pattern), as_json)
-    if chronology.status == "undecided":
+    if chronology.status == "undecided" or not chronology.exact:
         raise typer.Exit(UNDECIDED)
 
 

@@ -134,7 +134,7 @@ def _fill(kind: Kind | None, kinds: Kinds) -> str:
 
 
 def _dress(axes: Axes, table: Table, title: str | None) -> None:
-    axes.set_aspect("equal")
+    axes.set_aspect("equal", adjustable="datalim")  # a long row has room for its names above and below
     axes.margins(0.08)
     axes.autoscale_view()
     viewpoint = table.scene.viewpoint

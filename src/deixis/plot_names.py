@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -49,18 +50,34 @@ def write_names(figure: Figure, axes: Axes, things: Sequence[PerceivedObject]) -
 
     A name that does not fit on its thing stands beside it, with a line to it. The figure's layout is settled by this.
     """
-    figure.draw_without_rendering()
-    figure.set_layout_engine("none")
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", message="Glyph", category=UserWarning)  # a letter that the font lacks
+        figure.draw_without_rendering()
+        figure.set_layout_engine("none")
+        _write_all(figure, axes, things)
+
+
+def _write_all(figure: Figure, axes: Axes, things: Sequence[PerceivedObject]) -> None:
+    frame = Box(*map(float, axes.bbox.extents))
     outlines = [_outline(axes, thing) for thing in things]
     taken: list[Box] = []
     for index in sorted(range(len(things)), key=lambda i: _area(outlines[i])):
         thing, outline = things[index], outlines[index]
-        name = (thing.label or thing.id).replace("_", " ")
+        name = _shown(thing.label or thing.id)
         width, height = _measured(figure, name)
         others = [other for other in outlines if other is not outline]
-        place = _best(list(_places(outline, width, height)), taken, others, outline)
+        place = _best(list(_places(outline, width, height)), taken, others, outline, frame)
         taken.append(place.box)
         _write(axes, name, place, outline)
+
+
+def _shown(name: str) -> str:
+    """A name as it is read; one of nothing but lines stays as it is written.
+
+    >>> _shown("wine_glass_2"), _shown("_")
+    ('wine glass 2', '_')
+    """
+    return name.replace("_", " ") if name.strip("_ ") else name
 
 
 def _outline(axes: Axes, thing: PerceivedObject) -> Box:
@@ -101,10 +118,18 @@ def _around(x: float, y: float, width: float, height: float) -> Box:
     return Box(x - width / 2, y - height / 2, x + width / 2, y + height / 2)
 
 
-def _best(places: list[_Place], taken: list[Box], others: list[Box], outline: Box) -> _Place:
-    """The cheapest place of those that cover no name; what it covers of smaller things costs too."""
-    free = [place for place in places if not any(place.box.shared(name) for name in taken)] or places[-1:]
-    return min(free, key=lambda place: place.cost + _covered(place, others, outline))
+def _best(places: list[_Place], taken: list[Box], others: list[Box], outline: Box, frame: Box) -> _Place:
+    """The cheapest place of those in the frame that cover no name; what it covers of smaller things costs too."""
+    within = [place for place in places if place.box.shared(frame) >= 0.999 * _area(place.box)]
+    best, least = (within or places)[-1], float("inf")
+    for place in sorted(within or places, key=lambda place: place.cost):
+        if place.cost >= least:
+            break
+        if not any(place.box.shared(name) for name in taken):
+            total = place.cost + _covered(place, others, outline)
+            if total < least:
+                best, least = place, total
+    return best
 
 
 def _covered(place: _Place, others: list[Box], outline: Box) -> float:

@@ -11,6 +11,7 @@ def warm() -> None:
     _infer()
     _solve()
     _tell_time()
+    _imagine()
 
 
 def _infer() -> None:
@@ -48,6 +49,13 @@ def _tell_time() -> None:
     for item in (*content.fluents, *content.relations):
         timeline.add(item)
     timeline.chronology()
+
+
+def _imagine() -> None:
+    from deixis.imagination import imagine
+    from deixis.session import read_script
+
+    imagine(read_script(text="fork left of plate\nnapkin on plate\n"))
 
 
 if __name__ == "__main__":

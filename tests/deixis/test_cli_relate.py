@@ -110,3 +110,29 @@ def test_a_file_that_is_no_scene_is_refused(tmp_path: Path) -> None:
     code, out, err = deixis("relate", tmp_path / "none.json")
     assert (code, out) == (2, "")
     assert "none.json" in err
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (("--calculus", "ra", "--axis", "z"), "--axis goes with point and allen only"),
+        (("--of", "fork", "--of", "fork"), "not 'fork' twice"),
+    ],
+)
+def test_an_option_that_would_do_nothing_is_refused(table: Path, options: tuple[str, ...], message: str) -> None:
+    code, out, err = deixis("relate", table, *options)
+    assert (code, out) == (2, "")
+    assert message in err and err.count("\n") == 1
+
+
+def test_json_is_laid_out_as_json_is_elsewhere(table: Path) -> None:
+    for options in ((), ("--of", "fork")):
+        out = deixis("relate", table, *options, "--json")[1]
+        assert out == json.dumps(json.loads(out), indent=2, ensure_ascii=False) + "\n"
+
+
+def test_a_scene_of_one_thing_has_no_pairs(tmp_path: Path) -> None:
+    path = tmp_path / "one.scene.json"
+    path.write_text(json.dumps({"unit": "cm", "objects": [{"id": "a", "min": [0, 0], "max": [1, 1]}]}))
+    assert json.loads(deixis("relate", path, "--json")[1]) == {"calculus": "ra", "objects": ["a"], "pairs": []}
+    assert deixis("relate", path) == (0, "There are no pairs.\n", "")

@@ -126,6 +126,9 @@ def test_without_time_it_is_undecided_and_exits_3() -> None:
     ("options", "message"),
     [
         (["--at", "nan"], "finite number of seconds"),
+        (["--at", "inf"], "a time is a finite number of seconds, not inf"),
+        (["--window", "0", "inf"], "from one finite time to another, not from 0.0 to inf"),
+        (["--relate", "fetch", "served", "--pattern", "cup", "on", "*"], "--pattern goes with --at"),
         (["--at", "1e99"], "beyond 4e+09 s"),
         (["--window", "3", "2"], "a window begins before it ends"),
         (["--relate", "fech", "served"], "there is no fluent 'fech'; did you mean 'fetch'?"),
@@ -146,3 +149,19 @@ def test_bad_files_exit_2(here: Path, text: str) -> None:
     code, out, err = deixis("time", "bad.fluents.json")
     assert (code, out) == (2, "")
     assert err.startswith("deixis: bad.fluents.json:") and err.count("\n") == 1
+
+
+def test_a_fluent_equals_itself_for_a_reason() -> None:
+    assert deixis("time", FILE, "--explain", "fetch", "fetch") == (0, "equals(fetch, fetch)   by definition\n", "")
+
+
+def test_where_more_may_be_certain_it_exits_3_and_the_stated_sets_are_still_explained() -> None:
+    ids = [f"f{k}" for k in range(8)]
+    fluents = [{"id": id, "statement": ["robot", "lays", id]} for id in ids]
+    relations = [{"a": a, "allen": NEVER, "b": b} for a in ids for b in ids if a < b]
+    Path("many.fluents.json").write_text(json.dumps({"origin": "noon", "fluents": fluents, "relations": relations}))
+    code, out, _ = deixis("time", "many.fluents.json", "--relate", "f1", "f0")
+    assert (code, out.splitlines()[0]) == (3, "possible: before, after (f1, f0)")
+    assert "more may be certain" in out
+    code, out, _ = deixis("time", "many.fluents.json", "--explain", "f1", "f0")
+    assert (code, out.splitlines()[0]) == (3, "before or after(f1, f0)   by intersection")

@@ -290,3 +290,29 @@ def _without_reason(shown: str) -> str:
 
 def test_the_page_has_examples() -> None:
     assert len(SHOWN) == 3
+
+
+def test_a_long_row_is_imagined_well_before_the_time_is_up() -> None:
+    row = "; ".join(f"thing_{i} left of thing_{i + 1}" for i in range(199))
+    found = imagine(parse_script(row), time_limit=20)
+    assert found.tables and found.tables[0].finished
+    assert len(found.tables[0].holds) == 199
+
+
+@pytest.mark.parametrize("many", [8, 40])
+def test_things_of_unknown_kind_keep_their_size_however_many_facts_relate_them(many: int) -> None:
+    facts = "; ".join(f"a{j} right of a{i}" for j in range(many) for i in range(j))
+    boxes = table(facts).scene.boxes
+    assert (boxes[:, 1] - boxes[:, 0])[:, :2].round(3).tolist() == [[0.08, 0.12]] * many
+
+
+def test_names_of_any_letters_are_written_without_a_warning_and_within_the_frame() -> None:
+    from deixis.plot_imagine import table_figure
+
+    row = ", ".join(["日本語", *(f"wine_glass_{i}" for i in range(25)), '"_"'])
+    found = table(f"left to right: {row}")
+    figure = table_figure(found, default_ontology().kinds)
+    (axes,) = figure.axes
+    assert {"日本語", "wine glass 0", "_"} <= {text.get_text() for text in axes.texts}
+    middles = [axes.transData.transform(text.get_position()) for text in axes.texts]
+    assert all(axes.bbox.contains(x, y) for x, y in middles)
