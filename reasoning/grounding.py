@@ -95,6 +95,10 @@ class Grounding:
     def satisfied(self) -> tuple[FactOutcome, ...]:
         return self.of(Outcome.SATISFIED)
 
+    def noting(self, notes: tuple[str, ...]) -> Grounding:
+        """The same answer with notes before its own."""
+        return replace(self, notes=notes + self.notes)
+
     @property
     def violated(self) -> tuple[FactOutcome, ...]:
         return self.of(Outcome.VIOLATED)

@@ -131,7 +131,7 @@ class Implications:
                 yield relation, nodes[subject], nodes[object]
 
     def ntriples(self) -> str:
-        """Every fact that is stated firmly or implied as a plain N-Triples line, under the IRIs of the graph's Turtle."""
+        """Every fact that is stated firmly or implied, a plain N-Triples line each, with the IRIs of the Turtle."""
         iris = node_iris(self.graph)
         return "".join(pairs_to_ntriples(r, self.pairs(r), iris) for r in self.vocabulary.values())
 

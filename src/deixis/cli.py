@@ -20,25 +20,23 @@ from deixis.cli_common import (
     NO,
     UNDECIDED,
     AsJson,
-    HideLabels,
-    Image,
-    SceneFile,
     Script,
-    TimeLimit,
     print_json,
     print_lines,
 )
+from deixis.cli_ground import ground
 from deixis.cli_imagine import register as register_imagine
 from deixis.cli_infer import infer
 from deixis.cli_memory import register
 from deixis.cli_reason import reason
 from deixis.cli_relate import relate
 from deixis.cli_relation import register as register_relation
+from deixis.cli_retrieve import retrieve
 from deixis.cli_solve import solve
 from deixis.cli_time import time_command
 
 if TYPE_CHECKING:
-    from deixis.reasoning.grounding import Grounding
+    pass
 
 app = typer.Typer(
     name="deixis",
@@ -55,12 +53,6 @@ class GraphFormat(StrEnum):
     JSON = "json"
     TURTLE = "turtle"
     DOT = "dot"
-
-
-class EngineName(StrEnum):
-    EXACT = "exact"
-    GRADED = "graded"
-    SIMILARITY = "similarity"
 
 
 @app.callback()
@@ -122,50 +114,12 @@ def fmt(
 app.command()(infer)
 app.command()(reason)
 app.command()(relate)
+app.command()(retrieve)
 app.command()(solve)
 app.command("time")(time_command)
 
 
-@app.command()
-def ground(
-    script: Script,
-    scene: SceneFile,
-    engine: Annotated[EngineName, typer.Option(help="exact; graded; or similarity: the paper's.")] = EngineName.EXACT,
-    plot: Annotated[Path | None, typer.Option(metavar="FILE", help="Draw the scene with the names found.")] = None,
-    time_limit: TimeLimit = 10.0,
-    hide_labels: HideLabels = False,
-    image: Image = None,
-    as_json: AsJson = False,
-) -> None:
-    """Work out which perceived thing each object of a script is."""
-    from deixis.report import grounding_to_dict
-    from deixis.session import ground as run
-    from deixis.session import load_scene, read_script
-    from deixis.show import grounding_lines
-
-    if plot is not None:
-        from deixis.plot import require_picture
-
-        require_picture(plot)
-    parsed, seen = read_script(script), load_scene(scene, hide_labels, image)
-    found = run(parsed, seen, engine=engine, time_limit=time_limit)
-    if plot is not None:
-        from deixis.plot import plot_grounding
-
-        plot_grounding(found, seen, plot, title=parsed.title or parsed.name)
-    if as_json:
-        print_json(grounding_to_dict(found))
-    else:
-        print_lines(grounding_lines(found))
-        if plot is not None:
-            print(f"\nThe picture is in {plot}.")
-    raise typer.Exit(_verdict(found))
-
-
-def _verdict(found: Grounding) -> int:
-    if not found.matches:
-        return NO
-    return UNDECIDED if found.engine != EngineName.SIMILARITY and not found.proved_best else 0
+app.command()(ground)
 
 
 @app.command()

@@ -133,7 +133,11 @@ def _match_line(match: Match) -> str:
     if match.decided:
         return name.rstrip()
     equal = [other.perceived for other in match.alternatives if other.cost <= 1e-9]
-    return f"{name} or {', '.join(equal)}" if equal else f"{name} not proved: nothing else was ruled out"
+    if equal:
+        return f"{name} or {', '.join(equal)}"
+    if match.alternatives:
+        return f"{name} or, less likely, {', '.join(other.perceived for other in match.alternatives)}"
+    return f"{name} not proved: nothing else was ruled out"
 
 
 def _rest(found: Grounding) -> str:

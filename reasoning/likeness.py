@@ -1,0 +1,231 @@
+"""How similar a scene is to a layout.
+
+After Nedas and Egenhofer ("Spatial-Scene Similarity Queries", Transactions in GIS 2008): objects and relations that
+correspond are compared by degrees, and what has no counterpart on either side weighs in as incompleteness. Here both
+are Dice's coefficient over the best grounding: twice what corresponds, by degree, divided by what both sides have; two
+thirds of the similarity are that of objects and one third that of relations (all that of objects, where nothing is said
+of relations). So it is 1 just where everything corresponds, and between two fully related scenes of two and more things
+it is symmetric.
+
+- Objects correspond by kind: half with every kind, itself and broader ones, that only one of the two is. An unlabelled
+  thing corresponds as far as its size is usual for the kind; where nothing is known, nothing counts against it.
+- Relations correspond by the steps between directions (:mod:`deixis.reasoning.closeness`): half with every step
+  from the nearest name that the stated relation admits.
+- A layout states few of the relations there are; a scene shows them all. Of the scene's as many are taken to ask for a
+  counterpart as the layout would state of so many objects.
+
+Each of the two denominators is a constant, and no term is below 0. So the best grounding is the optimum of a matching
+problem whose value is the similarity itself.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.ontology.graph import RelationGraph
+from deixis.ontology.kinds import Kinds
+from deixis.ontology.sizes import Sizes
+from deixis.ontology.tbox import Ontology
+from deixis.reasoning.closeness import STEP, Closeness
+from deixis.reasoning.evidence import exact_names
+from deixis.reasoning.matching.problem import UNMATCHED, Problem
+
+Array = NDArray[np.float64]
+
+OBJECTS_SHARE = 2 / 3
+"""Weight of objects in the similarity, the rest being that of relations: it retrieved best among 1/3, 1/2, 3/5 and 2/3
+in ``benchmarks/bench_retrieval.py`` with seed 2."""
+
+SIZE_SPREAD = 0.35
+"""How far (natural logarithm) a length lies outside the usual range where its similarity has fallen to exp(-1/2)."""
+
+OPTIONAL_WEIGHT = 0.5
+"""By what the weight of an optional fact is multiplied."""
+
+
+@dataclass(frozen=True, eq=False)
+class Described:
+    """A layout made ready: its objects' kinds, and its facts as sets of admitted exact names."""
+
+    name: str
+    graph: RelationGraph
+
+    @cached_property
+    def edges(self) -> NDArray[np.int64]:
+        """The facts that can be compared: all but those of an object to itself."""
+        return np.flatnonzero(self.graph.subjects != self.graph.objects)
+
+    @cached_property
+    def weights(self) -> Array:
+        """Of the comparable facts."""
+        optional = np.where(self.graph.optional[self.edges], OPTIONAL_WEIGHT, 1.0)
+        result: Array = self.graph.weights[self.edges] * optional
+        return result
+
+    @cached_property
+    def total(self) -> float:
+        return float(self.weights.sum())
+
+    @cached_property
+    def densest(self) -> Array:
+        """The weight of what is said of each ordered pair, the largest first."""
+        n = len(self.graph.nodes)
+        pair = self.graph.subjects[self.edges].astype(np.int64) * n + self.graph.objects[self.edges]
+        sums = np.bincount(pair, self.weights).astype(np.float64)
+        result: Array = np.sort(sums[sums > 0])[::-1]
+        return result
+
+
+@dataclass(frozen=True, eq=False)
+class Seen:
+    """A scene made ready: exact names of pairs, labelled kinds (class IRI or None), and extents in metres or None."""
+
+    name: str
+    ids: tuple[str, ...]  # (n2,)
+    names: NDArray[np.int16]  # (n2, n2), -1 on the diagonal
+    kinds: tuple[str | None, ...]  # (n2,)
+    extents: Array | None  # (n2, 2): longer and shorter side in the plan
+
+    @cached_property
+    def counts(self) -> NDArray[np.int64]:
+        """How many ordered pairs bear each exact name, by relation index."""
+        named = self.names[self.names >= 0]
+        return np.bincount(named) if len(named) else np.zeros(0, np.int64)
+
+
+def seen(name: str, scene: RelationGraph, metric: bool = True) -> Seen:
+    """Makes a scene ready; ``scene.kinds`` are those of labels. Raises GraphError for one not fully related."""
+    extents = None
+    if metric and scene.boxes is not None:
+        sides = scene.boxes[:, 1, :2] - scene.boxes[:, 0, :2]
+        extents = np.sort(sides, axis=1)[:, ::-1]
+    return Seen(name, scene.nodes, exact_names(scene), scene.kinds or (None,) * len(scene.nodes), extents)
+
+
+@dataclass(frozen=True, eq=False)
+class Likeness:
+    """How similar a scene is to a layout, 0 to 1, and the grounding by which (n1,).
+
+    ``similarity`` is the weighted mean of ``objects`` and ``relations``, or ``objects`` alone where nothing is related.
+    ``proved``: no other grounding makes it more similar.
+    """
+
+    layout: str
+    scene: str
+    similarity: float
+    objects: float
+    relations: float
+    assignment: NDArray[np.int64]
+    proved: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Shares:
+    """Weights of objects and relations, and what both sides have of them together."""
+
+    objects: float
+    relations: float
+    things: int
+    facts: float
+
+
+class Comparison:
+    """Compares layouts with scenes; keeps what it works out for every relation and kind."""
+
+    def __init__(self, ontology: Ontology) -> None:
+        self._kinds: Kinds = ontology.kinds
+        self._sizes: Sizes = ontology.sizes
+        self.closeness = Closeness(ontology.relations)
+        self._of_kinds: dict[tuple[str, str], float] = {}
+
+    def likeness(self, layout: Described, scene: Seen, deadline: float = math.inf) -> Likeness:
+        """The similarity by the best grounding, until ``deadline`` (``time.perf_counter``)."""
+        from deixis.reasoning.matching.exact import exact
+
+        problem = self.problem(layout, scene)
+        best = exact(problem, deadline)
+        shares = self.shares(layout, scene)
+        matched = np.flatnonzero(best.assignment != UNMATCHED)
+        objects = float(problem.unary[matched, best.assignment[matched]].sum())
+        relations = problem.value(best.assignment) - objects
+        of_objects = objects / shares.objects if shares.objects else 0.0
+        of_relations = relations / shares.relations if shares.relations else 0.0
+        similarity = round(min(1.0, objects + relations), 6)  # tables are of single precision
+        return Likeness(
+            layout.name,
+            scene.name,
+            similarity,
+            round(min(1.0, of_objects), 6),
+            round(min(1.0, of_relations), 6),
+            best.assignment,
+            best.proved,
+        )
+
+    def problem(self, layout: Described, scene: Seen) -> Problem:
+        """The matching problem whose value of a map is the similarity by it."""
+        shares, n2 = self.shares(layout, scene), len(scene.names)
+        graph = layout.graph
+        keys = list(zip(*self._facts(layout), strict=True))
+        distinct = list(dict.fromkeys(keys))
+        tables = np.zeros((len(distinct), n2, n2), dtype=np.float32)
+        for row, (mask, positive, weight) in enumerate(distinct):
+            close = self.closeness(int(mask), bool(positive))
+            said = np.where(scene.names >= 0, close[scene.names], 0.0)
+            tables[row] = said * (2 * shares.relations * weight / shares.facts)
+        positions = {key: row for row, key in enumerate(distinct)}
+        ends = np.stack([graph.subjects[layout.edges], graph.objects[layout.edges]], axis=1).astype(np.int64)
+        kinds = np.array([positions[key] for key in keys], dtype=np.int64)
+        unary = self.objects(layout, scene) * (2 * shares.objects / max(shares.things, 1))
+        return Problem(ends, kinds, tables, unary, np.zeros(len(graph.nodes)))
+
+    def _facts(self, layout: Described) -> tuple[list[int], list[bool], list[float]]:
+        graph, edges = layout.graph, layout.edges
+        return graph.relation_sets[edges].tolist(), graph.positive[edges].tolist(), layout.weights.tolist()
+
+    def objects(self, layout: Described, scene: Seen) -> Array:
+        """How far each object corresponds to each thing, shape (n1, n2), 0 to 1."""
+        described = layout.graph.kinds or (None,) * len(layout.graph.nodes)
+        result = np.ones((len(described), len(scene.kinds)))
+        for kind in dict.fromkeys(described):
+            if kind is not None:
+                rows = [i for i, other in enumerate(described) if other == kind]
+                result[rows] = self._like_kind(kind, scene)
+        return result
+
+    def _like_kind(self, kind: str, scene: Seen) -> Array:
+        found = np.ones(len(scene.kinds)) if scene.extents is None else self._usual(kind, scene.extents)
+        for p, label in enumerate(scene.kinds):
+            if label is not None:
+                found[p] = self._kinship(kind, label)
+        return found
+
+    def _usual(self, kind: str, extents: Array) -> Array:
+        """How usual extents (n2, 2) are for a kind: 1 within its ranges, falling off as a Gaussian of the logarithm."""
+        usual, off = self._sizes.of(kind), np.zeros(len(extents))
+        logs = np.log(np.maximum(extents, 1e-9))
+        for axis, range_ in enumerate((usual.length, usual.width)):
+            beyond = np.maximum(math.log(range_.least) - logs[:, axis], logs[:, axis] - math.log(range_.greatest))
+            off += np.maximum(beyond, 0.0) ** 2
+        result: Array = np.exp(-off / (2 * SIZE_SPREAD**2))
+        return result
+
+    def _kinship(self, a: str, b: str) -> float:
+        """1 for the same kind, times ``STEP`` for every kind, itself and broader ones, that only one of the two is."""
+        if (a, b) not in self._of_kinds:
+            first, second = ({iri, *self._kinds[iri].broader} for iri in (a, b))
+            self._of_kinds[a, b] = float(STEP ** len(first ^ second))
+        return self._of_kinds[a, b]
+
+    def shares(self, layout: Described, scene: Seen) -> Shares:
+        n1, n2 = len(layout.graph.nodes), len(scene.names)
+        if not layout.total:
+            return Shares(1.0, 0.0, n1 + n2, 1.0)
+        pairs = n2 * (n2 - 1)
+        density = layout.total / (n1 * (n1 - 1))
+        counterpart = max(density * pairs, float(layout.densest[:pairs].sum()))
+        return Shares(OBJECTS_SHARE, 1 - OBJECTS_SHARE, n1 + n2, layout.total + counterpart)

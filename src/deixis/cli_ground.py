@@ -1,0 +1,113 @@
+"""The command ``deixis ground``: who is who, by asking where that helps, and from an unknown side."""
+
+from __future__ import annotations
+
+import sys
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from deixis.cli_common import (
+    NO,
+    UNDECIDED,
+    AsJson,
+    HideLabels,
+    Image,
+    SceneFile,
+    Script,
+    TimeLimit,
+    print_json,
+    print_lines,
+)
+
+if TYPE_CHECKING:
+    from deixis.grammar.script import Script as ParsedScript
+    from deixis.perception.scene import Scene
+    from deixis.reasoning.grounding import Grounding
+
+
+class EngineName(StrEnum):
+    EXACT = "exact"
+    GRADED = "graded"
+    SIMILARITY = "similarity"
+
+
+class ViewpointName(StrEnum):
+    STATED = "stated"
+    QUARTER = "quarter"
+    UNKNOWN = "unknown"
+
+
+def ground(
+    script: Script,
+    scene: SceneFile,
+    engine: Annotated[EngineName, typer.Option(help="exact; graded; or similarity: the paper's.")] = EngineName.EXACT,
+    ask: Annotated[bool, typer.Option("--ask", help="Ask what tells groundings apart (graded).")] = False,
+    oracle: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="Ask this file: JSON, from names to ids; null for what is absent."),
+    ] = None,
+    viewpoint: Annotated[
+        ViewpointName, typer.Option(help="stated; or recover the side: quarter turns, or unknown: any angle (graded).")
+    ] = ViewpointName.STATED,
+    plot: Annotated[Path | None, typer.Option(metavar="FILE", help="Draw the scene with the names found.")] = None,
+    time_limit: TimeLimit = 10.0,
+    hide_labels: HideLabels = False,
+    image: Image = None,
+    as_json: AsJson = False,
+) -> None:
+    """Work out which perceived thing each object of a script is."""
+    from deixis.report import grounding_to_dict
+    from deixis.session import ground as run
+    from deixis.session import load_scene, read_script
+    from deixis.show import grounding_lines
+
+    if plot is not None:
+        from deixis.plot import require_picture
+
+        require_picture(plot)
+    parsed, seen = read_script(script), load_scene(scene, hide_labels, image)
+    notes: tuple[str, ...] = ()
+    if viewpoint is not ViewpointName.STATED:
+        from deixis.asking import seen_from_anywhere
+
+        engine = EngineName.GRADED
+        seen, notes = seen_from_anywhere(parsed, seen, viewpoint is ViewpointName.UNKNOWN, time_limit)
+    if ask or oracle is not None:
+        found = _ask(parsed, seen, oracle, time_limit, as_json)
+    else:
+        found = run(parsed, seen, engine=engine, time_limit=time_limit)
+    found = found.noting(notes)
+    if plot is not None:
+        from deixis.plot import plot_grounding
+
+        plot_grounding(found, seen, plot, title=parsed.title or parsed.name)
+    if as_json:
+        print_json(grounding_to_dict(found))
+    else:
+        print_lines(grounding_lines(found))
+        if plot is not None:
+            print(f"\nThe picture is in {plot}.")
+    raise typer.Exit(_verdict(found))
+
+
+def _ask(script: ParsedScript, scene: Scene, oracle: Path | None, time_limit: float, as_json: bool) -> Grounding:
+    """The dialogue goes to standard error where standard output is JSON."""
+    from deixis.asking import ask
+    from deixis.dialogue import Terminal, read_oracle
+
+    out = sys.stderr if as_json else sys.stdout
+    if oracle is None:
+        found = ask(script, scene, lambda _: Terminal(sys.stdin, out), out, time_limit)
+    else:
+        found = ask(script, scene, lambda situation: read_oracle(oracle, situation, out), out, time_limit)
+    print(file=out)
+    return found
+
+
+def _verdict(found: Grounding) -> int:
+    if not found.matches:
+        return NO
+    return UNDECIDED if found.engine != EngineName.SIMILARITY and not found.proved_best else 0

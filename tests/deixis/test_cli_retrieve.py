@@ -1,0 +1,94 @@
+"""``deixis retrieve``: the layouts that a scene is like, and the scenes that a script is like."""
+
+from __future__ import annotations
+
+import json
+from contextlib import redirect_stderr, redirect_stdout
+from io import StringIO
+from pathlib import Path
+
+import pytest
+import typer
+
+from deixis.cli_retrieve import retrieve
+from deixis.ontology.errors import DeixisError
+from deixis.perception.scene_file import read_scene, write_scene
+from deixis.session import Session
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+SETTING = EXAMPLES / "place_setting.scene.json"
+
+
+def run(*args: object) -> tuple[int, str]:
+    """Runs the command by itself: exit code and what it printed."""
+    app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
+    app.command()(retrieve)
+    out = StringIO()
+    with redirect_stdout(out), redirect_stderr(out):
+        try:
+            app([str(arg) for arg in args])
+        except SystemExit as end:
+            return int(end.code or 0), out.getvalue()
+    raise AssertionError("a command ends with an exit code")
+
+
+def names(printed: str) -> list[str]:
+    return [entry["name"] for entry in json.loads(printed)["results"]]
+
+
+def test_a_scene_ranks_the_scripts_of_a_folder() -> None:
+    code, out = run(SETTING, "--among", EXAMPLES, "--json")
+    assert code == 0
+    found = json.loads(out)["results"]
+    assert names(out)[:3] == ["formal_dinner.layout", "script1.layout", "script2.layout"]
+    assert found[0]["similarity"] == 1.0
+    assert found[0]["matches"]["dinner_plate"] == "o8"
+    assert found[2]["similarity"] < 1
+
+
+def test_a_script_ranks_the_scenes_of_a_folder(tmp_path: Path) -> None:
+    setting = read_scene(SETTING)
+    write_scene(setting, tmp_path / "whole.scene.json")
+    write_scene(setting.reordered(range(5)), tmp_path / "part.scene.json")
+    code, out = run(EXAMPLES / "formal_dinner.layout", "--among", tmp_path, "--json", "--least", 0)
+    assert code == 0
+    assert names(out) == ["whole.scene.json", "part.scene.json"]
+
+
+def test_a_scene_ranks_what_is_remembered(tmp_path: Path) -> None:
+    with Session(memory=tmp_path / "memory") as session:
+        session.learn(EXAMPLES / "formal_dinner.layout", SETTING)
+        session.learn(EXAMPLES / "script2.layout", SETTING)
+    code, out = run(SETTING, "--memory", tmp_path / "memory")
+    assert code == 0
+    lines = out.splitlines()
+    assert lines[1].split()[:2] == ["formal_dinner", "1.000"]
+    assert lines[2].startswith("script2 ")
+
+
+def test_no_more_are_printed_than_were_asked_for() -> None:
+    _, out = run(SETTING, "--among", EXAMPLES, "--json", "--top", 1)
+    assert len(names(out)) == 1
+
+
+def test_where_nothing_is_similar_the_exit_code_is_1(tmp_path: Path) -> None:
+    (tmp_path / "two.layout").write_text("fork left of plate\n", encoding="utf-8")
+    code, out = run(SETTING, "--among", tmp_path, "--least", 0.9)
+    assert code == 1
+    assert out.startswith("Nothing among 1 has a similarity of 0.9 or more to ")
+
+
+@pytest.mark.parametrize(
+    ("args", "message"),
+    [
+        ((SETTING, "--among", "nowhere"), "no folder of layout scripts"),
+        ((SETTING, "--among", "EMPTY"), "no layout scripts in it"),
+        ((EXAMPLES / "script1.layout", "--among", "EMPTY"), "no scenes in it"),
+        ((EXAMPLES / "script1.layout",), "--among DIR"),
+        (("nothing.scene.json", "--among", EXAMPLES), "nothing.scene.json"),
+    ],
+)
+def test_bad_input_is_an_error_that_names_it(args: tuple[object, ...], message: str, tmp_path: Path) -> None:
+    with pytest.raises(DeixisError, match=r"\S") as error:
+        run(*(tmp_path if arg == "EMPTY" else arg for arg in args))
+    assert message in str(error.value)
