@@ -29,7 +29,7 @@ MAX_SUBGRAPHS = 5000
 
 _BLOCK = 500
 _WORK = 2e10
-"""Multiplications that the similarity may take before it stops unconverged."""
+"""Multiplications that the similarity may take; it is equation 5 alone where one step would take more."""
 
 
 class Select(StrEnum):
@@ -102,7 +102,8 @@ def paper_similarity(evidence: Evidence, members: NDArray[np.bool_] | None = Non
 def _iterations(first: PaperGraph, second: PaperGraph) -> int:
     n2 = len(second.vertices)
     work = 2 * len(first.labels) * len(first.vertices) * n2 * n2 + 2000 * len(first.edges)
-    return int(np.clip(_WORK / max(work, 1), 5, ITERATIONS))
+    affordable = _WORK / max(work, 1)
+    return 0 if affordable < 1 else int(np.clip(affordable, 5, ITERATIONS))
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,9 @@ from __future__ import annotations
 from collections import Counter, defaultdict
 from collections.abc import Hashable, Sequence
 
+import numpy as np
+from numpy.typing import NDArray
+
 from deixis.ontology.graph import RelationGraph
 
 BUDGET = 3_000_000
@@ -36,7 +39,7 @@ def interchangeable(graph: RelationGraph, colours: Sequence[Hashable]) -> list[t
     """
     search = _Automorphisms(_edges(graph))
     everything = list(range(len(graph.nodes)))
-    stable = search.refine(dict(zip(everything, _numbered(colours), strict=True)))
+    stable = dict(enumerate(_stable(graph, _numbered(colours)).tolist()))
     classes: dict[int, list[int]] = defaultdict(list)
     for node in everything:
         classes[stable[node]].append(node)
@@ -44,6 +47,39 @@ def interchangeable(graph: RelationGraph, colours: Sequence[Hashable]) -> list[t
     for members in classes.values():
         groups += [group for group in _orbits(members, stable, search) if len(group) > 1]
     return [tuple(graph.nodes[i] for i in group) for group in sorted(groups)]
+
+
+def _stable(graph: RelationGraph, colours: Sequence[int]) -> NDArray[np.int64]:
+    """The stable colouring of the whole graph, shape (n,), by hashes of what each node's neighbours are.
+
+    Two hashes that happen to be equal could only leave more to be proved, never claim what is not so.
+    """
+    kinds = [graph.relation_sets, graph.positive, graph.optional, graph.weights.view(np.int64)]
+    edge = np.unique(np.stack([kind.astype(np.int64) for kind in kinds], axis=1), axis=0, return_inverse=True)[
+        1
+    ].ravel()
+    nodes = np.concatenate([graph.subjects, graph.objects]).astype(np.int64)
+    others = np.concatenate([graph.objects, graph.subjects]).astype(np.int64)
+    sides = np.concatenate([2 * edge, 2 * edge + 1])
+    current = np.unique(np.array(colours, dtype=np.int64), return_inverse=True)[1].ravel()
+    count = int(current.max(initial=-1)) + 1
+    while True:
+        seen = np.zeros(len(current), np.uint64)
+        np.add.at(seen, nodes, _mixed(current[others], sides))
+        keys = np.stack([current.astype(np.uint64), seen], axis=1)
+        finer = np.unique(keys, axis=0, return_inverse=True)[1].ravel()
+        fresh = int(finer.max(initial=-1)) + 1
+        if fresh == count:
+            return current
+        current, count = finer, fresh
+
+
+def _mixed(colours: NDArray[np.int64], sides: NDArray[np.int64]) -> NDArray[np.uint64]:
+    """A 64-bit hash of a neighbour's colour and the edge to it (the finaliser of SplitMix64, Steele et al. 2014)."""
+    value = colours.astype(np.uint64) * np.uint64(0x9E3779B97F4A7C15) + sides.astype(np.uint64) + np.uint64(1)
+    value = (value ^ (value >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
+    value = (value ^ (value >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
+    return value ^ (value >> np.uint64(31))
 
 
 def _edges(graph: RelationGraph) -> _Edges:

@@ -319,6 +319,16 @@ def test_facts_that_the_similarity_cannot_see_are_listed(graph_of: MakeGraph, fu
     assert len(found.satisfied) == 13
 
 
+def test_where_one_step_of_the_similarity_is_too_much_the_exact_engine_goes_without(
+    monkeypatch: pytest.MonkeyPatch, graph_of: MakeGraph, full_script: list[str]
+) -> None:
+    monkeypatch.setattr(engines, "_WORK", 1.0)
+    found = answer(graph_of(*full_script), formal_setting())
+    assert found.proved_best
+    assert not found.converged
+    assert {name: match.perceived for name, match in found.matches.items()} == {name: name for name in found.matches}
+
+
 def test_an_unknown_engine_is_an_error_that_names_the_known_ones() -> None:
     with pytest.raises(UnknownTermError, match="no engine 'magic'; the engines are: exact, graded, similarity"):
         engine_named("magic")

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from deixis.ontology.graph import Fact, RelationGraph
 from deixis.ontology.tbox import default_ontology
-from deixis.reasoning.symmetry import interchangeable
+from deixis.reasoning.symmetry import _Automorphisms, _edges, _stable, interchangeable
 
 MakeGraph = Callable[..., RelationGraph]
 R = default_ontology().relations
@@ -130,3 +130,13 @@ def test_many_parts_that_are_alike_are_told_quickly() -> None:
     names = [name for fact in facts for name in (fact.subject, fact.object)]
     graph = RelationGraph.from_facts(R, names, facts)
     assert sorted(map(len, interchangeable(graph, [0] * len(names)))) == [300, 300]
+
+
+@settings(max_examples=150, deadline=None)
+@given(graphs())
+def test_the_first_colouring_is_that_of_plain_colour_refinement(case: tuple[RelationGraph, list[int]]) -> None:
+    graph, colours = case
+    plain = _Automorphisms(_edges(graph)).refine(dict(enumerate(colours)))
+    hashed = _stable(graph, colours).tolist()
+    n = range(len(graph.nodes))
+    assert [[plain[i] == plain[j] for j in n] for i in n] == [[hashed[i] == hashed[j] for j in n] for i in n]
