@@ -24,7 +24,6 @@ from deixis.ontology.relation import Relation, Relations
 from deixis.reasoning.derivation import Derivation, Rule
 from deixis.reasoning.orders.bounds import meaning
 from deixis.reasoning.orders.cases import derive_by_cases, needed_facts
-from deixis.reasoning.orders.choices import OutOfTimeError
 from deixis.reasoning.orders.closing import Closed, close
 from deixis.reasoning.orders.demands import Demands, EdgeFacts, demands_of
 from deixis.reasoning.orders.derivations import OrderDerivations
@@ -207,6 +206,3 @@ class Implications:
     def count(self) -> int:
         """How many facts are stated or implied."""
         return sum(self.counts().values())
-
-
-__all__ = ["TIME_LIMIT", "Derivation", "Implications", "OutOfTimeError", "Rule", "Support"]

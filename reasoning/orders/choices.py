@@ -58,7 +58,7 @@ class State:
 
     def add(self, row: Row) -> bool:
         """Adds a bound; False where it contradicts the others, after which the state is of no use."""
-        from deixis.reasoning.orders.kernels import add_bound
+        from deixis.reasoning.orders.choice_kernels import add_bound
 
         return bool(add_bound(self.weak, self.strong, *row))
 
@@ -96,7 +96,7 @@ class Search:
         A single dive that takes what the last picture took comes first, since most pictures are found so. Raises
         OutOfTimeError at the deadline.
         """
-        from deixis.reasoning.orders.kernels import dive
+        from deixis.reasoning.orders.choice_kernels import dive
 
         self._check_clock()
         below = state.copy()
@@ -118,7 +118,7 @@ class Search:
         return None if self._propagate(below, *self._open()) == -2 else below
 
     def _propagate(self, state: State, alive: NDArray[np.bool_], pending: NDArray[np.bool_]) -> int:
-        from deixis.reasoning.orders.kernels import propagate
+        from deixis.reasoning.orders.choice_kernels import propagate
 
         return int(propagate(state.weak, state.strong, *self._bounds, alive, pending))
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.reasoning.orders.bounds import AXES, Bounds, bounds_of
+from deixis.reasoning.orders.bounds import AXES, bounds_of
 from deixis.reasoning.orders.choices import Choice, OutOfTimeError, Row, Search, State, base_state, shared
 from deixis.reasoning.orders.closed import AxisRows, Groups, Orders, groups_of, orders_of
 from deixis.reasoning.orders.demands import Demands
@@ -126,11 +126,3 @@ def consistent(demands: Demands, deadline: float) -> bool:
     if not demands.choices:
         return True
     return local_problem(demands, np.arange(n), demands.choices).consistent(deadline)
-
-
-def entails(demands: Demands, denials: Sequence[Bounds], deadline: float) -> bool:
-    """Whether none of the denied bounds can hold beside what is demanded."""
-    return not any(
-        consistent(Demands(demands.graph, demands.bounds.joined(denied), demands.choices), deadline)
-        for denied in denials
-    )

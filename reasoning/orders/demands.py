@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from typing import overload
 
 import numpy as np
@@ -27,13 +26,9 @@ class Demands:
     """
 
     graph: RelationGraph
+    firm: NDArray[np.int64]  # the edges that demand something
     bounds: Bounds
     choices: tuple[Choice, ...]
-
-    @cached_property
-    def firm(self) -> NDArray[np.int64]:
-        """The edges that demand something."""
-        return _firm(self.graph)
 
     def restricted(self, edges: Iterable[int]) -> Demands:
         """What only these facts demand."""
@@ -41,6 +36,7 @@ class Demands:
         chosen[list(edges)] = True
         return Demands(
             self.graph,
+            self.firm[chosen[self.firm]],
             self.bounds.of_premises(chosen),
             tuple(choice for choice in self.choices if chosen[choice.premise]),
         )
@@ -86,7 +82,7 @@ def demands_of(graph: RelationGraph) -> Demands:
             else:
                 choices.append(Choice(alternatives, s, o, edge))
                 rows += [(*bound.points(s, o, n), bound.strict, edge) for bound in common(alternatives)]
-    return Demands(graph, bounds.joined(bounds_of(rows)) if rows else bounds, tuple(choices))
+    return Demands(graph, firm, bounds.joined(bounds_of(rows)) if rows else bounds, tuple(choices))
 
 
 def demands_of_facts(vocabulary: Relations, facts: Sequence[Fact]) -> Demands:

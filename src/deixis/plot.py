@@ -229,16 +229,7 @@ def _dress(
 
     axes.set_aspect("equal")
     axes.margins(0.06)
-    axes.autoscale_view()
-    unit = "pixels" if scene.unit == "px" else "metres"
-    axes.set_xlabel(f"{unit}, to the right as seen from the {scene.viewpoint}", color=INK, fontsize=8.5)
-    axes.set_ylabel(f"{unit}, away from the {scene.viewpoint}", color=INK, fontsize=8.5)
-    axes.tick_params(colors=INK, labelsize=8)
-    axes.set_facecolor(PAPER)
-    for side in axes.spines.values():
-        side.set_color(QUIET)
-    if title:
-        axes.set_title(title, color=INK, fontsize=12, loc="left", parse_math=False)
+    dress_table(axes, scene, title)
     keys: list[Any] = [Line2D([], [], color=QUIET, label=f"{len(found.satisfied)} facts satisfied")]
     if found.violated:
         keys.append(Line2D([], [], color=WRONG, label=f"{len(found.violated)} violated"))
@@ -250,3 +241,17 @@ def _dress(
         members = [name.replace("_", " ") for name, other in colours.items() if other == colour]
         keys.append(Patch(facecolor=colour, alpha=0.45, label="cannot be told apart: " + ", ".join(members)))
     axes.legend(handles=keys, fontsize=8, frameon=False, loc="upper center", bbox_to_anchor=(0.5, -0.09), ncols=2)
+
+
+def dress_table(axes: Axes, scene: Scene, title: str | None) -> None:
+    """Labels, colours and title of a table seen from above, once its aspect and margins are set."""
+    axes.autoscale_view()
+    unit = "pixels" if scene.unit == "px" else "metres"
+    axes.set_xlabel(f"{unit}, to the right as seen from the {scene.viewpoint}", color=INK, fontsize=8.5)
+    axes.set_ylabel(f"{unit}, away from the {scene.viewpoint}", color=INK, fontsize=8.5)
+    axes.tick_params(colors=INK, labelsize=8)
+    axes.set_facecolor(PAPER)
+    for side in axes.spines.values():
+        side.set_color(QUIET)
+    if title:
+        axes.set_title(title, color=INK, fontsize=12, loc="left", parse_math=False)

@@ -10,11 +10,10 @@ from deixis.imagination import Sized, Table
 from deixis.ontology.kinds import Kind, Kinds
 from deixis.ontology.sizes import Outline
 from deixis.perception.scene import PerceivedObject
-from deixis.plot import INK, PAPER, QUIET, new_figure, save
+from deixis.plot import INK, dress_table, new_figure, save
 from deixis.plot_names import write_names
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     from matplotlib.patches import Patch
 
@@ -48,7 +47,9 @@ def table_figure(table: Table, kinds: Kinds, title: str | None = None) -> Figure
         for patch in _shape(thing, sized, kinds):
             patch.set_zorder(1 + order)
             axes.add_patch(patch)
-    _dress(axes, table, title)
+    axes.set_aspect("equal", adjustable="datalim")  # a long row has room for its names above and below
+    axes.margins(0.08)
+    dress_table(axes, table.scene, title)
     write_names(figure, axes, table.scene.objects)
     return figure
 
@@ -131,18 +132,3 @@ def _is(kind: Kind | None, word: str, kinds: Kinds) -> bool:
 
 def _fill(kind: Kind | None, kinds: Kinds) -> str:
     return next((colour for word, colour in FILLS.items() if _is(kind, word, kinds)), OTHER_FILL)
-
-
-def _dress(axes: Axes, table: Table, title: str | None) -> None:
-    axes.set_aspect("equal", adjustable="datalim")  # a long row has room for its names above and below
-    axes.margins(0.08)
-    axes.autoscale_view()
-    viewpoint = table.scene.viewpoint
-    axes.set_xlabel(f"metres, to the right as seen from the {viewpoint}", color=INK, fontsize=8.5)
-    axes.set_ylabel(f"metres, away from the {viewpoint}", color=INK, fontsize=8.5)
-    axes.tick_params(colors=INK, labelsize=8)
-    axes.set_facecolor(PAPER)
-    for side in axes.spines.values():
-        side.set_color(QUIET)
-    if title:
-        axes.set_title(title, color=INK, fontsize=12, loc="left", parse_math=False)
