@@ -1,0 +1,1 @@
+"""Point clouds: the type that perception works on, and every format that it is read from."""

@@ -1,0 +1,61 @@
+"""A point cloud: what a depth camera or a simulator gives, before anything is recognised in it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.perception.errors import CloudError
+
+
+@dataclass(frozen=True, eq=False)
+class PointCloud:
+    """n points in metres, in one frame; a point with a coordinate that is not finite has no depth and stays in place.
+
+    ``organised`` gives rows and columns where the points are the pixels of an image, row by row (n = rows * columns).
+    ``origin`` is where the sensor stood, in the same frame. Raises CloudError where an array does not fit.
+
+    >>> cloud = PointCloud(np.array([[0, 0, 1], [np.nan, 0, 0]], np.float32), organised=(1, 2))
+    >>> len(cloud), cloud.finite.tolist()
+    (2, [True, False])
+    """
+
+    points: NDArray[np.float32]  # (n, 3)
+    colours: NDArray[np.uint8] | None = None  # (n, 3): red, green, blue
+    labels: NDArray[np.int32] | None = None  # (n,): a segment's number
+    normals: NDArray[np.float32] | None = None  # (n, 3): unit vectors
+    organised: tuple[int, int] | None = None
+    origin: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+    def __post_init__(self) -> None:
+        n = len(self.points)
+        wanted = {"points": (n, 3), "colours": (n, 3), "labels": (n,), "normals": (n, 3)}
+        for name, shape in wanted.items():
+            array = getattr(self, name)
+            if array is not None and array.shape != shape:
+                raise CloudError(f"a cloud's {name} have shape {shape}, not {array.shape}")
+        if self.organised is not None and self.organised[0] * self.organised[1] != n:
+            rows, columns = self.organised
+            raise CloudError(f"an image of {rows} rows and {columns} columns has {rows * columns} points, not {n}")
+
+    def __len__(self) -> int:
+        return len(self.points)
+
+    @property
+    def finite(self) -> NDArray[np.bool_]:
+        """Which points have a depth, shape (n,)."""
+        result: NDArray[np.bool_] = np.all(np.isfinite(self.points), axis=1)
+        return result
+
+    def take(self, chosen: NDArray[np.bool_] | NDArray[np.integer]) -> PointCloud:
+        """The chosen points with all that is known of them; no longer an image."""
+
+        return PointCloud(
+            self.points[chosen],
+            None if self.colours is None else self.colours[chosen],
+            None if self.labels is None else self.labels[chosen],
+            None if self.normals is None else self.normals[chosen],
+            origin=self.origin,
+        )

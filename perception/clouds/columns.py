@@ -1,0 +1,120 @@
+"""From the named columns of a file to a cloud: which names mean what, in PCD and PLY alike."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.perception.clouds.cloud import PointCloud
+from deixis.perception.errors import CloudError
+
+POINT = ("x", "y", "z")
+NORMALS = (("normal_x", "normal_y", "normal_z"), ("nx", "ny", "nz"))
+COLOURS = (("red", "green", "blue"), ("r", "g", "b"), ("diffuse_red", "diffuse_green", "diffuse_blue"))
+PACKED = ("rgb", "rgba")
+"""A colour in 32 bits, 0xAARRGGBB, whatever type the file gives them."""
+LABEL = "label"
+
+KNOWN = frozenset((*POINT, *sum(NORMALS, ()), *sum(COLOURS, ()), *PACKED, LABEL))
+"""All columns that are read; others are passed over."""
+
+Columns = Mapping[str, NDArray[np.generic]]
+
+
+def cloud_of_columns(
+    columns: Columns,
+    file: str,
+    organised: tuple[int, int] | None = None,
+    origin: tuple[float, float, float] = (0.0, 0.0, 0.0),
+) -> PointCloud:
+    """A cloud of columns (n,) in the types that the file declares; CloudError where a coordinate is missing.
+
+    >>> one, four = np.ones(1), np.array([0x0000FF80], np.uint32)
+    >>> cloud_of_columns({"x": one, "y": one, "z": one, "rgb": four}, "a.pcd").colours.tolist()
+    [[0, 255, 128]]
+    """
+    missing = [name for name in POINT if name not in columns]
+    if missing:
+        raise CloudError(f"{file}: there is no column '{missing[0]}'; a cloud has x, y and z, one value each")
+    normals = next((names for names in NORMALS if all(name in columns for name in names)), None)
+    return PointCloud(
+        side_by_side(columns, POINT),
+        _colours(columns, file),
+        None if LABEL not in columns else labels_of(columns[LABEL], file),
+        None if normals is None else side_by_side(columns, normals),
+        organised,
+        origin,
+    )
+
+
+def side_by_side(columns: Columns, names: tuple[str, ...]) -> NDArray[np.float32]:
+    """The named columns as one array (n, columns), in single precision."""
+    out = np.empty((len(columns[names[0]]), len(names)), np.float32)
+    with np.errstate(over="ignore", invalid="ignore"):
+        for place, name in enumerate(names):
+            out[:, place] = columns[name]
+    return out
+
+
+def single(values: NDArray[np.generic]) -> NDArray[np.float32]:
+    """Numbers in single precision; one too large for it becomes infinite."""
+    with np.errstate(over="ignore", invalid="ignore"):
+        return values.astype(np.float32)
+
+
+def declared(values: NDArray[np.float64], kind: np.dtype[np.generic], name: str, file: str) -> NDArray[np.generic]:
+    """Numbers that were read as text, in the type that the file declares for them; CloudError where one is none."""
+    if kind.kind == "f":
+        with np.errstate(over="ignore"):
+            return values.astype(kind)
+    limits = np.iinfo(kind.str)
+    with np.errstate(invalid="ignore"):
+        whole = values.astype(kind)
+    # The largest 64-bit numbers round up to the next power of two, which is one too many.
+    inside = not len(values) or (values.min() >= float(limits.min) and values.max() < float(limits.max) + 1)
+    if not (inside and (whole == values).all()):
+        fits = (values >= float(limits.min)) & (values < float(limits.max) + 1) & (values == np.floor(values))
+        row = int(np.argmin(fits))
+        raise CloudError(
+            f"{file}: point {row}: {values[row]:g} as '{name}' is no whole number from {limits.min} to {limits.max};"
+            " correct it, or the type of the column"
+        )
+    return whole
+
+
+def _colours(columns: Columns, file: str) -> NDArray[np.uint8] | None:
+    for name in PACKED:
+        if name in columns and columns[name].dtype.itemsize == 4:
+            bits = np.ascontiguousarray(columns[name]).astype(columns[name].dtype.newbyteorder("<")).view("<u4")
+            return np.ascontiguousarray(bits.view(np.uint8).reshape(-1, 4)[:, 2::-1])
+    names = next((names for names in COLOURS if all(name in columns for name in names)), None)
+    return None if names is None else as_bytes(np.stack([columns[name] for name in names], axis=1), file)
+
+
+def as_bytes(colours: NDArray[np.generic], file: str, whole: bool = False) -> NDArray[np.uint8]:
+    """Colours (n, 3) as bytes: floats are shares from 0 to 1, unless ``whole``; whole numbers are bytes already."""
+    if colours.dtype == np.uint8:
+        return colours.astype(np.uint8, copy=False)
+    whole = whole or colours.dtype.kind in "iu"
+    values = colours.astype(np.float64)
+    wrong = ~((values >= 0) & (values <= (255 if whole else 1))).all(axis=1)
+    if wrong.any():
+        row = int(np.argmax(wrong))
+        shown = ", ".join(f"{value:g}" for value in values[row])
+        allowed = "0 to 255" if whole else "0 to 1, as they are no whole numbers"
+        raise CloudError(f"{file}: point {row}: {shown} are no red, green and blue; they lie within {allowed}")
+    return np.rint(values if whole else values * 255).astype(np.uint8)
+
+
+def labels_of(column: NDArray[np.generic], file: str) -> NDArray[np.int32]:
+    """Labels in 32 bits; an unsigned 4294967295, which stands for none in some files, becomes -1."""
+    if column.dtype.kind in "iu" and column.dtype.itemsize <= 4:
+        return column.astype(np.int32)
+    values = column.astype(np.float64)
+    fits = (values >= -(2**31)) & (values < 2**32) & (values == np.floor(values))
+    if not fits.all():
+        row = int(np.argmin(fits))
+        raise CloudError(f"{file}: point {row}: the label {values[row]:g} is no whole number of 32 bits; renumber it")
+    return values.astype(np.int64).astype(np.uint32).view(np.int32)

@@ -1,0 +1,65 @@
+"""A triangle mesh: the surface of a thing, as designers and scanners give it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.perception.errors import CloudError
+
+
+@dataclass(frozen=True, eq=False)
+class Mesh:
+    """Triangles between vertices, in the file's own unit and frame.
+
+    ``names`` are the parts that the file names (groups in OBJ), ``part`` which of them each face belongs to. Raises
+    CloudError where arrays do not fit one another.
+
+    >>> mesh = Mesh(np.eye(3), np.array([[0, 1, 2]], np.int32), ("fork",), np.array([0], np.int32))
+    >>> len(mesh.part_named("fork").faces)
+    1
+    """
+
+    vertices: NDArray[np.float64]  # (n, 3)
+    faces: NDArray[np.int32]  # (m, 3): rows of vertices
+    names: tuple[str, ...] = ()
+    part: NDArray[np.int32] | None = None  # (m,): index in names
+
+    def __post_init__(self) -> None:
+        for name, array in (("vertices", self.vertices), ("faces", self.faces)):
+            if array.ndim != 2 or array.shape[1] != 3:
+                raise CloudError(f"a mesh's {name} have shape (n, 3), not {array.shape}")
+        if self.faces.size and not (self.faces.min() >= 0 and self.faces.max() < len(self.vertices)):
+            raise CloudError(f"a mesh's faces name vertices from 0 to {len(self.vertices) - 1}, and others too")
+        if self.part is not None and (
+            self.part.shape != (len(self.faces),)
+            or (self.part.size and not 0 <= self.part.min() <= self.part.max() < len(self.names))
+        ):
+            raise CloudError("a mesh's part is the index of a name, one for each face")
+
+    def part_named(self, name: str) -> Mesh:
+        """The faces of one part, with no other vertices than theirs; raises CloudError where there is no such part."""
+        if self.part is None or name not in self.names:
+            known = ", ".join(self.names) or "none"
+            raise CloudError(f"the mesh has no part '{name}'; its parts are: {known}")
+        faces = self.faces[self.part == self.names.index(name)]
+        used, inverse = np.unique(faces, return_inverse=True)
+        return Mesh(self.vertices[used], inverse.reshape(-1, 3).astype(np.int32))
+
+
+def fans(lengths: NDArray[np.int64], corners: NDArray[np.int64]) -> tuple[NDArray[np.int32], NDArray[np.int64]]:
+    """Triangles (m, 3) of polygons, each a fan around its first corner, and which polygon each comes from (m,).
+
+    ``corners`` holds the polygons' corners one after the other. A polygon of fewer than three corners has no triangle.
+
+    >>> fans(np.array([3, 4]), np.array([0, 1, 2, 5, 6, 7, 8]))[0].tolist()
+    [[0, 1, 2], [5, 6, 7], [5, 7, 8]]
+    """
+    starts = np.cumsum(lengths) - lengths
+    many = np.maximum(lengths - 2, 0)
+    polygon = np.repeat(np.arange(len(lengths)), many)
+    step = np.arange(len(polygon)) - np.repeat(np.cumsum(many) - many, many)
+    first = starts[polygon]
+    return corners[np.stack([first, first + step + 1, first + step + 2], axis=1)].astype(np.int32), polygon

@@ -1,0 +1,207 @@
+"""Compiled parsing of numbers in text: whole tables at the speed of the memory they come from, and exact.
+
+Numbers of more than 19 digits and extreme ones are left to the caller, who is told where they stand.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from deixis.perception.clouds.decimal_kernels import MAX_POWER, MIN_POWER, nearest
+
+DONE, NO_NUMBER, TOO_FEW, TOO_MANY, BAD_LENGTH = range(5)
+SKIPPED, LISTED, KEPT = -1, -2, -3
+"""Roles of columns: not wanted; a list, its length first, as in PLY; and the one list whose values are wanted."""
+
+_NAN, _INF, _INFINITY = b"NAN", b"INF", b"INFINITY"
+_Bytes = NDArray[np.uint8]
+
+
+@njit(cache=True)
+def _is_blank(byte: int) -> bool:
+    return byte == 32 or (9 <= byte <= 13)
+
+
+@njit(cache=True)
+def _value_start(text: _Bytes, at: int) -> int:
+    """Where the next value of this line begins, or -1 where there is none."""
+    while at < len(text):
+        if text[at] > 32:
+            return at
+        if text[at] != 32 and text[at] != 9:
+            break
+        at += 1
+    return -1
+
+
+@njit(cache=True)
+def _token_end(text: _Bytes, at: int) -> int:
+    while at < len(text) and not _is_blank(text[at]):
+        at += 1
+    return at
+
+
+@njit(cache=True)
+def row_start(text: _Bytes, at: int) -> int:
+    """Where the next row begins: blank lines and those that begin with # or // are passed over."""
+    while at < len(text):
+        if _is_blank(text[at]):
+            at += 1
+        elif text[at] == 35 or (text[at] == 47 and at + 1 < len(text) and text[at + 1] == 47):
+            while at < len(text) and text[at] != 10:
+                at += 1
+        else:
+            break
+    return at
+
+
+@njit(cache=True)
+def count_rows(text: _Bytes, at: int) -> int:
+    """How many rows there are from ``at`` on."""
+    rows = 0
+    at = row_start(text, at)
+    while at < len(text):
+        rows += 1
+        while at < len(text) and text[at] != 10 and text[at] != 13:
+            at += 1
+        at = row_start(text, at)
+    return rows
+
+
+@njit(cache=True)
+def _spells(text: _Bytes, at: int, word: bytes) -> bool:
+    """Whether a word in capitals stands at ``at``, in any case."""
+    if at + len(word) > len(text):
+        return False
+    same = True
+    for place in range(len(word)):
+        same = same and text[at + place] & 223 == word[place]
+    return same
+
+
+@njit(cache=True)
+def _word_at(text: _Bytes, at: int) -> tuple[float, int]:
+    """nan, inf or infinity in any case: value and end; the end is ``at`` where it is none of them."""
+    if _spells(text, at, _NAN):
+        return np.nan, at + len(_NAN)
+    if _spells(text, at, _INFINITY):
+        return np.inf, at + len(_INFINITY)
+    if _spells(text, at, _INF):
+        return np.inf, at + len(_INF)
+    return 0.0, at
+
+
+@njit(cache=True)
+def _exponent_at(text: _Bytes, at: int) -> tuple[int, int]:
+    """The number after an e, and its end; the end is ``at`` where there is none."""
+    begin = at
+    negative = at < len(text) and text[at] == 45
+    if at < len(text) and (text[at] == 45 or text[at] == 43):
+        at += 1
+    digits = at
+    power = 0
+    while at < len(text) and 48 <= text[at] <= 57:
+        power = min(power * 10 + (text[at] - 48), 100_000)
+        at += 1
+    return (-power if negative else power), (begin if at == digits else at)
+
+
+@njit(cache=True, error_model="numpy")
+def _number_at(text: _Bytes, at: int) -> tuple[float, int, bool]:
+    """A number's value, its end (``at`` where there is none) and whether the value is exact."""
+    begin = at
+    negative = at < len(text) and text[at] == 45
+    if at < len(text) and (text[at] == 45 or text[at] == 43):
+        at += 1
+    mantissa = power = point = 0
+    first = at
+    while at < len(text) and 48 <= text[at] <= 57:
+        mantissa = mantissa * 10 + (text[at] - 48)
+        at += 1
+    if at < len(text) and text[at] == 46:
+        point = 1
+        at += 1
+        fraction = at
+        while at < len(text) and 48 <= text[at] <= 57:
+            mantissa = mantissa * 10 + (text[at] - 48)
+            at += 1
+        power = fraction - at
+    digits = at - first - point
+    if not digits:
+        value, stop = (0.0, at) if point else _word_at(text, at)
+        return (-value if negative else value), (begin if stop == at else stop), True
+    if at < len(text) and (text[at] == 101 or text[at] == 69):
+        more, stop = _exponent_at(text, at + 1)
+        if stop == at + 1:
+            return 0.0, begin, True
+        power, at = power + more, stop
+    # 19 digits fit 64 bits.
+    exact = digits <= 19 and MIN_POWER <= power <= MAX_POWER
+    value = nearest(np.uint64(mantissa), power) if exact and mantissa else 0.0
+    return (-value if negative else value), at, exact
+
+
+@njit(cache=True)
+def parse_rows(
+    text: _Bytes,
+    at: int,
+    roles: NDArray[np.int64],
+    out: NDArray[np.float64],
+    inexact: NDArray[np.int64],
+    lengths: NDArray[np.int64],
+    values: NDArray[np.float64],
+) -> tuple[int, int, int, int, int, int]:
+    """Fills ``out`` (rows, wanted) from text, one row a line; ``roles`` says what to do with each column.
+
+    A role is the place of the column in ``out``, or SKIPPED, or LISTED or KEPT. Fills in addition ``inexact`` (k, 4),
+    row and column in ``out``, begin and end of values still to be rounded; ``lengths`` (rows,) of the list KEPT; and
+    its ``values``. Returns what went wrong, at which byte, row and column, and how many inexact ones and values there
+    are, which may be more than there was room for.
+    """
+    many = filled = 0
+    for row in range(len(out)):
+        at = row_start(text, at)
+        for column in range(len(roles)):
+            role = roles[column]
+            measured = role > LISTED
+            left = 1
+            while left:
+                left -= 1
+                # One blank is what mostly stands here, and a look at it is quicker than a call.
+                if at < len(text) and text[at] == 32:
+                    at += 1
+                if at == len(text) or text[at] <= 32:
+                    start = _value_start(text, at)
+                    if start < 0:
+                        return TOO_FEW, at, row, column, many, filled
+                    at = start
+                if role == SKIPPED:
+                    at = _token_end(text, at)
+                    continue
+                value, stop, exact = _number_at(text, at)
+                if stop == at or not (stop == len(text) or _is_blank(text[stop])):
+                    return NO_NUMBER, at, row, column, many, filled
+                if role < 0 and not exact:
+                    return NO_NUMBER, at, row, column, many, filled
+                if role >= 0:
+                    out[row, role] = value
+                    if not exact:
+                        if many < len(inexact):
+                            inexact[many] = (row, role, at, stop)
+                        many += 1
+                elif not measured:
+                    if not 0 <= value <= len(text) or value != np.floor(value):
+                        return BAD_LENGTH, at, row, column, many, filled
+                    measured, left = True, int(value)
+                    if role == KEPT:
+                        lengths[row] = left
+                elif role == KEPT:
+                    if filled < len(values):
+                        values[filled] = value
+                    filled += 1
+                at = stop
+        if at < len(text) and text[at] != 10 and _value_start(text, at) >= 0:
+            return TOO_MANY, at, row, len(roles), many, filled
+    return DONE, at, len(out), 0, many, filled

@@ -1,0 +1,58 @@
+"""XYZ: plain text, a point a line, columns apart by blanks, commas or semicolons; # and // begin comments.
+
+Three columns are x, y and z; a fourth, an intensity, is passed over; columns 4 to 6 of six are red, green and blue, as
+shares where none is above 1, else from 0 to 255. In a file called ``.xyzn`` they are a normal.
+"""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import numpy as np
+
+from deixis.perception.checks import shown
+from deixis.perception.clouds.cloud import PointCloud
+from deixis.perception.clouds.columns import as_bytes, single
+from deixis.perception.clouds.content import Content
+from deixis.perception.clouds.number_table import read_table
+from deixis.perception.errors import CloudError
+
+WIDTHS = (3, 4, 6)
+_SEPARATORS = b",;"
+
+
+def read_xyz(content: Content) -> PointCloud:
+    """The cloud in a text file; raises CloudError, with the line, where it is malformed or has no point."""
+    from deixis.perception.clouds.number_kernels import count_rows, row_start
+
+    blank = content.data.copy()
+    for separator in _SEPARATORS:
+        blank[blank == separator] = ord(" ")
+    plain = Content(content.name, blank)
+    start = row_start(blank, 0)
+    width = _width(content, start)
+    chosen = [0, 1, 2, 3, 4, 5] if width == 6 else [0, 1, 2]
+    table = read_table(plain, start, count_rows(blank, start), width, chosen).columns
+    points, more = single(table[:, :3]), table[:, 3:]
+    if width != 6:
+        return PointCloud(points)
+    if Path(content.name).suffix.lower() == ".xyzn":
+        return PointCloud(points, normals=single(more))
+    whole = bool((more > 1).any() and (more == np.floor(more)).all())
+    return PointCloud(points, as_bytes(more, content.name, whole))
+
+
+def _width(content: Content, start: int) -> int:
+    """How many columns the first row has."""
+    line = content.data[start : start + 1024].tobytes().split(b"\n")[0]
+    words = re.split(r"[\s,;]+", line.decode("latin-1").strip())
+    where = f"{content.name}:{content.line_of(start)}"
+    if words == [""]:
+        raise CloudError(f"{where}: there is no point in this file; write one a line: x y z")
+    if len(words) not in WIDTHS:
+        raise CloudError(
+            f"{where}: {len(words)} columns beginning '{shown(words[0])}'; a line has x y z, x y z intensity, or x y z"
+            " red green blue"
+        )
+    return len(words)
