@@ -1,0 +1,47 @@
+"""Cloth, and what stands for things of which there is no shape of their own: rounded blocks and cylinders."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from deixis.perception.clouds.mesh import Mesh
+from deixis.perception.simulator.size import Size
+from deixis.perception.simulator.solids import revolved, ringed, thick_sheet
+
+CLOTH_CELL = 0.004
+"""Cloth is a grid of cells that measure so much at the most, in metres, so that it can drape."""
+
+
+def napkin(size: Size, rng: np.random.Generator) -> Mesh:
+    """A folded napkin: flat below, slightly uneven above, thinner at its edges."""
+    columns, rows = (max(int(np.ceil(side / CLOTH_CELL)), 4) + 1 for side in (size.width, size.length))
+    x, y = np.meshgrid(np.linspace(-1, 1, columns), np.linspace(-1, 1, rows))
+    waves = rng.uniform(1.0, 3.0, (3, 2)), rng.uniform(0, 2 * np.pi, 3)
+    uneven = sum(np.sin(kx * x + ky * y + phase) for (kx, ky), phase in zip(*waves, strict=True)) / 3
+    edge = np.minimum((1 - np.abs(x)) * size.width / 2, (1 - np.abs(y)) * size.length / 2)
+    rounded = 0.55 + 0.45 * np.sqrt(1 - (1 - np.clip(edge / 0.008, 0, 1)) ** 2)
+    top = size.height * rounded * (0.93 + 0.07 * uneven)
+    return thick_sheet(x * size.width / 2, y * size.length / 2, np.zeros_like(top), top)
+
+
+def block(size: Size, rng: np.random.Generator) -> Mesh:
+    """A block with round corners and a bevelled top."""
+    corner = rng.uniform(0.15, 0.3) * min(size.width, size.length)
+    bevel = min(0.15 * size.height, 0.5 * corner)
+    insets = [(0.0, 0.0), (0.0, size.height - bevel), (0.3 * bevel, size.height - 0.3 * bevel), (bevel, size.height)]
+    turn = (np.pi / 2 * np.arange(4)[:, None] + np.linspace(0, np.pi / 2, 6)).ravel()
+    x = np.repeat([1, -1, -1, 1], 6) * (size.width / 2 - corner)
+    y = np.repeat([1, 1, -1, -1], 6) * (size.length / 2 - corner)
+    rings = [
+        np.stack([x + (corner - inset) * np.cos(turn), y + (corner - inset) * np.sin(turn), np.full(24, z)], axis=1)
+        for inset, z in insets
+    ]
+    return ringed(np.array(rings))
+
+
+def cylinder(size: Size, rng: np.random.Generator) -> Mesh:
+    """A cylinder with a bevelled top."""
+    radius = size.width / 2
+    bevel = min(0.1 * size.height, rng.uniform(0.1, 0.25) * radius)
+    outline = [(radius, 0.0), (radius, size.height - bevel), (radius - bevel, size.height)]
+    return revolved([(0.0, 0.0), *outline, (0.0, size.height)])

@@ -1,0 +1,91 @@
+"""Plates, bowls, cups and mugs: solids of revolution, some with a handle that points along y.
+
+Every builder takes the size (metres) and a generator that varies the shape; the caller stretches what it gives to the
+size exactly.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.perception.clouds.mesh import Mesh
+from deixis.perception.simulator.size import Size
+from deixis.perception.simulator.solids import joined, revolved, tube
+
+Profile = list[tuple[float, float]]
+
+
+def plate(size: Size, rng: np.random.Generator) -> Mesh:
+    """A flat well and a rim: mostly a flange that rises beyond a step, else one curve."""
+    radius, height = size.width / 2, size.height
+    thickness = min(rng.uniform(0.003, 0.0045), 0.3 * height)
+    well = radius * rng.uniform(0.58, 0.70)
+    share = np.linspace(0.0, 1.0, 24)
+    if rng.random() < 0.75:
+        step, at = rng.uniform(0.4, 0.6), rng.uniform(0.22, 0.32)
+        rise = np.where(share < at, step * _eased(share / at), step + (1 - step) * (share - at) / (1 - at))
+    else:
+        rise = share ** rng.uniform(1.6, 2.4)
+    across, above = well + (radius - well) * share, thickness + (height - thickness) * rise
+    under = [(r, z - thickness) for r, z in zip(across, above, strict=True)]
+    over = [(r, z) for r, z in zip(across[::-1], above[::-1], strict=True)]
+    return revolved([(0.0, 0.0), *under, *over, (0.0, thickness)])
+
+
+def bowl(size: Size, rng: np.random.Generator) -> Mesh:
+    radius, height = size.width / 2, size.height
+    foot = radius * rng.uniform(0.38, 0.55)
+    share = np.linspace(0.0, 1.0, 28) ** 1.5
+    outer = foot + (radius - foot) * share ** rng.uniform(0.4, 0.6)
+    return revolved(vessel(outer, height * share, wall=rng.uniform(0.003, 0.005)))
+
+
+def cup(size: Size, rng: np.random.Generator) -> Mesh:
+    """A cup that widens upwards, with a handle."""
+    radius, height = size.width / 2, size.height
+    foot = radius * rng.uniform(0.5, 0.65)
+    share = np.linspace(0.0, 1.0, 28) ** 1.5
+    outer = foot + (radius - foot) * share ** rng.uniform(0.45, 0.7)
+    return _with_handle(outer, height * share, rng.uniform(0.0025, 0.0035), size, (0.86, rng.uniform(0.3, 0.42)))
+
+
+def mug(size: Size, rng: np.random.Generator) -> Mesh:
+    """A nearly straight mug with a handle."""
+    radius, height = size.width / 2, size.height
+    taper = rng.uniform(0.86, 1.0)
+    share = np.concatenate([[0.0, 0.02, 0.05], np.linspace(0.1, 1.0, 10)])
+    outer = radius * (taper + (1 - taper) * share) * np.minimum(1.0, 0.93 + 1.4 * share)
+    return _with_handle(outer, height * share, rng.uniform(0.0035, 0.005), size, (0.84, rng.uniform(0.16, 0.26)))
+
+
+def vessel(outer: NDArray[np.float64], z: NDArray[np.float64], wall: float, floor: float | None = None) -> Profile:
+    """The profile of an open vessel with an outer radius for every height, from the table (z[0] = 0) to the rim."""
+    floor = max(1.5 * wall, 0.004) if floor is None else floor
+    inside = z > floor
+    inner = [(r - wall, h) for r, h in zip(outer[inside][::-1], z[inside][::-1], strict=True)]
+    base = float(np.interp(floor, z, outer)) - wall
+    outside = [(float(r), float(h)) for r, h in zip(outer, z, strict=True)]
+    return [(0.0, float(z[0])), *outside, *inner, (base, floor), (0.0, floor)]
+
+
+def _with_handle(
+    outer: NDArray[np.float64], z: NDArray[np.float64], wall: float, size: Size, ends: tuple[float, float]
+) -> Mesh:
+    """The vessel with an ear whose ends, at shares of the height, are sunk into the wall."""
+    above, below = (share * size.height for share in ends)
+    start, end = (float(np.interp(at, z, outer)) - 0.5 * wall for at in (above, below))
+    depth = min(0.009, 0.25 * (above - below))
+    reach = size.length - size.width / 2 - depth / 2
+    turn = np.linspace(0.0, np.pi, 24)
+    base = start + (end - start) * (1 - np.cos(turn)) / 2
+    bulge = np.sin(turn) ** 0.6
+    path = np.stack(
+        [np.zeros(24), base + (reach - base) * bulge, (above + below) / 2 + (above - below) / 2 * np.cos(turn)], axis=1
+    )
+    return joined(revolved(vessel(outer, z, wall)), tube(path, width=0.011, depth=depth))
+
+
+def _eased(share: NDArray[np.float64]) -> NDArray[np.float64]:
+    result: NDArray[np.float64] = (1 - np.cos(np.pi * np.clip(share, 0, 1))) / 2
+    return result

@@ -1,0 +1,166 @@
+"""Forks, knives and spoons: thick sheets along y, handle towards the viewer, a few millimetres high.
+
+They are given by what they measure at stations along their length: 0 is the handle's end, 1 the tip.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.perception.clouds.mesh import Mesh
+from deixis.perception.simulator.size import Size
+from deixis.perception.simulator.solids import thick_sheet
+
+Array = NDArray[np.float64]
+Builder = Callable[[Size, np.random.Generator], Mesh]
+
+
+@dataclass(frozen=True, eq=False)
+class _Bar:
+    """A bar of rows along its length: half its width, the height of its middle, its thickness, all (rows,)."""
+
+    along: Array
+    half: Array
+    middle: Array
+    thickness: Array
+
+    def sheet(
+        self,
+        across: Array,
+        sunk: Array | float = 0.0,
+        shifted: Array | float = 0.0,
+        cells: NDArray[np.bool_] | None = None,
+        flat: bool = False,
+    ) -> Mesh:
+        """The solid: thinner at its sides; ``across`` from -1 to 1, (columns,) or (rows, columns).
+
+        ``sunk`` and ``shifted`` move its points down and along x, (rows, columns). Unless it is ``flat`` it is tilted
+        so that it rests on its handle and on its head.
+        """
+        side = np.broadcast_to(across, (len(self.along), np.shape(across)[-1]))
+        lens = np.sqrt(1 - 0.7 * side**2) * self.thickness[:, None] / 2
+        x = side * self.half[:, None] + shifted
+        y = np.broadcast_to(self.along[:, None], side.shape)
+        middle = self.middle[:, None] - sunk
+        bottom = np.zeros_like(x) if flat else middle - lens
+        top = 2 * lens if flat else middle + lens
+        if not flat:
+            tilt = _tilt(self.along, bottom)
+            bottom, top = bottom - tilt, top - tilt
+        return thick_sheet(x, y, bottom, top, cells)
+
+
+def _tilt(along: Array, bottom: Array) -> Array:
+    """The line (rows, 1) through the lowest points of the two halves."""
+    lowest = bottom.min(axis=1)
+    half = along <= along[-1] / 2
+    a, b = int(np.argmin(np.where(half, lowest, np.inf))), int(np.argmin(np.where(half, np.inf, lowest)))
+    slope = (lowest[b] - lowest[a]) / (along[b] - along[a])
+    line: Array = (lowest[a] + slope * (along - along[a]))[:, None]
+    return line
+
+
+def _smooth(stations: Array, nodes: Mapping[float, float]) -> Array:
+    from scipy.interpolate import PchipInterpolator
+
+    values: Array = PchipInterpolator(list(nodes), list(nodes.values()))(stations)
+    return values
+
+
+def _stations(rows: int = 90) -> Array:
+    """Denser towards both ends, which are round."""
+    even = np.linspace(0.0, 1.0, rows)
+    return 0.75 * even + 0.25 * (1 - np.cos(np.pi * even)) / 2
+
+
+def _round_end(stations: Array, size: Size, half: float) -> Array:
+    """How much of its width is left near the handle's end, which is about a half circle."""
+    share = np.clip(stations * size.length / half, 0.03, 1.0)
+    left: Array = np.sqrt(1 - (1 - share) ** 2)
+    return left
+
+
+def spoon(roundness: float = 0.0) -> Builder:
+    """A builder of spoons; ``roundness`` 1 makes the bowl as long as wide, 0 the usual egg."""
+
+    def build(size: Size, rng: np.random.Generator) -> Mesh:
+        wide, deep = size.width / 2, size.width * rng.uniform(0.14, 0.2)
+        egg = rng.uniform(0.3, 0.34)
+        bowl = max(egg + (size.width / size.length - egg) * roundness, 0.2)
+        neck, grip = rng.uniform(0.1, 0.14) * size.width, rng.uniform(0.2, 0.28) * size.width
+        t = _stations()
+        v = (t - (1 - bowl / 2)) / (bowl / 2)
+        oval = wide * np.sqrt(np.clip(1 - v**2, 0.0, 1.0)) * (1 - 0.1 * v * (1 - roundness))
+        handle = _smooth(t, {0.0: grip, 0.15: 0.9 * grip, 0.9 - bowl: neck, 1.0: neck})
+        half = np.where(v > 0, oval, np.maximum(oval, handle)) * _round_end(t, size, grip)
+        rise = size.height * rng.uniform(0.8, 1.0)
+        curve = {0.0: 0.0, 0.3: 0.5 * rise, 0.84 - bowl: rise, 1 - bowl: 1.2 * deep, 1 - bowl / 2: deep, 1.0: deep}
+        middle = _smooth(t, curve)
+        thickness = _smooth(t, {0.0: 0.0025, 1 - bowl: 0.003, 1 - 0.7 * bowl: 0.0016, 1.0: 0.0012})
+        across = np.linspace(-1, 1, 13)
+        sunk = deep * np.clip(1 - v**2, 0, 1)[:, None] * (1 - across**2)[None] * (v > -1)[:, None]
+        return _Bar(t * size.length, np.maximum(half, 0.0004), middle, thickness).sheet(across, sunk)
+
+    return build
+
+
+def fork(tines: int = 4) -> Builder:
+    """A builder of forks with so many tines."""
+
+    def build(size: Size, rng: np.random.Generator) -> Mesh:
+        wide, root = size.width / 2, rng.uniform(0.72, 0.77)
+        grip, neck = rng.uniform(0.32, 0.44) * size.width, rng.uniform(0.11, 0.15) * size.width
+        t = _stations()
+        start = root - 0.1
+        outline = {0.0: grip, 0.15: 0.9 * grip, start - 0.1: neck, start - 0.03: 1.2 * neck, start + 0.04: 0.85 * wide}
+        half = _smooth(t, {**outline, root: wide, 1.0: rng.uniform(0.92, 1.0) * wide}) * _round_end(t, size, grip)
+        rise, tip = 0.9 * size.height, rng.uniform(0.45, 0.8) * size.height
+        middle = _smooth(t, {0.0: 0.0, 0.3: 0.4 * rise, start - 0.04: rise, root + 0.08: 0.1 * rise, 1.0: tip})
+        thickness = _smooth(t, {0.0: 0.0025, start: 0.003, root: 0.002, 1.0: 0.0015})
+        across, cells = _tined(t, tines, root, rng.uniform(1.1, 1.5))
+        return _Bar(t * size.length, half, middle, thickness).sheet(across, cells=cells)
+
+    return build
+
+
+def _tined(stations: Array, tines: int, root: float, ratio: float) -> tuple[Array, NDArray[np.bool_]]:
+    """Columns (rows, 3 a tine) of which each tine takes three, and the cells without the gaps between the tines.
+
+    ``ratio`` is the width of a tine over that of a gap. Tines become points over the last tenth of the length.
+    """
+    gap = 2 / (tines * ratio + tines - 1)
+    centres = -1 + ratio * gap / 2 + np.arange(tines) * gap * (1 + ratio)
+    pointed = np.clip((1 - stations) / 0.06, 0.3, 1.0)[:, None, None]
+    offsets = np.array([-0.5, 0.0, 0.5]) * ratio * gap
+    across = (centres[None, :, None] + pointed * offsets).reshape(len(stations), -1)
+    cells = np.ones((len(stations) - 1, 3 * tines - 1), dtype=np.bool_)
+    cells[stations[:-1] >= root, 2::3] = False
+    return across, cells
+
+
+def knife(blade: float = 0.55, breadth: float = 1.0, grip: float = 0.75, pointed: bool = False) -> Builder:
+    """A builder of knives, which lie on their side, the edge to the left.
+
+    ``blade`` is its share of the length; the wider of ``breadth`` (of the blade) and ``grip`` is the knife's width.
+    """
+
+    def build(size: Size, rng: np.random.Generator) -> Mesh:
+        t = _stations()
+        wide, hold = size.width / 2 * breadth, size.width / 2 * grip * rng.uniform(0.9, 1.0)
+        heel = 1 - blade * rng.uniform(0.95, 1.05)
+        outline = {0.0: hold, heel / 2: 0.8 * hold, heel - 0.02: 0.65 * hold, heel + 0.04: wide, 0.88: 0.95 * wide}
+        reach = np.clip((1 - t) / (0.22 if pointed else 0.1), 0.0, 1.0)
+        end = reach**0.8 if pointed else np.sqrt(1 - (1 - reach) ** 2)
+        whole = _smooth(t, {**outline, 1.0: 0.9 * wide}) * _round_end(t, size, hold)
+        half = np.maximum(whole * end, 0.0004)
+        thick, thin = size.height, min(rng.uniform(0.0016, 0.0024), 0.6 * size.height)
+        handle = {0.0: 0.9 * thick, heel / 2: thick, heel - 0.03: 0.8 * thick}
+        thickness = _smooth(t, {**handle, heel + 0.04: thin, 1.0: 0.7 * thin})
+        spine = np.where(t > heel, whole - half, 0.0)[:, None] * (0.0 if pointed else 0.9)
+        return _Bar(t * size.length, half, 0 * t, thickness).sheet(np.linspace(-1, 1, 9), shifted=spine, flat=True)
+
+    return build

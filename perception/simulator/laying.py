@@ -1,0 +1,149 @@
+"""Laying a table: placements become things in the table's frame, set down one after the other.
+
+The table's top is the plane z = 0; x runs to the right and y away from whoever sits at it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.ontology.tbox import Ontology, default_ontology
+from deixis.perception.clouds.mesh import Mesh
+from deixis.perception.simulator.blocks import CLOTH_CELL
+from deixis.perception.simulator.errors import SimulationError
+from deixis.perception.simulator.resting import draped, lowered, overlap_in_plan, plan_box
+from deixis.perception.simulator.solids import moved
+from deixis.perception.simulator.tableware import Colour, make
+
+WOOD: Colour = (150, 112, 78)
+LINEN_CLOTH: Colour = (226, 222, 212)
+FOREIGN: Colour = (186, 150, 90)
+"""The colour of a mesh from a file."""
+
+MARGIN = 0.15
+"""How far a table reaches beyond what lies on it, in metres, unless it is told."""
+
+
+@dataclass(frozen=True)
+class Placement:
+    """A thing to be laid: its kind, the middle of its box before it is turned, and which instance it is.
+
+    ``yaw`` in radians, counter-clockwise from above; at 0 a head or a handle points away from the viewer. ``plan``
+    settles width and length (metres), else the seed does. ``mesh`` (metres, z up) is laid in place of an instance.
+    """
+
+    name: str
+    kind: str | None
+    x: float
+    y: float
+    yaw: float = 0.0
+    seed: int = 0
+    plan: tuple[float, float] | None = None
+    mesh: Mesh | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class LaidThing:
+    """A thing on the table: its mesh in the table's frame, and the shape that it was given.
+
+    ``generic`` where its kind has no shape of its own here, so that a block or a cylinder stands for it.
+    """
+
+    name: str
+    kind: str | None
+    mesh: Mesh
+    colour: Colour
+    shape: str
+    generic: bool = False
+
+    @property
+    def box(self) -> NDArray[np.float64]:
+        """Least and greatest corner in the table's frame, shape (2, 3), to the micrometre: what meets stays so."""
+        corners: NDArray[np.float64] = np.stack([self.mesh.vertices.min(axis=0), self.mesh.vertices.max(axis=0)])
+        return corners.round(6) + 0.0
+
+
+@dataclass(frozen=True)
+class TableTop:
+    """A table's top: a slab below z = 0 over an extent ((x0, y0), (x1, y1)), of the colour of wood or of a cloth."""
+
+    low: tuple[float, float]
+    high: tuple[float, float]
+    thickness: float = 0.03
+    colour: Colour = WOOD
+
+    def __post_init__(self) -> None:
+        if not (self.low[0] < self.high[0] and self.low[1] < self.high[1] and self.thickness > 0):
+            raise SimulationError(f"a table from {self.low} to {self.high}, {self.thickness:g} m thick, is empty")
+
+    @property
+    def mesh(self) -> Mesh:
+        (x0, y0), (x1, y1) = self.low, self.high
+        corners = [(x, y, z) for z in (-self.thickness, 0.0) for x, y in ((x0, y0), (x1, y0), (x1, y1), (x0, y1))]
+        quads = ((3, 2, 1, 0), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7))
+        faces = [face for a, b, c, d in quads for face in ((a, b, c), (a, c, d))]
+        return Mesh(np.array(corners), np.array(faces, dtype=np.int32))
+
+
+@dataclass(frozen=True)
+class LaidTable:
+    """A laid table: its top, and the things on it, in the order in which they are numbered."""
+
+    top: TableTop
+    things: tuple[LaidThing, ...]
+
+
+def lay(placements: Iterable[Placement], top: TableTop | None = None, ontology: Ontology | None = None) -> LaidTable:
+    """Sets things down in the order in which they come, each on the table or on what lies there already.
+
+    Stiff things stay level and are lowered until they touch; cloth drapes. So nothing goes through anything, and
+    what is to lie below must come first. Without a ``top`` the table reaches a little beyond what lies on it. Raises
+    SimulationError where a name is used twice, a kind is not known, or a placement is nowhere.
+    """
+    ontology = ontology or default_ontology()
+    things: list[LaidThing] = []
+    for placement in placements:
+        if any(thing.name == placement.name for thing in things):
+            raise SimulationError(f"'{placement.name}' is placed twice; give every thing a name of its own")
+        if not np.isfinite([placement.x, placement.y, placement.yaw]).all():
+            raise SimulationError(f"'{placement.name}' has no place: {placement.x}, {placement.y}, yaw {placement.yaw}")
+        things.append(_set_down(placement, things, ontology))
+    return LaidTable(top or top_under(things), tuple(things))
+
+
+def _set_down(placement: Placement, there: Sequence[LaidThing], ontology: Ontology) -> LaidThing:
+    thing, soft = _upright(placement, ontology)
+    mesh = moved(thing.mesh, placement.yaw, by=(placement.x, placement.y, 0.0))
+    below = [other.mesh for other in there if overlap_in_plan(mesh, other.mesh)]
+    return replace(thing, mesh=draped(mesh, below, CLOTH_CELL) if soft else lowered(mesh, below))
+
+
+def _upright(placement: Placement, ontology: Ontology) -> tuple[LaidThing, bool]:
+    """The thing by itself at the origin, and whether it is soft."""
+    name, kind = placement.name, placement.kind
+    if placement.mesh is not None:
+        return LaidThing(name, kind, stood(placement.mesh), FOREIGN, "mesh from a file"), False
+    made = make(kind, placement.seed, placement.plan, ontology)
+    return LaidThing(name, kind, made.mesh, made.colour, made.form.name, made.form.generic), made.form.soft
+
+
+def stood(mesh: Mesh) -> Mesh:
+    """The mesh moved so that its box stands on z = 0, centred on the z axis. Raises SimulationError for no mesh."""
+    if not len(mesh.faces) or not np.isfinite(mesh.vertices).all():
+        raise SimulationError("a mesh has no faces, or vertices that are nowhere")
+    low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
+    middle = (low + high) / 2
+    return Mesh(mesh.vertices - (middle[0], middle[1], low[2]), mesh.faces)
+
+
+def top_under(things: Sequence[LaidThing], margin: float = MARGIN, colour: Colour = WOOD) -> TableTop:
+    """A table that reaches ``margin`` metres beyond all things."""
+    if not things:
+        return TableTop((-0.5, -0.35), (0.5, 0.35), colour=colour)
+    boxes = [plan_box(thing.mesh) for thing in things]
+    low, high = np.min([box[0] for box in boxes], axis=0) - margin, np.max([box[1] for box in boxes], axis=0) + margin
+    return TableTop((float(low[0]), float(low[1])), (float(high[0]), float(high[1])), colour=colour)

@@ -1,0 +1,62 @@
+"""Rays against meshes, by Open3D's ray casting (Embree)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.perception.clouds.mesh import Mesh
+
+
+@dataclass(frozen=True, eq=False)
+class Hits:
+    """Where r rays first meet something: in rays' lengths, infinite for those that meet nothing."""
+
+    distance: NDArray[np.float32]  # (r,)
+    mesh: NDArray[np.int32]  # (r,): number of the mesh, -1 for none
+    normals: NDArray[np.float32]  # (r, 3): unit vectors; either side of a face may be meant
+
+
+class RayCaster:
+    """Several meshes, ready to be met by rays; they are numbered as they come."""
+
+    def __init__(self, meshes: Sequence[Mesh]) -> None:
+        from open3d import core, t
+
+        self._tensor: Any = core.Tensor
+        self._scene: Any = t.geometry.RaycastingScene()
+        for mesh in meshes:
+            vertices = core.Tensor(np.ascontiguousarray(mesh.vertices, dtype=np.float32))
+            self._scene.add_triangles(vertices, core.Tensor(np.ascontiguousarray(mesh.faces, dtype=np.uint32)))
+
+    def cast(self, origins: NDArray[np.floating], directions: NDArray[np.floating]) -> Hits:
+        """The first hit of every ray; ``origins`` (r, 3) or (3,), ``directions`` (r, 3)."""
+        rays = np.empty((len(directions), 6), dtype=np.float32)
+        rays[:, :3], rays[:, 3:] = origins, directions
+        found = self._scene.cast_rays(self._tensor(rays))
+        mesh = found["geometry_ids"].numpy().astype(np.int64)
+        none = mesh == self._scene.INVALID_ID
+        return Hits(
+            distance=found["t_hit"].numpy(),
+            mesh=np.where(none, -1, mesh).astype(np.int32),
+            normals=found["primitive_normals"].numpy(),
+        )
+
+    def tops(self, plan: NDArray[np.float64]) -> NDArray[np.float64]:
+        """How high the meshes reach at places (p, 2) of the plan; NaN where there is nothing."""
+        return self._vertical(plan, start=10.0, down=True)
+
+    def bottoms(self, plan: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Where the meshes begin, from below, at places (p, 2) of the plan; NaN where there is nothing."""
+        return self._vertical(plan, start=-10.0, down=False)
+
+    def _vertical(self, plan: NDArray[np.float64], start: float, down: bool) -> NDArray[np.float64]:
+        origins = np.column_stack([plan, np.full(len(plan), start)])
+        hits = self.cast(origins, np.tile([0.0, 0.0, -1.0 if down else 1.0], (len(plan), 1)))
+        distance = hits.distance.astype(np.float64)
+        height = start - distance if down else start + distance
+        return np.where(hits.mesh < 0, np.nan, height)

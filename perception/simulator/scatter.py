@@ -1,0 +1,117 @@
+"""Random tables: things of random kinds at random places, some of them on plates."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.ontology.tbox import Ontology, default_ontology
+from deixis.perception.simulator.errors import SimulationError
+from deixis.perception.simulator.laying import Placement
+from deixis.perception.simulator.tableware import drawn_plan, kind_named
+
+KINDS = (
+    *("dinner plate", "bread plate", "bowl", "mug", "cup", "water glass", "wine glass", "champagne glass", "bottle"),
+    *("dinner fork", "salad fork", "dessert fork", "dinner knife", "fish knife", "butter knife"),
+    *("soup spoon", "dessert spoon", "teaspoon", "napkin"),
+)
+"""What random tables are laid with."""
+
+ON_PLATES = ("napkin", "butter knife", "teaspoon", "dessert fork")
+"""What is laid on a plate half the time, where there is a free one that is large enough."""
+
+GAP = 0.012
+"""Metres between things at least."""
+
+MOST = 300
+
+_TRIES = 60
+
+
+def scattered(
+    count: int,
+    seed: int,
+    kinds: Sequence[str] = KINDS,
+    foreign: Sequence[Placement] = (),
+    ontology: Ontology | None = None,
+) -> list[Placement]:
+    """So many things of random kinds, and the ``foreign`` ones, which have meshes, at random places, turned at random.
+
+    They lie at least ``GAP`` apart, but some on plates; the area that they take up is wider than deep. Names are kinds
+    with numbers. Raises SimulationError for more than ``MOST`` things, or none.
+    """
+    if not 0 <= count <= MOST or count + len(foreign) == 0:
+        raise SimulationError(f"a random table has 1 to {MOST} things, not {count}")
+    ontology, rng = ontology or default_ontology(), np.random.default_rng(seed)
+    floor = _Floor(rng)
+    placed = [floor.put(placement, placement.plan or (0.1, 0.1)) for placement in foreign]
+    chosen = [str(kind) for kind in rng.choice(np.array(kinds), count)]
+    chosen.sort(key=lambda kind: kind in ON_PLATES)  # what lies below is set down first
+    for number, kind in enumerate(chosen):
+        name = f"{kind.replace(' ', '_')}_{chosen[:number].count(kind) + 1}"
+        instance = int(rng.integers(2**31))
+        plan = drawn_plan(kind_named(kind, ontology), instance, ontology)
+        thing = Placement(name, kind, 0.0, 0.0, seed=instance)
+        on_plate = floor.put_on_plate(thing, plan) if kind in ON_PLATES and rng.random() < 0.5 else None
+        placed.append(on_plate or floor.put(thing, plan))
+    return placed
+
+
+class _Floor:
+    """Where things stand already: rectangles in the plan, and plates on which there is nothing."""
+
+    def __init__(self, rng: np.random.Generator) -> None:
+        self._rng = rng
+        self._taken: list[NDArray[np.float64]] = []
+        self._plates: list[tuple[float, float, float]] = []
+        self._half = 0.15
+
+    def put(self, thing: Placement, plan: tuple[float, float]) -> Placement:
+        """The thing at a free place; the area grows until there is one."""
+        while True:
+            for _ in range(_TRIES):
+                x, y = self._rng.uniform(-1, 1, 2) * (1.2 * self._half, 0.85 * self._half)
+                yaw = float(self._rng.uniform(0, 2 * np.pi))
+                corners = _corners(x, y, yaw, plan)
+                if not any(_overlap(corners, other) for other in self._taken):
+                    self._taken.append(corners)
+                    return self._stands(thing, plan, float(x), float(y), yaw)
+            self._half *= 1.15
+
+    def _stands(self, thing: Placement, plan: tuple[float, float], x: float, y: float, yaw: float) -> Placement:
+        if thing.kind is not None and thing.kind.endswith("plate"):
+            self._plates.append((plan[0], x, y))
+        return _at(thing, x, y, yaw)
+
+    def put_on_plate(self, thing: Placement, plan: tuple[float, float]) -> Placement | None:
+        """The thing on the first free plate on which all of it fits."""
+        for place, (across, x, y) in enumerate(self._plates):
+            if float(np.hypot(*plan)) < across:
+                del self._plates[place]
+                return _at(thing, x, y, float(self._rng.uniform(0, 2 * np.pi)))
+        return None
+
+
+def _at(thing: Placement, x: float, y: float, yaw: float) -> Placement:
+    return Placement(thing.name, thing.kind, x, y, yaw, thing.seed, thing.plan, thing.mesh)
+
+
+def _corners(x: float, y: float, yaw: float, plan: tuple[float, float]) -> NDArray[np.float64]:
+    """Of a rectangle with half a gap around it, counter-clockwise, (4, 2)."""
+    half = (np.array(plan) + GAP) / 2
+    corners = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)]) * half
+    turn = np.array([[np.cos(yaw), np.sin(yaw)], [-np.sin(yaw), np.cos(yaw)]])
+    turned: NDArray[np.float64] = corners @ turn + (x, y)
+    return turned
+
+
+def _overlap(a: NDArray[np.float64], b: NDArray[np.float64]) -> bool:
+    """Whether two rectangles overlap: no side of either has the other beyond it (separating axes)."""
+    for sides in (a[1:3] - a[:2], b[1:3] - b[:2]):
+        along_a, along_b = a @ sides.T, b @ sides.T
+        apart = (along_a.max(axis=0) <= along_b.min(axis=0)) | (along_b.max(axis=0) <= along_a.min(axis=0))
+        if apart.any():
+            return False
+    return True

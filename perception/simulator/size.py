@@ -1,0 +1,67 @@
+"""How large one thing is, drawn from how large things of its kind usually are."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from deixis.ontology.sizes import Extent, SizeRange
+
+COMMON = 0.7
+"""How much of a thing's place between small and large its lengths share: a long spoon is wide and high too."""
+
+
+@dataclass(frozen=True, slots=True)
+class Size:
+    """Extents of one thing in metres: width on x, length on y, height on z, as it lies with its head away from you."""
+
+    width: float
+    length: float
+    height: float
+
+
+def drawn_size(usual: SizeRange, rng: np.random.Generator, plan: tuple[float, float] | None = None) -> Size:
+    """A size within the usual range; each length has a triangular distribution with its mode at what is typical.
+
+    ``plan`` gives width and length where they are settled already, and only the height is drawn.
+    """
+    draws = rng.random(4)
+    if plan is not None:
+        width, length = plan
+        large = share_below(usual.length, length)
+        return Size(width, length, quantile(usual.height, _mixed(large, draws[3])))
+    length = quantile(usual.length, _mixed(draws[0], draws[1]))
+    round_thing = usual.length == usual.width
+    width = length if round_thing else min(length, quantile(usual.width, _mixed(draws[0], draws[2])))
+    return Size(width, length, quantile(usual.height, _mixed(draws[0], draws[3])))
+
+
+def _mixed(common: float, own: float) -> float:
+    return COMMON * common + (1 - COMMON) * own
+
+
+def quantile(extent: Extent, share: float) -> float:
+    """The length below which a share of the triangular distribution lies.
+
+    >>> quantile(Extent(0.0, 1.0, 2.0), 0.5), quantile(Extent(0.0, 1.0, 2.0), 1.0)
+    (1.0, 2.0)
+    """
+    low, mode, high = extent.least, extent.typical, extent.greatest
+    if high == low:
+        return low
+    turn = (mode - low) / (high - low)
+    if share <= turn:
+        return low + float(np.sqrt(share * (high - low) * (mode - low)))
+    return high - float(np.sqrt((1 - share) * (high - low) * (high - mode)))
+
+
+def share_below(extent: Extent, length: float) -> float:
+    """The share of the triangular distribution that lies below a length: what :func:`quantile` undoes."""
+    low, mode, high = extent.least, extent.typical, extent.greatest
+    at = min(max(length, low), high)
+    if high == low:
+        return 0.5
+    if at <= mode:
+        return (at - low) ** 2 / ((high - low) * (mode - low)) if mode > low else 0.0
+    return 1 - (high - at) ** 2 / ((high - low) * (high - mode))

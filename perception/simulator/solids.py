@@ -1,0 +1,137 @@
+"""Solids as closed meshes: of revolution, skins over rings, thick sheets. Faces are counter-clockwise from outside."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from deixis.perception.clouds.mesh import Mesh
+
+SEGMENTS = 96
+"""Sides of a round thing."""
+
+
+def revolved(profile: Sequence[tuple[float, float]], segments: int = SEGMENTS) -> Mesh:
+    """The solid that a profile (radius, height) sweeps around the z axis.
+
+    The profile runs counter-clockwise, from the axis (radius 0) below outwards and back to the axis above, so that
+    the solid lies on its left. Raises ValueError where an end is not on the axis.
+
+    >>> revolved([(0, 0), (1, 0), (1, 2), (0, 2)], segments=4).vertices.shape
+    (10, 3)
+    """
+    points = np.asarray(profile, dtype=np.float64)
+    if points[0, 0] != 0 or points[-1, 0] != 0 or (points[1:-1, 0] <= 0).any():
+        raise ValueError("a profile starts and ends on the axis, and only there")
+    angles = 2 * np.pi * np.arange(segments) / segments
+    around = np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    rings = np.empty((len(points) - 2, segments, 3))
+    rings[..., :2] = points[1:-1, 0, None, None] * around
+    rings[..., 2] = points[1:-1, 1, None]
+    return ringed(rings, first=(0.0, 0.0, points[0, 1]), last=(0.0, 0.0, points[-1, 1]))
+
+
+def ringed(rings: NDArray[np.float64], first: ArrayLike | None = None, last: ArrayLike | None = None) -> Mesh:
+    """A skin over s closed rings of k points each (s, k, 3), closed at both ends by a fan.
+
+    The rings run counter-clockwise as seen from where the last one lies. ``first`` and ``last`` are the tips of the
+    fans; without them the ends are flat.
+    """
+    count, sides, _ = rings.shape
+    tips = [rings[0].mean(axis=0) if first is None else first, rings[-1].mean(axis=0) if last is None else last]
+    vertices = np.concatenate([rings.reshape(-1, 3), np.asarray(tips, dtype=np.float64)])
+    here = np.arange(sides)
+    beside = (here + 1) % sides
+    base = sides * np.arange(count - 1)[:, None]
+    a, b, c, d = base + here, base + beside, base + sides + beside, base + sides + here
+    skin = np.stack([np.stack([a, b, c], axis=-1), np.stack([a, c, d], axis=-1)]).reshape(-1, 3)
+    bottom, top = count * sides, count * sides + 1
+    end = (count - 1) * sides
+    below = np.stack([np.full(sides, bottom), beside, here], axis=1)
+    above = np.stack([np.full(sides, top), end + here, end + beside], axis=1)
+    return Mesh(vertices, np.concatenate([skin, below, above]).astype(np.int32))
+
+
+def tube(path: NDArray[np.float64], width: float, depth: float, sides: int = 16) -> Mesh:
+    """A bar of elliptic section along a path (s, 3) in the plane x = 0; ``depth`` is across the path in that plane."""
+    along = np.gradient(path, axis=0)
+    along /= np.linalg.norm(along, axis=1, keepdims=True)
+    across = np.stack([np.zeros(len(path)), along[:, 2], -along[:, 1]], axis=1)
+    angles = 2 * np.pi * np.arange(sides) / sides
+    rings = path[:, None] + depth / 2 * np.sin(angles)[None, :, None] * across[:, None]
+    rings[..., 0] += width / 2 * np.cos(angles)
+    return ringed(rings)
+
+
+def thick_sheet(
+    x: NDArray[np.float64],
+    y: NDArray[np.float64],
+    bottom: NDArray[np.float64],
+    top: NDArray[np.float64],
+    cells: NDArray[np.bool_] | None = None,
+) -> Mesh:
+    """What lies between two surfaces over one grid in the plan: cutlery, cloth.
+
+    ``x``, ``y``, ``bottom`` and ``top`` have shape (rows, columns); x grows with the column and y with the row, or
+    the faces turn inwards. ``cells`` (rows - 1, columns - 1) says which cells of the grid are there; all without it.
+
+    >>> x, y = np.meshgrid([0.0, 1.0], [0.0, 1.0])
+    >>> len(thick_sheet(x, y, 0 * x, 0 * x + 1).faces)
+    12
+    """
+    rows, columns = x.shape
+    index = np.arange(rows * columns).reshape(rows, columns)
+    there = np.ones((rows - 1, columns - 1), dtype=np.bool_) if cells is None else cells
+    a, b, c, d = (part[there] for part in (index[:-1, :-1], index[:-1, 1:], index[1:, 1:], index[1:, :-1]))
+    upper = np.concatenate([np.stack([a, b, c], axis=1), np.stack([a, c, d], axis=1)])
+    edges = np.concatenate([np.stack(pair, axis=1) for pair in ((a, b), (b, c), (c, d), (d, a))])
+    border = edges[~_has_twin(edges, rows * columns)]
+    below = rows * columns
+    walls = [
+        np.stack([border[:, 0] + below, border[:, 1] + below, border[:, 1]], axis=1),
+        np.stack([border[:, 0] + below, border[:, 1], border[:, 0]], axis=1),
+    ]
+    vertices = np.concatenate([np.stack([x, y, z], axis=-1).reshape(-1, 3) for z in (top, bottom)])
+    return _without_loose_vertices(vertices, np.concatenate([upper, upper[:, ::-1] + below, *walls]))
+
+
+def _has_twin(edges: NDArray[np.int64], vertices: int) -> NDArray[np.bool_]:
+    """Which directed edges (e, 2) are there the other way round too: those inside a sheet."""
+    found: NDArray[np.bool_] = np.isin(edges[:, 0] * vertices + edges[:, 1], edges[:, 1] * vertices + edges[:, 0])
+    return found
+
+
+def _without_loose_vertices(vertices: NDArray[np.float64], faces: NDArray[np.integer]) -> Mesh:
+    used, renumbered = np.unique(faces, return_inverse=True)
+    return Mesh(vertices[used], renumbered.reshape(faces.shape).astype(np.int32))
+
+
+def joined(*meshes: Mesh) -> Mesh:
+    """Several meshes as one; where they overlap the inner faces stay."""
+    starts = np.cumsum([0, *(len(mesh.vertices) for mesh in meshes[:-1])])
+    faces = [mesh.faces + start for mesh, start in zip(meshes, starts, strict=True)]
+    return Mesh(np.concatenate([mesh.vertices for mesh in meshes]), np.concatenate(faces))
+
+
+def fitted(mesh: Mesh, width: float, length: float, height: float) -> Mesh:
+    """The mesh stretched to an extent on x, y and z; its box is centred on the z axis and stands on z = 0."""
+    low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
+    unit = (mesh.vertices - low) / np.where(high > low, high - low, 1.0)
+    return Mesh((unit - (0.5, 0.5, 0.0)) * (width, length, height), mesh.faces)
+
+
+def moved(mesh: Mesh, yaw: float = 0.0, by: ArrayLike = (0.0, 0.0, 0.0)) -> Mesh:
+    """The mesh turned about the z axis by ``yaw`` radians, counter-clockwise from above, then shifted."""
+    cosine, sine = _turn(yaw)
+    turned = mesh.vertices @ np.array([[cosine, sine, 0.0], [-sine, cosine, 0.0], [0.0, 0.0, 1.0]])
+    return Mesh(turned + np.asarray(by, dtype=np.float64), mesh.faces)
+
+
+def _turn(yaw: float) -> tuple[float, float]:
+    """Cosine and sine; exact for quarter turns, so that what was fitted into a box keeps to it."""
+    quarters = yaw / (np.pi / 2)
+    if abs(quarters - round(quarters)) < 1e-12:
+        return ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))[round(quarters) % 4]
+    return float(np.cos(yaw)), float(np.sin(yaw))

@@ -1,0 +1,158 @@
+"""Tableware of every kind: which shape a kind has, of what size and colour, varied from a seed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from deixis.ontology.kinds import Kind
+from deixis.ontology.sizes import Extent, Outline, SizeRange
+from deixis.ontology.tbox import Ontology, default_ontology
+from deixis.perception.clouds.mesh import Mesh
+from deixis.perception.simulator import blocks, crockery, cutlery, glassware
+from deixis.perception.simulator.errors import SimulationError
+from deixis.perception.simulator.size import Size, drawn_size
+from deixis.perception.simulator.solids import fitted
+
+Colour = tuple[int, int, int]
+
+WHITE, CREAM, BLUE_WARE, GREY_WARE = (238, 238, 234), (232, 224, 204), (160, 184, 206), (172, 172, 168)
+STEEL, BRIGHT_STEEL = (176, 178, 184), (198, 200, 204)
+FROST, GREEN_GLASS, BLUE_GLASS = (196, 214, 220), (60, 92, 66), (150, 184, 206)
+WINE_RED, NAVY, MOSS, SAND = (140, 44, 52), (50, 66, 110), (98, 120, 78), (206, 178, 140)
+
+
+@dataclass(frozen=True)
+class Form:
+    """A shape that a kind of things has.
+
+    ``reach`` is how far a handle stands out, as a share of the diameter, which the usual sizes do not count.
+    ``height`` replaces the usual heights where a shape is only some of what the kind can be. What is ``soft`` drapes.
+    """
+
+    name: str
+    build: Callable[[Size, np.random.Generator], Mesh]
+    colours: tuple[Colour, ...]
+    reach: tuple[float, float] | None = None
+    height: Extent | None = None
+    soft: bool = False
+    generic: bool = False
+
+
+_CHINA = (WHITE, WHITE, CREAM, BLUE_WARE)
+_STONEWARE = (WHITE, BLUE_WARE, GREY_WARE, WINE_RED, MOSS)
+_METAL = (STEEL, BRIGHT_STEEL)
+_GLASS = (FROST, BLUE_GLASS)
+
+FORMS: dict[str, Form] = {
+    "Plate": Form("plate", crockery.plate, _CHINA),
+    "Bowl": Form("bowl", crockery.bowl, _CHINA),
+    "Cup": Form("cup", crockery.cup, _CHINA, reach=(0.3, 0.4)),
+    "Mug": Form("mug", crockery.mug, _STONEWARE, reach=(0.3, 0.42)),
+    "Glassware": Form("tumbler", glassware.tumbler, _GLASS),
+    "WaterGlass": Form("water glass", glassware.water_glass, _GLASS),
+    "WineGlass": Form("wine glass", glassware.wine_glass, _GLASS),
+    "ChampagneGlass": Form("champagne glass", glassware.champagne_glass, _GLASS),
+    "Fork": Form("fork", cutlery.fork(), _METAL),
+    "DessertFork": Form("fork of three tines", cutlery.fork(tines=3), _METAL),
+    "Knife": Form("knife", cutlery.knife(), _METAL),
+    "FishKnife": Form("fish knife", cutlery.knife(blade=0.42, grip=0.55, pointed=True), _METAL),
+    "ButterKnife": Form("butter knife", cutlery.knife(blade=0.5, grip=0.62), _METAL),
+    "Spoon": Form("spoon", cutlery.spoon(), _METAL),
+    "SoupSpoon": Form("round spoon", cutlery.spoon(roundness=0.7), _METAL),
+    "Napkin": Form(
+        "napkin", blocks.napkin, (WINE_RED, NAVY, MOSS, SAND), height=Extent(0.003, 0.007, 0.015), soft=True
+    ),
+    "Bottle": Form("bottle", glassware.bottle, (GREEN_GLASS, BLUE_GLASS)),
+    "Carafe": Form("bottle", glassware.bottle, _GLASS),
+}
+"""The shape of a kind, by its name in the TBox, and of all kinds below it that have none of their own."""
+
+_OTHER = (SAND, GREY_WARE, MOSS, CREAM)
+CYLINDER = Form("cylinder", blocks.cylinder, _OTHER, generic=True)
+BLOCK = Form("block", blocks.block, _OTHER, generic=True)
+"""What stands for a kind without a shape."""
+
+
+@dataclass(frozen=True, eq=False)
+class Instance:
+    """One thing: its mesh stands on z = 0, its box centred on the z axis, its head or handle towards y."""
+
+    mesh: Mesh
+    colour: Colour
+    form: Form
+    size: Size
+
+
+def kind_named(word: str, ontology: Ontology) -> Kind:
+    """The kind that a word or a name stands for; raises SimulationError where there is none."""
+    kind = ontology.kinds.of_word(word)
+    if kind is None:
+        raise SimulationError(f"'{word}' is no kind of thing that the ontology knows; try 'dinner plate' or 'fork'")
+    return kind
+
+
+def form_of(kind: Kind | None, ontology: Ontology) -> Form:
+    """The shape of the nearest kind that has one, else a cylinder or a block, by the outline of the kind.
+
+    >>> ontology = default_ontology()
+    >>> [form_of(ontology.kinds.of_word(word), ontology).name for word in ("salad fork", "vase")]
+    ['fork', 'cylinder']
+    """
+    if kind is not None:
+        near = [kind, *sorted((ontology.kinds[iri] for iri in kind.broader), key=lambda k: (-len(k.broader), k.iri))]
+        found = next((FORMS[k.name] for k in near if k.name in FORMS), None)
+        if found is not None:
+            return found
+    usual = ontology.sizes.of(kind.iri if kind else None)
+    return CYLINDER if usual.outline is Outline.CIRCLE else BLOCK
+
+
+def usual_size(kind: Kind | None, ontology: Ontology) -> SizeRange:
+    """How large things of a kind are made: as large as they usually are, some forms within a part of that."""
+    usual = ontology.sizes.of(kind.iri if kind else None)
+    form = form_of(kind, ontology)
+    return usual if form.height is None else replace(usual, height=form.height)
+
+
+def make(
+    kind: str | None, seed: int, plan: tuple[float, float] | None = None, ontology: Ontology | None = None
+) -> Instance:
+    """One thing of a kind (None: of unknown kind, a block), varied from the seed: the same seed gives the same thing.
+
+    ``plan`` gives its width and its length (with the handle) in metres; else both are drawn from the usual sizes,
+    as its height is. Raises SimulationError where the ontology does not know the kind, or a plan is no size.
+
+    >>> thing = make("dinner plate", seed=1)
+    >>> 0.229 <= thing.size.width <= 0.305, thing.form.name
+    (True, 'plate')
+    """
+    ontology = ontology or default_ontology()
+    found = None if kind is None else kind_named(kind, ontology)
+    if plan is not None and not all(0 < side < np.inf for side in plan):
+        raise SimulationError(f"a thing's width and length are above 0, not {plan[0]:g} and {plan[1]:g}")
+    form, rng = form_of(found, ontology), np.random.default_rng(seed)
+    size = _size(form, usual_size(found, ontology), rng, plan)
+    colour = _tinted(form.colours[int(rng.integers(len(form.colours)))], rng)
+    mesh = fitted(form.build(size, rng), size.width, size.length, size.height)
+    return Instance(mesh, colour, form, size)
+
+
+def drawn_plan(kind: Kind | None, seed: int, ontology: Ontology) -> tuple[float, float]:
+    """Width and length of the thing that :func:`make` gives for a seed."""
+    size = _size(form_of(kind, ontology), usual_size(kind, ontology), np.random.default_rng(seed), None)
+    return size.width, size.length
+
+
+def _size(form: Form, usual: SizeRange, rng: np.random.Generator, plan: tuple[float, float] | None) -> Size:
+    reach = 1.0 if form.reach is None else 1 + rng.uniform(*form.reach)
+    size = drawn_size(usual, rng, plan)
+    return size if plan is not None else Size(size.width, size.length * reach, size.height)
+
+
+def _tinted(colour: Colour, rng: np.random.Generator) -> Colour:
+    """The colour a little lighter or darker, and a little off its tint."""
+    red, green, blue = np.clip(np.array(colour) * rng.uniform(0.92, 1.04) + rng.normal(0, 3, 3), 0, 255).astype(int)
+    return int(red), int(green), int(blue)

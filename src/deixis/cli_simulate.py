@@ -1,0 +1,183 @@
+"""The command that simulates a table: a point cloud as a depth camera sees it, and the truth beside it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from deixis.cli_common import NO, AsJson, print_json, print_lines
+
+if TYPE_CHECKING:
+    from deixis.laying import LaidScript
+    from deixis.perception.clouds.mesh import Mesh
+    from deixis.simulation import Simulation, View
+
+UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001}
+
+
+def simulate(
+    layout: Annotated[str | None, typer.Argument(metavar="LAYOUT", help="A layout script; else --random.")] = None,
+    out: Annotated[
+        Path | None, typer.Option("-o", "--out", metavar="FILE", help="Write the cloud (.pcd, .ply), labelled.")
+    ] = None,
+    truth: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Write what is true as a scene (.scene.json).")
+    ] = None,
+    seed: Annotated[int, typer.Option(min=0, help="Another seed draws other things, places and noise.")] = 0,
+    random: Annotated[int | None, typer.Option(min=0, max=300, help="So many things at random, no layout.")] = None,
+    mesh: Annotated[
+        list[str] | None, typer.Option(metavar="NAME=FILE", help="A mesh (.ply, .obj, .stl; z up) for an object.")
+    ] = None,
+    mesh_unit: Annotated[str, typer.Option(help="What meshes are measured in: m, cm or mm.")] = "m",
+    cloth: Annotated[bool, typer.Option("--cloth", help="A white cloth on the table.")] = False,
+    camera_height: Annotated[float, typer.Option(metavar="METRES", help="The camera's above the table.")] = 0.7,
+    camera_back: Annotated[float, typer.Option(metavar="METRES", help="From the table's edge to the camera.")] = 0.0,
+    azimuth: Annotated[float, typer.Option(metavar="DEGREES", help="Of the camera around the table.")] = 0.0,
+    intrinsics: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="The camera's intrinsics (.json); else a Kinect's.")
+    ] = None,
+    noise: Annotated[float, typer.Option(help="Times the noise of a Kinect; 0: none.")] = 1.0,
+    missing: Annotated[float, typer.Option(help="The share of points that is missing anywhere.")] = 0.005,
+    quantised: Annotated[bool, typer.Option("--quantised", help="Depths in the steps of a Kinect.")] = False,
+    table_frame: Annotated[
+        bool, typer.Option("--table-frame", help="Write the cloud in the table's frame, not the camera's.")
+    ] = False,
+    as_json: AsJson = False,
+) -> None:
+    """Lay a table as a layout says, or at random, and look at it with a simulated depth camera."""
+    from deixis.laying import NoTableError
+    from deixis.perception.clouds.intrinsics import read_intrinsics
+    from deixis.perception.simulator.camera import KINECT
+    from deixis.perception.simulator.depth import DepthSensor, in_table_frame
+    from deixis.simulation import View
+    from deixis.simulation import simulate as run
+
+    require_writable(out, truth, layout)
+    meshes = _meshes(mesh or [], mesh_unit)
+    sensor = DepthSensor(noise=noise, missing=missing, quantised=quantised)
+    lens = KINECT if intrinsics is None else read_intrinsics(intrinsics)
+    view = View(camera_height, camera_back, math.radians(azimuth), lens, sensor)
+    try:
+        found = run(_laid(layout, random, seed, meshes, cloth), view, seed)
+    except NoTableError as error:
+        print_json({"simulated": False, "reason": str(error)}) if as_json else print_lines([str(error)])
+        raise typer.Exit(NO) from error
+    if out is not None:
+        from deixis.perception.clouds.cloud_file import write_cloud
+
+        write_cloud(out, in_table_frame(found.cloud, found.camera) if table_frame else found.cloud)
+    if truth is not None:
+        from deixis.perception.scene_file import write_scene
+
+        write_scene(found.truth, truth)
+    if as_json:
+        print_json(simulation_to_dict(found, view, seed))
+    else:
+        print_lines(_lines(found, [file for file in (out, truth) if file is not None]))
+
+
+def _laid(layout: str | None, random: int | None, seed: int, meshes: dict[str, Mesh], cloth: bool) -> LaidScript:
+    from deixis.grammar.parser import read_script
+    from deixis.laying import lay_random, lay_script
+    from deixis.ontology.errors import DeixisError
+
+    if (layout is None) == (random is None):
+        raise DeixisError("simulate: give a layout, or --random N, and one of them only")
+    if layout is not None:
+        return lay_script(read_script(layout), seed, meshes, cloth=cloth)
+    return lay_random(random or 0, seed, meshes, cloth=cloth)
+
+
+def _meshes(given: list[str], unit: str) -> dict[str, Mesh]:
+    """The meshes by the names that they were given, in metres."""
+    from dataclasses import replace
+
+    from deixis.ontology.errors import DeixisError
+    from deixis.perception.clouds.mesh_file import read_mesh
+
+    if unit not in UNITS:
+        raise DeixisError(f"simulate: the unit '{unit}' is not known; use one of {', '.join(UNITS)}")
+    meshes: dict[str, Mesh] = {}
+    for entry in given:
+        name, sign, file = entry.partition("=")
+        if not (name and sign and file):
+            raise DeixisError(f"simulate: --mesh takes NAME=FILE, not '{entry}'")
+        if name in meshes:
+            raise DeixisError(f"simulate: two meshes are given for '{name}'")
+        read = read_mesh(file)
+        meshes[name] = replace(read, vertices=read.vertices * UNITS[unit])
+    return meshes
+
+
+def require_writable(out: Path | None, truth: Path | None, layout: str | None) -> None:
+    """Raises DeixisError, before any work, where a file cannot be what it is to be."""
+    from deixis.ontology.errors import DeixisError
+
+    for file in (out, truth):
+        if file is None:
+            continue
+        if file.is_dir():
+            raise DeixisError(f"{file}: this is a folder; name a file")
+        if layout is not None and file.exists() and Path(layout).exists() and file.samefile(layout):
+            raise DeixisError(f"{file}: this is the layout; name another file")
+        file.parent.mkdir(parents=True, exist_ok=True)
+    if out is not None and out.suffix.lower() not in (".pcd", ".ply"):
+        raise DeixisError(f"{out}: a cloud's name ends in .pcd or .ply")
+    if out is not None and out == truth:
+        raise DeixisError(f"{out}: the cloud and the truth need a file each")
+
+
+def _lines(found: Simulation, written: list[Path]) -> Iterator[str]:
+    things = zip(found.truth.objects, found.laid.table.things, found.points.tolist(), strict=True)
+    for seen, thing, points in things:
+        middle = [(low + high) / 2 for low, high in zip(seen.minimum, seen.maximum, strict=True)]
+        place = f"at {100 * middle[0]:.1f}, {100 * middle[1]:.1f}"
+        shape = f"{thing.shape}{', for want of a shape of its kind' if thing.generic else ''}"
+        yield f"{seen.id:<4} {thing.name:<22} {place:<16} {points:>7} points  {shape}"
+    x, y, z = found.camera.eye.tolist()
+    measured = int(found.cloud.finite.sum())
+    yield f"Camera at {100 * x:.1f}, {100 * y:.1f}, {100 * z:.1f} cm; {measured} of {len(found.cloud)} points measured."
+    for fact in found.laid.missed:
+        yield f"Does not hold: {fact}"
+    yield from (f"Written: {file}" for file in written)
+
+
+def simulation_to_dict(found: Simulation, view: View, seed: int) -> dict[str, Any]:
+    """The simulation as JSON, but for the points: the camera with its pose, and every thing with its label."""
+    from deixis.ontology.export import fact_to_dict
+    from deixis.perception.scene_file import scene_to_dict
+
+    camera, sensor = found.camera, view.sensor
+    lens, names = camera.lens, ("width", "height", "fx", "fy", "cx", "cy")
+    things = zip(found.truth.objects, found.laid.table.things, found.points.tolist(), strict=True)
+    return {
+        "simulated": True,
+        "seed": seed,
+        "camera": {**{name: getattr(lens, name) for name in names}, "pose": camera.pose.tolist()},
+        "sensor": {"noise": sensor.noise, "missing": sensor.missing, "quantised": sensor.quantised},
+        "table": {"min": list(found.laid.table.top.low), "max": list(found.laid.table.top.high)},
+        "things": [
+            {
+                "id": seen.id,
+                "name": thing.name,
+                "kind": thing.kind,
+                "shape": thing.shape,
+                "generic": thing.generic,
+                "label": number,
+                "points": points,
+            }
+            for number, (seen, thing, points) in enumerate(things, start=1)
+        ],
+        "points": {"all": len(found.cloud), "measured": int(found.cloud.finite.sum())},
+        "missed": [fact_to_dict(fact) for fact in found.laid.missed],
+        "scene": scene_to_dict(found.truth),
+    }
+
+
+def register(app: typer.Typer) -> None:
+    """Adds the command to the command line."""
+    app.command()(simulate)

@@ -1,0 +1,62 @@
+"""A laid table seen by a simulated depth camera, with the truth about it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.laying import LaidScript
+from deixis.perception.clouds.cloud import PointCloud
+from deixis.perception.clouds.intrinsics import Intrinsics
+from deixis.perception.scene import Scene
+from deixis.perception.simulator.camera import HEIGHT, KINECT, Camera, chair_camera
+from deixis.perception.simulator.depth import FIRST_THING, DepthSensor, see
+from deixis.perception.simulator.truth import truth_scene
+
+
+@dataclass(frozen=True, slots=True)
+class View:
+    """From where a table is looked at, and how well; lengths in metres, the azimuth in radians."""
+
+    height: float = HEIGHT
+    back: float = 0.0
+    azimuth: float = 0.0
+    lens: Intrinsics = KINECT
+    sensor: DepthSensor = field(default_factory=DepthSensor)
+
+
+@dataclass(frozen=True, eq=False)
+class Simulation:
+    """A look at a laid table. ``cloud`` is in the camera's frame, ``truth`` in the table's.
+
+    A point's label is 0 for the table, k for the thing ``o{k}`` of the truth, -1 where nothing was measured.
+    """
+
+    laid: LaidScript
+    camera: Camera
+    cloud: PointCloud
+    truth: Scene
+
+    @property
+    def points(self) -> NDArray[np.int64]:
+        """How many points each thing has, in the order of the truth, shape (n,)."""
+        assert self.cloud.labels is not None
+        counts: NDArray[np.int64] = np.bincount(self.cloud.labels + 1, minlength=len(self.truth.objects) + 2)
+        return counts[1 + FIRST_THING :]
+
+
+def simulate(laid: LaidScript, view: View | None = None, seed: int = 0) -> Simulation:
+    """Looks at a laid table; the same seed gives the same cloud. Raises SimulationError for a camera that cannot be.
+
+    >>> from deixis.grammar.parser import parse_script
+    >>> from deixis.laying import lay_script
+    >>> look = simulate(lay_script(parse_script("fork left of plate"), seed=1), seed=1)
+    >>> look.cloud.organised, [thing.label for thing in look.truth.objects], bool((look.points > 100).all())
+    ((480, 640), ['fork', 'plate'], True)
+    """
+    view = view or View()
+    camera = chair_camera(laid.table, view.height, view.back, view.azimuth, view.lens)
+    cloud = see(laid.table, camera, view.sensor, seed)
+    return Simulation(laid, camera, cloud, truth_scene(laid.table, laid.viewpoint))

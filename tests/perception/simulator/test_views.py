@@ -1,0 +1,66 @@
+"""Views of single things."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from deixis.perception.clouds.mesh import Mesh
+from deixis.perception.simulator.errors import SimulationError
+from deixis.perception.simulator.solids import moved
+from deixis.perception.simulator.tableware import make
+from deixis.perception.simulator.views import DISTANCE, views_of
+
+
+def test_views_are_of_the_thing_alone_at_about_the_stated_distance_in_the_cameras_frame() -> None:
+    views = views_of(make("bowl", 1).mesh, 20, seed=1)
+    assert len(views) == 20
+    for view in views:
+        assert view.finite.all()
+        assert view.origin == (0.0, 0.0, 0.0)
+        middle = (view.points.min(axis=0) + view.points.max(axis=0)) / 2
+        assert DISTANCE[0] - 0.1 < np.linalg.norm(middle) < DISTANCE[1] + 0.1
+        assert len(view) > 2000
+
+
+@pytest.mark.parametrize("kind", ["mug", "dinner fork", "bottle"])
+def test_without_noise_a_view_is_as_large_as_the_thing_and_with_noise_about_as_large(kind: str) -> None:
+    thing = make(kind, 2)
+    diagonal = float(np.linalg.norm([thing.size.width, thing.size.length, thing.size.height]))
+    for exact, noisy in zip(views_of(thing.mesh, 6, 3, noise=0.0), views_of(thing.mesh, 6, 3), strict=True):
+        assert np.linalg.norm(np.ptp(exact.points, axis=0)) <= 1.42 * diagonal
+        spread = exact.points - exact.points.mean(axis=0)
+        assert 2 * np.linalg.norm(spread, axis=1).max() >= 0.6 * diagonal
+        assert 0.8 * len(exact) < len(noisy) < len(exact)
+
+
+def test_more_views_begin_with_those_of_fewer_and_seeds_differ() -> None:
+    mesh = make("cup", 1).mesh
+    few, many, other = views_of(mesh, 2, 5), views_of(mesh, 4, 5), views_of(mesh, 2, 6)
+    assert all(np.array_equal(a.points, b.points) for a, b in zip(few, many, strict=False))
+    assert not np.array_equal(few[0].points, many[2].points)
+    assert not np.array_equal(few[0].points, other[0].points)
+
+
+def test_where_the_mesh_stands_does_not_matter() -> None:
+    mesh = make("cup", 1).mesh
+    here, there = views_of(mesh, 1, 5, noise=0.0)[0], views_of(moved(mesh, by=(3.0, 2.0, 1.0)), 1, 5, noise=0.0)[0]
+    assert np.abs(here.points - there.points).max() < 1e-5
+
+
+def test_cameras_are_all_around_and_above() -> None:
+    directions = []
+    mesh = make("tumbler", 1).mesh
+    for view in views_of(mesh, 40, 7, noise=0.0):
+        directions.append(view.points.mean(axis=0) / np.linalg.norm(view.points.mean(axis=0)))
+        assert directions[-1][2] > 0.9  # it is in the middle of the image
+    heights = [float(np.ptp(view.points[:, 1])) for view in views_of(mesh, 40, 7, noise=0.0)]
+    assert max(heights) > 1.15 * min(heights)
+
+
+def test_a_mesh_in_another_unit_or_without_faces_is_refused() -> None:
+    mesh = make("cup", 1).mesh
+    with pytest.raises(SimulationError, match="unit"):
+        views_of(Mesh(mesh.vertices * 1000, mesh.faces), 1, 0)
+    with pytest.raises(SimulationError, match="no faces"):
+        views_of(Mesh(mesh.vertices, mesh.faces[:0]), 1, 0)

@@ -1,0 +1,84 @@
+"""What the simulator's tests measure meshes by; none of it is the simulator's own code."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.perception.clouds.mesh import Mesh
+
+
+def is_closed(mesh: Mesh) -> bool:
+    """Whether every edge is in one face this way round and in one the other way round."""
+    a, b, c = mesh.faces.T
+    start, end, n = (
+        np.concatenate([a, b, c]).astype(np.int64),
+        np.concatenate([b, c, a]).astype(np.int64),
+        len(mesh.vertices),
+    )
+    there, back = np.sort(start * n + end), np.sort(end * n + start)
+    return bool((there == back).all() and (np.diff(there) > 0).all())
+
+
+def volume(mesh: Mesh) -> float:
+    """By the divergence theorem: below 0 where faces are turned inwards."""
+    a, b, c = (mesh.vertices[mesh.faces[:, corner]] for corner in range(3))
+    return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6)
+
+
+def scene_of(mesh: Mesh) -> object:
+    from open3d import core, t
+
+    scene = t.geometry.RaycastingScene()
+    scene.add_triangles(core.Tensor(mesh.vertices.astype(np.float32)), core.Tensor(mesh.faces.astype(np.uint32)))
+    return scene
+
+
+def inside(points: NDArray[np.floating], mesh: Mesh) -> NDArray[np.bool_]:
+    """Which points lie inside a mesh, by Open3D's occupancy (a vote of three rays)."""
+    from open3d import core
+
+    query = core.Tensor(np.ascontiguousarray(points, dtype=np.float32))
+    found: NDArray[np.bool_] = scene_of(mesh).compute_occupancy(query, nsamples=3).numpy() > 0.5  # type: ignore[attr-defined]
+    return found
+
+
+def distances(points: NDArray[np.floating], mesh: Mesh) -> NDArray[np.float32]:
+    """From points to the surface of a mesh, by Open3D."""
+    from open3d import core
+
+    query = core.Tensor(np.ascontiguousarray(points, dtype=np.float32))
+    found: NDArray[np.float32] = scene_of(mesh).compute_distance(query).numpy()  # type: ignore[attr-defined]
+    return found
+
+
+def surface_points(mesh: Mesh, count: int, seed: int = 0) -> NDArray[np.float64]:
+    """Points spread evenly over a surface, and all of its vertices."""
+    rng = np.random.default_rng(seed)
+    a, b, c = (mesh.vertices[mesh.faces[:, corner]] for corner in range(3))
+    areas = np.linalg.norm(np.cross(b - a, c - a), axis=1)
+    face = rng.choice(len(areas), count, p=areas / areas.sum())
+    u, v = rng.random((2, count, 1))
+    u, v = np.where(u + v > 1, 1 - u, u), np.where(u + v > 1, 1 - v, v)
+    return np.concatenate([mesh.vertices, a[face] + u * (b - a)[face] + v * (c - a)[face]])
+
+
+def boxes_within(a: Mesh, b: Mesh, gap: float) -> bool:
+    """Whether the boxes of two meshes are nowhere farther apart than a gap, metres."""
+    (low, high), (other_low, other_high) = ((m.vertices.min(axis=0), m.vertices.max(axis=0)) for m in (a, b))
+    return bool((low <= other_high + gap).all() and (other_low <= high + gap).all())
+
+
+def deepest(a: Mesh, b: Mesh) -> float:
+    """How deep the surface of either of two meshes reaches into the other, metres; 0 where they are apart."""
+    found = 0.0
+    if not boxes_within(a, b, 0.0):
+        return found
+    for this, other in ((a, b), (b, a)):
+        points = surface_points(this, 3000)
+        low, high = other.vertices.min(axis=0), other.vertices.max(axis=0)
+        points = points[((points >= low) & (points <= high)).all(axis=1)]
+        if len(points):
+            within = points[inside(points, other)]
+            found = max(found, float(distances(within, other).max()) if len(within) else 0.0)
+    return found
