@@ -1,0 +1,1 @@
+"""What describes the shape of a seen object: keypoints, normals, and descriptors behind one protocol."""

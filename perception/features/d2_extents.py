@@ -1,0 +1,63 @@
+"""A plain description of a view: how far apart its points lie, and how long, wide and thick it is.
+
+D2 is the histogram of distances between random pairs of points of R. Osada, T. Funkhouser, B. Chazelle, D. Dobkin:
+Shape distributions, ACM Transactions on Graphics 21(4), 2002. It is the baseline that other descriptors are held to.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.perception.clouds.cloud import PointCloud
+from deixis.perception.features.describer import finite_points
+from deixis.perception.features.keypoints import voxel_keypoints
+
+
+@dataclass(frozen=True)
+class D2ExtentsDescriber:
+    """A histogram of distances, summing to 1, and three extents; needs two points that do not lie in one place.
+
+    Distances are those of ``pairs`` pairs, drawn with ``seed`` from one point of each voxel of ``voxel`` metres, so
+    that neither density nor the order of points counts; bins go from 0 to the longest distance drawn. Extents are
+    those along the principal axes, in metres times ``weight``, longest first: size counts, pose does not.
+    """
+
+    bins: int = 32
+    pairs: int = 20_000
+    voxel: float = 0.005
+    weight: float = 1.0
+    seed: int = 0
+
+    @property
+    def name(self) -> str:
+        return "d2_extents"
+
+    @property
+    def size(self) -> int:
+        return self.bins + 3
+
+    @property
+    def local(self) -> bool:
+        return False
+
+    def describe(self, cloud: PointCloud) -> NDArray[np.float32]:
+        """The descriptor (1, size)."""
+        points = finite_points(cloud)
+        points = points[voxel_keypoints(points, self.voxel)]
+        if len(points) < 2:
+            return np.empty((0, self.size), np.float32)
+        rng = np.random.default_rng(self.seed)
+        one = rng.integers(len(points), size=self.pairs)
+        other = (one + rng.integers(1, len(points), size=self.pairs)) % len(points)
+        distances = np.linalg.norm(points[one] - points[other], axis=1)
+        counts, _ = np.histogram(distances, self.bins, (0.0, float(distances.max())))
+        return np.concatenate([counts / self.pairs, self.weight * _extents(points)])[None].astype(np.float32)
+
+
+def _extents(points: NDArray[np.float64]) -> NDArray[np.float64]:
+    centred = points - points.mean(axis=0)
+    axes = np.linalg.eigh(centred.T @ centred)[1]
+    return np.sort(np.ptp(centred @ axes, axis=0))[::-1]

@@ -1,0 +1,64 @@
+"""Fast point feature histograms, by Open3D.
+
+R. B. Rusu, N. Blodow, M. Beetz: Fast point feature histograms (FPFH) for 3D registration, ICRA 2009.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.perception.clouds.cloud import PointCloud
+from deixis.perception.features.describer import finite_points
+from deixis.perception.features.keypoints import voxel_keypoints
+from deixis.perception.features.normals import estimate_normals
+
+NEIGHBOURS = 100
+"""Neighbours that a histogram looks at, at most; the nearest, where more lie within the radius."""
+
+
+@dataclass(frozen=True)
+class FpfhDescriber:
+    """A histogram of angles between normals (33 bins) at each voxel's keypoint that has a normal; lengths in metres.
+
+    Three angles in 11 bins each, each summing to 200; all 0 where a keypoint has no neighbour with a normal. The cloud
+    is thinned out first, to a point for each voxel of ``spacing``, so that how near the camera was hardly counts.
+    """
+
+    radius: float = 0.03
+    voxel: float = 0.02
+    normal_radius: float = 0.015
+    spacing: float = 0.005
+
+    @property
+    def name(self) -> str:
+        return "fpfh"
+
+    @property
+    def size(self) -> int:
+        return 33
+
+    @property
+    def local(self) -> bool:
+        return True
+
+    def describe(self, cloud: PointCloud) -> NDArray[np.float32]:
+        """Histograms (k, 33), in the order of voxels."""
+        points = finite_points(cloud)
+        points = points[voxel_keypoints(points, self.spacing)]
+        normals = estimate_normals(points, radius=self.normal_radius, origin=cloud.origin)
+        usable = np.isfinite(normals).all(axis=1)
+        points, normals = points[usable], normals[usable]
+        keypoints = voxel_keypoints(points, self.voxel)
+        if not len(keypoints):
+            return np.empty((0, self.size), np.float32)
+
+        import open3d
+
+        seen = open3d.geometry.PointCloud(open3d.utility.Vector3dVector(points))
+        seen.normals = open3d.utility.Vector3dVector(normals.astype(np.float64))
+        search = open3d.geometry.KDTreeSearchParamHybrid(self.radius, NEIGHBOURS)
+        histograms = open3d.pipelines.registration.compute_fpfh_feature(seen, search).data
+        return np.ascontiguousarray(histograms.T[keypoints], dtype=np.float32)

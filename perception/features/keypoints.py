@@ -1,0 +1,69 @@
+"""Keypoints: one point for every occupied voxel, whatever the order in which the points come.
+
+Kasaei et al. thin a view out by an octree, or voxel, filter and keep the measured points nearest to what it gives; so
+does this. All leaves of an octree of one depth are a grid of voxels, so no tree is built.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.perception.errors import CloudError
+from deixis.perception.features.checks import require_length, require_points
+
+FINEST = 2**40
+"""Voxels along an axis at most: beyond, coordinates in double precision no longer tell them apart."""
+
+GRAIN = float(2**24)
+"""Positions in a voxel are whole numbers of its edge / 2**24: their sums do not depend on order, and ties are exact."""
+
+
+def voxel_keypoints(points: NDArray[np.floating], size: float) -> NDArray[np.int64]:
+    """Indices (k,) of the point nearest to the centroid of each occupied voxel; points that are not finite are ignored.
+
+    Voxels are cubes of edge ``size`` in metres, laid from the least finite coordinates, and the result is in the order
+    of voxels (x, then y, then z). So neither moving the cloud nor shuffling its points changes which points are chosen
+    (but for rounding at the borders of voxels); turning it does. Of points equally near, that with the least
+    coordinates is taken, and of points in one place the first. Nothing finite, no keypoints.
+
+    >>> voxel_keypoints(np.array([[0.0, 0, 0], [0.4, 0, 0], [0.5, 0, 0], [1.2, 0, 0], [np.nan, 0, 0]]), 1.0)
+    array([1, 3])
+
+    Raises CloudError where the shape is wrong or ``size`` is not a length, or too small for the cloud's extent.
+    Source: Potmesil 1987 (octrees); Kasaei et al., Interactive Open-Ended Learning for 3D Object Recognition, 2015.
+    """
+    require_points(points)
+    require_length(size, "a voxel's edge")
+    finite = np.flatnonzero(np.isfinite(points).all(axis=1))
+    if not finite.size:
+        return np.empty(0, np.int64)
+    places = points[finite].astype(np.float64)
+    inside = places - places.min(axis=0)
+    inside /= size
+    if inside.max() > FINEST:
+        raise CloudError(f"a voxel of {size:g} m is too small for a cloud of {inside.max() * size:g} m")
+    voxels = np.floor(inside)
+    inside -= voxels
+    order = np.lexsort(voxels.T[::-1])
+    voxels, inside = voxels[order], inside[order]
+    first = np.concatenate([[True], (voxels[1:] != voxels[:-1]).any(axis=1)])
+    return _nearest(finite[order], places[order], inside, np.flatnonzero(first))
+
+
+def _nearest(
+    indices: NDArray[np.int64], places: NDArray[np.float64], inside: NDArray[np.float64], starts: NDArray[np.intp]
+) -> NDArray[np.int64]:
+    """Of each group of points, from one of ``starts`` to the next, the index of that nearest to their mean."""
+    sizes = np.diff(np.append(starts, len(indices)))
+    group = np.repeat(np.arange(len(starts)), sizes)
+    whole = np.rint(inside * GRAIN).astype(np.int64)
+    sums = np.add.reduceat(whole, starts, axis=0)
+    offsets = whole * sizes[group, None] - sums[group]  # from the centroid, times the number of points in the voxel
+    distances = (offsets.astype(np.float64) ** 2).sum(axis=1)
+    nearest = distances == np.minimum.reduceat(distances, starts)[group]
+    candidates = np.flatnonzero(nearest)
+    x, y, z = places[candidates].T
+    candidates = candidates[np.lexsort((indices[candidates], z, y, x, group[candidates]))]
+    leading = np.unique(group[candidates], return_index=True)[1]
+    return indices[candidates[leading]]

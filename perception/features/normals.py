@@ -1,0 +1,129 @@
+"""Normals of a cloud, from the plane through each point's neighbourhood, turned toward the sensor.
+
+The normal is the direction in which a neighbourhood spreads least: the eigenvector of the smallest eigenvalue of its
+covariance (Hoppe et al. 1992).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.perception.errors import CloudError
+from deixis.perception.features.blocks import in_blocks
+from deixis.perception.features.checks import require_indices, require_length, require_points
+
+LINE = 1e-6
+"""A neighbourhood whose second spread is below this share of its first lies in a line, and has no plane."""
+
+AT_ONCE = 50_000
+"""Neighbourhoods of k points that are gathered at a time, which bounds memory."""
+
+
+def estimate_normals(
+    points: NDArray[np.floating],
+    *,
+    radius: float | None = None,
+    neighbours: int | None = None,
+    origin: Sequence[float] = (0.0, 0.0, 0.0),
+    at: NDArray[np.integer] | None = None,
+    threads: int | None = None,
+) -> NDArray[np.float32]:
+    """Unit normals (n, 3) of points (n, 3); with ``at`` (m,) only of the points with these indices, (m, 3).
+
+    A neighbourhood holds what lies within ``radius`` metres, or the ``neighbours`` nearest points, the point itself
+    included; one of the two is given. Normals point to the side on which ``origin``, the sensor, stands; one at a
+    right angle to the line of sight has its first component that is not 0 above 0.
+
+    A point has no normal, but nan, where it is not finite, or its neighbourhood has fewer than three points or lies
+    in a line. Where a neighbourhood spreads alike in two directions (an edge, a bead) the normal is one of many.
+
+    >>> square = np.array([[0, 0, 1], [1, 0, 1], [0, 1, 1], [1, 1, 1]], np.float64)
+    >>> estimate_normals(square, radius=1.5)[0].tolist()
+    [0.0, 0.0, -1.0]
+
+    Raises CloudError where shapes do not fit, or not just one of ``radius`` and ``neighbours`` is given.
+    """
+    require_points(points)
+    finite = np.isfinite(points).all(axis=1)
+    wanted = np.flatnonzero(finite) if at is None else np.asarray(at)
+    require_indices(wanted, points, "indices of normals")
+    normals = np.full((len(points), 3), np.nan, np.float32) if at is None else np.empty((len(wanted), 3), np.float32)
+    if len(wanted):
+        counts, covariances = _neighbourhoods(points[finite], points[wanted], radius, neighbours, threads)
+        found = _planes(counts, covariances)
+        _turn(found, np.asarray(origin, np.float64) - points[wanted])
+        normals[wanted if at is None else slice(None)] = found
+    return normals
+
+
+def _neighbourhoods(
+    points: NDArray[np.floating],
+    places: NDArray[np.floating],
+    radius: float | None,
+    neighbours: int | None,
+    threads: int | None,
+) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+    if (radius is None) == (neighbours is None):
+        raise CloudError("give either a radius or a number of neighbours to estimate normals from")
+    if radius is not None:
+        require_length(radius, "a normal's radius")
+        return _within(points, places, radius, threads)
+    if neighbours is None or neighbours < 3:
+        raise CloudError(f"a plane takes 3 neighbours or more, not {neighbours}")
+    return _nearest(points, places, neighbours, threads)
+
+
+def _within(
+    points: NDArray[np.floating], places: NDArray[np.floating], radius: float, threads: int | None
+) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+    from deixis.perception.features.cells import cell_grid, in_axes_of
+    from deixis.perception.features.normal_kernels import spreads
+
+    grid = cell_grid(points, radius)
+    turned, radius = in_axes_of(grid, places), float(radius)
+    counts, covariances = np.zeros(len(places), np.int64), np.zeros((len(places), 3, 3))
+    in_blocks(
+        lambda start, stop: spreads(grid, turned[start:stop], radius, counts[start:stop], covariances[start:stop]),
+        len(places),
+        threads,
+    )
+    back = np.argsort(grid.axes)
+    return counts, covariances[:, back][:, :, back]
+
+
+def _nearest(
+    points: NDArray[np.floating], places: NDArray[np.floating], neighbours: int, threads: int | None
+) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+    from scipy.spatial import cKDTree
+
+    count = min(neighbours, len(points))
+    tree = cKDTree(points)
+    covariances = np.empty((len(places), 3, 3))
+    for start in range(0, len(places), AT_ONCE):
+        part = slice(start, start + AT_ONCE)
+        nearest = tree.query(places[part], k=[*range(1, count + 1)], workers=threads or -1)[1]
+        around = points[nearest].astype(np.float64) - places[part, None]
+        around -= around.mean(axis=1, keepdims=True)
+        covariances[part] = np.einsum("mki,mkj->mij", around, around) / count
+    return np.full(len(places), count), covariances
+
+
+def _planes(counts: NDArray[np.int64], covariances: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The directions of least spread (m, 3); nan where there is no plane."""
+    largest = np.abs(covariances).max(axis=(1, 2))
+    scale = np.where(largest > 0, largest, 1.0)[:, None, None]
+    values, vectors = np.linalg.eigh(covariances / scale)
+    normals: NDArray[np.float64] = vectors[:, :, 0]
+    normals[(counts < 3) | (values[:, 1] <= LINE * values[:, 2])] = np.nan
+    return normals
+
+
+def _turn(normals: NDArray[np.float64], to_sensor: NDArray[np.float64]) -> None:
+    """Turns normals (m, 3), in place, to the side of the sensor."""
+    side = (normals * to_sensor).sum(axis=1)
+    first = np.take_along_axis(normals, (normals != 0).argmax(axis=1)[:, None], axis=1)[:, 0]
+    normals[(side < 0) | ((side == 0) & (first < 0))] *= -1
+    normals += 0.0  # no negative zeros

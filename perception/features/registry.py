@@ -1,0 +1,36 @@
+"""The descriptors by name."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from types import MappingProxyType
+
+from deixis.ontology.errors import UnknownTermError
+from deixis.perception.features.d2_extents import D2ExtentsDescriber
+from deixis.perception.features.describer import Describer
+from deixis.perception.features.fpfh import FpfhDescriber
+from deixis.perception.features.good import GoodDescriber
+from deixis.perception.features.spin_describer import SpinImageDescriber
+
+DESCRIBERS: Mapping[str, Callable[[], Describer]] = MappingProxyType(
+    {
+        "spin_images": SpinImageDescriber,
+        "fpfh": FpfhDescriber,
+        "good": GoodDescriber,
+        "d2_extents": D2ExtentsDescriber,
+    }
+)
+"""Each makes a describer with its default settings; a further descriptor is one more line."""
+
+
+def describer_named(name: str) -> Describer:
+    """The describer of that name, with its defaults.
+
+    >>> describer_named("spin_images").size
+    153
+
+    Raises UnknownTermError, with the names there are, for any other.
+    """
+    if name not in DESCRIBERS:
+        raise UnknownTermError(f"there is no descriptor '{name}'; choose one of {', '.join(DESCRIBERS)}")
+    return DESCRIBERS[name]()

@@ -1,0 +1,126 @@
+"""Spin images: how the surface around a keypoint looks when it is spun about the keypoint's normal.
+
+A. E. Johnson, M. Hebert: Using spin images for efficient object recognition in cluttered 3D scenes, IEEE PAMI 21(5),
+1999; bins, support and borders as in the class SpinImageEstimation of the Point Cloud Library.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.perception.errors import CloudError
+from deixis.perception.features.blocks import in_blocks
+from deixis.perception.features.checks import require_indices, require_length, require_points
+
+MANY = 20_000
+CELLS_OF_FEW, CELLS_OF_MANY = 3, 5
+"""Cells of the grid along the support: fewer read too many points, more have rows too short to be fast."""
+
+UNIT = 1e-3
+"""By how much the length of a normal may differ from 1."""
+
+
+def image_size(width: int) -> int:
+    """The number of bins: (width + 1) rows of distance from the axis times (2 width + 1) columns along it.
+
+    >>> image_size(8)
+    153
+    """
+    return (width + 1) * (2 * width + 1)
+
+
+def spin_images(
+    points: NDArray[np.floating],
+    normals: NDArray[np.floating],
+    keypoints: NDArray[np.integer],
+    *,
+    support: float,
+    width: int = 8,
+    support_angle_cos: float = 0.0,
+    min_points: int = 0,
+    radial: bool = False,
+    angular: bool = False,
+    threads: int | None = None,
+) -> NDArray[np.float32]:
+    """Spin images (k, (width + 1) (2 width + 1)) of the points with the indices ``keypoints`` (k,), row by row.
+
+    Each point within ``support`` metres of a keypoint p with normal n has a distance alpha from the axis (p, n) and a
+    height beta along it. Bins measure support / width / sqrt(2) both ways, and hold what has alpha and abs(beta) less
+    than width bins: a cylinder within the ball of the support. A point counts in its four bins' corners bilinearly, p
+    itself and points in its place do not count, and an image sums to 1. An image without a point is 0 throughout
+    (where the Point Cloud Library divides 0 by 0).
+
+    ``radial`` bins distance from p (support / width) and elevation over the tangent plane (pi / 2 / width) instead.
+    ``support_angle_cos`` above 0 leaves out points whose normal makes a larger angle with the axis; ``angular`` gives
+    the mean angle (radians) between normals and axis in each bin, not the share of points. Of a normal and its
+    opposite the nearer counts for both, so that no such angle is above a right one.
+    ``normals`` (n, 3) are unit vectors; those of keypoints are always needed, the others for these two options only,
+    where a point without one (nan) is left out. Points that are not finite are ignored. ``threads`` are all that the
+    process may use if None; the result does not depend on them.
+
+    Raises CloudError where shapes do not fit, a keypoint has no depth or no unit normal, or fewer points than
+    ``min_points`` (itself included) lie nearer to it than ``support``.
+    """
+    _require(points, normals, keypoints, support, width, support_angle_cos)
+    if not len(keypoints):
+        return np.empty((0, image_size(width)), np.float32)
+
+    from deixis.perception.features.cells import cell_grid, in_axes_of
+    from deixis.perception.features.spin_kernels import images
+
+    finite = np.isfinite(points).all(axis=1)
+    grid = cell_grid(points[finite], support / (CELLS_OF_FEW if len(points) < MANY else CELLS_OF_MANY))
+    places, axes = in_axes_of(grid, points[keypoints]), in_axes_of(grid, normals[keypoints])
+    looked_at = normals[finite][grid.order] if angular or support_angle_cos > 0 else normals[:0]
+    turning = in_axes_of(grid, looked_at)
+    if min_points:
+        _require_neighbours(grid, places, keypoints, support, min_points)
+    settings = int(width), float(support), float(support_angle_cos), bool(radial), bool(angular)
+    out = np.empty((len(keypoints), image_size(width)), np.float32)
+
+    def draw(start: int, stop: int) -> None:
+        part = slice(start, stop)
+        images(grid, turning, places[part], axes[part], *settings, out[part])
+
+    in_blocks(draw, len(keypoints), threads)
+    return out
+
+
+def _require(
+    points: NDArray[np.floating],
+    normals: NDArray[np.floating],
+    keypoints: NDArray[np.integer],
+    support: float,
+    width: int,
+    support_angle_cos: float,
+) -> None:
+    require_points(points)
+    if normals.shape != points.shape:
+        raise CloudError(f"normals have the shape of their points, {points.shape}, not {normals.shape}")
+    require_indices(keypoints, points, "keypoints")
+    require_length(support, "a spin image's support")
+    if width < 1:
+        raise CloudError(f"a spin image is 1 bin wide or more, not {width}")
+    if not 0.0 <= support_angle_cos <= 1.0:
+        raise CloudError(f"the cosine of a support angle lies between 0 and 1, not at {support_angle_cos:g}")
+    lengths = np.linalg.norm(normals[keypoints].astype(np.float64), axis=1)
+    wrong = ~(np.abs(lengths - 1.0) <= UNIT)
+    if wrong.any():
+        at = int(np.argmax(wrong))
+        raise CloudError(f"the normal of keypoint {keypoints[at]} has length {lengths[at]:g}; a unit vector is needed")
+
+
+def _require_neighbours(
+    grid: object, places: NDArray[np.float64], keypoints: NDArray[np.integer], support: float, least: int
+) -> None:
+    from deixis.perception.features.normal_kernels import tally
+
+    counts = np.zeros(len(places), np.int64)
+    tally(grid, places, float(support), counts)
+    if counts.min() < least:
+        at = int(np.argmin(counts))
+        raise CloudError(
+            f"keypoint {keypoints[at]} has {counts[at]} points within {support:g} m, and {least} are asked for;"
+            " choose a larger support or a smaller min_points"
+        )
