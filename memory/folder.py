@@ -23,6 +23,8 @@ from deixis.memory.migration import MIGRATIONS, VERSION
 FORMAT = "deixis-memory"
 MARK, STORE, NEW, OLD = "memory.json", "semantic", "semantic.new", "semantic.old"
 NEW_MARK = MARK + ".new"
+PERCEPTUAL = "perceptual"
+"""The perceptual memory, which may be there before anything else is."""
 
 
 class State(Enum):
@@ -48,7 +50,7 @@ def inspect(folder: Path) -> State:
         return State.MEMORY
     if STORE in names and NEW_MARK in names:
         return State.UNFINISHED
-    if names <= {LOCK_FILE, NEW, NEW_MARK}:
+    if names <= {LOCK_FILE, NEW, NEW_MARK, PERCEPTUAL}:
         return State.EMPTY
     if STORE in names and (folder / STORE / "CURRENT").is_file():
         raise MemoryFormatError(

@@ -1,0 +1,122 @@
+"""Putting and getting views of 60 KB, beside bare plyvel with values of the same size in the same run.
+
+Two kinds of descriptors, 100 of 153 numbers: dense random ones, which no compression shrinks, and sparse ones, two
+thirds zeros, as spin images are. Bare plyvel is measured with the options that Deixis opens its database with, and with
+its own. Both sides write without sync, one batch a view or ten views a batch, and read with checksums verified; bare
+plyvel is also read without. What is compared is a view (arrays, time, metadata) against a string of bytes.
+"""
+
+from __future__ import annotations
+
+import shutil
+import statistics
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Iterator, Sequence
+from datetime import UTC, datetime, timedelta
+from typing import Any
+
+import numpy as np
+import plyvel
+
+from deixis.memory.perceptual.handle import OPTIONS
+from deixis.memory.perceptual.level import LevelMemory
+from deixis.memory.perceptual.records import Batch, View
+
+ROUNDS = 9
+Times = dict[str, list[float]]
+
+
+def make_views(number: int, sparse: bool) -> list[View]:
+    """Views with metadata as a robot would give it."""
+    rng, start = np.random.default_rng(0), datetime(2026, 5, 1, tzinfo=UTC)
+    views = []
+    for place in range(number):
+        spin = rng.random((100, 153), np.float32)
+        if sparse:
+            spin *= rng.random(spin.shape) < 1 / 3
+        said = {"scene": f"scene{place // 10}", "object": f"o{place % 10}", "teacher": "Ada", "source": "scene.pcd"}
+        category, when = f"category{place % 7}", start + timedelta(seconds=place)
+        views.append(View(f"view{place:06}", category, when, {"spin": spin}, metadata=said))
+    return views
+
+
+def timed(times: Times, name: str, job: Callable[[], object]) -> None:
+    """Adds the seconds that a job takes."""
+    started = time.perf_counter()
+    job()
+    times.setdefault(name, []).append(time.perf_counter() - started)
+
+
+def settle(db: Any) -> None:
+    """Empties the log into a table, so that reading is reading of tables on both sides."""
+    db.compact_range(start=b"\xfe", stop=b"\xff")
+
+
+def bare_round(times: Times, name: str, options: dict[str, Any], values: Sequence[bytes], batch: int) -> None:
+    """Puts and gets byte strings."""
+    folder = tempfile.mkdtemp()
+    with plyvel.DB(folder + "/db", create_if_missing=True, **options) as db:
+        keys = [b"view%06d" % place for place in range(len(values))]
+
+        def put() -> None:
+            for first in range(0, len(values), batch):
+                with db.write_batch() as written:
+                    for key, value in zip(keys[first : first + batch], values[first : first + batch], strict=True):
+                        written.put(key, value)
+
+        timed(times, f"{name} put", put)
+        settle(db)
+        timed(times, f"{name} get", lambda: [len(db.get(key, verify_checksums=True)) for key in keys])
+        timed(times, f"{name} scan", lambda: [len(value) for _, value in db.iterator(verify_checksums=True)])
+        timed(times, f"{name} get, unverified", lambda: [len(db.get(key)) for key in keys])
+    shutil.rmtree(folder)
+
+
+def our_round(times: Times, views: Sequence[View], batch: int) -> None:
+    """Writes and reads views."""
+    folder = tempfile.mkdtemp()
+    with LevelMemory.open(folder + "/m", create=True) as memory:
+        batches = [Batch(views[first : first + batch]) for first in range(0, len(views), batch)]
+        timed(times, "deixis put", lambda: [memory.write(part) for part in batches])  # type: ignore[func-returns-value]
+        with memory.handle as db:
+            settle(db)
+        timed(times, "deixis get", lambda: [len(memory.view(view.id).descriptors) for view in views])
+        timed(times, "deixis scan", lambda: [len(view.descriptors) for view in memory.views()])
+    shutil.rmtree(folder)
+
+
+def ratios(times: Times, ours: str, theirs: str) -> str:
+    """Our throughput relative to theirs: the median over the rounds, each of which measured both."""
+    each = [their / our for our, their in zip(times[ours][1:], times[theirs][1:], strict=True)]
+    return f"{statistics.median(each):6.0%} (rounds {min(each):.0%} to {max(each):.0%})"
+
+
+def rows(times: Times, number: int) -> Iterator[str]:
+    """The table."""
+    for what in ("put", "get", "scan"):
+        yield f"  {what:<5} deixis {statistics.median(times[f'deixis {what}'][1:]) / number * 1e6:7.1f} us a view"
+        for other in (f"same options {what}", f"own options {what}", f"same options {what}, unverified"):
+            if other in times:
+                median = statistics.median(times[other][1:]) / number * 1e6
+                yield f"        {other:<30} {median:7.1f} us, deixis has {ratios(times, f'deixis {what}', other)}"
+
+
+def main() -> None:
+    number = int(sys.argv[1]) if len(sys.argv) > 1 else 400
+    for sparse in (False, True):
+        views = make_views(number, sparse)
+        values = [view.descriptors["spin"].tobytes() for view in views]
+        for batch in (1, 10):
+            times: Times = {}
+            for _ in range(ROUNDS):  # the first only warms up
+                our_round(times, views, batch)
+                bare_round(times, "same options", OPTIONS, values, batch)
+                bare_round(times, "own options", {}, values, batch)
+            print(f"{number} {'sparse' if sparse else 'dense'} views, {batch} a batch")
+            print("\n".join(rows(times, number)), flush=True)
+
+
+if __name__ == "__main__":
+    main()

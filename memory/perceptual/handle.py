@@ -1,0 +1,219 @@
+"""The one handle on a database in this process: opened once a real path, shared, and closed by the last who had it.
+
+``plyvel.DB`` on a path that this process has open fails, and by failing drops the lock that keeps other processes out;
+closing it while another thread reads ends the process. So handles are counted, and closing waits for calls under way.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import shutil
+import threading
+from collections.abc import Iterator
+from pathlib import Path
+from types import TracebackType
+from typing import Any
+
+import plyvel
+
+from deixis.memory.errors import MemoryFormatError, MemoryWriteError
+from deixis.memory.folder import one_line
+from deixis.memory.lock import OwnerLock
+from deixis.memory.perceptual import keys, layout
+from deixis.memory.perceptual.codec import Counts, read_counts, write_counts
+from deixis.memory.perceptual.errors import DamagedMemoryError
+from deixis.memory.perceptual.seal import check_seal, write_seal
+from deixis.memory.perceptual.tally import Tally
+from deixis.ontology.errors import DeixisError
+
+OPTIONS = {
+    "paranoid_checks": True,  # indices and logs are checked too, and compaction does not pass on what is broken
+    "compression": None,  # descriptors would shrink, but reading them back would take several times as long
+    "write_buffer_size": 32 << 20,
+    "max_file_size": 32 << 20,
+}
+
+_handles: dict[Path, Handle] = {}
+_opening = threading.Lock()
+_inherited: list[Any] = []
+
+
+class Handle:
+    """An open database. As a context manager it is a call under way, and gives the ``plyvel.DB``.
+
+    What LevelDB raises within becomes MemoryWriteError or DamagedMemoryError; a closed handle raises
+    MemoryFormatError.
+    """
+
+    def __init__(self, folder: Path, lock: OwnerLock, tally: Tally, db: Any, counts: Counts) -> None:
+        self.folder, self.counts = folder, counts
+        self.writing = threading.RLock()
+        self.users = 1
+        self._lock, self._tally, self._db = lock, tally, db
+        self._guard, self._calls = threading.RLock(), 0
+        self._idle = threading.Condition(self._guard)
+        self._failed: str | None = None
+
+    def __enter__(self) -> Any:
+        with self._guard:
+            if self._db is None:
+                raise closed()
+            self._calls += 1
+            return self._db
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        with self._guard:
+            self._calls -= 1
+            if self._db is None and not self._calls:
+                self._idle.notify_all()
+        if error is not None:
+            raise_told(self.folder, error)
+
+    def write(self, changes: list[tuple[bytes, bytes | bytearray | None]], views: int, sync: bool) -> None:
+        """Writes keys with their values, or without one to delete them, in one step; ``views`` more views are there.
+
+        To be called with :attr:`writing` held. After a failure the log may end in half a batch, behind which nothing
+        would be found again: then nothing more is written until the memory is opened anew.
+        """
+        counts = Counts(self.counts.batches + 1, self.counts.views + views, self.counts.lost)
+        with self as db:
+            if self._failed is not None:
+                raise MemoryWriteError(f"{self._failed}; close the memory, mend what is wrong, and open it again")
+            try:
+                batch = db.write_batch(sync=sync)
+                batch.put(keys.COUNT, write_counts(counts))  # first: after arrays it would have them copied once more
+                for key, value in changes:
+                    batch.delete(key) if value is None else batch.put(key, value)
+                batch.write()
+                self._tally.write(counts.batches)
+            except (plyvel.Error, OSError) as error:
+                self._failed = f"an earlier write to the memory at {self.folder} failed ({one_line(error)})"
+                raise
+        self.counts = counts
+
+    def disowned(self) -> Any:
+        """Takes the database away from here without closing it."""
+        db, self._db = self._db, None
+        return db
+
+    def shut(self) -> None:
+        """Closes the database once no call is under way, and seals it."""
+        with self._idle:
+            db, self._db = self._db, None
+            self._idle.wait_for(lambda: not self._calls)
+        with contextlib.suppress(plyvel.Error, OSError):  # all that was acknowledged is in the log already
+            if self._failed is None:
+                db.compact_range(start=b"\xfe", stop=b"\xff")  # empties the log into a table, and touches no other
+        db.close()
+        self._tally.close()
+        with contextlib.suppress(OSError):
+            if self._failed is None:
+                write_seal(self.folder, layout.store(self.folder))
+        self._lock.release()
+
+
+def _disown() -> None:
+    """A forked child must not touch its parent's databases: it finds them closed. They are not freed there either."""
+    for handle in _handles.values():
+        _inherited.append(handle.disowned())
+    _handles.clear()
+
+
+os.register_at_fork(after_in_child=_disown)
+
+
+def closed() -> MemoryFormatError:
+    """What is raised for a memory that was closed."""
+    return MemoryFormatError("this memory is closed: open it again")
+
+
+@contextlib.contextmanager
+def told(folder: Path) -> Iterator[None]:
+    """Turns what LevelDB or the system raises within into errors of ours."""
+    try:
+        yield
+    except (plyvel.Error, OSError) as error:
+        raise_told(folder, error)
+        raise
+
+
+def raise_told(folder: Path, error: BaseException) -> None:
+    """Raises what LevelDB or the system raised as an error of ours; returns for others."""
+    if isinstance(error, DeixisError) or not isinstance(error, plyvel.Error | OSError):
+        return
+    text = one_line(error).removeprefix("b'").removesuffix("'")
+    if "orruption" in text or "create_if_missing" in text:
+        raise DamagedMemoryError(
+            f"the memory at {folder} is damaged ({text}); restore the folder from a copy"
+        ) from error
+    raise MemoryWriteError(
+        f"the memory at {folder} could not be read or written ({text}); see that the disk has room and the folder is "
+        "writable, then try again: what was kept before is still there"
+    ) from error
+
+
+def acquire(folder: Path, create: bool) -> Handle:
+    """The handle on a folder, opened if this process does not have it open yet; raises as ``LevelMemory.open``."""
+    real = Path(os.path.realpath(folder))
+    with _opening:
+        if real in _handles:
+            _handles[real].users += 1
+            return _handles[real]
+        handle = _opened(folder, real, create)
+        _handles[real] = handle
+        return handle
+
+
+def release(handle: Handle) -> None:
+    """Gives a handle back; the last one closes it."""
+    with _opening:
+        handle.users -= 1
+        if handle.users == 0:
+            _handles.pop(handle.folder, None)
+            handle.shut()
+
+
+def _opened(folder: Path, real: Path, create: bool) -> Handle:
+    if layout.version_in(folder) is None and not create:
+        raise MemoryFormatError(f"there is no perceptual memory at {folder}; teach something first, or name another")
+    made = not real.exists()
+    try:
+        real.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise MemoryWriteError(f"the folder {folder} cannot be made: {error.strerror}") from error
+    try:
+        return _locked(real)
+    except BaseException:
+        if made:
+            shutil.rmtree(real, ignore_errors=True)
+        raise
+
+
+def _locked(folder: Path) -> Handle:
+    with contextlib.ExitStack() as undo, told(folder):
+        lock = OwnerLock.acquire(folder)
+        undo.callback(lock.release, undo=True)
+        lock.sign()
+        layout.prepare(folder, check_seal)
+        tally = Tally(folder)
+        undo.callback(tally.close)
+        db = plyvel.DB(str(layout.store(folder)), **OPTIONS)
+        undo.callback(db.close)
+        counts = _counted(db, tally)
+        undo.pop_all()
+    return Handle(folder, lock, tally, db, counts)
+
+
+def _counted(db: Any, tally: Tally) -> Counts:
+    """The counts, with what is missing of the acknowledged batches counted as lost."""
+    counts = read_counts(db.get(keys.COUNT, verify_checksums=True))
+    missing = tally.found - counts.batches
+    if missing > 0:
+        views = sum(1 for _ in db.iterator(prefix=keys.VIEW, include_value=False, verify_checksums=True))
+        counts = Counts(tally.found, views, counts.lost + missing)
+        db.put(keys.COUNT, write_counts(counts), sync=True)
+    tally.write(counts.batches)
+    return counts

@@ -1,0 +1,202 @@
+"""Reading a database at one moment."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Iterator
+from types import TracebackType
+from typing import Any, Self
+
+from deixis.memory.folder import size
+from deixis.memory.perceptual import keys
+from deixis.memory.perceptual.codec import About, Counts, read_about, read_category, read_counts, read_order, read_view
+from deixis.memory.perceptual.errors import DamagedMemoryError, UnknownCategoryError, UnknownViewError
+from deixis.memory.perceptual.handle import Handle, closed
+from deixis.memory.perceptual.layout import VERSION
+from deixis.memory.perceptual.protocol import Finding, PerceptualStats, Progress, ViewKey
+from deixis.memory.perceptual.records import CategoryRecord, View, check_name
+from deixis.ontology.relation import nearest
+
+
+class Snapshot:
+    """A database as it was when this was made, until it is closed.
+
+    Every value is read with LevelDB's checksums verified, and has one of ours besides.
+    """
+
+    def __init__(self, handle: Handle) -> None:
+        self._handle = handle
+        with handle as db:
+            self._source: Any = db.snapshot()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Lets go of the moment."""
+        source, self._source = self._source, None
+        if source is not None:
+            with contextlib.suppress(ValueError), self._handle:  # a closed database has closed its snapshots
+                source.close()
+
+    def __del__(self) -> None:
+        if hasattr(self, "_source"):
+            self.close()
+
+    @property
+    def _open(self) -> Any:
+        if self._source is None:
+            raise closed()
+        return self._source
+
+    def get(self, key: bytes) -> bytes | None:
+        """A value, or None."""
+        with self._handle:
+            value: bytes | None = self._open.get(key, verify_checksums=True)
+            return value
+
+    def pairs(self, begin: bytes) -> Iterator[tuple[bytes, bytes]]:
+        """Keys that begin so, with their values, in order."""
+        return self._walk(prefix=begin)
+
+    def bare_keys(self, begin: bytes) -> Iterator[bytes]:
+        """The same without values."""
+        return self._walk(prefix=begin, include_value=False)
+
+    def _walk(self, **what: Any) -> Iterator[Any]:
+        with self._handle:
+            found = self._open.iterator(verify_checksums=True, **what)
+        while True:
+            with self._handle:
+                item = next(found, None)
+            if item is None:
+                return
+            yield item
+
+    def first_after(self, key: bytes, kind: bytes) -> tuple[bytes, bytes] | None:
+        """The first pair of a kind from a key on."""
+        with (
+            self._handle,
+            self._open.iterator(start=key, stop=keys.after(kind), verify_checksums=True) as found,
+        ):
+            pair: tuple[bytes, bytes] | None = next(found, None)
+            return pair
+
+    def about(self, id: str) -> About | None:
+        """All of a view but its arrays, or None."""
+        with self._handle:
+            return stored_about(self._open, id)
+
+    def view(self, id: str) -> View:
+        """See :class:`deixis.memory.perceptual.protocol.PerceptualReading`, here and below."""
+        with self._handle:
+            return stored_view(self._open, id)
+
+    def views(self, category: str | None = None) -> Iterator[View]:
+        """The views, read one by one."""
+        return map(self._listed, self.places(category))
+
+    def _listed(self, entry: tuple[str, str, int]) -> View:
+        category, id, time = entry
+        with self._handle:
+            said = stored_about(self._open, id)
+            if said is None or said.category != category or said.time != time:
+                raise DamagedMemoryError(f"view '{id}' of '{category}': what is said of it does not fit its place")
+            return stored_arrays(self._open, said)
+
+    def listing(self, category: str | None = None) -> Iterator[ViewKey]:
+        """The views without their arrays."""
+        return (ViewKey(name, id, keys.moment(time)) for name, id, time in self.places(category))
+
+    def places(self, category: str | None = None) -> Iterator[tuple[str, str, int]]:
+        """Category, id and time of views; raises UnknownCategoryError at once."""
+        if category is not None:
+            self.require(category)
+        begin = keys.VIEW if category is None else keys.category_prefix(category)
+        return (read_order(key, sealed) for key, sealed in self.pairs(begin))
+
+    def categories(self) -> tuple[str, ...]:
+        """The names of the categories: one look-up each, however many views they have."""
+        names = {key[1:].decode() for key, _ in self.pairs(keys.CATEGORY)}
+        pair = self.first_after(keys.VIEW, keys.VIEW)
+        while pair is not None:
+            name = read_order(*pair)[0]
+            names.add(name)
+            pair = self.first_after(keys.after(keys.category_prefix(name)), keys.VIEW)
+        return tuple(sorted(names))
+
+    def category(self, name: str) -> CategoryRecord:
+        """What a learner left."""
+        self.require(name)
+        sealed = self.get(keys.name_key(keys.CATEGORY, name))
+        return CategoryRecord(name) if sealed is None else read_category(name, sealed)
+
+    def has(self, category: str) -> bool:
+        """Whether there is a view or a record of it."""
+        check_name("a category's name", category)
+        if self.get(keys.name_key(keys.CATEGORY, category)) is not None:
+            return True
+        begin = keys.category_prefix(category)
+        pair = self.first_after(begin, keys.VIEW)
+        return pair is not None and pair[0].startswith(begin)
+
+    def require(self, category: str) -> None:
+        """Raises UnknownCategoryError, naming the nearest, where there is none such."""
+        if not self.has(category):
+            raise unknown_category(category, self.categories())
+
+    def counts(self) -> Counts:
+        """The counts at this moment."""
+        return read_counts(self.get(keys.COUNT))
+
+    def stats(self) -> PerceptualStats:
+        """The counts, and what they take on the disk."""
+        counts = self.counts()
+        return PerceptualStats(
+            views=counts.views,
+            categories=len(self.categories()),
+            batches=counts.batches,
+            lost=counts.lost,
+            bytes=size(self._handle.folder),
+            version=VERSION,
+        )
+
+    def verify(self, progress: Progress | None = None) -> tuple[Finding, ...]:
+        """Everything that is not as it was written."""
+        from deixis.memory.perceptual.verifying import findings
+
+        return tuple(findings(self, progress))
+
+
+def stored_about(source: Any, id: str) -> About | None:
+    """All of a view but its arrays, from a database or a snapshot of one."""
+    check_name("a view's id", id)
+    sealed = source.get(keys.name_key(keys.ABOUT, id), verify_checksums=True)
+    return None if sealed is None else read_about(id, sealed)
+
+
+def stored_view(source: Any, id: str) -> View:
+    """A view, from a snapshot. Raises UnknownViewError."""
+    said = stored_about(source, id)
+    if said is None:
+        raise UnknownViewError(f"no view '{id}' in this memory")
+    return stored_arrays(source, said)
+
+
+def stored_arrays(source: Any, said: About) -> View:
+    """A view of which all is known but the arrays."""
+    key = said.arrays_key
+    return read_view(said, key, source.get(key, verify_checksums=True))
+
+
+def unknown_category(name: str, known: tuple[str, ...]) -> UnknownCategoryError:
+    """The error for a category that is not there."""
+    near = nearest(name, known)
+    others = f"known are: {', '.join(known[-5:])}" if known else "none is known yet"
+    hint = f"did you mean '{near}'?" if near else others
+    return UnknownCategoryError(f"no category '{name}'; {hint}")

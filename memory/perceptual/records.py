@@ -1,0 +1,160 @@
+"""What perceptual memory keeps: views, what a learner knows of a category, and batches of both.
+
+>>> from datetime import UTC, datetime
+>>> spin = np.zeros((2, 153), np.float32)
+>>> view = View("v1", "mug", datetime(2026, 5, 1, tzinfo=UTC), {"spin": spin}, metadata={"teacher": "Ada"})
+>>> view.descriptors["spin"].flags.writeable
+False
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from datetime import UTC, datetime
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.memory.perceptual.errors import RecordError
+from deixis.memory.perceptual.tensors import TYPES
+
+Json = Mapping[str, Any]
+"""An object of JSON: keys are strings; values are None, bools, numbers, strings, lists, and objects again."""
+
+DTYPES = {dtype.name for dtype in TYPES.values()}
+"""What the arrays of a learner's state may hold: bools, integers, floats."""
+
+_LONGEST = 1000  # bytes of a name in UTF-8
+
+
+@dataclass(frozen=True, eq=False)
+class View:
+    """One look at an object of a category. Arrays are kept as they are at this moment and cannot be written.
+
+    ``id`` is the view's own in the whole memory. ``time`` has a time zone, and is kept in UTC, to the microsecond.
+    ``descriptors`` leads from a descriptor's name to k descriptors of length d, float32 (k, d); ``points`` are metres,
+    float32 (n, 3). ``metadata`` is JSON: scene, object, teacher, source. Raises RecordError for anything else.
+    """
+
+    id: str
+    category: str
+    time: datetime
+    descriptors: Mapping[str, NDArray[np.float32]]
+    points: NDArray[np.float32] | None = None
+    metadata: Json = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        check_name("a view's id", self.id)
+        check_name("a category's name", self.category)
+        held = {name: _floats(f"descriptor '{name}' of view '{self.id}'", a) for name, a in self.descriptors.items()}
+        for name in held:
+            check_name("a descriptor's name", name)
+        object.__setattr__(self, "descriptors", MappingProxyType(held))
+        object.__setattr__(self, "time", _utc(self.id, self.time))
+        if self.points is not None:
+            points = _floats(f"the points of view '{self.id}'", self.points)
+            if points.shape[1] != 3:
+                raise RecordError(f"the points of view '{self.id}' have shape {points.shape}, not (n, 3)")
+            object.__setattr__(self, "points", points)
+        object.__setattr__(self, "metadata", _json(f"the metadata of view '{self.id}'", self.metadata))
+
+    @classmethod
+    def stored(cls, **values: Any) -> View:
+        """A view of values that were checked when they were written."""
+        view = object.__new__(cls)
+        view.__dict__.update(values)
+        return view
+
+
+@dataclass(frozen=True, eq=False)
+class CategoryRecord:
+    """What a learner knows of a category between two lessons, so that it goes on where it stopped.
+
+    ``state`` leads from names to arrays of any shape, of :data:`DTYPES`; ``metadata`` is JSON. Raises RecordError.
+    """
+
+    name: str
+    state: Mapping[str, NDArray[Any]] = field(default_factory=dict)
+    metadata: Json = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        check_name("a category's name", self.name)
+        held = {}
+        for name, array in self.state.items():
+            check_name("the name of a state", name)
+            if not isinstance(array, np.ndarray) or array.dtype.name not in DTYPES:
+                raise RecordError(f"the state '{name}' of category '{self.name}' is no array of numbers")
+            held[name] = frozen(array)
+        object.__setattr__(self, "state", MappingProxyType(held))
+        object.__setattr__(self, "metadata", _json(f"the metadata of category '{self.name}'", self.metadata))
+
+
+@dataclass(frozen=True)
+class Batch:
+    """What is written in one step: all of it, or, whatever happens, nothing.
+
+    A view whose id is known takes the place of the old one, in whatever category that was; a category's record takes
+    the place of the old record. ``forgotten`` are ids of views. Raises RecordError where an id or a name comes twice.
+    """
+
+    views: Sequence[View] = ()
+    categories: Sequence[CategoryRecord] = ()
+    forgotten: Sequence[str] = ()
+
+    def __post_init__(self) -> None:
+        ids = [*(view.id for view in self.views), *self.forgotten]
+        for what, names in (("view", ids), ("category", [record.name for record in self.categories])):
+            if len(set(names)) < len(names):
+                twice = next(name for name in names if names.count(name) > 1)
+                raise RecordError(f"the {what} '{twice}' comes twice in one batch")
+
+
+def check_name(what: str, name: object) -> None:
+    """Raises RecordError for what cannot be a name: one or more characters that UTF-8 can write."""
+    if not isinstance(name, str) or not name:
+        raise RecordError(f"{what} is a text of one or more characters, not {name!r}")
+    try:
+        length = len(name.encode())
+    except UnicodeEncodeError as error:
+        raise RecordError(f"{what}, {name!r}, holds half a character (a lone surrogate) at {error.start}") from error
+    if length > _LONGEST:
+        raise RecordError(f"{what} is too long: {length} bytes, at most {_LONGEST} ({name[:40]}…)")
+
+
+def frozen(array: NDArray[Any]) -> NDArray[Any]:
+    """The array in one piece, little-endian, and such that nobody writes into it."""
+    plain = np.asarray(array, array.dtype.newbyteorder("<"), order="C")
+    if plain.flags.writeable:
+        plain = plain.copy()
+        plain.flags.writeable = False
+    return plain
+
+
+def _floats(what: str, array: object) -> NDArray[np.float32]:
+    if not isinstance(array, np.ndarray) or array.dtype.name != "float32" or array.ndim != 2:
+        shape = f"{array.dtype} {array.shape}" if isinstance(array, np.ndarray) else type(array).__name__
+        raise RecordError(f"{what}: an array of float32 with two dimensions is wanted, not {shape}")
+    return frozen(array)
+
+
+def _utc(view: str, time: object) -> datetime:
+    if not isinstance(time, datetime) or time.utcoffset() is None:
+        raise RecordError(f"the time of view '{view}' is a datetime with a time zone, not {time!r}")
+    try:
+        return time.astimezone(UTC)
+    except OverflowError as error:
+        raise RecordError(f"the time of view '{view}', {time}, is in no year from 1 to 9999 of UTC") from error
+
+
+def _json(what: str, data: object) -> Json:
+    try:
+        copy = json.loads(json.dumps(dict(data), allow_nan=False))  # type: ignore[call-overload]
+    except (TypeError, ValueError, RecursionError) as error:
+        raise RecordError(f"{what} cannot be written as JSON: {error}") from error
+    if copy != data:
+        raise RecordError(f"{what} would not come back as it is from JSON: use lists, and strings as keys")
+    return MappingProxyType(copy)

@@ -1,0 +1,178 @@
+"""Perceptual memory in dictionaries, for trials and tests: all that a LevelDB does but outliving the process.
+
+>>> from datetime import UTC, datetime
+>>> with TransientMemory() as memory:
+...     memory.write(Batch([View("v1", "mug", datetime(2026, 5, 1, tzinfo=UTC), {})]))
+...     memory.rename("mug", "cup")
+...     [key.category for key in memory.listing()]
+['cup']
+"""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Iterator
+from contextlib import AbstractContextManager
+from dataclasses import dataclass, replace
+from types import TracebackType
+from typing import Self
+
+from deixis.memory.errors import RejectedWriteError
+from deixis.memory.perceptual.errors import RecordError, UnknownViewError
+from deixis.memory.perceptual.handle import closed
+from deixis.memory.perceptual.layout import VERSION
+from deixis.memory.perceptual.protocol import Finding, PerceptualStats, Progress, ViewKey
+from deixis.memory.perceptual.reading import unknown_category
+from deixis.memory.perceptual.records import Batch, CategoryRecord, View, check_name
+
+
+@dataclass(frozen=True)
+class _Content:
+    """All that is kept; a write makes another one, so that whoever reads this one is not disturbed."""
+
+    views: dict[str, View]
+    records: dict[str, CategoryRecord]
+    batches: int
+
+
+class TransientReading:
+    """Reading what is kept at one moment; the methods are those of ``PerceptualReading``."""
+
+    def __init__(self, content: _Content) -> None:
+        self._kept: _Content | None = content
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Lets go."""
+        self._kept = None
+
+    @property
+    def _content(self) -> _Content:
+        if self._kept is None:
+            raise closed()
+        return self._kept
+
+    def view(self, id: str) -> View:
+        """One view."""
+        check_name("a view's id", id)
+        if id not in self._content.views:
+            raise UnknownViewError(f"no view '{id}' in this memory")
+        return self._content.views[id]
+
+    def views(self, category: str | None = None) -> Iterator[View]:
+        """Views in order."""
+        found = [view for view in self._content.views.values() if category is None or view.category == category]
+        if category is not None and not found:
+            self._require(category)
+        return self._each(sorted(found, key=lambda view: (view.category, view.id)))
+
+    def _each(self, views: list[View]) -> Iterator[View]:
+        for view in views:
+            _ = self._content  # raises where this was closed meanwhile
+            yield view
+
+    def listing(self, category: str | None = None) -> Iterator[ViewKey]:
+        """The same without arrays."""
+        return (ViewKey(view.category, view.id, view.time) for view in self.views(category))
+
+    def categories(self) -> tuple[str, ...]:
+        """Names."""
+        return tuple(sorted({view.category for view in self._content.views.values()} | set(self._content.records)))
+
+    def category(self, name: str) -> CategoryRecord:
+        """What a learner left."""
+        self._require(name)
+        return self._content.records.get(name, CategoryRecord(name))
+
+    def _require(self, category: str) -> None:
+        check_name("a category's name", category)
+        if category not in self.categories():
+            raise unknown_category(category, self.categories())
+
+    def stats(self) -> PerceptualStats:
+        """Counts; of bytes, those of the arrays."""
+        arrays = [array for view in self._content.views.values() for array in view.descriptors.values()]
+        return PerceptualStats(
+            views=len(self._content.views),
+            categories=len(self.categories()),
+            batches=self._content.batches,
+            lost=0,
+            bytes=sum(array.nbytes for array in arrays),
+            version=VERSION,
+        )
+
+    def verify(self, progress: Progress | None = None) -> tuple[Finding, ...]:
+        """Nothing: what is in memory is as it was written."""
+        _ = self._content
+        return ()
+
+
+class TransientMemory(TransientReading):
+    """A memory that ends with the process; the methods are those of ``PerceptualMemory``."""
+
+    def __init__(self) -> None:
+        super().__init__(_Content({}, {}, 0))
+        self._writing = threading.RLock()
+
+    def snapshot(self) -> TransientReading:
+        """All as it is now."""
+        return TransientReading(self._content)
+
+    def exclusive(self) -> AbstractContextManager[object]:
+        """Keeps other threads from writing."""
+        return self._writing
+
+    def write(self, batch: Batch, sync: bool = False) -> None:
+        """Writes a batch in one step."""
+        with self._writing:
+            views, records = dict(self._content.views), dict(self._content.records)
+            for id in batch.forgotten:
+                if id not in views:
+                    raise UnknownViewError(f"no view '{id}' to forget; nothing was written")
+                del views[id]
+            views.update({view.id: view for view in batch.views})
+            records.update({record.name: record for record in batch.categories})
+            self._keep(views, records)
+
+    def rename(self, old: str, new: str) -> None:
+        """Gives a category another name."""
+        check_name("a category's name", new)
+        with self._writing:
+            record = self.category(old)
+            if new in self.categories():
+                raise RejectedWriteError(f"there is a category '{new}' already: merge '{old}' into it")
+            self._move(old, CategoryRecord(new, record.state, record.metadata))
+
+    def merge(self, source: str, into: str, record: CategoryRecord | None = None) -> None:
+        """Moves the views of one category to another."""
+        if source == into or (record is not None and record.name != into):
+            raise RecordError(f"category '{source}' cannot be merged into '{into}' with that record: names do not fit")
+        with self._writing:
+            self._require(into)
+            self._require(source)
+            self._move(source, record or CategoryRecord(into))
+
+    def forget(self, category: str) -> None:
+        """Forgets a category."""
+        with self._writing:
+            self._require(category)
+            views = {id: view for id, view in self._content.views.items() if view.category != category}
+            self._keep(views, {name: kept for name, kept in self._content.records.items() if name != category})
+
+    def _move(self, category: str, record: CategoryRecord) -> None:
+        views = {
+            id: replace(view, category=record.name) if view.category == category else view
+            for id, view in self._content.views.items()
+        }
+        records = {name: kept for name, kept in self._content.records.items() if name != category}
+        self._keep(views, {**records, record.name: record})
+
+    def _keep(self, views: dict[str, View], records: dict[str, CategoryRecord]) -> None:
+        self._kept = _Content(views, records, self._content.batches + 1)

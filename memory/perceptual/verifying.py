@@ -1,0 +1,91 @@
+"""Reading all of a database, and saying what is not as it was written."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+from deixis.memory.errors import MemoryFormatError, MemoryWriteError
+from deixis.memory.perceptual import keys
+from deixis.memory.perceptual.codec import Counts, read_category, read_order
+from deixis.memory.perceptual.protocol import Finding, Progress
+from deixis.memory.perceptual.reading import Snapshot
+
+_WRONG = (MemoryFormatError, MemoryWriteError, ValueError)
+
+
+def findings(now: Snapshot, progress: Progress | None = None) -> Iterator[Finding]:
+    """What is wrong: in the counts, the categories, the views one by one, and in what belongs to no view."""
+    counts = Counts(views=-1)
+    try:
+        counts = now.counts()
+    except _WRONG as error:
+        yield Finding("counts", _line(error))
+    if counts.lost:
+        yield Finding("counts", f"{counts.lost} batches that were acknowledged are not there")
+    yield from _categories(now)
+    found = 0
+    try:
+        for found, (key, sealed) in enumerate(now.pairs(keys.VIEW), start=1):
+            yield from _view(now, key, sealed)
+            if progress is not None:
+                progress(found, max(counts.views, found))
+    except _WRONG as error:
+        yield Finding("order of views", f"it cannot be read to its end: {_line(error)}")
+    if found != counts.views >= 0:
+        yield Finding("counts", f"{counts.views} views were written, and {found} are there")
+    yield from _strays(now, keys.ABOUT, "metadata", _metadata_is_owned)
+    yield from _strays(now, keys.ARRAYS, "arrays", _arrays_are_owned)
+
+
+def _categories(now: Snapshot) -> Iterator[Finding]:
+    try:
+        for key, sealed in now.pairs(keys.CATEGORY):
+            name = key[1:].decode(errors="replace")
+            try:
+                read_category(name, sealed)
+            except _WRONG as error:
+                yield Finding(f"category '{name}'", _line(error))
+    except _WRONG as error:
+        yield Finding("categories", f"they cannot be read to their end: {_line(error)}")
+
+
+def _view(now: Snapshot, key: bytes, sealed: bytes) -> Iterator[Finding]:
+    where = "a view"
+    try:
+        category, id, time = read_order(key, sealed)
+        where = f"view '{id}' of '{category}'"
+        said = now.about(id)
+        if said is None or (said.category, said.time) != (category, time):
+            yield Finding(where, "what is said of it does not fit its place in the order")
+        else:
+            now.view(id)
+    except _WRONG as error:
+        yield Finding(where, _line(error))
+
+
+def _strays(now: Snapshot, kind: bytes, what: str, owned: Callable[[Snapshot, bytes], bool]) -> Iterator[Finding]:
+    """Keys that belong to no view."""
+    try:
+        for key in now.bare_keys(kind):
+            try:
+                if owned(now, key):
+                    continue
+            except _WRONG:
+                continue  # told of with its view
+            yield Finding(f"{what} at {key[1:60]!r}", "no view owns it")
+    except _WRONG as error:
+        yield Finding(what, f"they cannot be read to their end: {_line(error)}")
+
+
+def _metadata_is_owned(now: Snapshot, key: bytes) -> bool:
+    said = now.about(key[1:].decode())
+    return said is not None and now.get(said.order_key) is not None
+
+
+def _arrays_are_owned(now: Snapshot, key: bytes) -> bool:
+    said = now.about(keys.split_view_key(key)[1])
+    return said is not None and said.arrays_key == key
+
+
+def _line(error: BaseException) -> str:
+    return " ".join(str(error).split())

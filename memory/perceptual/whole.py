@@ -1,0 +1,54 @@
+"""What is done to the perceptual memory in the folder of a memory as a whole: what ``deixis memory …`` calls.
+
+A memory in which nothing was ever taught has no perceptual memory, and that is no error here.
+
+>>> import tempfile
+>>> folder = Path(tempfile.mkdtemp())
+>>> stats_of(folder) is None, verify_views(folder)
+(True, ())
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from deixis.memory.perceptual.archive import is_archive
+from deixis.memory.perceptual.exchange import Imported, export_views, import_views
+from deixis.memory.perceptual.layout import FOLDER, version_in
+from deixis.memory.perceptual.level import LevelMemory
+from deixis.memory.perceptual.protocol import Finding, PerceptualStats, Progress
+
+__all__ = ["export_all", "import_all", "is_archive", "open_in", "stats_of", "verify_views"]
+
+
+def open_in(memory: Path, create: bool = False) -> LevelMemory:
+    """Opens the perceptual memory in the folder of a memory; raises as ``LevelMemory.open``."""
+    return LevelMemory.open(memory / FOLDER, create)
+
+
+def stats_of(memory: Path) -> PerceptualStats | None:
+    """Counts, or None where nothing was taught."""
+    if version_in(memory / FOLDER) is None:
+        return None
+    with open_in(memory) as views:
+        return views.stats()
+
+
+def verify_views(memory: Path, progress: Progress | None = None) -> tuple[Finding, ...]:
+    """What is not as it was written; what keeps the memory from being opened is raised as DamagedMemoryError."""
+    if version_in(memory / FOLDER) is None:
+        return ()
+    with open_in(memory) as views:
+        return views.verify(progress)
+
+
+def export_all(memory: Path, file: Path) -> None:
+    """Writes all views and categories into one file; raises MemoryFormatError where nothing was taught."""
+    with open_in(memory) as views:
+        export_views(views, file)
+
+
+def import_all(file: Path, memory: Path) -> Imported:
+    """Takes in what :func:`export_all` wrote, for files of which :func:`is_archive` is true."""
+    with open_in(memory, create=True) as views:
+        return import_views(file, views)

@@ -1,0 +1,101 @@
+"""Views by hand, and both kinds of memory."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from deixis.memory.perceptual.level import LevelMemory
+from deixis.memory.perceptual.protocol import PerceptualMemory, PerceptualReading
+from deixis.memory.perceptual.records import CategoryRecord, View
+from deixis.memory.perceptual.transient import TransientMemory
+
+NOON = datetime(2026, 5, 1, 12, tzinfo=UTC)
+
+
+def _view(id: str, category: str = "mug", seed: int = 0, minutes: int = 0) -> View:
+    rng = np.random.default_rng([seed, *id.encode()])
+    return View(
+        id,
+        category,
+        NOON + timedelta(minutes=minutes),
+        {"spin": rng.random((3, 153), np.float32), "good": rng.random((1, 75), np.float32)},
+        rng.random((5, 3), np.float32),
+        {"scene": "s1", "object": f"o{seed}", "teacher": "Ada"},
+    )
+
+
+def _record(name: str, threshold: float = 0.5) -> CategoryRecord:
+    state = {
+        "threshold": np.array(threshold),
+        "icd": np.arange(4, dtype=np.int64),
+        "none": np.zeros((0, 3), np.float32),
+    }
+    return CategoryRecord(name, state, {"learner": "instances"})
+
+
+def _said(record: View | CategoryRecord) -> dict[str, Any]:
+    named = {name: value for name, value in vars(record).items() if name not in ("descriptors", "state", "points")}
+    arrays: dict[str, Any] = dict(record.descriptors if isinstance(record, View) else record.state)
+    if isinstance(record, View) and record.points is not None:
+        arrays["points"] = record.points
+    looks = {name: (array.dtype.str, array.shape, array.tobytes()) for name, array in arrays.items()}
+    return {**named, "metadata": dict(record.metadata), "arrays": looks}
+
+
+def _content(memory: PerceptualReading) -> tuple[list[dict[str, Any]], list[dict[str, Any]]]:
+    return [_said(view) for view in memory.views()], [_said(memory.category(name)) for name in memory.categories()]
+
+
+@pytest.fixture(scope="session")
+def make_view() -> Callable[..., View]:
+    """Makes a view whose arrays follow from its id and a seed."""
+    return _view
+
+
+@pytest.fixture(scope="session")
+def make_record() -> Callable[..., CategoryRecord]:
+    """Makes a category's record, with a threshold."""
+    return _record
+
+
+@pytest.fixture(scope="session")
+def said() -> Callable[[View | CategoryRecord], dict[str, Any]]:
+    """All that a record says, to be compared: arrays by type, shape and bytes."""
+    return _said
+
+
+@pytest.fixture(scope="session")
+def content() -> Callable[[PerceptualReading], tuple[list[dict[str, Any]], list[dict[str, Any]]]]:
+    """All that a memory keeps, in its order."""
+    return _content
+
+
+@pytest.fixture(params=["level", "transient"])
+def memory(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[PerceptualMemory]:
+    """An empty memory of each kind."""
+    if request.param == "level":
+        with LevelMemory.open(tmp_path / "perceptual", create=True) as level:
+            yield level
+    else:
+        with TransientMemory() as transient:
+            yield transient
+
+
+@pytest.fixture
+def kept(tmp_path: Path) -> Path:
+    """A closed memory of ten views in three categories, written in two sittings."""
+    from deixis.memory.perceptual.records import Batch
+
+    folder = tmp_path / "kept"
+    for sitting, categories in enumerate((("mug", "plate"), ("mug", "fork"))):
+        with LevelMemory.open(folder, create=True) as memory:
+            for category in categories:
+                views = [_view(f"{category}-{sitting}-{number}", category, number, number) for number in range(3)]
+                memory.write(Batch(views[: 3 - sitting], [_record(category, 0.1 * sitting)]))
+    return folder

@@ -1,0 +1,243 @@
+"""Opening a perceptual memory: new, foreign, old, newer, held by somebody, changed while nobody had it."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import plyvel
+import pytest
+
+from deixis.memory.errors import MemoryBusyError, MemoryFormatError
+from deixis.memory.perceptual import keys, layout
+from deixis.memory.perceptual.errors import DamagedMemoryError
+from deixis.memory.perceptual.level import LevelMemory
+from deixis.memory.perceptual.records import Batch, View
+
+Content = Callable[..., Any]
+
+
+def digest(folder: Path) -> dict[str, str]:
+    return {
+        str(file.relative_to(folder)): hashlib.sha256(file.read_bytes()).hexdigest()
+        for file in sorted(folder.rglob("*"))
+        if file.is_file()
+    }
+
+
+def content_of(folder: Path, content: Content) -> Any:
+    with LevelMemory.open(folder) as memory:
+        return content(memory)
+
+
+def test_a_new_memory_is_made_only_when_asked(tmp_path: Path) -> None:
+    with pytest.raises(MemoryFormatError, match="there is no perceptual memory at"):
+        LevelMemory.open(tmp_path / "a" / "b")
+    assert not (tmp_path / "a").exists()
+    LevelMemory.open(tmp_path / "a" / "b", create=True).close()
+    assert sorted(os.listdir(tmp_path / "a" / "b")) == ["acknowledged", "owner.lock", "seal.json", "store-1"]
+
+
+def test_a_foreign_folder_a_file_and_a_dead_link_are_left_alone(tmp_path: Path) -> None:
+    folder = tmp_path / "f"
+    folder.mkdir()
+    (folder / "letter.txt").write_text("dear")
+    (tmp_path / "link").symlink_to(tmp_path / "gone")
+    for path, message in (
+        (folder, r"it holds other things \(letter.txt\)"),
+        (folder / "letter.txt", "is a file"),
+        (tmp_path / "link", "leads nowhere"),
+    ):
+        with pytest.raises(MemoryFormatError, match=message):
+            LevelMemory.open(path, create=True)
+    assert os.listdir(folder) == ["letter.txt"]
+
+
+def test_a_newer_memory_is_told_and_left_alone(kept: Path) -> None:
+    (kept / "store-1").rename(kept / "store-7")
+    before = digest(kept)
+    with pytest.raises(MemoryFormatError, match=r"written by a newer version \(format 7, .* knows 1\); upgrade deixis"):
+        LevelMemory.open(kept, create=True)
+    assert digest(kept) == before
+
+
+def test_a_version_without_a_way_here_is_told(kept: Path) -> None:
+    (kept / "store-1").rename(kept / "store-0")
+    with pytest.raises(MemoryFormatError, match="unknown format version 0"):
+        LevelMemory.open(kept)
+
+
+def _prefixed(key: bytes) -> bytes:
+    return b"old:" + key
+
+
+def make_old(folder: Path) -> None:
+    """Turns a memory into one of a version 0, whose keys all began with ``old:``."""
+    with plyvel.DB(str(folder / "store-1")) as new, plyvel.DB(str(folder / "store-0"), create_if_missing=True) as old:
+        for key, value in new.iterator():
+            old.put(_prefixed(key), value)
+    layout._remove(folder / "store-1")
+    (folder / "seal.json").unlink()
+
+
+def from_0(old: plyvel.DB, new: plyvel.DB) -> None:
+    for key, value in old.iterator(verify_checksums=True):
+        new.put(key.removeprefix(b"old:"), value)
+
+
+def test_an_old_memory_is_brought_up_to_date(kept: Path, content: Content, monkeypatch: pytest.MonkeyPatch) -> None:
+    before = content_of(kept, content)
+    make_old(kept)
+    monkeypatch.setitem(layout.MIGRATIONS, 0, from_0)
+    assert content_of(kept, content) == before
+    assert sorted(os.listdir(kept)) == ["acknowledged", "owner.lock", "seal.json", "store-1"]
+    with LevelMemory.open(kept) as memory:
+        assert memory.verify() == ()
+        assert memory.stats().lost == 0
+
+
+@pytest.mark.parametrize("steps", range(4))
+def test_a_crash_while_migrating_loses_nothing(
+    kept: Path, content: Content, steps: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    before = content_of(kept, content)
+    make_old(kept)
+    monkeypatch.setitem(layout.MIGRATIONS, 0, from_0)
+    left = [steps]
+
+    def crashing(real: Callable[..., None]) -> Callable[..., None]:
+        def step(*given: Any) -> None:
+            if left[0] == 0:
+                raise KeyboardInterrupt
+            left[0] -= 1
+            real(*given)
+
+        return step
+
+    with monkeypatch.context() as patched:
+        patched.setattr(layout, "rename", crashing(layout.rename))
+        patched.setattr(layout, "_remove", crashing(layout._remove))
+        patched.setitem(layout.MIGRATIONS, 0, crashing(from_0))
+        with pytest.raises(KeyboardInterrupt):
+            LevelMemory.open(kept)
+    assert content_of(kept, content) == before
+
+
+def test_a_second_opening_in_one_process_shares_the_handle(
+    kept: Path, tmp_path: Path, make_view: Callable[..., View]
+) -> None:
+    (tmp_path / "link").symlink_to(kept)
+    with LevelMemory.open(kept) as one, LevelMemory.open(tmp_path / "link") as two:
+        assert one.handle is two.handle
+        two.write(Batch([make_view("new")]))
+        one.close()
+        one.close()
+        assert two.view("new").category == "mug"
+        with pytest.raises(MemoryFormatError, match="closed"):
+            one.categories()
+        with pytest.raises(plyvel.Error, match="lock"):
+            plyvel.DB(str(kept / "store-1"))
+    with plyvel.DB(str(kept / "store-1")) as free:
+        assert free.get(keys.name_key(keys.ABOUT, "new"))
+
+
+HOLDER = """
+import sys, time
+from deixis.memory.perceptual.level import LevelMemory
+memory = LevelMemory.open(sys.argv[1])
+print("open", flush=True)
+time.sleep(60)
+"""
+
+
+def test_a_second_process_is_told_who_holds_it_and_a_dead_owner_does_not_block(kept: Path, content: Content) -> None:
+    before = content_of(kept, content)
+    holder = subprocess.Popen([sys.executable, "-c", HOLDER, str(kept)], stdout=subprocess.PIPE, text=True)
+    try:
+        assert holder.stdout is not None
+        assert holder.stdout.readline() == "open\n"
+        with pytest.raises(MemoryBusyError, match=rf"in use by process {holder.pid} \(.*\) since \d{{4}}-"):
+            LevelMemory.open(kept)
+    finally:
+        holder.kill()
+        holder.wait()
+        if holder.stdout:
+            holder.stdout.close()
+    assert content_of(kept, content) == before
+
+
+@pytest.mark.parametrize("name", ["MANIFEST", "CURRENT", "000"])
+def test_files_changed_or_gone_while_it_was_closed_are_told_and_nothing_is_touched(kept: Path, name: str) -> None:
+    file = next(file for file in sorted((kept / "store-1").iterdir()) if file.name.startswith(name))
+    file.unlink()
+    before = digest(kept)
+    with pytest.raises(
+        DamagedMemoryError, match=r"is not as it was when it was closed; restore .* or delete seal\.json"
+    ):
+        LevelMemory.open(kept)
+    assert digest(kept) == before
+
+
+def test_without_a_seal_a_missing_table_is_still_told(kept: Path) -> None:
+    (kept / "seal.json").unlink()
+    next((kept / "store-1").glob("*.ldb")).unlink()
+    with pytest.raises(DamagedMemoryError, match="missing files"):
+        LevelMemory.open(kept)
+
+
+def test_without_a_seal_a_missing_current_is_no_new_memory(kept: Path) -> None:
+    (kept / "seal.json").unlink()
+    (kept / "store-1" / "CURRENT").unlink()
+    with pytest.raises(DamagedMemoryError, match="damaged"):
+        LevelMemory.open(kept, create=True)
+    assert list((kept / "store-1").glob("*.ldb"))
+
+
+def test_batches_that_were_acknowledged_and_are_gone_are_counted(
+    kept: Path, tmp_path: Path, make_view: Callable[..., View]
+) -> None:
+    """As after a power cut: the end of the log never reached the disk, while the tally did."""
+    power_cut = tmp_path / "cut"
+    with LevelMemory.open(kept) as memory:
+        shutil.copytree(kept, power_cut)
+        memory.write(Batch([make_view("gone")]))
+        memory.write(Batch([make_view("gone too")]))
+        shutil.copy(kept / "acknowledged", power_cut)
+    for _ in range(2):
+        with LevelMemory.open(power_cut) as memory:
+            assert memory.stats().lost == 2
+            assert [str(finding) for finding in memory.verify()] == [
+                "counts: 2 batches that were acknowledged are not there"
+            ]
+            memory.write(Batch([make_view("after")]))
+
+
+FORKER = """
+import os, sys
+from deixis.memory.errors import MemoryFormatError
+from deixis.memory.perceptual.level import LevelMemory
+from deixis.memory.perceptual.records import Batch
+
+memory = LevelMemory.open(sys.argv[1])
+child = os.fork()
+if child == 0:
+    try:
+        memory.write(Batch())
+    except MemoryFormatError as error:
+        print(error, flush=True)
+    os._exit(0)
+os.waitpid(child, 0)
+memory.write(Batch())
+print(memory.verify())
+"""
+
+
+def test_a_forked_child_cannot_write_its_parents_memory(kept: Path) -> None:
+    run = subprocess.run([sys.executable, "-c", FORKER, str(kept)], capture_output=True, text=True, timeout=60)
+    assert run.stdout.splitlines() == ["this memory is closed: open it again", "()"], run.stderr
