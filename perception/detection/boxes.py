@@ -1,0 +1,70 @@
+"""Boxes around the points of things: along the axes of the table, and turned about the vertical."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+TRIM = 0.002
+"""The share of the points at either end of an axis that are taken for noise."""
+
+
+@dataclass(frozen=True, eq=False)
+class OrientedBox:
+    """A box in the table's frame. ``axes`` (3, 3) are unit vectors, in rows, right-handed, the last one up;
+    ``extents`` (3,) are the sides along them, the first the longer one of the two level ones."""
+
+    centre: NDArray[np.float64]  # (3,)
+    axes: NDArray[np.float64]
+    extents: NDArray[np.float64]
+
+
+def upright_box(points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Least and greatest corner (2, 3) of points (n, 3) in the table's frame; it stands on the table or above it.
+
+    >>> upright_box(np.array([[0.0, 0, -0.001], [1, 2, 3]])).tolist()
+    [[0.0, 0.0, 0.0], [1.0, 2.0, 3.0]]
+    """
+    box = trimmed(points)
+    box[:, 2] = np.maximum(box[:, 2], 0.0)
+    return box
+
+
+def trimmed(values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Least and greatest values (2, d) of values (n, d), but for the few at either end that are noise."""
+    skip = int(TRIM * len(values))
+    ordered = np.sort(values, axis=0)
+    return np.stack([ordered[skip], ordered[len(values) - 1 - skip]])
+
+
+def oriented_box(points: NDArray[np.float64]) -> OrientedBox:
+    """The upright box with the smallest plan, among those with a side along a side of the points' outline.
+
+    That the smallest rectangle has such a side is the theorem of Freeman and Shapira (1975).
+    """
+    angle = _best_angle(points[:, :2])
+    cosine, sine = np.cos(angle), np.sin(angle)
+    axes = np.array([[cosine, sine, 0.0], [-sine, cosine, 0.0], [0.0, 0.0, 1.0]])
+    low, high = upright_box(points @ axes.T)
+    if high[1] - low[1] > high[0] - low[0]:
+        axes = axes[[1, 0, 2]] * [[1.0], [-1.0], [1.0]]
+        low, high = upright_box(points @ axes.T)
+    return OrientedBox(axes.T @ ((low + high) / 2), axes, high - low)
+
+
+def _best_angle(plan: NDArray[np.float64]) -> float:
+    from scipy.spatial import ConvexHull, QhullError
+
+    try:
+        corners = plan[ConvexHull(plan).vertices]
+    except (QhullError, ValueError):
+        corners = plan
+        along = np.ptp(plan, axis=0)
+        return float(np.arctan2(along[1], along[0])) if along.any() else 0.0
+    sides = np.roll(corners, -1, axis=0) - corners
+    angles = np.unique(np.arctan2(sides[:, 1], sides[:, 0]) % (np.pi / 2))
+    turned = corners @ np.stack([np.cos(angles), np.sin(angles)])
+    across = corners @ np.stack([-np.sin(angles), np.cos(angles)])
+    return float(angles[np.argmin(np.ptp(turned, axis=0) * np.ptp(across, axis=0))])

@@ -1,0 +1,175 @@
+"""Detection, from a cloud to the things on its table: the steps in their order."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.perception.clouds.cloud import PointCloud
+from deixis.perception.detection.boxes import OrientedBox, oriented_box, upright_box
+from deixis.perception.detection.frame import moved, outlook_of, table_frame
+from deixis.perception.detection.heights import Raised, raised
+from deixis.perception.detection.neighbours import neighbour_table
+from deixis.perception.detection.outline import above_outline
+from deixis.perception.detection.plane import Outlook, Plane, table_plane
+from deixis.perception.detection.settings import DetectionSettings
+from deixis.perception.errors import CloudError
+from deixis.perception.scene import PerceivedObject, Scene
+
+NONE = -1
+"""The label of a point that belongs to no thing."""
+
+ON_TABLE = 0.01
+"""Metres from the plane within which a point is the table's, as far as its outline goes."""
+
+SURELY = 1.5
+"""A thing is so many times as high as what may be taken for a point above the table."""
+
+
+@dataclass(frozen=True, eq=False)
+class Detection:
+    """What is on a table. ``frame`` takes points of the cloud's frame to the table's: z up from its plane, x to the
+    viewer's right, y away from the viewer.
+
+    ``labels`` (n,) has for each point of the cloud, in its order, the number k of its thing, -1 for none. Thing k has
+    ``boxes[k]``, least and greatest corner in the table's frame, shape (2, 3), ``oriented[k]``, and the id
+    ``o{k + 1}``; things are numbered from left to right, and from near to far where they are equally far left.
+    ``table`` is None where no table was found, and ``notes`` say what was not as one would expect.
+    """
+
+    table: Plane | None
+    frame: NDArray[np.float64]  # (4, 4)
+    labels: NDArray[np.int32]  # (n,)
+    boxes: NDArray[np.float64]  # (k, 2, 3)
+    oriented: tuple[OrientedBox, ...]
+    notes: tuple[str, ...] = ()
+
+    def scene(self, viewpoint: str = "chair") -> Scene:
+        """The boxes as a scene, ready for grounding."""
+        things = [
+            PerceivedObject(f"o{number}", tuple(low), tuple(high))
+            for number, (low, high) in enumerate(self.boxes.round(6).tolist(), start=1)
+        ]
+        return Scene(tuple(things), viewpoint=viewpoint)
+
+
+def detect(cloud: PointCloud, settings: DetectionSettings | None = None) -> Detection:
+    """The table of a cloud and the things on it; labels that a cloud bears are not looked at.
+
+    Raises CloudError for a cloud without one finite point. A cloud without a table, and a table with nothing on it,
+    give an answer that says so.
+
+    >>> x, y = (axis.ravel() for axis in np.mgrid[-0.5:0.5:0.01, 0.5:1.5:0.01])
+    >>> table = np.stack([x, y, np.full(x.shape, -0.7)], axis=1)
+    >>> found = detect(PointCloud(table.astype(np.float32)))
+    >>> abs(found.table.normal).round(3).tolist(), found.boxes.shape, found.notes
+    ([0.0, 0.0, 1.0], (0, 2, 3), ('nothing is on the table',))
+    """
+    settings = settings or DetectionSettings()
+    kept = np.flatnonzero(cloud.finite)
+    if not len(kept):
+        raise CloudError("a cloud without one finite point shows nothing; is its depth image empty?")
+    points = cloud.points[kept].astype(np.float64)
+    outlook = outlook_of(cloud, settings)
+    plane = table_plane(points, outlook, settings.seed)
+    if plane is None:
+        return _nothing(len(cloud), None, np.eye(4), "no table was found: no large level surface is in view")
+    view = _view(points, plane, outlook, settings)
+    neighbours = neighbour_table(points, kept, cloud.organised)
+    rising = raised(view.heights, view.distance, neighbours, settings)
+    colours = None if cloud.colours is None else cloud.colours[kept]
+    found = _things(view, rising, neighbours, colours, settings)
+    if not found.max(initial=NONE) >= 0:
+        return _nothing(len(cloud), plane, view.frame, "nothing is on the table")
+    numbers = _left_to_right(view.points, found)
+    labels = np.full(len(cloud), NONE, np.int32)
+    labels[kept] = numbers
+    members = [view.points[numbers == k] for k in range(int(numbers.max()) + 1)]
+    boxes = np.stack([upright_box(thing) for thing in members])
+    return Detection(plane, view.frame, labels, boxes, tuple(oriented_box(thing) for thing in members))
+
+
+@dataclass(frozen=True, eq=False)
+class _View:
+    """The finite points in the table's frame, their distances from the sensor, and where that stands."""
+
+    frame: NDArray[np.float64]  # (4, 4)
+    points: NDArray[np.float64]  # (n, 3)
+    distance: NDArray[np.float64]  # (n,)
+    eye: NDArray[np.float64]  # (3,)
+
+    @property
+    def heights(self) -> NDArray[np.float64]:
+        return np.ascontiguousarray(self.points[:, 2])
+
+
+def _view(points: NDArray[np.float64], plane: Plane, outlook: Outlook, settings: DetectionSettings) -> _View:
+    on = points[np.abs(plane.heights(points)) < ON_TABLE]
+    frame = table_frame(plane, on if len(on) else points, outlook, settings.viewer)
+    eye = moved(outlook.eye[None], frame)[0]
+    at = np.ascontiguousarray(moved(points, frame))
+    return _View(frame, at, np.linalg.norm(at - eye, axis=1), eye)
+
+
+def _things(
+    view: _View,
+    rising: Raised,
+    neighbours: NDArray[np.int32],
+    colours: NDArray[np.uint8] | None,
+    settings: DetectionSettings,
+) -> NDArray[np.int32]:
+    """The number of its thing for each point (n,), in no particular order, -1 for none."""
+    from deixis.perception.detection.segmentation import segments
+    from deixis.perception.detection.surface import surface_of
+
+    found = np.full(len(view.points), NONE, np.int32)
+    chosen = np.flatnonzero(rising.above)
+    if not len(chosen):
+        return found
+    number = np.full(len(view.points) + 1, NONE, np.int32)
+    number[chosen] = np.arange(len(chosen))
+    sigma = rising.noise * view.distance[chosen] ** 2
+    painted = None if colours is None else colours[chosen]
+    surface = surface_of(view.points[chosen], painted, number[neighbours[chosen]], sigma, view.eye)
+    pieces = segments(surface, settings)
+    within = above_outline(view.points[np.abs(view.heights) < ON_TABLE], surface.points)
+    least = np.maximum(settings.height, SURELY * rising.upper(view.distance[chosen]))
+    found[chosen] = _kept(pieces, within, surface.points, least, settings)
+    return found
+
+
+def _kept(
+    pieces: NDArray[np.int32],
+    within: NDArray[np.bool_],
+    points: NDArray[np.float64],
+    least: NDArray[np.float64],
+    settings: DetectionSettings,
+) -> NDArray[np.int32]:
+    """Pieces that are no things get -1: too small, too low to be told from noise, or mostly beside the table."""
+    result = np.full(len(pieces), NONE, np.int32)
+    number = 0
+    for piece in range(int(pieces.max()) + 1):
+        of = pieces == piece
+        if of.sum() < settings.least_points or within[of].mean() < 0.5:
+            continue
+        rise = np.quantile(points[of, 2] / least[of], 0.9)
+        if rise > 1.0 and np.ptp(points[of], axis=0).max() >= settings.least_length:
+            result[of] = number
+            number += 1
+    return result
+
+
+def _left_to_right(points: NDArray[np.float64], numbers: NDArray[np.int32]) -> NDArray[np.int32]:
+    """The same things numbered by their least x, to the centimetre, then by their least y."""
+    count = int(numbers.max()) + 1
+    low = np.array([upright_box(points[numbers == k])[0, :2] for k in range(count)])
+    order = np.lexsort((low[:, 1], low[:, 0].round(2)))
+    rank = np.full(count + 1, NONE, np.int32)
+    rank[order] = np.arange(count)
+    return rank[numbers]
+
+
+def _nothing(count: int, plane: Plane | None, frame: NDArray[np.float64], why: str) -> Detection:
+    return Detection(plane, frame, np.full(count, NONE, np.int32), np.zeros((0, 2, 3)), (), (why,))

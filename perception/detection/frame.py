@@ -1,0 +1,85 @@
+"""The frame of a table: z up from it, x to the right and y away from the viewer."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.perception.clouds.cloud import PointCloud
+from deixis.perception.detection.plane import Outlook, Plane
+from deixis.perception.detection.settings import DetectionSettings
+
+
+def outlook_of(cloud: PointCloud, settings: DetectionSettings) -> Outlook:
+    """From where a cloud was seen, and which way up: the rows of its image go down as seen from its origin."""
+    eye = np.asarray(cloud.origin, dtype=np.float64)
+    upwards = None
+    if settings.up is not None:
+        upwards = np.asarray(settings.up, dtype=np.float64)
+        upwards = upwards / np.linalg.norm(upwards)
+    if cloud.organised is None or min(cloud.organised) < 2:
+        return Outlook(eye, upwards=upwards)
+    rays = cloud.points.reshape(*cloud.organised, 3) - eye
+    with np.errstate(invalid="ignore", divide="ignore"):
+        rays = rays / np.linalg.norm(rays, axis=2, keepdims=True)
+    down, right = (_mean_direction(np.diff(rays, axis=axis)) for axis in (0, 1))
+    if down is None or right is None:
+        return Outlook(eye, upwards=upwards)
+    return Outlook(eye, -down, right, upwards)
+
+
+def _mean_direction(steps: NDArray[np.float64]) -> NDArray[np.float64] | None:
+    steps = steps.reshape(-1, 3)
+    steps = steps[np.isfinite(steps).all(axis=1)]
+    mean = steps.mean(axis=0) if len(steps) else np.zeros(3)
+    length = float(np.linalg.norm(mean))
+    return mean / length if length > 1e-9 else None
+
+
+def table_frame(
+    plane: Plane, on: NDArray[np.float64], outlook: Outlook, viewer: tuple[float, float, float] | None
+) -> NDArray[np.float64]:
+    """The transform (4, 4) that takes points of the cloud's frame to the table's.
+
+    z is the height above the plane. y points away from the viewer: from a ``viewer`` that is given to the middle of
+    the table's points ``on`` (n, 3); else upwards in the image, as whoever holds the camera sees it; else from the
+    sensor to the middle. x is to the right. The origin is the middle of the rectangle around the table's points, on
+    the table.
+    """
+    up = plane.normal
+    away = _across(up, _away(plane, on.mean(axis=0), outlook, viewer))
+    right = np.cross(away, up)
+    turn = np.stack([right, away, up])
+    plan = on @ turn[:2].T
+    low, high = np.percentile(plan, (0.5, 99.5), axis=0)
+    origin = np.append((low + high) / 2, plane.offset)
+    frame = np.eye(4)
+    frame[:3, :3], frame[:3, 3] = turn, -origin
+    return frame
+
+
+def _away(
+    plane: Plane, middle: NDArray[np.float64], outlook: Outlook, viewer: tuple[float, float, float] | None
+) -> list[NDArray[np.float64]]:
+    """Directions away from the viewer, the best first; not all need to be of use."""
+    if viewer is not None:
+        return [middle - np.asarray(viewer, dtype=np.float64)]
+    if outlook.right is not None:
+        return [np.cross(plane.normal, outlook.right)]
+    return [middle - outlook.eye]
+
+
+def _across(up: NDArray[np.float64], wanted: list[NDArray[np.float64]]) -> NDArray[np.float64]:
+    """The first direction that is not along ``up``, made level; else y or x of the cloud's frame."""
+    for direction in (*wanted, np.array([0.0, 1.0, 0.0]), np.array([1.0, 0.0, 0.0])):
+        level = direction - (direction @ up) * up
+        length = float(np.linalg.norm(level))
+        if length > 0.02:
+            return level / length
+    raise AssertionError("one of two axes is not along a third direction")
+
+
+def moved(points: NDArray[np.floating], frame: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Points (n, 3) taken by a transform (4, 4)."""
+    result: NDArray[np.float64] = points @ frame[:3, :3].T + frame[:3, 3]
+    return result

@@ -1,0 +1,78 @@
+"""What rises above the table: heights averaged over neighbours, and two thresholds that follow the sensor's noise.
+
+A fork's tines are a few millimetres high, a depth camera's noise at one metre is half of that for one pixel, and far
+less for the mean of its neighbours. As in edge detection (Canny 1986), points above the upper threshold are things,
+and so is whatever above the lower one is connected with them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.perception.detection.settings import DetectionSettings
+
+ROUNDS = 2
+"""How often heights are averaged over the neighbours: twice is about 5 by 5 pixels."""
+
+UPPER, LOWER = 4.5, 2.25
+"""The thresholds, in standard deviations of averaged heights."""
+
+SURELY_TABLE = 0.006
+"""Metres from the plane, at one metre from the sensor, within which noise is estimated."""
+
+LEAST_NOISE = 1e-4
+"""Metres at one metre: less noise than that is not reckoned with."""
+
+NEAREST = 0.3
+"""Metres: nearer to the sensor than that, noise becomes no less."""
+
+
+@dataclass(frozen=True, eq=False)
+class Raised:
+    """``above`` (n,): which points are things; ``noise`` the standard deviation of one height, ``averaged`` that of a
+    mean over neighbours, both in metres at one metre from the sensor."""
+
+    above: NDArray[np.bool_]
+    noise: float
+    averaged: float
+
+    def upper(self, distance: NDArray[np.float64]) -> NDArray[np.float64]:
+        """The height (n,) that is surely no noise, at distances (n,) from the sensor."""
+        return UPPER * self.averaged * np.maximum(distance, NEAREST) ** 2
+
+
+def raised(
+    heights: NDArray[np.float64],
+    distance: NDArray[np.float64],
+    neighbours: NDArray[np.int32],
+    settings: DetectionSettings,
+) -> Raised:
+    """Which of the points are above the table, by their heights (n,) and their distances (n,) from the sensor.
+
+    A sensor's noise grows with the square of the distance (Khoshelham and Elberink 2012); how large it is, is measured
+    on the table itself.
+    """
+    from deixis.perception.detection.height_kernels import averaged, grown
+
+    growth = np.maximum(distance, NEAREST) ** 2
+    noise = _noise(heights, growth)
+    mean = averaged(heights, neighbours, np.maximum(6 * noise * growth, settings.height), ROUNDS)
+    left = _noise(mean, growth)
+    upper = np.maximum(settings.height, UPPER * left * growth)
+    lower = np.maximum(settings.height / 4, LOWER * left * growth)
+    highest = settings.reach
+    above = grown((mean > upper) & (mean < highest), (mean > lower) & (mean < highest), neighbours)
+    return Raised(above, noise, left)
+
+
+def _noise(heights: NDArray[np.float64], growth: NDArray[np.float64]) -> float:
+    """The standard deviation of the table's heights at one metre, by the median, from the points below the plane.
+
+    Those above are no use: what lies on the table is among them.
+    """
+    scaled = heights / growth
+    below = -scaled[(scaled < 0) & (scaled > -SURELY_TABLE)]
+    return max(float(1.4826 * np.median(below)), LEAST_NOISE) if len(below) else LEAST_NOISE

@@ -1,0 +1,161 @@
+"""What belongs together although its surfaces do not meet convexly: hollow, draped and partly hidden things.
+
+A plate has a well, a cup an inside, a napkin hangs over an edge, a knife hides the middle of the plate that it lies on,
+and from above the bowl of a glass hides its stem. Each of these has a rule; a rule gives pairs of parts that are one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.perception.detection.parts import Parts
+
+FRAGMENT = 7e-4
+"""Square metres: a smaller piece of surface is no thing of its own where it meets another."""
+
+ALIKE, UNLIKE = 9.0, 12.0
+"""Differences of colour below which parts are of one colour, and above which they are not."""
+
+PLAIN = 7.0
+"""A part whose colours vary less has one colour; the mean of a motley one says nothing."""
+
+ONE_COLOUR = 1.15
+"""Two parts of one colour are two things only where more evidence speaks for it, or where one lies on the other."""
+
+LIES_ON = 0.005
+"""Metres: where a part is by so much higher than another, on the average of where they meet, it lies on it."""
+
+DEEP, LEVEL, HOLLOW = 0.03, 0.012, -0.15
+"""A hollow is so deep (metres), its rim as high on both sides, and it bulges less: it is seen from inside."""
+
+GAP, ALONG = 0.11, 0.015
+"""Metres of a surface of one colour that something on it hides: a napkin on a plate. It goes on where it is nearest, or
+so much farther away."""
+
+FOOT, STEM = 0.022, 0.03
+"""Most of the foot of a glass is lower than the first, and hidden by what is higher above it than the second."""
+
+Pairs = NDArray[np.intp]
+
+
+def whole_things(parts: Parts) -> Parts:
+    """Parts joined until they are things, rule by rule."""
+    parts = _without_fragments(parts)
+    for rule in (of_one_colour, enclosed, bridged, enclosed, of_one_colour, insides, on_a_foot):
+        parts = _applied(rule, parts)
+    return parts
+
+
+def _applied(rule: Callable[[Parts], Pairs], parts: Parts) -> Parts:
+    """A rule applied as long as it finds something, each time to the two that meet longest."""
+    while len(pairs := rule(parts)):
+        longest = int(np.argmax(parts.lengths[pairs[:, 0], pairs[:, 1]]))
+        parts = parts.joined(pairs[longest : longest + 1])
+    return parts
+
+
+def _without_fragments(parts: Parts) -> Parts:
+    while len(pairs := fragments(parts)):
+        parts = parts.joined(pairs)
+    return parts
+
+
+def fragments(parts: Parts) -> Pairs:
+    """Pieces that are too small, each with the part that it meets longest and most smoothly."""
+    pull = parts.smooth * (2.0 - np.where(parts.lengths > 0, parts.evidence, 2.0))
+    small = np.flatnonzero((parts.areas < FRAGMENT) & (pull.max(axis=1, initial=0.0) > 0))
+    return np.stack([small, pull[small].argmax(axis=1)], axis=1)
+
+
+def of_one_colour(parts: Parts) -> Pairs:
+    """Parts of one colour that meet without much of a crease: the head and the handle of a fork, a draped napkin."""
+    return _pairs(_alike(parts) & (parts.evidence < ONE_COLOUR) & (np.abs(parts.rise) < LIES_ON))
+
+
+def enclosed(parts: Parts) -> Pairs:
+    """A part within the outline of one that is above it where they meet, both of one colour: the well of a plate."""
+    low = (parts.rise < 0.001) & (parts.lengths > 0) & (parts.unlike() < UNLIKE)
+    low &= (parts.tops[:, None] <= parts.tops[None] + 0.005) & (parts.bulge[:, None] < 0.1)
+    return _chosen(_pairs(low), lambda low, rim: _inside(parts, low, rim) > 0.8)
+
+
+def insides(parts: Parts) -> Pairs:
+    """The inside of a cup, with its outside: it is curved inwards, and its rim is as high."""
+    deep = parts.tops - parts.bottoms > DEEP
+    hollow = ((parts.bulge < HOLLOW) & deep)[:, None] & deep[None] & (parts.lengths > 0) & (parts.unlike() < UNLIKE)
+    return _pairs(hollow & (np.abs(parts.tops[:, None] - parts.tops[None]) < LEVEL) & (parts.rise < 0.0))
+
+
+def bridged(parts: Parts) -> Pairs:
+    """Two parts of one surface, parted by something narrow that lies on both."""
+    under = ((parts.rise < -0.0005) & (parts.lengths > 0)).astype(np.float64)
+    pairs = _pairs(np.triu((under @ under.T > 0) & _alike(parts)))
+    return _chosen(pairs, lambda a, b: _continues(parts, a, b))
+
+
+def on_a_foot(parts: Parts) -> Pairs:
+    """Something above a flat foot of its colour that is no wider: a glass whose stem is hidden."""
+    high = parts.bottoms > FOOT
+    foot = (parts.middles < FOOT) & (parts.bottoms < FOOT / 2)
+    same = (parts.rise > STEM) & (parts.unlike() < UNLIKE)
+    narrow = parts.widths[None] < 1.2 * parts.widths[:, None]
+    pairs = _pairs(high[:, None] & foot[None] & same & narrow)
+    return _chosen(pairs, lambda glass, foot: _inside(parts, foot, glass) > 0.1)
+
+
+def _chosen(pairs: Pairs, belong: Callable[[int, int], bool]) -> Pairs:
+    return pairs[np.array([belong(a, b) for a, b in pairs.tolist()], dtype=np.bool_)]
+
+
+def _alike(parts: Parts) -> NDArray[np.bool_]:
+    """Which parts are of one plain colour, (p, p)."""
+    plain = parts.motley < PLAIN
+    return (parts.unlike() < ALIKE) & plain[:, None] & plain[None]
+
+
+def _pairs(which: NDArray[np.bool_]) -> Pairs:
+    """The pairs of different parts that are marked in (p, p)."""
+    return np.argwhere(which & ~np.eye(len(which), dtype=np.bool_))
+
+
+def _inside(parts: Parts, inner: int, outer: int) -> float:
+    """The share of a part's patches that lie within the convex outline of another, as seen from above."""
+    hull = _hull(parts.patches.middles[parts.members(outer), :2])
+    if hull is None:
+        return 0.0
+    plan = parts.patches.middles[parts.members(inner), :2]
+    return float((plan @ hull[:, :2].T + hull[:, 2] <= 0.004).all(axis=1).mean())
+
+
+def _hull(plan: NDArray[np.float64]) -> NDArray[np.float64] | None:
+    """The half planes (k, 3) of a convex hull; None for points in a line."""
+    from scipy.spatial import ConvexHull, QhullError
+
+    if len(plan) < 3:
+        return None
+    try:
+        result: NDArray[np.float64] = ConvexHull(plan).equations
+    except QhullError:
+        return None
+    return result
+
+
+def _continues(parts: Parts, a: int, b: int) -> bool:
+    """Whether one surface goes on in the other: where they are nearest, their planes are the same."""
+    from scipy.spatial import cKDTree
+
+    one, two = parts.members(a), parts.members(b)
+    middles, normals = parts.patches.middles, parts.patches.normals
+    distance, nearest = cKDTree(middles[two]).query(middles[one])
+    close = (distance < GAP) & (distance < distance.min() + ALONG)
+    if not close.any():
+        return False
+    p, q = one[close], two[nearest[close]]
+    normal = normals[p] + normals[q]
+    normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-9)
+    step = np.abs((normal * (middles[p] - middles[q])).sum(axis=1))
+    same = (step < 0.004) & ((normals[p] * normals[q]).sum(axis=1) > np.cos(np.deg2rad(25.0)))
+    return bool(same.mean() > 0.5)

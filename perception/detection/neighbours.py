@@ -1,0 +1,55 @@
+"""Who is next to whom: the pixels around a pixel, or the nearest points of a cloud that is no image.
+
+Everything after this works on a table of neighbours, and does not ask where it came from.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+COUNT = 8
+"""Neighbours of a point."""
+
+FAR = 6.0
+"""Points of a cloud that is no image are no neighbours beyond so many times the usual distance of the nearest."""
+
+_AROUND = ((-1, -1), (-1, 0), (-1, 1), (0, -1), (0, 1), (1, -1), (1, 0), (1, 1))
+
+
+def neighbour_table(
+    points: NDArray[np.float64], kept: NDArray[np.intp], organised: tuple[int, int] | None
+) -> NDArray[np.int32]:
+    """For each of the points (n, 3), finite, its neighbours (n, 8) as indices among these, -1 where there is none.
+
+    ``kept`` (n,) are the places of the points in the image of ``organised`` rows and columns.
+
+    >>> neighbour_table(np.zeros((3, 3)), np.array([0, 1, 3]), (2, 2))[0].tolist()
+    [-1, -1, -1, -1, 1, -1, -1, 2]
+    """
+    if organised is not None:
+        return _pixels(kept, *organised)
+    return _nearest(points)
+
+
+def _pixels(kept: NDArray[np.intp], rows: int, columns: int) -> NDArray[np.int32]:
+    number = np.full((rows + 2, columns + 2), -1, np.int32)
+    row, column = np.divmod(kept, columns)
+    number[row + 1, column + 1] = np.arange(len(kept))
+    table = [number[row + 1 + down, column + 1 + right] for down, right in _AROUND]
+    return np.ascontiguousarray(np.stack(table, axis=1))
+
+
+def _nearest(points: NDArray[np.float64]) -> NDArray[np.int32]:
+    from scipy.spatial import cKDTree
+
+    count = min(COUNT + 1, len(points))
+    found = np.full((len(points), COUNT), -1, np.int32)
+    if count < 2:
+        return found
+    distance, index = cKDTree(points).query(points, k=count, workers=-1)
+    usual = float(np.median(distance[:, 1:]))
+    near = index.astype(np.int32)
+    near[(distance > FAR * usual) | (near == np.arange(len(points))[:, None])] = -1
+    found[:, : count - 1] = near[:, 1:]
+    return found

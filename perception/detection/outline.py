@@ -1,0 +1,47 @@
+"""The outline of a table as seen from above, and what is within it."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+CELL = 0.03
+"""Metres of the grid on which the points of a table are connected."""
+
+ENOUGH = 30_000
+"""Points of a table that its outline is drawn from."""
+
+SLACK = 0.02
+"""Metres by which a thing's point may lie beyond the outline."""
+
+
+def above_outline(table: NDArray[np.float64], points: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Which of the points (n, 3) are above the convex hull of the table's points (m, 3), shape (n,).
+
+    Only the largest connected piece of the table counts, so that what is level elsewhere in the room is left out.
+    """
+    from scipy.spatial import ConvexHull, QhullError
+
+    piece = _largest_piece(table[:: max(1, len(table) // ENOUGH), :2])
+    if len(piece) < 3:
+        return np.zeros(len(points), dtype=np.bool_)
+    try:
+        sides = ConvexHull(piece).equations
+    except QhullError:
+        return np.zeros(len(points), dtype=np.bool_)
+    inside: NDArray[np.bool_] = (points[:, :2] @ sides[:, :2].T + sides[:, 2] <= SLACK).all(axis=1)
+    return inside
+
+
+def _largest_piece(plan: NDArray[np.float64]) -> NDArray[np.float64]:
+    from scipy.ndimage import label
+
+    if not len(plan):
+        return plan
+    cell = np.floor((plan - plan.min(axis=0)) / max(CELL, float(np.ptp(plan, axis=0).max()) / 1000)).astype(np.int64)
+    grid = np.zeros(cell.max(axis=0) + 1, dtype=np.bool_)
+    grid[cell[:, 0], cell[:, 1]] = True
+    pieces, _ = label(grid, np.ones((3, 3)))
+    of = pieces[cell[:, 0], cell[:, 1]]
+    result: NDArray[np.float64] = plan[of == np.bincount(of).argmax()]
+    return result

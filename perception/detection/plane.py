@@ -1,0 +1,164 @@
+"""The table's plane: planes by random samples (RANSAC, Fischler and Bolles 1981), refined by least squares.
+
+Several planes are taken out one after the other. The table is not simply the largest, which may be the floor or a
+wall: it is the one that looks like a table to an upright camera and has most standing on it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+SAMPLE, MOST_REFINED = 10_000, 50_000
+"""Points that planes are looked for among, and that the table's is fitted to."""
+
+TRIES = 300
+NEAR = 0.01
+"""Metres within which a point lies on a plane at first, at one metre from the sensor; it grows with the square, as
+noise does."""
+
+MOST_PLANES = 5
+LEAST_SHARE = 0.04
+"""A plane that could be the table holds at least this share of the points."""
+
+STANDING = (0.008, 0.35)
+"""Metres above a plane between which things stand on it."""
+
+
+@dataclass(frozen=True, eq=False)
+class Plane:
+    """The points p with normal · p = offset; the unit normal (3,) points to the side of the things."""
+
+    normal: NDArray[np.float64]
+    offset: float
+
+    def heights(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Metres above the plane, of points (n, 3), shape (n,)."""
+        result: NDArray[np.float64] = points @ self.normal - self.offset
+        return result
+
+
+@dataclass(frozen=True, eq=False)
+class Outlook:
+    """From where a cloud was seen. ``up`` and ``right`` (3,) are those of the image, None where that is not known."""
+
+    eye: NDArray[np.float64]
+    up: NDArray[np.float64] | None = None
+    right: NDArray[np.float64] | None = None
+    upwards: NDArray[np.float64] | None = None  # against gravity, where it was told
+
+    def could_be_table(self, normal: NDArray[np.float64]) -> bool:
+        """Whether a plane with this normal, towards the eye, is level for a camera that is held upright."""
+        if self.upwards is not None:
+            return bool(normal @ self.upwards > 0.7)
+        if self.up is None or self.right is None:
+            return True
+        return bool(normal @ self.up > -0.1 and abs(normal @ self.right) < 0.7)
+
+
+def table_plane(points: NDArray[np.float64], outlook: Outlook, seed: int) -> Plane | None:
+    """The plane of the table under points (n, 3), all finite; None where there is none."""
+    rng = np.random.default_rng(seed)
+    sample = points if len(points) <= SAMPLE else points[np.sort(rng.choice(len(points), SAMPLE, replace=False))]
+    tolerance = _tolerance(sample, outlook)
+    planes = _planes(sample, tolerance, outlook, rng)
+    if not planes:
+        return None
+    free = np.ones(len(sample), dtype=np.bool_)
+    for plane in planes:
+        free &= np.abs(plane.heights(sample)) > tolerance
+    bearing = [_bearing(plane, sample, tolerance, sample[free]) for plane in planes]
+    best = planes[int(np.argmax(bearing))]
+    chosen = points[:: max(1, len(points) // MOST_REFINED)]
+    return refined(best, chosen, _tolerance(chosen, outlook))
+
+
+def _tolerance(points: NDArray[np.float64], outlook: Outlook) -> NDArray[np.float64]:
+    """Metres from a plane, (n,), within which points (n, 3) may be on it."""
+    near: NDArray[np.float64] = NEAR * np.maximum(((points - outlook.eye) ** 2).sum(axis=1), 0.25)
+    return near
+
+
+def _planes(
+    sample: NDArray[np.float64], tolerance: NDArray[np.float64], outlook: Outlook, rng: np.random.Generator
+) -> list[Plane]:
+    """Those that could be a table, the one with most points first."""
+    found = []
+    left = np.ones(len(sample), dtype=np.bool_)
+    for _ in range(MOST_PLANES):
+        if left.sum() < max(3, LEAST_SHARE * len(sample)):
+            break
+        plane = _largest(sample[left], tolerance[left], rng)
+        if plane is None:
+            break
+        plane = _towards(refined(plane, sample[left], tolerance[left]), outlook, sample)
+        on = np.abs(plane.heights(sample)) <= 1.5 * tolerance
+        if (on & left).sum() < max(3, LEAST_SHARE * len(sample)):
+            break
+        if outlook.could_be_table(plane.normal):
+            found.append(plane)
+        left &= ~on
+    return found
+
+
+def _largest(points: NDArray[np.float64], tolerance: NDArray[np.float64], rng: np.random.Generator) -> Plane | None:
+    """The plane through three of the points that most points are on; one far away counts for the area it stands for."""
+    triples = points[rng.integers(len(points), size=(TRIES, 3))]
+    normals = np.cross(triples[:, 1] - triples[:, 0], triples[:, 2] - triples[:, 0])
+    length = np.linalg.norm(normals, axis=1)
+    good = length > 1e-9
+    if not good.any():
+        return None
+    normals = normals[good] / length[good, None]
+    offsets = (normals * triples[good, 0]).sum(axis=1)
+    held = np.array(
+        [tolerance[np.abs(points @ n - d) <= tolerance].sum() for n, d in zip(normals, offsets, strict=True)]
+    )
+    best = int(np.argmax(held))
+    return Plane(normals[best], float(offsets[best]))
+
+
+def refined(plane: Plane, points: NDArray[np.float64], tolerance: NDArray[np.float64], rounds: int = 6) -> Plane:
+    """The least-squares plane of the points near it, over and over, ever nearer: what stands on it has no say.
+
+    Points are weighted by the inverse of their noise's variance. ``tolerance`` (n,) is in metres.
+    """
+    weight = 1 / tolerance**2
+    for turn in range(rounds):
+        on = np.abs(plane.heights(points)) <= tolerance * max(0.3, 0.75**turn)
+        if on.sum() < 3:
+            break
+        w = weight[on] / weight[on].sum()
+        middle = w @ points[on]
+        apart = points[on] - middle
+        vectors = np.linalg.eigh((apart * w[:, None]).T @ apart)[1]
+        normal = vectors[:, 0] * np.sign(vectors[:, 0] @ plane.normal or 1.0)
+        plane = Plane(normal, float(normal @ middle))
+    return plane
+
+
+def _towards(plane: Plane, outlook: Outlook, points: NDArray[np.float64]) -> Plane:
+    """The plane with its normal to the side of the sensor; where that is in the plane, of the things on it."""
+    side = float(plane.normal @ outlook.eye - plane.offset)
+    if outlook.upwards is not None:
+        side = float(plane.normal @ outlook.upwards)
+    elif abs(side) < 0.05:
+        heights = plane.heights(points)
+        side = float((heights > STANDING[0]).sum() - (heights < -STANDING[0]).sum())
+    return plane if side >= 0 else Plane(-plane.normal, -plane.offset)
+
+
+def _bearing(
+    plane: Plane, sample: NDArray[np.float64], tolerance: NDArray[np.float64], free: NDArray[np.float64]
+) -> float:
+    """How much stands on a plane: its own area, and ten times that of things above its box, as a number of points."""
+    on = sample[np.abs(plane.heights(sample)) <= tolerance]
+    if len(on) < 3:
+        return 0.0
+    across = np.linalg.svd(plane.normal[None])[2][1:]
+    low, high = np.percentile(on @ across.T, (1, 99), axis=0)
+    heights, plan = plane.heights(free), free @ across.T
+    above = (heights > STANDING[0]) & (heights < STANDING[1]) & ((plan >= low) & (plan <= high)).all(axis=1)
+    return float(len(on) + 10 * above.sum())

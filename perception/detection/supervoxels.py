@@ -1,0 +1,85 @@
+"""Supervoxels: small patches of surface that keep to edges of shape and colour, of which things are then put together.
+
+As in Papon et al. (Voxel cloud connectivity segmentation, CVPR 2013) patches grow from seeds spread evenly in space,
+along the surface; here a point goes to the seed from which the cheapest path leads to it, and a path pays for turning
+normals, for steps and for changing colours, so that patches meet where these change.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.perception.detection.surface import Surface
+
+SPACING = 8.0
+SMALLEST, LARGEST = 0.008, 0.03
+"""Metres between seeds: so many times the noise, within these bounds."""
+
+FEWEST = 4.5
+"""But at least so many times the distance between neighbours."""
+
+
+LEAST_WEIGHT = 1e-4
+"""Metres: what a point on the table counts for in a mean that is weighted by height."""
+
+
+@dataclass(frozen=True, eq=False)
+class Supervoxels:
+    """``of`` (n,) is each point's patch, 0 to s - 1; the rest are means over the patches' points."""
+
+    of: NDArray[np.int32]
+    sizes: NDArray[np.float64]  # (s,): points
+    middles: NDArray[np.float64]  # (s, 3)
+    normals: NDArray[np.float64]  # (s, 3)
+    # What is higher counts more for a colour: at its border a low thing's points are mixed with the table's.
+    colours: NDArray[np.float64]  # (s, 3)
+    areas: NDArray[np.float64]  # (s,): square metres
+
+    def __len__(self) -> int:
+        return len(self.sizes)
+
+
+def supervoxels(surface: Surface) -> Supervoxels:
+    """Patches of a surface of one point or more."""
+    from deixis.perception.detection.growing import grow
+
+    noisy = np.clip(SPACING * np.median(surface.sigma), SMALLEST, LARGEST)
+    spacing = float(max(noisy, FEWEST * np.median(surface.spacing)))
+    seeds = _seeds(surface.smooth, spacing)
+    shape = (surface.points, surface.smooth, surface.normals, surface.colours)
+    found = grow(seeds, spacing, *shape, surface.neighbours, surface.jump)
+    return described(surface, np.unique(found, return_inverse=True)[1].astype(np.int32))
+
+
+def described(surface: Surface, of: NDArray[np.int32]) -> Supervoxels:
+    """The patches with their means; ``of`` (n,) are numbers from 0 without a gap."""
+    middles, normals = means(of, surface.smooth), means(of, surface.normals)
+    colours = means(of, surface.colours, surface.points[:, 2].clip(LEAST_WEIGHT))
+    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
+    return Supervoxels(of, sums(of), middles, normals, colours, sums(of, surface.areas))
+
+
+def means(
+    of: NDArray[np.integer], values: NDArray[np.float64], weights: NDArray[np.float64] | None = None
+) -> NDArray[np.float64]:
+    """The means (m, d) of values (n, d) by number ``of`` (n,), weighted by (n,)."""
+    weights = np.ones(len(of)) if weights is None else weights
+    total = np.stack([sums(of, values[:, axis] * weights) for axis in range(values.shape[1])], axis=1)
+    return total / sums(of, weights)[:, None]
+
+
+def sums(of: NDArray[np.integer], values: NDArray[np.float64] | None = None, count: int = 0) -> NDArray[np.float64]:
+    """The sums of values (n,), or how many there are, by number ``of`` (n,), for at least ``count`` numbers."""
+    return np.bincount(of, values, minlength=count).astype(np.float64)
+
+
+def _seeds(points: NDArray[np.float64], spacing: float) -> NDArray[np.int64]:
+    """In each cell of a grid that has points, the one nearest to their mean."""
+    cells = np.floor(points / spacing).astype(np.int64)
+    of = np.unique(cells, axis=0, return_inverse=True)[1].ravel()
+    off = ((points - means(of, points)[of]) ** 2).sum(axis=1)
+    order = np.lexsort((off, of))
+    return order[np.r_[0, np.cumsum(np.bincount(of))[:-1]]].astype(np.int64)

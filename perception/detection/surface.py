@@ -1,0 +1,104 @@
+"""The surface around each point: a plane through what is near along the surface, and the colour there."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+SMALLEST, LARGEST = 0.005, 0.018
+"""Metres around a point from which its plane is estimated: six times the noise, within these bounds."""
+
+FEWEST = 2.5
+"""But at least so many times the distance between neighbours."""
+
+LEAST_JUMP, JUMP, STRIDES = 0.006, 7.0, 3.5
+"""Neighbours farther apart than the first (metres), so many times the noise, and so many times the usual distance
+between neighbours are on no common surface."""
+
+
+TO_XYZ = np.array(
+    [[0.4124564, 0.3575761, 0.1804375], [0.2126729, 0.7151522, 0.0721750], [0.0193339, 0.1191920, 0.9503041]]
+)
+"""Linear sRGB to CIE XYZ."""
+
+
+@dataclass(frozen=True, eq=False)
+class Surface:
+    """n points with what is known around each; all lengths in metres, in the table's frame."""
+
+    points: NDArray[np.float64]  # (n, 3)
+    smooth: NDArray[np.float64]  # (n, 3): moved onto the planes
+    normals: NDArray[np.float64]  # (n, 3): unit vectors towards the sensor
+    colours: NDArray[np.float64]  # (n, 3): CIE L*a*b*, averaged over neighbours; 0 where there are none
+    neighbours: NDArray[np.int32]  # (n, k)
+    sigma: NDArray[np.float64]  # (n,): the standard deviation of a measured depth
+    jump: NDArray[np.float64]  # (n,): neighbours farther away are on another surface
+    spacing: NDArray[np.float64]  # (n,): the usual distance between neighbours, so far from the sensor
+
+    @property
+    def areas(self) -> NDArray[np.float64]:
+        """Square metres that a point stands for, (n,)."""
+        return self.spacing**2
+
+    def __len__(self) -> int:
+        return len(self.points)
+
+
+def surface_of(
+    points: NDArray[np.float64],
+    colours: NDArray[np.uint8] | None,
+    neighbours: NDArray[np.int32],
+    sigma: NDArray[np.float64],
+    eye: NDArray[np.float64],
+) -> Surface:
+    """The surface through points (n, 3) with colours (n, 3), seen from ``eye`` (3,) with noise ``sigma`` (n,)."""
+    from deixis.perception.detection.surface_kernels import spreads
+
+    spacing = _spacing(points, neighbours, np.linalg.norm(points - eye, axis=1))
+    jump = np.maximum(np.maximum(LEAST_JUMP, JUMP * sigma), STRIDES * spacing)
+    radius = np.maximum(np.clip(6.0 * sigma, SMALLEST, LARGEST), FEWEST * spacing)
+    middles, covariances = spreads(points, neighbours, radius, jump)
+    normals = np.linalg.eigh(covariances)[1][:, :, 0]
+    normals *= np.where(((eye - points) * normals).sum(axis=1) < 0, -1.0, 1.0)[:, None]
+    off = ((points - middles) * normals).sum(axis=1)
+    smooth = points - off[:, None] * normals
+    return Surface(points, smooth, normals, _smooth_lab(colours, neighbours), neighbours, sigma, jump, spacing)
+
+
+def _spacing(
+    points: NDArray[np.float64], neighbours: NDArray[np.int32], distance: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """The mean distance of eight neighbours is 1.2 sides of a pixel; it grows with the distance from the sensor."""
+    there = neighbours >= 0
+    away = np.linalg.norm(points[neighbours] - points[:, None], axis=2)
+    relative = np.where(there, away, 0.0).sum(axis=1) / np.maximum(there.sum(axis=1), 1) / np.maximum(distance, 1e-6)
+    known = relative[there.any(axis=1)]
+    return distance * float(np.median(known) if len(known) else 0.0) / 1.2
+
+
+def _smooth_lab(colours: NDArray[np.uint8] | None, neighbours: NDArray[np.int32]) -> NDArray[np.float64]:
+    if colours is None:
+        return np.zeros((len(neighbours), 3))
+    lab = lab_of(colours)
+    there = neighbours >= 0
+    total = lab + np.where(there[:, :, None], lab[neighbours], 0.0).sum(axis=1)
+    mean: NDArray[np.float64] = total / (1 + there.sum(axis=1))[:, None]
+    return mean
+
+
+def lab_of(colours: NDArray[np.uint8]) -> NDArray[np.float64]:
+    """sRGB (n, 3) as CIE L*a*b* of the white point D65 (IEC 61966-2-1, CIE 15): a distance of 2 is just seen.
+
+    >>> lab_of(np.array([[255, 255, 255], [255, 0, 0]], np.uint8)).round(1).tolist()
+    [[100.0, 0.0, 0.0], [53.2, 80.1, 67.2]]
+    """
+    share = np.arange(256) / 255
+    linear = np.where(share <= 0.04045, share / 12.92, ((share + 0.055) / 1.055) ** 2.4)
+    to_xyz = np.array(
+        [[0.4124564, 0.3575761, 0.1804375], [0.2126729, 0.7151522, 0.0721750], [0.0193339, 0.1191920, 0.9503041]]
+    )
+    xyz = linear[colours] @ (to_xyz / to_xyz.sum(axis=1, keepdims=True)).T
+    f = np.where(xyz > (6 / 29) ** 3, np.cbrt(xyz), xyz / (3 * (6 / 29) ** 2) + 4 / 29)
+    return np.stack([116 * f[:, 1] - 16, 500 * (f[:, 0] - f[:, 1]), 200 * (f[:, 1] - f[:, 2])], axis=1)

@@ -1,0 +1,74 @@
+"""A table with boxes on it, as a pinhole camera sees it: every point and its truth follow by hand from the boxes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from deixis.perception.clouds.cloud import PointCloud
+
+Box = tuple[tuple[float, float, float], tuple[float, float, float]]
+ROWS, COLUMNS, FOCAL = 180, 240, 197.0
+EYE = np.array([0.0, -0.65, 0.7])
+Look = Callable[..., PointCloud]
+
+
+def look(
+    boxes: Sequence[Box],
+    noise: float = 5e-4,
+    seed: int = 0,
+    colours: Sequence[tuple[int, int, int]] | None = None,
+    half: float = 0.5,
+) -> PointCloud:
+    """The cloud in the camera's frame; label 0 is the table, a square around the origin, k the k-th box."""
+    directions, pose = rays()
+    slabs: list[Box] = [((-half, -half, -0.03), (half, half, 0.0)), *boxes]
+    depths = np.stack([_depths(directions @ pose.T, box) for box in slabs])
+    nearest = depths.argmin(axis=0)
+    depth = depths.min(axis=0)
+    seen = np.isfinite(depth)
+    rng = np.random.default_rng(seed)
+    depth = np.where(seen, depth, np.nan) + rng.normal(0, noise, len(depth))
+    painted = None
+    if colours is not None:
+        painted = np.array([(150, 112, 78), *colours], np.uint8)[nearest]
+    points = (directions * depth[:, None]).astype(np.float32)
+    labels = np.where(seen, nearest, -1).astype(np.int32)
+    return PointCloud(points, colours=painted, labels=labels, organised=(ROWS, COLUMNS))
+
+
+def rays() -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Directions of the pixels with z = 1 in the camera's frame, and the rotation (3, 3) from it to the table's."""
+    v, u = np.mgrid[:ROWS, :COLUMNS]
+    directions = np.stack(
+        [(u - COLUMNS / 2 + 0.5) / FOCAL, (v - ROWS / 2 + 0.5) / FOCAL, np.ones(u.shape)], axis=-1
+    ).reshape(-1, 3)
+    forward = -EYE / np.linalg.norm(EYE)
+    right = np.array([1.0, 0.0, 0.0])
+    return directions, np.stack([right, np.cross(forward, right), forward], axis=1)
+
+
+def in_table_frame(points: NDArray[np.floating]) -> NDArray[np.float64]:
+    result: NDArray[np.float64] = points @ rays()[1].T + EYE
+    return result
+
+
+def _depths(directions: NDArray[np.float64], box: Box) -> NDArray[np.float64]:
+    """Where rays from the eye first meet a box, by the slabs of its three axes; infinite where they do not."""
+    with np.errstate(divide="ignore"):
+        meets = (np.array(box)[:, None] - EYE) / directions
+    enter, leave = meets.min(axis=0).max(axis=1), meets.max(axis=0).min(axis=1)
+    return np.where((enter <= leave) & (enter > 0), enter, np.inf)
+
+
+@pytest.fixture
+def boxes_seen() -> Look:
+    return look
+
+
+@pytest.fixture
+def to_table() -> Callable[[NDArray[np.floating]], NDArray[np.float64]]:
+    return in_table_frame

@@ -1,0 +1,148 @@
+"""From a cloud to things: what is found, how it is numbered, and what does not change it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from deixis.perception.clouds.cloud import PointCloud
+from deixis.perception.detection.detect import Detection, detect
+from deixis.perception.detection.settings import DetectionSettings
+from deixis.perception.errors import CloudError
+
+Look = Callable[..., PointCloud]
+ToTable = Callable[[NDArray[np.floating]], NDArray[np.float64]]
+
+CUBE, PLANK = ((-0.25, -0.1, 0.0), (-0.17, -0.02, 0.08)), ((0.0, -0.1, 0.0), (0.25, -0.06, 0.008))
+LOW, STACKED = ((-0.1, 0.0, 0.0), (0.1, 0.16, 0.05)), ((-0.04, 0.04, 0.05), (0.03, 0.1, 0.13))
+
+
+def overlaps(found: Detection, cloud: PointCloud) -> list[float]:
+    """The best intersection over union that each true thing has with a found one."""
+    truth = cloud.labels
+    assert truth is not None
+    result = []
+    for thing in range(1, truth.max() + 1):
+        of = truth == thing
+        numbers = np.unique(found.labels[of & (found.labels >= 0)])
+        shares = [(of & (found.labels == k)).sum() / (of | (found.labels == k)).sum() for k in numbers]
+        result.append(float(max(shares, default=0.0)))
+    return result
+
+
+def test_things_apart_are_found_numbered_from_left_to_right_and_placed(boxes_seen: Look, to_table: ToTable) -> None:
+    cloud = boxes_seen([PLANK, CUBE])
+    found = detect(cloud)
+    assert min(overlaps(found, cloud)) > 0.8
+    assert found.scene().ids == ("o1", "o2")
+    back = np.linalg.inv(found.frame)
+    centres = to_table(found.boxes.mean(axis=1) @ back[:3, :3].T + back[:3, 3])
+    assert centres[0, :2] == pytest.approx([-0.21, -0.06], abs=0.006)
+    assert centres[1, :2] == pytest.approx([0.125, -0.08], abs=0.006)
+    assert found.boxes[1, 1, 2] == pytest.approx(0.008, abs=0.002)
+    assert found.oriented[1].extents[:2] == pytest.approx([0.25, 0.04], abs=0.01)
+
+
+def test_a_thing_on_a_thing_is_two_things(boxes_seen: Look) -> None:
+    cloud = boxes_seen([LOW, STACKED])
+    assert min(overlaps(detect(cloud), cloud)) > 0.8
+
+
+def test_things_that_touch_side_by_side_are_two_where_one_is_higher(boxes_seen: Look) -> None:
+    cloud = boxes_seen([((-0.1, 0.0, 0.0), (0.0, 0.1, 0.04)), ((0.0, 0.0, 0.0), (0.1, 0.1, 0.10))])
+    assert min(overlaps(detect(cloud), cloud)) > 0.7
+
+
+def test_a_thing_behind_another_is_its_own(boxes_seen: Look) -> None:
+    cloud = boxes_seen([((-0.05, -0.1, 0.0), (0.05, -0.04, 0.1)), ((-0.12, 0.1, 0.0), (0.12, 0.14, 0.15))])
+    assert min(overlaps(detect(cloud), cloud)) > 0.8
+
+
+def test_a_plate_of_one_colour_goes_on_below_a_knife(boxes_seen: Look) -> None:
+    plate, knife = ((-0.1, -0.1, 0.0), (0.1, 0.1, 0.02)), ((-0.018, -0.1, 0.02), (0.018, 0.1, 0.045))
+    cloud = boxes_seen([plate, knife], colours=[(230, 230, 225), (90, 95, 100)])
+    found = detect(cloud)
+    assert min(overlaps(found, cloud)) > 0.75 and len(found.boxes) == 2
+
+
+def test_labels_are_those_of_the_points_in_the_order_of_the_file(boxes_seen: Look, to_table: ToTable) -> None:
+    cloud = boxes_seen([CUBE, PLANK])
+    found = detect(cloud)
+    assert found.labels.shape == (len(cloud),) and found.labels.dtype == np.int32
+    assert (found.labels[~cloud.finite] == -1).all()
+    for number, box in enumerate(found.boxes):
+        points = cloud.points[found.labels == number] @ found.frame[:3, :3].T + found.frame[:3, 3]
+        assert ((points > box[0] - 0.004) & (points < box[1] + 0.004)).all(axis=1).mean() > 0.99
+
+
+def test_the_truth_in_a_cloud_is_not_looked_at(boxes_seen: Look) -> None:
+    cloud = boxes_seen([CUBE, LOW, STACKED])
+    assert (detect(cloud).labels == detect(replace(cloud, labels=None)).labels).all()
+
+
+def test_the_same_cloud_gives_the_same_answer(boxes_seen: Look) -> None:
+    cloud = boxes_seen([CUBE, LOW, STACKED], noise=2e-3)
+    one, other = detect(cloud), detect(cloud)
+    assert (one.labels == other.labels).all() and (one.boxes == other.boxes).all() and (one.frame == other.frame).all()
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_moving_the_whole_cloud_changes_nothing(boxes_seen: Look, seed: int) -> None:
+    cloud = boxes_seen([CUBE, PLANK, LOW, STACKED])
+    rng = np.random.default_rng(seed)
+    turn = np.linalg.qr(rng.normal(size=(3, 3)))[0]
+    turn *= np.sign(np.linalg.det(turn))
+    shift = rng.uniform(-2, 2, 3)
+    moved = replace(cloud, points=(cloud.points @ turn.T + shift).astype(np.float32), origin=tuple(shift.tolist()))
+    before, after = detect(cloud), detect(moved)
+    assert after.boxes == pytest.approx(before.boxes, abs=0.002)
+    assert (after.labels == before.labels).mean() > 0.995
+
+
+def test_a_cloud_that_is_no_image_shows_the_same_things(boxes_seen: Look) -> None:
+    cloud = boxes_seen([CUBE, LOW, STACKED])
+    shuffled = cloud.take(np.random.default_rng(0).permutation(np.flatnonzero(cloud.finite)))
+    assert shuffled.organised is None
+    found = detect(shuffled)
+    assert min(overlaps(found, shuffled)) > 0.8
+
+
+def test_from_the_other_side_left_is_right(boxes_seen: Look) -> None:
+    cloud = boxes_seen([CUBE, PLANK])
+    here = detect(cloud)
+    beyond = np.linalg.inv(here.frame) @ (0.0, 3.0, 0.5, 1.0)
+    x, y, z = beyond[:3].tolist()
+    there = detect(cloud, DetectionSettings(viewer=(x, y, z)))
+    assert len(there.boxes) == 2
+    assert there.boxes[0, 0, :2] == pytest.approx(-here.boxes[1, 1, :2], abs=0.01)
+
+
+def test_a_hand_full_of_points_is_no_error() -> None:
+    one = detect(PointCloud(np.array([[0.0, 0.0, 1.0]], np.float32)))
+    assert one.table is None and one.labels.tolist() == [-1] and "no table" in one.notes[0]
+    corner = detect(PointCloud(np.array([[0, 0, 1], [1, 0, 1], [0, 1, 1], [1, 1, 1]], np.float32)))
+    assert corner.boxes.shape == (0, 2, 3) and corner.scene().objects == ()
+
+
+def test_an_empty_table_is_said_to_be_empty(boxes_seen: Look) -> None:
+    found = detect(boxes_seen([]))
+    assert found.table is not None and found.notes == ("nothing is on the table",)
+
+
+def test_a_cloud_without_a_finite_point_is_bad_input() -> None:
+    with pytest.raises(CloudError, match="without one finite point"):
+        detect(PointCloud(np.full((4, 3), np.nan, np.float32), organised=(2, 2)))
+    with pytest.raises(CloudError, match="without one finite point"):
+        detect(PointCloud(np.zeros((0, 3), np.float32)))
+
+
+@pytest.mark.parametrize(
+    "wrong", [{"height": 0.0}, {"reach": float("nan")}, {"up": (0.0, 0.0, 0.0)}, {"least_points": 0}]
+)
+def test_settings_that_cannot_be_are_refused(wrong: dict[str, float]) -> None:
+    with pytest.raises(CloudError, match=r"detection's|a thing has"):
+        DetectionSettings(**wrong)  # type: ignore[arg-type]

@@ -1,0 +1,20 @@
+"""docs/detection.md: its Python runs, and its settings are those that there are."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import fields
+from pathlib import Path
+
+from deixis.perception.detection.settings import DetectionSettings
+
+PAGE = (Path(__file__).parents[3] / "docs" / "detection.md").read_text(encoding="utf-8")
+
+
+def test_the_python_on_the_page_runs() -> None:
+    (program,) = re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)
+    exec(compile(program, "docs/detection.md", "exec"), {})
+
+
+def test_the_page_names_every_setting() -> None:
+    assert [field.name for field in fields(DetectionSettings) if f"`{field.name}" not in PAGE] == []

@@ -1,0 +1,74 @@
+"""Patches keep to edges; what parts two things is counted along their boundary."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from deixis.perception.detection.agglomeration import agglomerated
+from deixis.perception.detection.boundaries import Boundaries, boundaries, creases
+from deixis.perception.detection.neighbours import neighbour_table
+from deixis.perception.detection.segmentation import segments
+from deixis.perception.detection.settings import DetectionSettings
+from deixis.perception.detection.supervoxels import supervoxels
+from deixis.perception.detection.surface import Surface, surface_of
+
+SIDE = 60
+EYE = np.array([0.06, 0.06, 0.8])
+
+
+def _folded(angle: float, paint: NDArray[np.uint8] | None = None) -> Surface:
+    """Two squares of 6 by 12 cm at an angle along the line x = 0.06, seen from above; above 0 they form a valley."""
+    x, y = (axis.ravel() for axis in np.meshgrid(np.linspace(0, 0.12, SIDE), np.linspace(0, 0.12, SIDE)))
+    z = np.abs(x - 0.06) * np.tan(angle / 2) + 0.1
+    points = np.stack([x, y, z], axis=1)
+    neighbours = neighbour_table(points, np.arange(SIDE * SIDE), (SIDE, SIDE))
+    return surface_of(points, paint, neighbours, np.full(len(points), 2e-4), EYE)
+
+
+@pytest.mark.parametrize(("angle", "count"), [(-1.6, 1), (-0.8, 1), (0.0, 1), (1.6, 2)])
+def test_surfaces_part_in_a_valley_and_not_on_a_ridge(angle: float, count: int) -> None:
+    found = segments(_folded(angle), DetectionSettings())
+    assert found.max() + 1 == count
+    left = np.tile(np.arange(SIDE) < SIDE // 2 - 4, SIDE)
+    right = np.tile(np.arange(SIDE) > SIDE // 2 + 4, SIDE)
+    assert len(np.unique(found[left])) == 1 and len(np.unique(found[right])) == 1
+
+
+def test_only_the_valley_is_a_crease_and_no_deeper_than_it_is() -> None:
+    surface = _folded(1.2)
+    patches = supervoxels(surface)
+    pairs = boundaries(surface, patches, DetectionSettings()).pairs
+    near = np.abs(patches.middles[pairs, 0] - 0.06).min(axis=1) < 0.008
+    assert 0.5 < np.median(creases(patches, pairs)[near & (creases(patches, pairs) > 0.1)]) <= 1.25
+    assert creases(patches, pairs)[~near].max() < 0.1
+
+
+def test_patches_meet_where_the_colour_changes() -> None:
+    paint = np.full((SIDE * SIDE, 3), 200, np.uint8)
+    dark = np.tile(np.arange(SIDE) < 23, SIDE)
+    paint[dark] = (120, 30, 40)
+    patches = supervoxels(_folded(0.0, paint))
+    share = np.bincount(patches.of, dark) / np.bincount(patches.of)
+    mixed = np.minimum(share, 1 - share) * np.bincount(patches.of)
+    assert mixed.sum() < 0.03 * SIDE * SIDE
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.integers(2, 30), st.integers(0, 10**6))
+def test_no_boundary_that_speaks_for_one_thing_is_left(count: int, seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    a, b = np.triu_indices(count, 1)
+    chosen = rng.random(len(a)) < 0.3
+    pairs = np.stack([a[chosen], b[chosen]], axis=1).astype(np.int64)
+    lengths, evidence = rng.integers(1, 9, len(pairs)).astype(float), rng.random(len(pairs))
+    of = agglomerated(count, Boundaries(pairs, lengths, evidence, np.zeros(len(pairs))), 0.5)
+    assert of[0] == 0 and set(of.tolist()) == set(range(of.max() + 1))
+    left = of[pairs]
+    for one, other in {(int(min(p)), int(max(p))) for p in left if p[0] != p[1]}:
+        between = np.sort(left, axis=1) == (one, other)
+        meets = between.all(axis=1)
+        assert (lengths[meets] * evidence[meets]).sum() / lengths[meets].sum() >= 0.5 - 1e-9
