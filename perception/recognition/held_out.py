@@ -1,0 +1,112 @@
+"""Views judged by what the others say: as if the view, or its whole category, had never been taught."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.perception.recognition.distances import Target
+from deixis.perception.recognition.index import ViewIndex
+from deixis.perception.recognition.instances import InstanceCategory
+from deixis.perception.recognition.spread import spreads
+
+MOST = 400
+"""Views that are held out, at most; evenly over the categories."""
+
+
+@dataclass(frozen=True, eq=False)
+class HeldOut:
+    """Normalised distances of v held-out views to c categories.
+
+    ``truth`` is each view's own category; its ND there is without the view itself (and without the other views of the
+    same object, where objects are known): inf where nothing remains.
+    """
+
+    normalised: NDArray[np.float64]  # (v, c)
+    truth: NDArray[np.int64]  # (v,)
+
+    @property
+    def as_known(self) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+        """ND (k, c) and truth (k,) of the views whose category has others: leave one out."""
+        left = np.isfinite(self.normalised[np.arange(len(self.truth)), self.truth])
+        return self.normalised[left], self.truth[left]
+
+    @property
+    def as_unknown(self) -> NDArray[np.float64]:
+        """ND (v, c) without that of the view's own category (inf): leave one category out. None if it is the only."""
+        others = self.normalised.copy()
+        others[np.arange(len(self.truth)), self.truth] = np.inf
+        return others[np.isfinite(others).any(axis=1)]
+
+
+def hold_out(
+    categories: Sequence[InstanceCategory],
+    indexes: Sequence[ViewIndex | None],
+    prior_spread: float,
+    objects: Mapping[str, str] | None = None,
+    most: int = MOST,
+) -> HeldOut:
+    """Holds views out, ``most`` of all categories together, evenly chosen.
+
+    ``objects`` leads from a view's id to the thing it shows; views of one thing are held out together. Without it a
+    view is judged by other views of the same thing too, and what follows is about things seen before.
+    """
+    share = -(-most // max(1, len(categories)))
+    rows, truth = [], []
+    for number, category in enumerate(categories):
+        for place in _evenly(len(category), share):
+            rows.append(_row(number, place, categories, indexes, prior_spread, objects or {}))
+            truth.append(number)
+    return HeldOut(np.array(rows).reshape(len(rows), len(categories)), np.array(truth, np.int64))
+
+
+def _row(
+    number: int,
+    place: int,
+    categories: Sequence[InstanceCategory],
+    indexes: Sequence[ViewIndex | None],
+    prior_spread: float,
+    objects: Mapping[str, str],
+) -> NDArray[np.float64]:
+    """ND (c,) of a view that is held out."""
+    own = categories[number]
+    rest = _others(own, place, objects)
+    measured = [category.intra_category_distance for category in categories]
+    measured[number] = _mean_of_pairs(own.distances[np.ix_(rest, rest)])
+    target = Target.of(own.views[place])
+    distances = np.full(len(categories), np.inf)
+    reduced = None
+    for other, index in enumerate(indexes):
+        if index is None or other == number:
+            continue
+        reduced = index.reduction(target.descriptors) if reduced is None else reduced
+        distances[other] = index.nearest(target, reduced).distance
+    if len(rest):
+        distances[number] = own.distances[place, rest].min()
+    return distances / [spread.value for spread in spreads(measured, prior_spread)]
+
+
+def _others(category: InstanceCategory, place: int, objects: Mapping[str, str]) -> NDArray[np.intp]:
+    """Places of the views that show something else than the one in that place."""
+    ids = category.views.ids
+    shown = objects.get(ids[place])
+    same = [i == place or (shown is not None and objects.get(key) == shown) for i, key in enumerate(ids)]
+    return np.flatnonzero(~np.array(same))
+
+
+def _mean_of_pairs(distances: NDArray[np.float64]) -> float | None:
+    """Equation 3 from distances (n, n)."""
+    n = len(distances)
+    return float(distances.sum() / (n * (n - 1))) if n > 1 else None
+
+
+def _evenly(count: int, most: int) -> list[int]:
+    """At most ``most`` of 0 to ``count``, evenly spread.
+
+    >>> _evenly(10, 4)
+    [0, 2, 5, 7]
+    """
+    return [i * count // most for i in range(most)] if count > most else list(range(count))

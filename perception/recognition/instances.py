@@ -1,0 +1,84 @@
+"""A category as the views that were taught, with equation 3 kept up to date."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.perception.recognition.distances import view_distances
+from deixis.perception.recognition.errors import RecognitionError
+from deixis.perception.recognition.views import PackedViews
+
+
+@dataclass(frozen=True, eq=False)
+class InstanceCategory:
+    """A name and n views of things that bear it; ``distances[i, j]`` is D_V(view i, view j).
+
+    A further view costs its distances to and from the views of this category, and nothing else; forgetting one costs
+    nothing. ``empty`` are the ids of views without a descriptor: they belong to the category and enter no equation.
+
+    >>> category = InstanceCategory("mug").with_view("a", np.array([[0.0]])).with_view("b", np.array([[2.0], [3.0]]))
+    >>> category.distances.tolist(), category.intra_category_distance
+    ([[0.0, 2.0], [2.5, 0.0]], 2.25)
+    """
+
+    name: str
+    views: PackedViews = field(default_factory=lambda: PackedViews.of(()))
+    distances: NDArray[np.float64] = field(default_factory=lambda: np.zeros((0, 0)))  # (n, n)
+    empty: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        n = len(self.views)
+        if self.distances.shape != (n, n):
+            raise RecognitionError(
+                f"category '{self.name}' has {n} views, and its distances have shape {self.distances.shape}"
+            )
+
+    @classmethod
+    def of(cls, name: str, views: Iterable[tuple[str, NDArray[np.float32]]]) -> InstanceCategory:
+        """A category of views (id, descriptors (k, d)), all distances computed."""
+        named = list(views)
+        packed = PackedViews.of((key, array) for key, array in named if len(array))
+        distances = np.array([view_distances(packed[i], packed) for i in range(len(packed))])
+        empty = tuple(key for key, array in named if not len(array))
+        return cls(name, packed, distances.reshape(len(packed), len(packed)), empty)
+
+    def __len__(self) -> int:
+        return len(self.views)
+
+    @property
+    def intra_category_distance(self) -> float | None:
+        """ICD (equation 3): the mean of D_V over ordered pairs of different views; None for fewer than two.
+
+        It is 0 where all views are the same. What equation 4 divides by then: :mod:`.spread`.
+        """
+        n = len(self.views)
+        return float(self.distances.sum() / (n * (n - 1))) if n > 1 else None
+
+    def with_view(self, key: str, descriptors: NDArray[np.float32]) -> InstanceCategory:
+        """The category with one view more, the last; raises RecognitionError where it does not fit, or is known."""
+        if key in self.views.ids or key in self.empty:
+            raise RecognitionError(f"category '{self.name}' has a view '{key}' already")
+        if not len(descriptors):
+            return InstanceCategory(self.name, self.views, self.distances, (*self.empty, key))
+        new = PackedViews.of([(key, descriptors)])
+        n = len(self.views)
+        distances = np.zeros((n + 1, n + 1))
+        distances[:n, :n] = self.distances
+        distances[n, :n] = view_distances(new[0], self.views)
+        distances[:n, n] = [float(view_distances(self.views[i], new)[0]) for i in range(n)]
+        return InstanceCategory(self.name, self.views.joined(new), distances, self.empty)
+
+    def without_view(self, key: str) -> InstanceCategory:
+        """The category with one view less; raises RecognitionError where it has no such view."""
+        if key in self.empty:
+            rest = tuple(name for name in self.empty if name != key)
+            return InstanceCategory(self.name, self.views, self.distances, rest)
+        if key not in self.views.ids:
+            raise RecognitionError(f"category '{self.name}' has no view '{key}'")
+        place = self.views.ids.index(key)
+        distances = np.delete(np.delete(self.distances, place, axis=0), place, axis=1)
+        return InstanceCategory(self.name, self.views.without(place), distances, self.empty)

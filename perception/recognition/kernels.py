@@ -1,0 +1,129 @@
+"""Equation 1, compiled: exact distances between views, and lower bounds of them from a few axes.
+
+Squared distances are |t|^2 + |v|^2 - 2 t.v in single precision, which is fast and, between vectors that are alike,
+rough. What decides is therefore computed again from differences in double precision: every pair whose rough value is
+within its error of the least. So an exact distance is what the definition gives, to the last digits of a double.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+AXES = 24
+"""Coordinates that bounds look at, a constant for the compiler: all but the last are axes, the last is the rest."""
+
+LANES = 32
+"""Columns that the compiled loop takes at a time."""
+
+EPSILON = 2.0**-24
+"""Relative error of a rounding in single precision."""
+
+_NO_NAN = {"nnan", "nsz"}
+_SUMS_IN_ANY_ORDER = {"nnan", "nsz", "reassoc", "contract"}
+
+
+@njit(cache=True, nogil=True, error_model="numpy", fastmath=_SUMS_IN_ANY_ORDER)
+def lower_bounds(columns, squares, reduced, starts, chosen, slack, out):  # type: ignore[no-untyped-def]
+    """Fills ``out`` (c,) with lower bounds of D_V between the target and the views ``chosen`` (c,).
+
+    ``columns`` (AXES, >= q) are the target's reduced descriptors times -2, ``squares`` (q,) their squared lengths;
+    whole vectors (:data:`LANES`) of columns are fastest, so there may be more than q. ``reduced`` (n, AXES + 1) are
+    the views' and, last, their squared lengths. ``slack`` bounds the error of a value.
+    """
+    count = columns.shape[1]
+    least = np.empty(count, np.float32)
+    for place in range(len(chosen)):
+        view = chosen[place]
+        least[:] = np.inf
+        for k in range(starts[view], starts[view + 1]):
+            row = reduced[k]
+            base = row[AXES]
+            for t in range(count):
+                value = base
+                for axis in range(AXES):
+                    value += columns[axis, t] * row[axis]
+                least[t] = min(least[t], value)
+        total = 0.0
+        for t in range(len(squares)):
+            total += np.sqrt(max(np.float64(least[t]) + squares[t] - slack, 0.0))
+        out[place] = total / len(squares)
+
+
+@njit(cache=True, nogil=True, error_model="numpy", fastmath=_NO_NAN)
+def _least_of_columns(products, squares, least):  # type: ignore[no-untyped-def]
+    """Turns dot products (k, q) into |v|^2 - 2 t.v, in place, and fills ``least`` (q,) with each column's least."""
+    least[:] = np.inf
+    for k in range(products.shape[0]):
+        row = products[k]
+        for t in range(products.shape[1]):
+            row[t] = squares[k] - np.float32(2.0) * row[t]
+            least[t] = min(least[t], row[t])
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def view_distance(target, columns, lengths, view, squares, limit):  # type: ignore[no-untyped-def]
+    """D_V (equation 1): the mean over the target's descriptors (q, d) of the least distance to the view's (k, d).
+
+    ``columns`` (d, q) is the target transposed, ``lengths`` (q,) are its descriptors' lengths; ``squares`` (k,) are
+    the squared lengths of the view's. A distance that is surely above ``limit`` is not worked out: infinite.
+    """
+    products = np.dot(view, columns)
+    least = np.empty(len(target), np.float32)
+    _least_of_columns(products, squares, least)
+    longest = np.sqrt(np.float64(squares.max()))
+    rough = 4.0 * (target.shape[1] + 4) * EPSILON * longest
+    within = np.empty(len(target), np.float32)
+    lowest = 0.0
+    for t in range(len(target)):
+        error = rough * (lengths[t] + longest)
+        within[t] = least[t] + error
+        lowest += np.sqrt(max(least[t] + lengths[t] * lengths[t] - error, 0.0))
+    if lowest > limit * len(target) * (1.0 + EPSILON):
+        return np.inf
+    nearest = np.full(len(target), np.inf)
+    for k in range(len(view)):
+        row = products[k]
+        for t in range(len(target)):
+            if row[t] <= within[t]:
+                nearest[t] = min(nearest[t], _squared(target[t], view[k]))
+    return np.sqrt(nearest).mean()
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _squared(one, other):  # type: ignore[no-untyped-def]
+    total = 0.0
+    for axis in range(len(one)):
+        apart = np.float64(one[axis]) - np.float64(other[axis])
+        total += apart * apart
+    return total
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def view_distances(target, columns, lengths, descriptors, starts, squares, out):  # type: ignore[no-untyped-def]
+    """Fills ``out`` (m,) with D_V between the target and each of m views."""
+    for view in range(len(out)):
+        low, high = starts[view], starts[view + 1]
+        out[view] = view_distance(target, columns, lengths, descriptors[low:high], squares[low:high], np.inf)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def nearest_view(  # type: ignore[no-untyped-def]
+    target, columns, lengths, descriptors, starts, squares, candidates, bounds, most
+):
+    """Least D_V over ``candidates`` (c,), which are in the order of their lower ``bounds`` (c,); place, and how many
+    were looked at: at most ``most``, and none whose bound is above the best.
+
+    Of views equally near the first in memory is taken.
+    """
+    best, at, seen = np.inf, -1, 0
+    for place in range(len(candidates)):
+        if seen == most or bounds[place] > best:
+            break
+        seen += 1
+        view = candidates[place]
+        low, high = starts[view], starts[view + 1]
+        distance = view_distance(target, columns, lengths, descriptors[low:high], squares[low:high], best)
+        if distance < best or (distance == best and view < at):
+            best, at = distance, view
+    return best, at, seen

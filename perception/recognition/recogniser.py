@@ -1,0 +1,186 @@
+"""Recognition as the paper has it (equations 1 to 4): nearest category by normalised distance, or unknown.
+
+>>> near, far = np.zeros((3, 4), np.float32), np.full((3, 4), 9, np.float32)
+>>> mug = InstanceCategory.of("mug", [("a", near), ("b", near + 1)])
+>>> known = Recogniser.of([mug, InstanceCategory.of("fork", [("c", far)])])
+>>> known.recognise(near + 0.5).label, known.recognise(near - 20).label
+('mug', None)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.perception.recognition.calibration import SHIPPED, Calibration, calibrate
+from deixis.perception.recognition.distances import Target
+from deixis.perception.recognition.errors import RecognitionError
+from deixis.perception.recognition.held_out import hold_out
+from deixis.perception.recognition.index import Effort, Nearest, ViewIndex, indexes_of
+from deixis.perception.recognition.instances import InstanceCategory
+from deixis.perception.recognition.recognition import Candidate, Recognition, decided, no_answer
+from deixis.perception.recognition.reduction import Reduction
+from deixis.perception.recognition.spread import PRIOR_SPREADS, Spread, spreads
+
+
+@dataclass(frozen=True)
+class RecognitionSettings:
+    """``exact_up_to``: with more views than that the search is approximate, with ``effort``.
+
+    ``prior_spread`` is what D_C is divided by while no category has two different views; the default is for spin
+    images, and ``PRIOR_SPREADS`` has those of other descriptors. ``prior_unknown`` is the share of things seen that are
+    of no category.
+    """
+
+    exact_up_to: int = 20_000
+    effort: Effort = Effort()  # noqa: RUF009 (frozen)
+    prior_spread: float = PRIOR_SPREADS["spin_images"]
+    prior_unknown: float = 0.5
+
+    def __post_init__(self) -> None:
+        if not (np.isfinite(self.prior_spread) and self.prior_spread > 0):
+            raise RecognitionError(f"the prior spread is a distance above 0, not {self.prior_spread}")
+
+
+DEFAULT = RecognitionSettings()
+
+
+@dataclass(frozen=True, eq=False)
+class Recogniser:
+    """Categories, ready to be compared with. It does not change: learning gives another one, which shares the rest."""
+
+    categories: tuple[InstanceCategory, ...]
+    indexes: tuple[ViewIndex | None, ...]
+    settings: RecognitionSettings
+    calibration: Calibration
+
+    @classmethod
+    def of(
+        cls,
+        categories: Sequence[InstanceCategory],
+        settings: RecognitionSettings = DEFAULT,
+        calibration: Calibration = SHIPPED,
+    ) -> Recogniser:
+        """Raises RecognitionError where two categories bear one name, or descriptors differ in length."""
+        names = [category.name for category in categories]
+        if len(set(names)) < len(names):
+            raise RecognitionError(f"two categories bear one name: {', '.join(sorted(names))}")
+        _require_one_size(categories)
+        indexes = indexes_of([category.views for category in categories])
+        return cls(tuple(categories), tuple(indexes), settings, calibration)
+
+    def recognise(self, descriptors: NDArray[np.float32]) -> Recognition:
+        """Names a view by its descriptors (q, d), or says that it is unknown, and why.
+
+        No descriptor (q = 0), or no category, is unknown with that reason. Raises RecognitionError where descriptors
+        are not finite or not of the categories' length.
+        """
+        if not self.categories:
+            return no_answer(self.calibration, "no category has been taught")
+        if isinstance(descriptors, np.ndarray) and descriptors.ndim == 2 and not len(descriptors):
+            return no_answer(self.calibration, "the view has no descriptor: nothing on it could be described")
+        target, exact = Target.of(descriptors), self.exact
+        found = self._nearest(target, None if exact else self.settings.effort)
+        widths = self.spreads
+        normalised = np.array([near.distance / width.value for near, width in zip(found, widths, strict=True)])
+        *probabilities, unknown = self.calibration.probabilities(normalised).tolist()
+        parts = zip(self.categories, found, widths, probabilities, strict=True)
+        candidates = [_candidate(*each) for each in parts]
+        candidates.sort(key=lambda candidate: (candidate.normalised, candidate.category))
+        return decided(candidates, unknown, self.calibration, exact)
+
+    @property
+    def exact(self) -> bool:
+        """Whether there are few enough views to compare exactly."""
+        return sum(map(len, self.categories)) <= self.settings.exact_up_to
+
+    @property
+    def spreads(self) -> list[Spread]:
+        """What each category's D_C is divided by."""
+        measured = [category.intra_category_distance for category in self.categories]
+        return spreads(measured, self.settings.prior_spread)
+
+    def learned(self, category: InstanceCategory) -> Recogniser:
+        """The same with this category in place of the one of its name, or as one more."""
+        if category.name not in [known.name for known in self.categories]:
+            return self._with((*self.categories, category), (*self.indexes, None), category)
+        return self._with(self.categories, self.indexes, category)
+
+    def forgotten(self, name: str) -> Recogniser:
+        """The same without a category; raises RecognitionError where there is none of that name."""
+        places = [i for i, category in enumerate(self.categories) if category.name != name]
+        if len(places) == len(self.categories):
+            raise RecognitionError(f"there is no category '{name}'")
+        return replace(
+            self,
+            categories=tuple(self.categories[i] for i in places),
+            indexes=tuple(self.indexes[i] for i in places),
+        )
+
+    def calibrated(self, objects: Mapping[str, str] | None = None) -> Recogniser:
+        """The same with threshold and probabilities from its own views, held out one by one.
+
+        ``objects`` leads from a view's id to the thing it shows, so that a thing is not judged by its other views.
+        """
+        held = hold_out(self.categories, self.indexes, self.settings.prior_spread, objects)
+        return replace(self, calibration=calibrate(held, self.settings.prior_unknown))
+
+    def _nearest(self, target: Target, effort: Effort | None) -> list[Nearest]:
+        """The nearest view of each category."""
+        nothing = Nearest(float("inf"), -1, 0)
+        first = next((index for index in self.indexes if index is not None), None)
+        if first is None:
+            return [nothing] * len(self.indexes)
+        target.require_fit(first.views)
+        reduced = first.reduction(target.descriptors)
+        return [nothing if index is None else index.nearest(target, reduced, effort) for index in self.indexes]
+
+    def _with(
+        self,
+        categories: tuple[InstanceCategory, ...],
+        indexes: tuple[ViewIndex | None, ...],
+        category: InstanceCategory,
+    ) -> Recogniser:
+        """These with one category's views as they are now; all are reduced anew when there are twice as many."""
+        changed = tuple(category if known.name == category.name else known for known in categories)
+        _require_one_size(changed)
+        reduction = next((index.reduction for index in indexes if index is not None), None)
+        count = sum(len(known.views.descriptors) for known in changed)
+        if reduction is None or count > 2 * reduction.count:
+            return replace(self, categories=changed, indexes=tuple(indexes_of([known.views for known in changed])))
+        kept = tuple(
+            _index(category, reduction) if known.name == category.name else index
+            for known, index in zip(changed, indexes, strict=True)
+        )
+        return replace(self, categories=changed, indexes=kept)
+
+
+def recognise(
+    descriptors: NDArray[np.float32],
+    categories: Sequence[InstanceCategory],
+    settings: RecognitionSettings = DEFAULT,
+    calibration: Calibration = SHIPPED,
+) -> Recognition:
+    """Names one view; for many of them make a :class:`Recogniser` once."""
+    return Recogniser.of(categories, settings, calibration).recognise(descriptors)
+
+
+def _index(category: InstanceCategory, reduction: Reduction) -> ViewIndex | None:
+    return ViewIndex.of(category.views, reduction) if len(category) else None
+
+
+def _candidate(category: InstanceCategory, near: Nearest, spread: Spread, probability: float) -> Candidate:
+    nearest = category.views.ids[near.place] if near.place >= 0 else None
+    return Candidate(
+        category.name, near.distance, spread, near.distance / spread.value, nearest, len(category), probability
+    )
+
+
+def _require_one_size(categories: Sequence[InstanceCategory]) -> None:
+    sizes = {category.views.size: category.name for category in categories if len(category)}
+    if len(sizes) > 1:
+        said = ", ".join(f"{size} in '{name}'" for size, name in sizes.items())
+        raise RecognitionError(f"categories have descriptors of different lengths: {said}")

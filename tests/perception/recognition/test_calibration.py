@@ -1,0 +1,155 @@
+"""The threshold and the probabilities, by hand, beside brute force, and from held-out views."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from deixis.perception.recognition.calibration import (
+    LEAST,
+    SHIPPED,
+    Calibration,
+    best_threshold,
+    calibrate,
+    expected_calibration_error,
+)
+from deixis.perception.recognition.distances import category_distance
+from deixis.perception.recognition.errors import RecognitionError
+from deixis.perception.recognition.held_out import HeldOut, hold_out
+from deixis.perception.recognition.instances import InstanceCategory
+from deixis.perception.recognition.recogniser import Recogniser
+
+scores = st.lists(st.floats(0.01, 10), min_size=1, max_size=20).map(np.array)
+
+
+def test_the_threshold_lies_in_the_middle_of_the_gap() -> None:
+    assert best_threshold(np.array([0.2, 0.5]), np.array([0.9, 3.0])) == pytest.approx(0.7)
+
+
+def test_a_rare_unknown_moves_the_threshold_up() -> None:
+    known, unknown = np.array([0.2, 0.4, 1.0]), np.array([0.6, 0.8, 2.0])
+    assert best_threshold(known, unknown, 0.5) == pytest.approx(0.5)
+    assert best_threshold(known, unknown, 0.1) == pytest.approx(1.5)
+
+
+@settings(deadline=None)
+@given(scores, scores, st.floats(0.05, 0.95))
+def test_no_other_threshold_makes_fewer_errors(
+    known: NDArray[np.float64], unknown: NDArray[np.float64], prior: float
+) -> None:
+    def errors(cut: float) -> float:
+        return float((1 - prior) * (known > cut).mean() + prior * (unknown <= cut).mean())
+
+    least = min(errors(cut) for cut in [0.0, *known, *unknown, 100.0])
+    assert errors(best_threshold(known, unknown, prior)) == pytest.approx(least)
+
+
+def test_probabilities_by_hand() -> None:
+    calibration = Calibration(threshold=1, even=1, doubt=2, choice=1)
+    # known: 1 / (1 + 0.5^2) = 0.8; shares 1 / 0.5 to 1 / 2
+    np.testing.assert_allclose(calibration.probabilities(np.array([0.5, 2.0])), [0.64, 0.16, 0.2])
+
+
+@settings(deadline=None)
+@given(st.lists(st.one_of(st.floats(0, 1e6), st.just(np.inf)), min_size=1, max_size=6).map(np.array))
+def test_probabilities_sum_to_one_and_are_in_the_order_of_distances(normalised: NDArray[np.float64]) -> None:
+    *named, unknown = SHIPPED.probabilities(normalised)
+    assert sum(named) + unknown == pytest.approx(1.0)
+    assert np.isfinite(named).all()
+    ordered = np.array(named)[np.argsort(normalised)]
+    assert (np.diff(ordered) <= 1e-12).all()
+
+
+def test_expected_calibration_error_by_hand() -> None:
+    confidence = np.array([0.95, 0.95, 0.15, 0.15])
+    right = np.array([True, False, False, False])
+    assert expected_calibration_error(confidence, right) == pytest.approx((0.9 + 0.3) / 4)
+
+
+def drawn(seed: int, known: int) -> HeldOut:
+    """Held-out answers drawn from the model itself, with three categories."""
+    rng = np.random.default_rng(seed)
+    truth = rng.integers(0, 3, known)
+    normalised = 1 + rng.exponential(0.8, (known, 3))
+    normalised[np.arange(known), truth] = rng.normal(0.6, 0.15, known).clip(0.05)
+    return HeldOut(normalised, truth)
+
+
+def test_probabilities_fitted_to_held_out_answers_are_calibrated_on_fresh_ones() -> None:
+    calibration, fresh = calibrate(drawn(0, 300)), drawn(1, 2000)
+    known, truth = fresh.as_known
+    rows = np.concatenate([known, fresh.as_unknown])
+    probabilities = calibration.probabilities(rows)
+    answers = np.concatenate([truth, np.full(len(fresh.as_unknown), 3)])
+    right = probabilities.argmax(axis=1) == answers
+    assert expected_calibration_error(probabilities.max(axis=1), right) < 0.05
+    assert 0.8 < calibration.threshold < 1.2 and calibration.calibrated
+
+
+def test_too_few_answers_leave_the_shipped_threshold() -> None:
+    calibration = calibrate(drawn(0, LEAST - 1))
+    assert calibration.threshold == SHIPPED.threshold and not calibration.calibrated
+    assert calibrate(HeldOut(np.empty((0, 0)), np.empty(0, np.int64))) == SHIPPED
+
+
+def test_wrong_settings_are_refused() -> None:
+    with pytest.raises(RecognitionError, match="between 0 and 1"):
+        calibrate(drawn(0, 20), prior_unknown=1.0)
+    with pytest.raises(RecognitionError, match="threshold is a number above 0"):
+        Calibration(threshold=float("nan"), even=1, doubt=1, choice=1)
+
+
+def categories_of(seed: int, count: int = 3, views: int = 6) -> list[InstanceCategory]:
+    rng = np.random.default_rng(seed)
+    middles = rng.normal(size=(count, 5)) * 4
+    return [
+        InstanceCategory.of(
+            f"c{c}", [(f"c{c}-{i}", (middles[c] + rng.normal(size=(4, 5))).astype(np.float32)) for i in range(views)]
+        )
+        for c in range(count)
+    ]
+
+
+@settings(deadline=None)
+@given(st.integers(0, 1000))
+def test_holding_out_equals_recognising_without_the_view(seed: int) -> None:
+    categories = categories_of(seed)
+    held = hold_out(categories, Recogniser.of(categories).indexes, prior_spread=1.0)
+    assert held.normalised.shape == (18, 3)
+    row = seed % 18
+    own = categories[held.truth[row]]
+    key = own.views.ids[row % 6]
+    without = Recogniser.of([known.without_view(key) if known is own else known for known in categories])
+    wanted = {known.category: known.normalised for known in without.recognise(own.views[row % 6]).candidates}
+    np.testing.assert_allclose(held.normalised[row], [wanted[known.name] for known in categories], rtol=1e-12)
+
+
+def test_views_of_one_thing_are_held_out_together() -> None:
+    categories = categories_of(0)
+    objects = {key: f"{key[:2]} thing {i // 3}" for known in categories for i, key in enumerate(known.views.ids)}
+    held = hold_out(categories, Recogniser.of(categories).indexes, 1.0, objects)
+    first = categories[0]
+    far = [first.views[i] for i in (3, 4, 5)]
+    rest = InstanceCategory.of("rest", [(str(i), view) for i, view in enumerate(far)])
+    wanted = category_distance(first.views[0], rest.views)[0] / (rest.intra_category_distance or np.nan)
+    assert held.normalised[0, 0] == pytest.approx(wanted)
+
+
+def test_a_category_of_one_view_gives_an_unknown_answer_and_no_known_one() -> None:
+    categories = [*categories_of(1, count=2), categories_of(2, count=3, views=1)[2]]
+    held = hold_out(categories, Recogniser.of(categories).indexes, 1.0)
+    assert (len(held.as_known[0]), len(held.as_unknown)) == (12, 13)
+
+
+def test_calibrating_a_recogniser_separates_its_categories_from_others() -> None:
+    known = Recogniser.of(categories_of(4)).calibrated()
+    assert known.calibration.calibrated and known.calibration.known == 18
+    assert known.recognise(known.categories[1].views[0] + np.float32(0.1)).label == "c1"
+    assert known.recognise(known.categories[1].views[0] + np.float32(50)).label is None
+
+
+def test_one_category_alone_cannot_be_calibrated() -> None:
+    assert Recogniser.of(categories_of(0, count=1)).calibrated().calibration == SHIPPED

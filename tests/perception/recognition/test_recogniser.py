@@ -1,0 +1,162 @@
+"""Equation 4 and the decision, by hand; what is said where the equations give nothing."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from deixis.perception.recognition.calibration import Calibration
+from deixis.perception.recognition.distances import view_distance
+from deixis.perception.recognition.errors import RecognitionError
+from deixis.perception.recognition.instances import InstanceCategory
+from deixis.perception.recognition.recogniser import Recogniser, RecognitionSettings, recognise
+from deixis.perception.recognition.spread import SpreadSource
+
+STRICT = Calibration(threshold=1.5, even=1.5, doubt=3.0, choice=4.0)
+
+
+def seen(*values: float) -> NDArray[np.float32]:
+    """Descriptors that are single numbers."""
+    return np.array(values, np.float32)[:, None]
+
+
+def category(name: str, *views: NDArray[np.float32]) -> InstanceCategory:
+    return InstanceCategory.of(name, [(f"{name}{i}", view) for i, view in enumerate(views)])
+
+
+WIDE = category("wide", seen(0), seen(8))  # ICD 8
+NARROW = category("narrow", seen(20), seen(22))  # ICD 2
+
+
+def test_the_smallest_normalised_distance_wins_not_the_smallest_distance() -> None:
+    found = recognise(seen(15), [WIDE, NARROW], calibration=STRICT)
+    by_name = {candidate.category: candidate for candidate in found.candidates}
+    assert (by_name["wide"].distance, by_name["wide"].spread.value, by_name["wide"].normalised) == (7, 8, 7 / 8)
+    assert (by_name["narrow"].distance, by_name["narrow"].normalised) == (5, 2.5)
+    assert found.label == "wide" and found.candidates[0].nearest == "wide1"
+    assert found.exact and found.probability == by_name["wide"].probability
+
+
+def test_above_the_threshold_for_all_categories_is_unknown() -> None:
+    found = recognise(seen(40), [WIDE, NARROW], calibration=STRICT)
+    assert found.label is None and found.candidates[0].normalised == 4.0
+    assert found.probability == found.unknown > 0.9
+    assert "above the threshold 1.5" in found.reasons[0]
+
+
+def test_at_the_threshold_is_known() -> None:
+    assert recognise(seen(25), [NARROW], calibration=STRICT).label == "narrow"
+
+
+def test_one_view_is_measured_by_the_median_of_the_others_and_says_so() -> None:
+    single = category("single", seen(100))
+    found = recognise(seen(101), [WIDE, NARROW, single], calibration=STRICT)
+    assert found.label == "single"
+    assert found.candidates[0].spread.value == 5.0 and found.candidates[0].spread.source is SpreadSource.POOLED
+    assert any("'single' has one view" in reason for reason in found.reasons)
+
+
+def test_identical_views_are_measured_likewise() -> None:
+    found = recognise(seen(101), [WIDE, category("copies", seen(100), seen(100))], calibration=STRICT)
+    assert found.candidates[0].category == "copies" and found.candidates[0].normalised == 1 / 8
+    assert any("no two views that differ" in reason for reason in found.reasons)
+
+
+def test_where_nothing_has_a_spread_a_constant_stands_in() -> None:
+    settings = RecognitionSettings(prior_spread=4.0)
+    found = recognise(seen(1), [category("only", seen(0))], settings, STRICT)
+    assert found.candidates[0].normalised == 0.25 and found.candidates[0].spread.source is SpreadSource.PRIOR
+    assert any("a constant" in reason for reason in found.reasons[1:])
+
+
+def test_a_view_without_descriptors_is_unknown() -> None:
+    found = recognise(np.empty((0, 1), np.float32), [WIDE])
+    assert (found.label, found.candidates, found.unknown) == (None, (), 1.0)
+    assert found.reasons == ("the view has no descriptor: nothing on it could be described",)
+
+
+def test_nothing_taught_is_unknown() -> None:
+    assert recognise(seen(1), []).reasons == ("no category has been taught",)
+
+
+def test_a_category_of_empty_views_is_infinitely_far_and_never_the_answer() -> None:
+    dark = InstanceCategory("dark").with_view("d", np.empty((0, 1), np.float32))
+    found = recognise(seen(1), [dark, WIDE], calibration=STRICT)
+    assert found.label == "wide"
+    last = found.candidates[-1]
+    assert (last.category, last.distance, last.nearest, last.probability) == ("dark", math.inf, None, 0.0)
+    alone = recognise(seen(1), [dark])
+    assert alone.label is None and alone.unknown == 1.0 and alone.reasons == ("no remembered view has a descriptor",)
+
+
+def test_the_same_view_again_is_certain() -> None:
+    found = recognise(seen(0), [WIDE, NARROW], calibration=STRICT)
+    assert found.candidates[0].normalised == 0.0 and found.probability > 0.999
+
+
+def random_categories(seed: int) -> tuple[list[InstanceCategory], NDArray[np.float32]]:
+    rng = np.random.default_rng(seed)
+
+    def view() -> NDArray[np.float32]:
+        return rng.normal(size=(rng.integers(1, 8), 6)).astype(np.float32)
+
+    return [category(name, *(view() for _ in range(rng.integers(1, 6)))) for name in "abcd"], view()
+
+
+@settings(deadline=None)
+@given(st.integers(0, 2**32 - 1))
+def test_equations_as_written_give_the_same_answer(seed: int) -> None:
+    categories, target = random_categories(seed)
+    found = recognise(target, categories)
+    for candidate in found.candidates:
+        own = next(known for known in categories if known.name == candidate.category)
+        least = min(view_distance(target, own.views[i]) for i in range(len(own)))
+        assert candidate.distance == pytest.approx(least, rel=1e-12)
+        assert candidate.normalised == candidate.distance / candidate.spread.value
+    normalised = [candidate.normalised for candidate in found.candidates]
+    assert normalised == sorted(normalised)
+    assert (found.label is not None) == (normalised[0] <= found.calibration.threshold)
+    assert sum(candidate.probability for candidate in found.candidates) + found.unknown == pytest.approx(1)
+
+
+@settings(deadline=None)
+@given(st.integers(0, 2**32 - 1))
+def test_learning_and_forgetting_lead_to_the_recogniser_made_at_once(seed: int) -> None:
+    categories, target = random_categories(seed)
+    grown = Recogniser.of(categories[:1]).learned(category("z", seen(*[0.0] * 3).repeat(6, axis=1)))
+    for known in categories[1:]:
+        for count in range(1, len(known) + 1):
+            grown = grown.learned(category(known.name, *(known.views[i] for i in range(count))))
+    assert grown.forgotten("z").recognise(target).candidates == Recogniser.of(categories).recognise(target).candidates
+
+
+@settings(deadline=None)
+@given(st.integers(0, 2**32 - 1))
+def test_the_order_of_categories_does_not_matter(seed: int) -> None:
+    categories, target = random_categories(seed)
+    one, other = recognise(target, categories), recognise(target, categories[::-1])
+    assert one.label == other.label
+    assert [known.normalised for known in one.candidates] == [known.normalised for known in other.candidates]
+
+
+def test_many_views_are_searched_approximately_and_the_answer_says_so() -> None:
+    found = recognise(seen(7), [WIDE, NARROW], RecognitionSettings(exact_up_to=3))
+    assert found.label == "wide" and not found.exact and "approximate" in found.reasons[-1]
+
+
+def test_what_does_not_fit_is_refused() -> None:
+    with pytest.raises(RecognitionError, match="two categories bear one name"):
+        Recogniser.of([WIDE, WIDE])
+    with pytest.raises(RecognitionError, match="different lengths: 1 in 'wide', 2 in 'flat'"):
+        Recogniser.of([WIDE, category("flat", np.zeros((1, 2), np.float32))])
+    with pytest.raises(RecognitionError, match="there is no category 'x'"):
+        Recogniser.of([WIDE]).forgotten("x")
+    with pytest.raises(RecognitionError, match="the remembered views' 1"):
+        recognise(np.zeros((1, 2), np.float32), [WIDE])
+    with pytest.raises(RecognitionError, match="the prior spread"):
+        RecognitionSettings(prior_spread=0.0)

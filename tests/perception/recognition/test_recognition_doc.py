@@ -1,0 +1,28 @@
+"""docs/recognition.md: its Python runs, and its numbers are those of the code."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from deixis.perception.recognition.calibration import LEAST, SHIPPED
+from deixis.perception.recognition.held_out import MOST
+from deixis.perception.recognition.recogniser import DEFAULT
+from deixis.perception.recognition.spread import FLOOR
+
+PAGE = (Path(__file__).parents[3] / "docs" / "recognition.md").read_text(encoding="utf-8")
+
+
+def test_the_python_on_the_page_runs() -> None:
+    programs = re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)
+    assert len(programs) == 1
+    for program in programs:
+        exec(compile(program, "docs/recognition.md", "exec"), {})
+
+
+def test_the_constants_on_the_page_are_those_of_the_code() -> None:
+    assert f"shipped one, {SHIPPED.threshold}," in PAGE
+    assert f"fewer than {LEAST} known or {LEAST} unknown" in PAGE
+    assert f"({MOST} at most" in PAGE and f"({DEFAULT.exact_up_to:,})" in PAGE
+    assert f"below {100 * FLOOR:.0f} % of that median" in PAGE
+    assert (DEFAULT.effort.stride, DEFAULT.effort.share, DEFAULT.effort.few) == (6, 0.1, 12)
