@@ -1,11 +1,14 @@
 """The engines for the matching problem beside CP-SAT, FAQ and swap annealing, over the same generated tables.
 
 Two tables: proofs (8 to 30 objects, with all optima), and values (30 to 1,000 objects, one in ten missing and one in
-ten extra). Values are relative to the best that anything found in the run. ``--quick`` takes a few cases of each.
+ten extra, for crisp and graded facts, few and many, with and without mistakes). Values are relative to the best that
+anything found in the run; the scalable engine at four times its effort is there only to be part of that. ``--quick``
+takes a few cases of each.
 """
 
 from __future__ import annotations
 
+import math
 import resource
 import statistics
 import sys
@@ -15,10 +18,11 @@ from functools import partial
 from typing import TypeVar
 
 import numpy as np
-from generated_tables import generate
 from numpy.typing import NDArray
 from peers import annealing, cp_sat, faq, graph_matching
 
+from deixis.experiments.generated_tables import GeneratedTable, generate
+from deixis.reasoning.graded.facts import fact_tables
 from deixis.reasoning.matching.exact import exact, maps_within, warm
 from deixis.reasoning.matching.problem import Problem
 from deixis.reasoning.matching.scalable import scalable
@@ -26,16 +30,22 @@ from deixis.reasoning.matching.scalable import scalable
 T = TypeVar("T")
 
 PROOF_LIMIT = 30.0  # seconds for one case
+REFERENCE_LIMIT = 2.0  # seconds of the exact engine where it only serves to know the best value
+SETTINGS = [(facts, off) for off in (0.0, 0.2, 0.1) for facts in (1.0, 1.5, 2.5)]  # facts an object, share off
+QUICK = [(30, 1, SETTINGS[-1:]), (100, 1, SETTINGS[-1:])]  # objects, cases a row, rows
+FULL = [(30, 3, SETTINGS), (100, 1, SETTINGS), (300, 1, SETTINGS[0::4]), (1000, 1, SETTINGS[-1:])]
+ABSENT = math.log(0.05 / 0.95)  # as grounding has it
 
 
 def main() -> None:
     quick = "--quick" in sys.argv
     warm()
     annealing.solve(generate(8, seed=0).crisp(), steps=10)
-    print("2.5 facts an object, 10 % off; seeds from 0; times are medians (the longest in brackets)\n")
+    print("seeds from 0; times are medians (the longest in brackets); proofs: 2.5 facts an object, 10 % off\n")
     for centred in (False, True):
         _proofs(3 if quick else 10, centred)
-    _values({30: 2, 100: 1, 1000: 1} if quick else {30: 10, 100: 5, 300: 3, 1000: 2})
+    for objects, cases, settings in QUICK if quick else FULL:
+        _values(objects, cases, settings)
     print(f"peak memory {resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20:.2f} GB")
 
 
@@ -64,34 +74,54 @@ def _proofs(cases: int, centred: bool) -> None:
     print(f"of {cases} cases\n")
 
 
-def _values(cases: dict[int, int]) -> None:
-    for objects, count in cases.items():
-        out = objects // 10
-        problems = [generate(objects, missing=out, extra=out, seed=s).crisp(centred=True) for s in range(count)]
-        engines: dict[str, Callable[[Problem], NDArray[np.int64]]] = {
-            "scalable": lambda p: scalable(p).assignment,
-            "annealing": annealing.solve,
-        }
-        if objects <= 100:
-            engines["annealing, ten times as long"] = lambda p: annealing.solve(
-                p, steps=10 * annealing.proposals(len(p.absent))
-            )
-            engines["faq, ten starts"] = faq.solve
-        if objects * objects <= graph_matching.MOST_CELLS:
-            for name in graph_matching.SOLVERS:
-                engines[name] = partial(graph_matching.solve, solver=name)
-        times, values = {}, {}
-        for name, engine in engines.items():
-            try:
-                times[name], maps = _timed(engine, problems)
-            except ImportError:
-                print(f"  {name}: skipped, not installed")
-                continue
-            values[name] = [p.value(m) for p, m in zip(problems, maps, strict=True)]
-        best = np.max(list(values.values()), axis=0)
-        print(f"{objects} objects, {count} cases: value over the best found; median seconds (longest)")
-        for name in values:
-            print(f"  {name:30} {np.mean(np.array(values[name]) / best):.4f}  {_span(times[name])}", flush=True)
+def _values(objects: int, cases: int, chosen: list[tuple[float, float]]) -> None:
+    print(f"\nvalues, {objects} objects, {cases} case(s) a row: value over the best found; median seconds (longest)")
+    for graded in (False, True):
+        for facts, off in chosen:
+            out = objects // 10
+            tables = [generate(objects, facts, off, missing=out, extra=out, seed=s) for s in range(cases)]
+            problems = [_graded(table) if graded else table.crisp(centred=True) for table in tables]
+            print(f" {'graded' if graded else 'crisp'}, {facts} facts an object, {off:.0%} off")
+            _row(problems)
+
+
+def _row(problems: list[Problem]) -> None:
+    times, values = {}, {}
+    for name, engine in _engines(*problems[0].unary.shape).items():
+        try:
+            times[name], maps = _timed(engine, problems)
+        except ImportError:
+            continue
+        values[name] = [p.value(m) for p, m in zip(problems, maps, strict=True)]
+    best = np.max(list(values.values()), axis=0)
+    for name in values:
+        print(f"   {name:30} {np.mean(np.array(values[name]) / best):.4f}  {_span(times[name])}", flush=True)
+
+
+def _graded(table: GeneratedTable) -> Problem:
+    """What grounding solves: log-likelihood ratios of graded meaning."""
+    facts = fact_tables(table.description(), table.boxes)
+    n1, n2 = len(table.truth), len(table.boxes)
+    return Problem(facts.ends, facts.kinds, facts.tables, np.zeros((n1, n2)), np.full(n1, ABSENT))
+
+
+def _engines(n1: int, n2: int) -> dict[str, Callable[[Problem], NDArray[np.int64]]]:
+    """The scalable engine and its peers, those that are worth their time at this size."""
+    engines: dict[str, Callable[[Problem], NDArray[np.int64]]] = {
+        "scalable": lambda p: scalable(p).assignment,
+        "annealing": annealing.solve,
+        "scalable, four times as long": lambda p: scalable(p, effort=4.0, seed=1).assignment,
+    }
+    if n1 <= 100:
+        steps = 10 * annealing.proposals(n1)
+        engines["annealing, ten times as long"] = partial(annealing.solve, steps=steps)
+        engines["faq, ten starts"] = faq.solve
+    if n1 <= 30:
+        engines["exact, two seconds"] = lambda p: exact(p, time.perf_counter() + REFERENCE_LIMIT).assignment
+    if n1 * n2 <= graph_matching.MOST_CELLS:
+        for name in graph_matching.SOLVERS:
+            engines[name] = partial(graph_matching.solve, solver=name)
+    return engines
 
 
 def _timed(job: Callable[[Problem], T], problems: Iterable[Problem]) -> tuple[list[float], list[T]]:

@@ -10,6 +10,7 @@ from deixis.grammar.errors import SHOWN, Problem, Refusal, shortened
 from deixis.grammar.names import NameBook
 from deixis.grammar.phrases import chains
 from deixis.grammar.script import Mention
+from deixis.ontology.colours import Colour
 from deixis.ontology.kinds import Kind
 from deixis.ontology.relation import Relation, nearest, plain_phrase
 from deixis.ontology.source import Source
@@ -29,6 +30,7 @@ class Draft:
     viewpoint: str | None = None
     size: int = 0  # facts and declared objects so far
     declared: dict[str, list[Kind]] = field(default_factory=dict)
+    coloured: dict[str, Colour] = field(default_factory=dict)
     _relations: dict[str, Relation] = field(default_factory=dict)
 
     def nearest(self, word: str, known: list[str]) -> str | None:
@@ -65,18 +67,34 @@ class Draft:
             raise Refusal(source, f"a script states at most {MOST_FACTS:,} facts, and with these it states more")
         self.size += more
 
-    def kind(self, word: str, source: Source) -> Kind:
-        """The kind of thing that a word stands for, a plural's if need be; raises Refusal where there is none."""
-        kinds = self.ontology.kinds
+    def quality(self, word: str, source: Source) -> tuple[Kind | None, Colour | None]:
+        """The kind of thing, its plural if need be, the colour, or the kind in a colour that a word stands for.
+
+        Raises Refusal where there is none.
+        """
+        colours = self.ontology.colours
         for form in (word, word.removesuffix("s"), word.removesuffix("es")):
-            if form and (found := kinds.of_word(form)) is not None:
-                return found
-        near = self.nearest(word.replace("_", " "), list(kinds.words))
+            kind, colour = self.ontology.quality(form)
+            if kind is not None:
+                return kind, colour
+        if (colour := colours.of_word(word)) is not None:
+            return None, colour
+        rest = colours.split(word)[1]
+        near = self.nearest(rest.replace("_", " "), [*self.ontology.kinds.words, *colours.words])
         hint = f"did you mean '{near}'?" if near else None
-        raise Refusal(source, f"there is no kind of thing called '{shortened(word)}'", hint)
+        raise Refusal(source, f"there is no kind of thing and no colour called '{shortened(rest)}'", hint)
+
+    def paint(self, subjects: tuple[Mention, ...], colour: Colour) -> None:
+        """Notes a declared colour; raises Refusal where an object was declared to be of another one before."""
+        for mention in subjects:
+            for name in mention.names:
+                before = self.coloured.setdefault(name, colour)
+                if before is not colour:
+                    message = f"'{shortened(name)}' was declared as {before.label}, and is not {colour.label}"
+                    raise Refusal(mention.source, message, "an object is of one colour: say the one that it mostly is")
 
     def declare(self, subjects: tuple[Mention, ...], kind: Kind) -> None:
-        """Notes a declaration; raises Refusal where an object was declared as something else before."""
+        """Notes a declared kind; raises Refusal where an object was declared as something else before."""
         kinds = self.ontology.kinds
         for mention in subjects:
             for name in mention.names:

@@ -9,7 +9,7 @@ from lark import Token
 
 from deixis.grammar.draft import Draft
 from deixis.grammar.errors import SHOWN, Refusal, shortened
-from deixis.grammar.tree import source_of, span_of
+from deixis.grammar.tree import FIRM_QUALITY, source_of, span_of
 from deixis.ontology.relation import plain_phrase
 from deixis.ontology.source import Source
 
@@ -17,8 +17,10 @@ A_RELATION = "expected a relation such as 'left of', or 'is a'"
 SMART_QUOTES = "“”„‟«»‘’"
 QUOTE = "if it belongs to a name, quote the name"
 PARTED = "';' parts two statements on one line"
+ONE_QUALITY = "an object is of one kind and one colour: say the one that it mostly is"
 NAMES = ("NAME", "STRING")
 RESERVED = ("RELATION", "HEDGE", "IS", "VERB", "NOT", "OPTIONAL")
+QUALIFIERS = ("NOT", "OPTIONAL", "HEDGE")
 OUT_OF_PLACE = ("_LAYOUT", "_INCLUDE", "_SEEN", "_FROM", "CHAIN")
 LIKE_ENOUGH = 0.7  # of 1: how like a relation phrase must be to what was said, to be suggested
 LONGEST_NAME_SEARCHED = 200  # characters of a name in which a misspelt relation is looked for
@@ -173,6 +175,8 @@ def _other(tokens: list[Token], at: int, accepts: set[str]) -> Refusal:
         hint = QUOTE if token.type in RESERVED else None
         return Refusal(where, f"expected a name after '{before}', not '{shown}'", hint)
     if "RELATION" in accepts:
+        if token.type in NAMES and tokens[at - 1].type in QUALIFIERS:
+            return Refusal(where, f"{A_RELATION}, not '{shown}'", FIRM_QUALITY)
         return Refusal(where, f"{A_RELATION}, not '{shown}'")
     if "_COMMA" in accepts and "$END" not in accepts:
         return Refusal(where, f"expected a comma and a second name, not '{shown}'")
@@ -181,5 +185,6 @@ def _other(tokens: list[Token], at: int, accepts: set[str]) -> Refusal:
     if "_LPAR" in accepts:
         return Refusal(where, f"expected a pair in brackets, as in left(fork, plate), not '{shown}'")
     if "$END" in accepts:
-        return Refusal(where, f"expected the end of the statement, not '{shown}'", PARTED)
+        quality = token.type in ("_AND", "_OR") and tokens[at - 2].type == "IS"
+        return Refusal(where, f"expected the end of the statement, not '{shown}'", ONE_QUALITY if quality else PARTED)
     return Refusal(where, f"'{shown}' is not expected here")

@@ -17,6 +17,7 @@ from deixis.grammar.script import (
     Script,
     Statement,
 )
+from deixis.ontology.colours import Colour
 from deixis.ontology.kinds import Kind
 from deixis.ontology.relation import Relation
 from deixis.ontology.tbox import Ontology
@@ -105,8 +106,8 @@ class StatementWriter:
                 return " ".join(filter(None, ["layout", name, f'"{title}"' if title else None, view]))
             case Include(path):
                 return f'include "{path}"'
-            case Declaration(subjects, kind):
-                return f"{self._list(subjects)} {self._is(subjects, kind)}"
+            case Declaration(subjects, kind, colour):
+                return f"{self._list(subjects)} {self._is(subjects, kind, colour)}"
             case Chain(relation, objects, modifiers):
                 inverse = self._ontology.relations[relation.inverse]
                 head = f"{relation.word} to {inverse.word}".replace("_", " ")
@@ -131,12 +132,20 @@ class StatementWriter:
         counted = "" if mention.count is None else f"{mention.count} "
         return counted + self.name(mention.name)
 
-    def _is(self, subjects: tuple[Mention, ...], kind: Kind) -> str:
-        kinds = self._ontology.kinds
-        word = next((w for w in (kind.name, *kind.words) if kinds.of_word(w) is kind), kind.name)
+    def _is(self, subjects: tuple[Mention, ...], kind: Kind | None, colour: Colour | None) -> str:
+        word = self._quality(kind, colour)
         if len(subjects) > 1 or subjects[0].count is not None:
-            return f"are {self.name(word)}"
-        return f"is {'an' if word[0] in 'AEIOUaeiou' else 'a'} {self.name(word)}"
+            return f"are {word}"
+        return f"is {word}" if kind is None else f"is {'an' if word[0] in 'AEIOUaeiou' else 'a'} {word}"
+
+    def _quality(self, kind: Kind | None, colour: Colour | None) -> str:
+        """The first words for a kind, a colour, or both, that are read back as they are meant."""
+        shades = colour.words if colour else ("",)
+        things = (kind.name, *kind.words) if kind else ("",)
+        phrases = [f"{shade} {thing}".strip() for shade in shades for thing in things]
+        meant = (phrase for phrase in phrases if self._ontology.quality(phrase) == (kind, colour))
+        words = next(meant, phrases[0]).split()
+        return " ".join(words) if all(map(self._language.reads_as_name, words)) else self.name("_".join(words))
 
 
 def _front(modifiers: Modifiers) -> str:

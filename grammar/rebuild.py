@@ -6,7 +6,8 @@ from collections.abc import Iterator, Sequence
 
 from deixis.grammar.format import format_script
 from deixis.grammar.script import Declaration, Header, Mention, Modifiers, Placement, Script, Statement
-from deixis.ontology.concepts import LayoutConcept
+from deixis.ontology.colours import Colour
+from deixis.ontology.concepts import LayoutConcept, Role
 from deixis.ontology.graph import Fact
 from deixis.ontology.source import Source
 from deixis.ontology.tbox import Ontology
@@ -35,15 +36,23 @@ def _statements(layout: LayoutConcept, ontology: Ontology, lines: _Lines) -> Ite
     yield Header(layout.name, layout.title, layout.viewpoint, lines.next())
     gap = True
     for role in layout.roles:
-        if role.declared and role.kind is not None:
+        kind = ontology.kinds[role.kind] if role.declared and role.kind is not None else None
+        colour = _declared_colour(role, ontology)
+        if kind is not None or colour is not None:
             source = lines.next(gap)
-            yield Declaration((_mention(role.name, source),), ontology.kinds[role.kind], source)
+            yield Declaration((_mention(role.name, source),), kind, colour, source)
             gap = False
     gap = True
     for fact in layout.facts:
         source = lines.next(gap)
         yield _placement(fact, ontology, source)
         gap = False
+
+
+def _declared_colour(role: Role, ontology: Ontology) -> Colour | None:
+    """The colour of a role, None where its name says it already."""
+    colour = ontology.colours[role.colour] if role.colour is not None else None
+    return None if colour is ontology.of_name(role.name)[1] else colour
 
 
 def _placement(fact: Fact, ontology: Ontology, source: Source) -> Placement:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import chain, pairwise, product
 
+from deixis.ontology.colours import Colour
 from deixis.ontology.graph import Fact, RelationGraph
 from deixis.ontology.kinds import Kind
 from deixis.ontology.relation import Relation
@@ -68,10 +68,11 @@ class Include:
 
 @dataclass(frozen=True, slots=True)
 class Declaration:
-    """``soup_spoon is a Spoon``."""
+    """``soup_spoon is a Spoon``, ``napkin is red`` or ``cup is a blue mug``: a kind, a colour, or both."""
 
     subjects: tuple[Mention, ...]
-    kind: Kind
+    kind: Kind | None
+    colour: Colour | None
     source: Source
 
 
@@ -163,25 +164,45 @@ class Script:
         """The declared kind of each object that has one; of several declared kinds the narrowest."""
         found: dict[str, Kind] = {}
         for statement in self.all_statements():
-            if isinstance(statement, Declaration):
+            if isinstance(statement, Declaration) and statement.kind is not None:
                 for name in _names(statement.subjects):
                     if name not in found or self.ontology.kinds.is_a(statement.kind, found[name]):
                         found[name] = statement.kind
+        return found
+
+    @cached_property
+    def colours(self) -> dict[str, Colour]:
+        """The colour of each object that has one: the declared one, else the one with which its name begins.
+
+        >>> from deixis.grammar.parser import parse_script
+        >>> script = parse_script("the red mug left of the plate; plate is white")
+        >>> {name: colour.label for name, colour in script.colours.items()}
+        {'red_mug': 'red', 'plate': 'white'}
+        """
+        named = ((name, self.ontology.of_name(name)[1]) for name in self.objects)
+        found = {name: colour for name, colour in named if colour is not None}
+        for statement in self.all_statements():
+            if isinstance(statement, Declaration) and statement.colour is not None:
+                found.update(dict.fromkeys(_names(statement.subjects), statement.colour))
         return found
 
     def graph(self) -> RelationGraph:
         """The stated facts as a relation graph; a node's kind is the declared one, else the one its name stands for.
 
         >>> from deixis.grammar.parser import parse_script
-        >>> graph = parse_script("2 wine_glass right of the thingummy").graph()
+        >>> graph = parse_script("2 wine_glass right of the red thingummy").graph()
         >>> [kind and kind.rpartition("#")[2] for kind in graph.kinds]
         ['WineGlass', 'WineGlass', None]
+        >>> [colour and colour.rpartition("#")[2] for colour in graph.colours]
+        [None, None, 'red']
         """
         kinds = [self._kind_of(name) for name in self.objects]
-        return RelationGraph.from_facts(self.ontology.relations, self.objects, self.facts, kinds=kinds)
+        colours = [self.colours[name].iri if name in self.colours else None for name in self.objects]
+        shown = colours if self.colours else ()
+        return RelationGraph.from_facts(self.ontology.relations, self.objects, self.facts, kinds=kinds, colours=shown)
 
     def _kind_of(self, name: str) -> str | None:
-        kind = self.kinds.get(name) or self.ontology.kinds.of_word(re.sub(r"_\d+$", "", name))
+        kind = self.kinds.get(name) or self.ontology.of_name(name)[0]
         return kind.iri if kind else None
 
 

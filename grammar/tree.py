@@ -12,6 +12,8 @@ from deixis.grammar.words import NUMBERS, VERBS_OR_NOUNS
 from deixis.ontology.relation import Relation, plain_phrase
 from deixis.ontology.source import Source
 
+FIRM_QUALITY = "what kind of thing an object is, or its colour, cannot be denied, optional or hedged"
+
 Pair = tuple[tuple[Relation, ...], Mention, Mention]
 
 
@@ -55,16 +57,18 @@ class TreeBuilder(Transformer[Token, Statement]):
         return Include(path[1:-1], source_of(path))
 
     def declaration(
-        self, modifiers: Modifiers | None, subjects: tuple[Mention, ...], _is: Token, kind: Token
+        self, modifiers: Modifiers | None, subjects: tuple[Mention, ...], _is: Token, word: Token
     ) -> Declaration:
         here = place.get()
         if modifiers is not None:
-            message = "what kind of thing an object is cannot be denied, optional or hedged"
-            raise Refusal(here.statement, message)
-        found = here.draft.kind(text_of(kind), source_of(kind))
+            raise Refusal(here.statement, FIRM_QUALITY)
+        kind, colour = here.draft.quality(text_of(word), source_of(word))
         here.draft.grow(_size(subjects), here.statement)
-        here.draft.declare(subjects, found)
-        return Declaration(subjects, found, here.statement)
+        if kind is not None:
+            here.draft.declare(subjects, kind)
+        if colour is not None:
+            here.draft.paint(subjects, colour)
+        return Declaration(subjects, kind, colour, here.statement)
 
     def placement(
         self,

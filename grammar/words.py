@@ -1,6 +1,6 @@
 """The closed-class words of the layout language.
 
-Relation words, hedges and kinds of things are not here: they come from the ontology.
+Relation words, hedges, kinds of things and colours are not here: they come from the ontology.
 """
 
 from __future__ import annotations

@@ -10,9 +10,12 @@ import pyoxigraph as ox
 
 from deixis.memory import ledger
 from deixis.memory.errors import RejectedWriteError
-from deixis.memory.graphs import GraphName, graph_iri, lesson_graph
+from deixis.memory.graphs import GraphName, ModelSet, graph_iri, lesson_graph, models_graph
 from deixis.ontology.iris import content_key
 from deixis.ontology.skolem import skolem
+
+Models = Mapping[ModelSet, Sequence[ox.Triple]]
+"""Sets of learned models, each to stand in the place of the one that is there; sets that are left out stay."""
 
 
 @dataclass(frozen=True)
@@ -24,47 +27,57 @@ class Change:
     statements: tuple[str, ...] = ()
 
 
-def arriving(
-    store: ox.Store, lesson: str, said: Mapping[GraphName, Sequence[ox.Triple]], inferred: Iterable[ox.Triple]
-) -> Change:
-    """The change that a new lesson makes."""
-    come, gone = _inferred(store, inferred)
-    return Change(
-        added={**{name: frozenset(triples) for name, triples in said.items()}, GraphName.INFERRED: frozenset(come)},
-        removed={GraphName.INFERRED: frozenset(gone)},
-        statements=tuple(chain(ledger.arrival(store, lesson, said), _replacing(come, gone))),
-    )
+def together(*changes: Change) -> Change:
+    """Changes that are written in one step, in this order."""
+    added: dict[GraphName, frozenset[ox.Triple]] = {}
+    removed: dict[GraphName, frozenset[ox.Triple]] = {}
+    for change in changes:
+        for name, triples in change.added.items():
+            added[name] = added.get(name, frozenset()) | triples
+        for name, triples in change.removed.items():
+            removed[name] = removed.get(name, frozenset()) | triples
+    return Change(added, removed, tuple(chain.from_iterable(change.statements for change in changes)))
 
 
-def departing(store: ox.Store, lesson: str, inferred: Iterable[ox.Triple] | None) -> Change:
-    """The change that forgetting a lesson makes; with None the inferred graph stays as it is."""
-    come, gone = ([], []) if inferred is None else _inferred(store, inferred)
-    removed, statements = {GraphName.INFERRED: frozenset(gone)}, []
+def arriving(store: ox.Store, lesson: str, said: Mapping[GraphName, Sequence[ox.Triple]]) -> Change:
+    """The change that a new lesson makes, but for what follows from it."""
+    added = {name: frozenset(triples) for name, triples in said.items()}
+    return Change(added=added, statements=tuple(ledger.arrival(store, lesson, said)))
+
+
+def departing(store: ox.Store, lesson: str) -> Change:
+    """The change that forgetting a lesson makes, but for what followed from it."""
+    removed: dict[GraphName, frozenset[ox.Triple]] = {}
+    statements: list[str] = []
     for name, triples in ledger.copies(store, lesson).items():
         copy = lesson_graph(lesson, name)
         only = ledger.only_of(store, copy, name, triples)
         removed[name] = frozenset(only)
         statements += [*ledger.deletion(graph_iri(name), only), f"DROP SILENT GRAPH {copy}"]
-    return Change({GraphName.INFERRED: frozenset(come)}, removed, (*statements, *_replacing(come, gone)))
+    return Change({}, removed, tuple(statements))
 
 
 def concluding(store: ox.Store, inferred: Iterable[ox.Triple]) -> Change:
-    """The change that only replaces the inferred graph."""
-    come, gone = _inferred(store, inferred)
-    removed = {GraphName.INFERRED: frozenset(gone)}
-    return Change({GraphName.INFERRED: frozenset(come)}, removed, tuple(_replacing(come, gone)))
-
-
-def _inferred(store: ox.Store, triples: Iterable[ox.Triple]) -> tuple[list[ox.Triple], list[ox.Triple]]:
-    """What comes to the inferred graph and what goes, so that it holds just these triples."""
-    old = set(ledger.triples_in(store, graph_iri(GraphName.INFERRED)))
-    new = set(ledger.as_stored(named("inferred", triples)))
-    return sorted(new - old, key=str), sorted(old - new, key=str)
-
-
-def _replacing(come: Iterable[ox.Triple], gone: Iterable[ox.Triple]) -> Iterable[str]:
+    """The change that replaces the inferred graph."""
     graph = graph_iri(GraphName.INFERRED)
-    return chain(ledger.deletion(graph, gone), ledger.insertion(graph, come))
+    gone, come = ledger.difference(store, graph, named("inferred", inferred))
+    statements = (*ledger.deletion(graph, gone), *ledger.insertion(graph, come))
+    return Change({GraphName.INFERRED: frozenset(come)}, {GraphName.INFERRED: frozenset(gone)}, statements)
+
+
+def modelling(store: ox.Store, models: Models) -> Change:
+    """The change that replaces sets of learned models."""
+    return together(*(_modelling(store, models_graph(which), triples) for which, triples in models.items()))
+
+
+def _modelling(store: ox.Store, copy: ox.NamedNode, triples: Iterable[ox.Triple]) -> Change:
+    gone, come = ledger.difference(store, copy, triples)
+    only = ledger.only_of(store, copy, GraphName.LEARNED, gone)
+    return Change(
+        {GraphName.LEARNED: frozenset(come)},
+        {GraphName.LEARNED: frozenset(only)},
+        tuple(ledger.replacement(store, copy, GraphName.LEARNED, gone, come)),
+    )
 
 
 def incoming(lesson: str, contributions: Mapping[GraphName, Iterable[ox.Triple]]) -> dict[GraphName, list[ox.Triple]]:

@@ -19,11 +19,14 @@ from deixis.memory.graphs import (
     LOADED,
     PACKAGE,
     GraphName,
+    ModelSet,
     copied_graph,
     graph_iri,
     lesson_graph,
     lesson_of_graph,
     loaded_graph,
+    models_graph,
+    models_of_graph,
     package_graph,
 )
 from deixis.memory.rdf_files import read_quads
@@ -49,6 +52,7 @@ class Dump:
     lessons: dict[str, Graphs] = field(default_factory=lambda: defaultdict(_graphs))
     package: Graphs = field(default_factory=_graphs)
     loaded: Graphs = field(default_factory=_graphs)
+    models: dict[ModelSet, set[ox.Triple]] = field(default_factory=lambda: defaultdict(set))
 
     def quads(self) -> Iterator[ox.Quad]:
         """Everything, as a new memory stores it."""
@@ -58,14 +62,18 @@ class Dump:
             for name, triples in graphs.items():
                 yield from _in(lesson_graph(lesson, name), triples)
                 yield from _in(graph_iri(name), triples)
+        for which, triples in self.models.items():
+            yield from _in(models_graph(which), triples)
+            yield from _in(graph_iri(GraphName.LEARNED), triples)
         for kept, graph_of in ((self.package, package_graph), (self.loaded, loaded_graph)):
             for name, triples in kept.items():
                 yield from _in(graph_of(name), triples)
                 yield from _in(graph_iri(name), triples)
 
     def loose(self, name: GraphName) -> set[ox.Triple]:
-        """What a canonical graph holds that no lesson and not the package contributed."""
+        """What a canonical graph holds that no lesson, no learned model and not the package contributed."""
         held = [self.package[name], *(graphs[name] for graphs in self.lessons.values())]
+        held += self.models.values() if name is GraphName.LEARNED else ()
         return self.canonical[name].difference(*held) | self.loaded[name]
 
 
@@ -100,6 +108,9 @@ def _place(dump: Dump, file: Path, graph: str) -> set[ox.Triple]:
     lesson = lesson_of_graph(graph)
     if lesson is not None:
         return dump.lessons[lesson[0]][name]
+    models = models_of_graph(graph)
+    if models is not None:
+        return dump.models[models]
     kept = dump.package if graph.startswith(PACKAGE) else dump.loaded if graph.startswith(LOADED) else dump.canonical
     return kept[name]
 

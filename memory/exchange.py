@@ -8,7 +8,7 @@ from pathlib import Path
 import pyoxigraph as ox
 
 from deixis.memory import ledger
-from deixis.memory.change import Change
+from deixis.memory.change import Change, modelling, together
 from deixis.memory.dump import Dump, read_dump
 from deixis.memory.errors import ImportFormatError, RejectedWriteError
 from deixis.memory.folder import State, inspect
@@ -49,8 +49,9 @@ def import_dump(file: str | Path, target: str | Path) -> None:
     """Takes a file into a memory, all of it or nothing.
 
     A TriG or N-Quads file that export wrote gives the same graphs back; into a memory that holds something it is
-    merged, lesson by lesson. Plain triples (Turtle, N-Triples, RDF/XML) become a lesson named after the file. Raises
-    ImportFormatError for what cannot be read, RejectedWriteError for what breaks the shapes or another lesson.
+    merged, lesson by lesson; learned models are taken where it has none. Plain triples (Turtle, N-Triples, RDF/XML)
+    become a lesson named after the file. Raises ImportFormatError for what cannot be read, RejectedWriteError for what
+    breaks the shapes or another lesson.
     """
     file, target = Path(file), Path(target)
     dump = read_dump(file)
@@ -94,7 +95,9 @@ def _merged(memory: SemanticMemory, dump: Dump, file: Path) -> Change:
     for name, graph, loose in _loose(store, dump):
         statements += ledger.insertion(graph, sorted(loose, key=str))
         added[name].update(loose)
-    return Change({name: frozenset(triples) for name, triples in added.items()}, {}, tuple(statements))
+    lessons = Change({name: frozenset(triples) for name, triples in added.items()}, {}, tuple(statements))
+    new = {which: sorted(triples, key=str) for which, triples in dump.models.items() if not memory.models(which)}
+    return together(lessons, modelling(store, new))
 
 
 def _loose(store: ox.Store, dump: Dump) -> Iterator[tuple[GraphName, ox.NamedNode, set[ox.Triple]]]:

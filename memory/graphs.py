@@ -3,7 +3,8 @@
 The six canonical graphs are what is known. Beside them stands, for every lesson and graph, a copy of what that lesson
 contributed, and for the packaged ontology and shapes likewise: a triple may go when nobody's copy holds it any more.
 What was loaded in bulk belongs to no lesson and stands in the canonical graph alone; of a triple that a lesson
-contributes too, a copy under ``loaded`` says that it stays when the lesson goes.
+contributes too, a copy under ``loaded`` says that it stays when the lesson goes. Learned models, which all lessons
+teach together, have copies of their own under ``models``, and are replaced as a whole.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ GRAPHS = "https://w3id.org/deixis/graph/"
 LESSONS = GRAPHS + "lesson/"
 PACKAGE = GRAPHS + "package/"
 LOADED = GRAPHS + "loaded/"
+MODELS = GRAPHS + "models/"
 
 
 class GraphName(StrEnum):
@@ -32,6 +34,13 @@ class GraphName(StrEnum):
     INFERRED = "inferred"
     LEARNED = "learned"
     EPISODES = "episodes"
+
+
+class ModelSet(StrEnum):
+    """What all lessons together teach: the meaning of relation words, and the sizes of kinds of things."""
+
+    WORDS = "words"
+    SIZES = "sizes"
 
 
 CONTRIBUTED = tuple(name for name in GraphName if name is not GraphName.INFERRED)
@@ -72,6 +81,21 @@ def loaded_graph(name: GraphName) -> ox.NamedNode:
     return ox.NamedNode(LOADED + name)
 
 
+def models_graph(models: ModelSet) -> ox.NamedNode:
+    """The graph that holds a set of models as the learned graph has it.
+
+    >>> models_graph(ModelSet.SIZES).value
+    'https://w3id.org/deixis/graph/models/sizes'
+    """
+    return ox.NamedNode(MODELS + models)
+
+
+def models_of_graph(iri: str) -> ModelSet | None:
+    """The set of models that a copy's IRI names, or None where it names none."""
+    name = iri.removeprefix(MODELS)
+    return ModelSet(name) if iri.startswith(MODELS) and name in list(ModelSet) else None
+
+
 def lesson_of_graph(iri: str) -> tuple[str, GraphName] | None:
     """The lesson and the graph that a copy's IRI names, or None where it names none.
 
@@ -89,10 +113,12 @@ def lesson_of_graph(iri: str) -> tuple[str, GraphName] | None:
 
 
 def copied_graph(iri: str) -> GraphName | None:
-    """The canonical graph that a copy, of a lesson or the package or loaded, contributes to; None for no copy."""
+    """The canonical graph that a copy, of a lesson, models, the package or loaded, contributes to; None for no copy."""
     found = lesson_of_graph(iri)
     if found:
         return found[1]
+    if models_of_graph(iri):
+        return GraphName.LEARNED
     for base in (PACKAGE, LOADED):
         name = iri.removeprefix(base)
         if iri.startswith(base) and name in CONTRIBUTED:

@@ -95,12 +95,26 @@ def package_update(store: ox.Store, packaged: Contributions) -> Iterator[str]:
     """The operations that bring the packaged ontology and shapes up to date; none where they are."""
     for name, triples in packaged.items():
         copy = package_graph(name)
-        old, new = set(triples_in(store, copy)), set(as_stored(triples))
-        gone, come = sorted(old - new, key=str), sorted(new - old, key=str)
-        yield from deletion(graph_iri(name), only_of(store, copy, name, gone))
-        yield from deletion(copy, gone)
-        yield from insertion(graph_iri(name), come)
-        yield from insertion(copy, come)
+        gone, come = difference(store, copy, triples)
+        yield from replacement(store, copy, name, gone, come)
+
+
+def difference(
+    store: ox.Store, graph: ox.NamedNode, triples: Iterable[ox.Triple]
+) -> tuple[list[ox.Triple], list[ox.Triple]]:
+    """What must go from a graph, and what must come, so that it holds just these triples."""
+    old, new = set(triples_in(store, graph)), set(as_stored(triples))
+    return sorted(old - new, key=str), sorted(new - old, key=str)
+
+
+def replacement(
+    store: ox.Store, copy: ox.NamedNode, name: GraphName, gone: Sequence[ox.Triple], come: Sequence[ox.Triple]
+) -> Iterator[str]:
+    """The operations that exchange triples of a copy and of the canonical graph that it contributes to."""
+    yield from deletion(graph_iri(name), only_of(store, copy, name, gone))
+    yield from deletion(copy, gone)
+    yield from insertion(graph_iri(name), come)
+    yield from insertion(copy, come)
 
 
 def as_stored(triples: Iterable[ox.Triple]) -> list[ox.Triple]:

@@ -16,9 +16,9 @@ from typing import TYPE_CHECKING
 import pyoxigraph as ox
 
 from deixis.memory import ledger
-from deixis.memory.change import Change, arriving, concluding, departing, incoming
+from deixis.memory.change import Change, Models, arriving, concluding, departing, incoming, modelling, together
 from deixis.memory.errors import MemoryFormatError, RejectedWriteError, UnknownLessonError
-from deixis.memory.graphs import GraphName, graph_iri
+from deixis.memory.graphs import GraphName, ModelSet, graph_iri, models_graph
 from deixis.memory.merged import default_graph, merging
 from deixis.memory.opening import Opened, open_memory
 from deixis.memory.stats import MemoryStats, count
@@ -80,40 +80,69 @@ class SemanticMemory:
         return self._opened
 
     def learn(
-        self, lesson: str, contributions: Mapping[GraphName, Sequence[ox.Triple]], inferred: Sequence[ox.Triple]
+        self,
+        lesson: str,
+        contributions: Mapping[GraphName, Sequence[ox.Triple]],
+        inferred: Sequence[ox.Triple],
+        models: Models | None = None,
     ) -> None:
-        """Writes a lesson, and what now follows from everything, in one step.
+        """Writes a lesson, and what now follows from everything, in one step; see :meth:`learn_all`."""
+        self.learn_all({lesson: contributions}, inferred, models)
 
-        ``inferred`` replaces the inferred graph. Blank nodes become names. Raises RejectedWriteError, having written
-        nothing, where the lesson is known already, says nothing, or would break the shapes.
+    def learn_all(
+        self,
+        lessons: Mapping[str, Mapping[GraphName, Sequence[ox.Triple]]],
+        inferred: Sequence[ox.Triple],
+        models: Models | None = None,
+    ) -> None:
+        """Writes lessons, and what now follows from everything, in one step.
+
+        ``inferred`` replaces the inferred graph, ``models`` the sets of models that are given. Blank nodes become
+        names. Raises RejectedWriteError, having written nothing, where a lesson is known already, says nothing, or
+        would break the shapes.
         """
-        if lesson in self.lessons():
-            raise RejectedWriteError(f"lesson '{lesson}' is known already: forget it first, or choose another name")
-        said = incoming(lesson, contributions)
-        if not any(said.values()):
-            raise RejectedWriteError(f"lesson '{lesson}' says nothing: give at least one triple")
-        self.commit(arriving(self.store, lesson, said, inferred))
+        changes, known = [], self.lessons()
+        for lesson, contributions in lessons.items():
+            if lesson in known:
+                raise RejectedWriteError(f"lesson '{lesson}' is known already: forget it first, or choose another name")
+            said = incoming(lesson, contributions)
+            if not any(said.values()):
+                raise RejectedWriteError(f"lesson '{lesson}' says nothing: give at least one triple")
+            changes.append(arriving(self.store, lesson, said))
+        self.commit(together(*changes, concluding(self.store, inferred), modelling(self.store, models or {})))
 
-    def forget(self, lesson: str, inferred: Sequence[ox.Triple]) -> None:
-        """Takes back what only this lesson contributed, and replaces the inferred graph, in one step.
+    def forget(self, lesson: str, inferred: Sequence[ox.Triple], models: Models | None = None) -> None:
+        """Takes back what only this lesson contributed, and replaces the inferred graph and models, in one step.
 
         Raises UnknownLessonError, naming the nearest one, where there is no such lesson; RejectedWriteError where
         something that stays depends on what would go.
         """
         self._known(lesson)
-        self.commit(departing(self.store, lesson, inferred))
+        gone = departing(self.store, lesson)
+        self.commit(together(gone, concluding(self.store, inferred), modelling(self.store, models or {})))
 
-    def conclude(self, inferred: Sequence[ox.Triple]) -> None:
-        """Replaces the inferred graph, in one step."""
-        change = concluding(self.store, inferred)
+    def conclude(self, inferred: Sequence[ox.Triple], models: Models | None = None) -> None:
+        """Replaces the inferred graph, and the models that are given, in one step."""
+        change = together(concluding(self.store, inferred), modelling(self.store, models or {}))
         if change.statements:
             self.commit(change)
+
+    def keep_models(self, models: Models) -> None:
+        """Replaces the sets of learned models that are given, in one step; an empty set takes them away."""
+        change = modelling(self.store, models)
+        if change.statements:
+            self.commit(change)
+
+    def models(self, which: ModelSet) -> list[ox.Triple]:
+        """The triples of a set of learned models."""
+        with reading(self.path):
+            return list(ledger.triples_in(self.store, models_graph(which)))
 
     def remaining(self, lesson: str) -> dict[GraphName, list[ox.Triple]]:
         """What the canonical graphs would hold without that lesson; raises UnknownLessonError where there is none."""
         self._known(lesson)
         with reading(self.path):
-            gone = departing(self.store, lesson, None).removed
+            gone = departing(self.store, lesson).removed
             return {
                 name: [triple for triple in self.triples(name) if triple not in gone.get(name, frozenset())]
                 for name in GraphName

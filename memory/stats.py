@@ -22,6 +22,8 @@ class MemoryStats:
     layouts: int
     categories: int
     scenes: int
+    relation_models: int
+    size_models: int
     bytes: int
     version: int
 
@@ -39,6 +41,8 @@ def count(store: ox.Store, folder: Path, lessons: int) -> MemoryStats:
             f"FILTER NOT EXISTS {{ GRAPH {learned} {{ ?x <{W3C.RDFS_SUB_CLASS_OF}> <{DX.LAYOUT}> }} }} }}",
         ),
         scenes=_number(store, f"{{ GRAPH {asserted} {{ ?x a <{DX.SCENE}> }} }}"),
+        relation_models=_number(store, f"{{ GRAPH {learned} {{ ?x a <{DX.RELATION_MODEL}> }} }}"),
+        size_models=_number(store, f"{{ GRAPH {learned} {{ ?x a <{DX.SIZE_MODEL}> }} }}"),
         bytes=size(folder),
         version=VERSION,
     )

@@ -6,17 +6,19 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import datetime
 
+from deixis.ontology.colours import Rgb
 from deixis.ontology.graph import Fact, RelationGraph
 from deixis.ontology.relation import Relation, Relations
 
 
 @dataclass(frozen=True, slots=True)
 class Role:
-    """A place in a layout: its name, the class IRI of what fills it, and whether the script declared that."""
+    """A place in a layout: its name, the class IRI of what fills it, whether that was declared, and a colour's IRI."""
 
     name: str
     kind: str | None = None
     declared: bool = False
+    colour: str | None = None
 
 
 @dataclass(frozen=True)
@@ -34,29 +36,51 @@ class LayoutConcept:
     def graph(self, vocabulary: Relations) -> RelationGraph:
         """The layout as a relation graph over its roles."""
         names = [role.name for role in self.roles]
-        return RelationGraph.from_facts(vocabulary, names, self.facts, kinds=[role.kind for role in self.roles])
+        kinds, colours = ([role.kind for role in self.roles], [role.colour for role in self.roles])
+        return RelationGraph.from_facts(
+            vocabulary, names, self.facts, kinds=kinds, colours=colours if any(colours) else ()
+        )
 
 
 @dataclass(frozen=True, slots=True)
 class MatchRecord:
-    """What a lesson found to fill a role. ``perceived`` is None where nothing did; ``could_be`` are as good."""
+    """What a lesson found to fill a role. ``perceived`` is None where that is not decided.
+
+    ``could_be`` are then what it may be, and ``likeliest`` the one of them that goes best with all other matches.
+    ``probability`` is that of ``perceived`` or ``likeliest``; None where the engine gave none.
+    """
 
     role: str
     perceived: str | None
     decided: bool
     score: float
     could_be: tuple[str, ...] = ()
+    probability: float | None = None
+    likeliest: str | None = None
+
+    @property
+    def taken(self) -> str | None:
+        """What the role is best taken for; None where nothing is known to fill it."""
+        return self.perceived if self.perceived is not None else self.likeliest
+
+    @property
+    def sureness(self) -> float:
+        """How sure that is, 0 to 1: the probability; without one 1, or an equal share among what it could be."""
+        if self.probability is not None:
+            return self.probability
+        return 1.0 if self.perceived is not None else 1.0 / max(len(self.could_be), 1)
 
 
 @dataclass(frozen=True, slots=True)
 class SeenObject:
-    """A perceived object as a lesson keeps it; corners of 2 or 3 coordinates."""
+    """A perceived object as a lesson keeps it; corners of 2 or 3 coordinates, the colour in sRGB."""
 
     id: str
     minimum: tuple[float, ...]
     maximum: tuple[float, ...]
     label: str | None = None
     confidence: float = 1.0
+    colour: Rgb | None = None
 
 
 @dataclass(frozen=True)
@@ -93,6 +117,22 @@ class Lesson:
     def categories(self) -> tuple[MatchRecord, ...]:
         """The matches that teach a category: decided ones; what is doubtful or interchangeable teaches nothing."""
         return tuple(match for match in self.matches if match.decided and match.perceived is not None)
+
+
+@dataclass(frozen=True)
+class WordLesson:
+    """What a script and a scene whose labels name its things teach: words and sizes, and no layout."""
+
+    id: str
+    scene: SceneRecord
+    started: datetime
+    ended: datetime
+    version: str
+    script_file: str
+    script_text: str
+    scene_text: str
+    engine: str = "labels"
+    proved_best: bool = False
 
 
 def next_lesson_id(name: str, known: Sequence[str]) -> str:

@@ -44,7 +44,8 @@ _INTRODUCTION = """\
 Its IRI is <{iri}>, its prefix `dx:` stands for <{base}>, its licence is <{license}>. Alignments to SOMA and DUL, SOSA
 and SSN, GeoSPARQL and IEEE 1872 are files of their own in `ontology/alignments/`; the ontology imports nothing.
 
-Add a word that scripts may use for a relation, a hedge or a kind of thing: add a `skos:altLabel` to its term."""
+Add a word that scripts may use for a relation, a hedge, a kind of thing or a colour: add a `skos:altLabel` to its
+term."""
 
 _WIDE = """\
 ## Relations, the wide reading
@@ -65,6 +66,12 @@ _SIZES = """\
 How large things usually are, in centimetres: least, typical, greatest. The length is the longer side of the outline,
 seen from above, the width the shorter one; of a circle both are the diameter. A kind of which nothing stands here is as
 large as the nearest broader one that does."""
+
+_COLOURS = """\
+## Colours
+
+What people call by a word: the middle of it in sRGB, and the covariance around that in CIELAB (LL, La, Lb, aa, ab, bb;
+white point D65)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,6 +127,7 @@ def term_document(turtle: str) -> str:
         _SIZES,
         _sizes(own),
         _hedges(own),
+        _colours(own),
         _other_classes(own),
         *(_properties(title, kind, own, terms) for title, kind in _PROPERTIES.items()),
         _individuals(own),
@@ -236,6 +244,18 @@ def _hedges(own: Iterable[Term]) -> str:
     return "## Hedges\n\n" + _table(("weight", "words", "term", "definition"), rows)
 
 
+def _colours(own: Iterable[Term]) -> str:
+    rows = [
+        (
+            *(", ".join(term.words), _code(term.iri), _definition(term)),
+            *(term.value(DX.PROTOTYPE), term.value(DX.SPREAD), _source(term)),
+        )
+        for term in own
+        if term.is_a(DX.COLOUR)
+    ]
+    return f"{_COLOURS}\n\n" + _table(("words", "term", "definition", "prototype", "spread", "source"), rows)
+
+
 def _other_classes(own: list[Term]) -> str:
     """The classes that are no kind of thing."""
     shown = "\n".join(_tree(DX.THING, own))
@@ -275,9 +295,9 @@ def _union(value: str, terms: Terms) -> list[str]:
 
 
 def _individuals(own: Iterable[Term]) -> str:
-    rows = []
+    rows, shown_above = [], (DX.ALLEN_RELATION, DX.HEDGE, DX.COLOUR)
     for term in own:
-        if term.is_a(_OWL + "NamedIndividual") and not (term.is_a(DX.ALLEN_RELATION) or term.is_a(DX.HEDGE)):
+        if term.is_a(_OWL + "NamedIndividual") and not any(map(term.is_a, shown_above)):
             kinds = [kind for kind in term.values(W3C.RDF_TYPE) if kind.startswith(BASE)]
             rows.append((", ".join(term.words), _code(term.iri), ", ".join(map(_code, kinds)), _definition(term)))
     return "## Other individuals\n\n" + _table(("individual", "term", "of class", "definition"), rows)

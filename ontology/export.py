@@ -41,6 +41,8 @@ def graph_to_dict(graph: RelationGraph) -> dict[str, Any]:
         node: dict[str, Any] = {"id": name}
         if graph.kinds and graph.kinds[i] is not None:
             node["kind"] = graph.kinds[i]
+        if graph.colours and graph.colours[i] is not None:
+            node["colour"] = graph.colours[i]
         if graph.boxes is not None:
             node |= {"min": graph.boxes[i, 0].tolist(), "max": graph.boxes[i, 1].tolist()}
         nodes.append(node)
@@ -64,13 +66,19 @@ def graph_from_dict(data: Mapping[str, Any], vocabulary: Relations) -> RelationG
             vocabulary,
             [node["id"] for node in nodes],
             facts,
-            kinds=[node.get("kind") for node in nodes] if any("kind" in node for node in nodes) else (),
+            kinds=_of_nodes("kind", nodes),
+            colours=_of_nodes("colour", nodes),
             boxes=np.array([[node["min"], node["max"]] for node in nodes], dtype=float) if boxed else None,
         )
     except GraphError:
         raise
     except (KeyError, TypeError, AttributeError, ValueError) as error:
         raise GraphError(f"this is no relation graph as Deixis writes it: {error}") from error
+
+
+def _of_nodes(key: str, nodes: Sequence[Mapping[str, Any]]) -> list[str | None]:
+    """What each node has under a key; empty where none has it."""
+    return [node.get(key) for node in nodes] if any(key in node for node in nodes) else []
 
 
 def _fact_from_dict(entry: Mapping[str, Any], vocabulary: Relations) -> Fact:
@@ -113,7 +121,9 @@ def graph_to_turtle(graph: RelationGraph, base: str = GRAPH_BASE) -> str:
     lines.append("")
     for i, name in enumerate(graph.nodes):
         kind = (graph.kinds[i] if graph.kinds else None) or DX.THING
-        lines.append(f"{_iri(base, name)} a <{quote(kind, safe=IRI_SIGNS)}> ; rdfs:label {_literal(name)} .")
+        colour = graph.colours[i] if graph.colours else None
+        coloured = f" ; {_dx(DX.OF_COLOUR)} <{quote(colour, safe=IRI_SIGNS)}>" if colour else ""
+        lines.append(f"{_iri(base, name)} a <{quote(kind, safe=IRI_SIGNS)}> ; rdfs:label {_literal(name)}{coloured} .")
     for number, fact in enumerate(graph.facts()):
         lines.append("")
         lines.append(f"<{base}fact/{number + 1}> a {_dx(DX.RELATION_STATEMENT)} ;")

@@ -88,6 +88,7 @@ class RelationGraph:
     weights: NDArray[np.float64]  # (m,)
     sources: tuple[Source | None, ...] = ()  # (m,), or empty where no edge has one
     kinds: tuple[str | None, ...] = ()  # (n,) class IRIs, or empty
+    colours: tuple[str | None, ...] = ()  # (n,) IRIs of described colours, or empty
     boxes: NDArray[np.float64] | None = None  # (n, 2, d): least and greatest corner, metres
     _index: dict[str, int] = field(init=False, repr=False)
 
@@ -101,8 +102,8 @@ class RelationGraph:
         arrays = (self.objects, self.relation_sets, self.positive, self.optional, self.weights)
         if any(len(array) != m for array in arrays) or len(self.sources) not in (0, m):
             raise GraphError("the edge arrays differ in length")
-        if len(self.kinds) not in (0, len(self.nodes)):
-            raise GraphError("there must be one kind a node, or none at all")
+        if len(self.kinds) not in (0, len(self.nodes)) or len(self.colours) not in (0, len(self.nodes)):
+            raise GraphError("there must be one kind a node, or none at all, and so with colours")
         if self.boxes is not None and len(self.boxes) != len(self.nodes):
             raise GraphError("there must be one box a node, or none at all")
 
@@ -114,6 +115,7 @@ class RelationGraph:
         facts: Iterable[Fact],
         kinds: Sequence[str | None] = (),
         boxes: NDArray[np.float64] | None = None,
+        colours: Sequence[str | None] = (),
     ) -> RelationGraph:
         """The graph of these facts; raises GraphError where one names an object that is no node."""
         index = {name: i for i, name in enumerate(nodes)}
@@ -133,6 +135,7 @@ class RelationGraph:
             weights=np.array([f.weight for f in listed], dtype=np.float64),
             sources=tuple(f.source for f in listed),
             kinds=tuple(kinds),
+            colours=tuple(colours),
             boxes=boxes,
         )
 
@@ -180,6 +183,7 @@ class RelationGraph:
             weights=self.weights[edges],
             sources=tuple(self.sources[e] for e in edges) if self.sources else (),
             kinds=tuple(self.kinds[i] for i in keep) if self.kinds else (),
+            colours=tuple(self.colours[i] for i in keep) if self.colours else (),
             boxes=None if self.boxes is None else self.boxes[keep],
         )
 
@@ -190,7 +194,8 @@ class RelationGraph:
         graph: nx.MultiDiGraph[Any] = nx.MultiDiGraph()
         for i, name in enumerate(self.nodes):
             box = None if self.boxes is None else self.boxes[i].tolist()
-            graph.add_node(name, kind=self.kinds[i] if self.kinds else None, box=box)
+            kind, colour = (known[i] if known else None for known in (self.kinds, self.colours))
+            graph.add_node(name, kind=kind, colour=colour, box=box)
         for fact in self.facts():
             graph.add_edge(
                 fact.subject,

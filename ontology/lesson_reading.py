@@ -63,7 +63,8 @@ def _in_order(parts: list[str], index: TripleIndex) -> list[str]:
 
 
 def _role(role: str, index: TripleIndex) -> Role:
-    return Role(last_part(role), index.value(role, DX.OF_KIND), index.value(role, DX.KIND_DECLARED) == "true")
+    declared = index.value(role, DX.KIND_DECLARED) == "true"
+    return Role(last_part(role), index.value(role, DX.OF_KIND), declared, index.value(role, DX.OF_COLOUR))
 
 
 def _fact(fact: str, index: TripleIndex, by_iri: dict[str, Relation]) -> Fact:

@@ -6,7 +6,8 @@ from collections.abc import Iterator
 
 import pyoxigraph as ox
 
-from deixis.ontology.concepts import LayoutConcept, Lesson, MatchRecord, Role, SeenObject
+from deixis.ontology.colours import hex_of_rgb
+from deixis.ontology.concepts import LayoutConcept, Lesson, MatchRecord, Role, SeenObject, WordLesson
 from deixis.ontology.graph import Fact
 from deixis.ontology.iris import content_key, learned_iri
 from deixis.ontology.rdf import Description, decimal, iri, text, typed
@@ -32,7 +33,7 @@ def learned_triples(lesson: Lesson, relations: Relations) -> Iterator[ox.Triple]
         yield from _category(match.role, kinds.get(match.role), lesson)
 
 
-def asserted_triples(lesson: Lesson) -> Iterator[ox.Triple]:
+def asserted_triples(lesson: Lesson | WordLesson) -> Iterator[ox.Triple]:
     """The scene: its objects with their boxes, the exact relations between them, and what the decided ones are."""
     record, scene = lesson.scene, scene_iri(lesson)
     about = Description(scene)
@@ -46,15 +47,17 @@ def asserted_triples(lesson: Lesson) -> Iterator[ox.Triple]:
         yield from _seen(lesson, seen)
     for subject, relation, object in record.relations:
         yield ox.Triple(iri(thing_iri(lesson, subject)), iri(relation.iri), iri(thing_iri(lesson, object)))
-    for match in lesson.categories():
+    for match in lesson.categories() if isinstance(lesson, Lesson) else ():
         category = learned_iri("category", match.role)
         yield ox.Triple(iri(thing_iri(lesson, match.perceived or "")), iri(W3C.RDF_TYPE), iri(category))
 
 
-def episode_triples(lesson: Lesson) -> Iterator[ox.Triple]:
+def episode_triples(lesson: Lesson | WordLesson) -> Iterator[ox.Triple]:
     """When, from what, and by what the lesson was learned."""
     about = Description(lesson_iri(lesson.id))
     about.say(W3C.RDF_TYPE, iri(DX.LESSON))
+    if isinstance(lesson, WordLesson):
+        about.say(W3C.RDF_TYPE, iri(DX.WORD_LESSON))
     about.say(W3C.RDFS_LABEL, text(lesson.id))
     about.say(PROV.STARTED_AT_TIME, typed(lesson.started))
     about.say(PROV.ENDED_AT_TIME, typed(lesson.ended))
@@ -96,12 +99,17 @@ def fact_iri(lesson: str, position: int) -> str:
     return learned_iri("layout", lesson, "fact", position)
 
 
-def scene_iri(lesson: Lesson) -> str:
+def scene_iri(lesson: Lesson | WordLesson) -> str:
     """Named by its content, so that two lessons from one scene speak of the same things."""
-    return learned_iri("scene", content_key(lesson.scene_text))
+    return scene_text_iri(lesson.scene_text)
 
 
-def thing_iri(lesson: Lesson, id: str) -> str:
+def scene_text_iri(scene_text: str) -> str:
+    """The scene that a lesson's text of it describes."""
+    return learned_iri("scene", content_key(scene_text))
+
+
+def thing_iri(lesson: Lesson | WordLesson, id: str) -> str:
     return learned_iri("scene", content_key(lesson.scene_text), id)
 
 
@@ -149,6 +157,8 @@ def _role(layout: LayoutConcept, role: Role, position: int) -> Iterator[ox.Tripl
     about.say(PROV.WAS_DERIVED_FROM, iri(script_iri(layout.lesson)))
     if role.kind:
         about.say(DX.OF_KIND, iri(role.kind))
+    if role.colour:
+        about.say(DX.OF_COLOUR, iri(role.colour))
     for group in layout.interchangeable:
         if role.name in group:
             others = (iri(role_iri(layout.lesson, other)) for other in group if other != role.name)
@@ -181,10 +191,14 @@ def _match(lesson: Lesson, match: MatchRecord) -> Iterator[ox.Triple]:
     about.say(DX.OF_ROLE, iri(role_iri(lesson.id, match.role)))
     about.say(DX.DECIDED, typed(match.decided))
     about.say(DX.SCORE, decimal(match.score))
+    if match.probability is not None:
+        about.say(DX.PROBABILITY, decimal(match.probability))
     about.say(PROV.WAS_GENERATED_BY, iri(lesson_iri(lesson.id)))
     if match.perceived is not None:
         about.say(DX.PERCEIVED_AS, iri(thing_iri(lesson, match.perceived)))
     about.say(DX.COULD_BE, *(iri(thing_iri(lesson, other)) for other in match.could_be))
+    if match.likeliest is not None:
+        about.say(DX.LIKELIEST, iri(thing_iri(lesson, match.likeliest)))
     if match.decided and match.perceived is not None:
         about.say(DX.CATEGORY, iri(learned_iri("category", match.role)))
     return iter(about)
@@ -199,7 +213,7 @@ def _category(name: str, kind: str | None, lesson: Lesson) -> Iterator[ox.Triple
     return iter(about)
 
 
-def _seen(lesson: Lesson, seen: SeenObject) -> Iterator[ox.Triple]:
+def _seen(lesson: Lesson | WordLesson, seen: SeenObject) -> Iterator[ox.Triple]:
     about = Description(thing_iri(lesson, seen.id))
     about.say(W3C.RDF_TYPE, iri(DX.PERCEIVED_OBJECT))
     about.say(DX.IN_SCENE, iri(scene_iri(lesson)))
@@ -210,4 +224,6 @@ def _seen(lesson: Lesson, seen: SeenObject) -> Iterator[ox.Triple]:
     if seen.label is not None:
         about.say(DX.PERCEIVED_LABEL, text(seen.label))
         about.say(DX.CONFIDENCE, decimal(seen.confidence))
+    if seen.colour is not None:
+        about.say(DX.PERCEIVED_COLOUR, text(hex_of_rgb(seen.colour)))
     return iter(about)

@@ -9,6 +9,8 @@ from decimal import Decimal
 
 import pyoxigraph as ox
 
+from deixis.ontology.errors import OntologyError
+
 XSD = "http://www.w3.org/2001/XMLSchema#"
 
 
@@ -73,6 +75,13 @@ class TripleIndex:
     def value(self, subject: str, predicate: str) -> str | None:
         """The first value, or None."""
         return next(iter(self.values(subject, predicate)), None)
+
+    def only(self, subject: str, predicate: str) -> str:
+        """The one value; raises OntologyError where there is none, or several."""
+        found = self.values(subject, predicate)
+        if len(found) != 1:
+            raise OntologyError(f"<{subject}> must have exactly one <{predicate}>, and has {len(found)}")
+        return found[0]
 
     def subjects(self, predicate: str, value: str) -> list[str]:
         return sorted(self._subjects.get((str(predicate), str(value)), ()))

@@ -55,12 +55,17 @@ class Term:
 
 @dataclass(frozen=True, slots=True)
 class Provenance:
-    """What a model was made from: ``examples`` facts of ``sources`` (scenes or lessons), when, and by what version."""
+    """What a model was made from: ``examples`` facts of ``sources`` (files) and ``lessons`` (ids), when, and by what.
+
+    ``version`` is that of Deixis, ``strength`` that of the prior, the shipped models; None where it is not known.
+    """
 
     sources: tuple[str, ...] = ()
     examples: float = 0.0
     made: datetime | None = None
     version: str = ""
+    lessons: tuple[str, ...] = ()
+    strength: float | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from collections import defaultdict
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 
+from deixis.ontology.colours import Colour, Colours, colours_from_triples
 from deixis.ontology.errors import OntologyError
 from deixis.ontology.kinds import Kind, Kinds
 from deixis.ontology.relation import Relation, Relations, relation_from_triples
@@ -55,12 +57,40 @@ class Triples:
 
 @dataclass(frozen=True)
 class Ontology:
-    """What the TBox says, ready for use: relations, kinds of things with their usual sizes, and hedges with weights."""
+    """What the TBox says, ready for use: relations, kinds of things, usual sizes, colours, and hedges with weights."""
 
     relations: Relations
     kinds: Kinds
     hedges: dict[str, float]
     sizes: Sizes
+    colours: Colours
+
+    def quality(self, words: str) -> tuple[Kind | None, Colour | None]:
+        """The kind, the colour, or the kind in a colour that words stand for; a colour too where the rest is no kind.
+
+        What names a kind as a whole says no colour: a red wine glass is no red glass.
+
+        >>> kind, colour = default_ontology().quality("red mug")
+        >>> kind.name, colour.label
+        ('Mug', 'red')
+        >>> kind, colour = default_ontology().quality("red wine glass")
+        >>> kind.name, colour
+        ('RedWineGlass', None)
+        """
+        kind = self.kinds.of_word(words)
+        if kind is not None:
+            return kind, None
+        colour, rest = self.colours.split(words)
+        return (None, self.colours.of_word(words)) if colour is None else (self.kinds.of_word(rest), colour)
+
+    def of_name(self, name: str) -> tuple[Kind | None, Colour | None]:
+        """The kind and the colour that the name of an object stands for, its number aside.
+
+        A name that is a colour's word and no more says none: an orange may be a fruit.
+        """
+        plain = re.sub(r"_\d+$", "", name)
+        kind, colour = self.quality(plain)
+        return (kind, None) if self.colours.of_word(plain) else (kind, colour)
 
 
 def load_ontology(*extra: str) -> Ontology:
@@ -80,7 +110,9 @@ def load_ontology(*extra: str) -> Ontology:
     for text in (TBOX_FILE.read_text(encoding="utf-8"), *extra):
         for subject, predicate, value in _parse(text):
             triples.add(subject, predicate, value)
-    return Ontology(_relations(triples), _kinds(triples), _hedges(triples), sizes_from_triples(triples))
+    return Ontology(
+        _relations(triples), _kinds(triples), _hedges(triples), sizes_from_triples(triples), _colours(triples)
+    )
 
 
 @lru_cache(maxsize=1)
@@ -125,6 +157,12 @@ def _kinds(triples: Triples) -> Kinds:
 
 def _own(triples: Triples) -> frozenset[str]:
     return frozenset(triples.subjects(W3C.RDF_TYPE, W3C.OWL_CLASS))
+
+
+def _colours(triples: Triples) -> Colours:
+    return colours_from_triples(
+        triples, {iri: _words(triples, iri) for iri in triples.subjects(W3C.RDF_TYPE, DX.COLOUR)}
+    )
 
 
 def _hedges(triples: Triples) -> dict[str, float]:

@@ -44,6 +44,7 @@ class DX(StrEnum):
     # classes
     ALLEN_RELATION = BASE + "AllenRelation"
     HEDGE = BASE + "Hedge"
+    COLOUR = BASE + "Colour"
     THING = BASE + "Thing"
     SCENE = BASE + "Scene"
     VIEWPOINT = BASE + "Viewpoint"
@@ -53,6 +54,9 @@ class DX(StrEnum):
     RELATION_STATEMENT = BASE + "RelationStatement"
     # properties
     HEDGE_WEIGHT = BASE + "hedgeWeight"
+    PROTOTYPE = BASE + "prototype"
+    SPREAD = BASE + "spread"
+    OF_COLOUR = BASE + "ofColour"
     SPATIAL_RELATION = BASE + "spatialRelation"
     DIRECTION = BASE + "direction"
     SUPPORT = BASE + "support"
@@ -62,6 +66,7 @@ class DX(StrEnum):
     SEEN_FROM = BASE + "seenFrom"
     IDENTIFIER = BASE + "identifier"
     PERCEIVED_LABEL = BASE + "perceivedLabel"
+    PERCEIVED_COLOUR = BASE + "perceivedColour"
     CONFIDENCE = BASE + "confidence"
     FRAME = BASE + "frame"
     UNIT = BASE + "unit"
@@ -111,6 +116,17 @@ class DX(StrEnum):
     KNOTS = BASE + "knots"
     LOG_DEGREES = BASE + "logDegrees"
     TREND = BASE + "trend"
+    PRIOR_STRENGTH = BASE + "priorStrength"
+    SIZE_MODEL = BASE + "SizeModel"
+    MEDIAN_LENGTH = BASE + "medianLength"
+    LENGTH_DEVIATION = BASE + "lengthDeviation"
+    MEDIAN_ASPECT = BASE + "medianAspect"
+    ASPECT_DEVIATION = BASE + "aspectDeviation"
+    RELATIVE_LENGTH = BASE + "relativeLength"
+    VIEW_COUNT = BASE + "viewCount"
+    WORD_LESSON = BASE + "WordLesson"
+    PROBABILITY = BASE + "probability"
+    LIKELIEST = BASE + "likeliest"
 
 
 class W3C(StrEnum):
@@ -141,6 +157,7 @@ class PROV(StrEnum):
     USED = "http://www.w3.org/ns/prov#used"
     WAS_DERIVED_FROM = "http://www.w3.org/ns/prov#wasDerivedFrom"
     WAS_GENERATED_BY = "http://www.w3.org/ns/prov#wasGeneratedBy"
+    WAS_INFORMED_BY = "http://www.w3.org/ns/prov#wasInformedBy"
     WAS_ASSOCIATED_WITH = "http://www.w3.org/ns/prov#wasAssociatedWith"
     STARTED_AT_TIME = "http://www.w3.org/ns/prov#startedAtTime"
     ENDED_AT_TIME = "http://www.w3.org/ns/prov#endedAtTime"

@@ -10,6 +10,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.ontology.colours import Rgb
 from deixis.ontology.graph import RelationGraph
 from deixis.ontology.relation import Relations
 from deixis.perception.errors import SceneError
@@ -24,7 +25,8 @@ class PerceivedObject:
 
     ``minimum`` and ``maximum`` are its least and greatest corner in the scene's frame, 2 or 3 coordinates: x to the
     viewer's right, y away from the viewer, z up; metres, unless the scene is in pixels. ``label`` is a name for it,
-    right with probability ``confidence``. ``cloud`` names the file of its points.
+    right with probability ``confidence``. ``cloud`` names the file of its points. ``colour`` is the one that it is seen
+    in, in sRGB.
     """
 
     id: str
@@ -33,6 +35,7 @@ class PerceivedObject:
     label: str | None = None
     confidence: float = 1.0
     cloud: str | None = None
+    colour: Rgb | None = None
 
 
 @dataclass(frozen=True)
@@ -40,8 +43,8 @@ class Scene:
     """Perceived objects in one frame, seen from one viewpoint.
 
     ``unit`` is ``m``, or ``px`` for what was measured in an image; relations do not depend on it. Raises SceneError
-    where two objects share an id, a corner is not finite, a box is inside out, or some boxes are flat (2-D) and
-    others are not.
+    where two objects share an id, a corner is not finite, a box is inside out, a colour is none, or some boxes are flat
+    (2-D) and others are not.
     """
 
     objects: tuple[PerceivedObject, ...]
@@ -70,6 +73,13 @@ class Scene:
         if not self.objects:
             return np.zeros((0, 2, 2))
         return np.array([(thing.minimum, thing.maximum) for thing in self.objects], dtype=np.float64)
+
+    @cached_property
+    def colours(self) -> NDArray[np.float64]:
+        """Shape (n, 3): red, green and blue in sRGB, 0 to 255; NaN where an object's colour is not known."""
+        unknown = (np.nan, np.nan, np.nan)
+        seen = [unknown if thing.colour is None else thing.colour for thing in self.objects]
+        return np.array(seen, dtype=np.float64).reshape(-1, 3)
 
     def __getitem__(self, id: str) -> PerceivedObject:
         return next(thing for thing in self.objects if thing.id == id)
@@ -104,3 +114,5 @@ def _require_box(thing: PerceivedObject, file: str) -> None:
             raise SceneError(f"{where}: on {axis} its min {low:g} is above its max {high:g}; swap them")
     if not 0 <= thing.confidence <= 1:
         raise SceneError(f"{where}: a confidence lies between 0 and 1, not at {thing.confidence:g}")
+    if thing.colour is not None and (len(thing.colour) != 3 or not all(0 <= part <= 255 for part in thing.colour)):
+        raise SceneError(f"{where}: a colour is red, green and blue, each from 0 to 255, not {thing.colour}")

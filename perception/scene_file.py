@@ -10,9 +10,12 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from deixis.ontology.colours import Rgb, hex_of_rgb, rgb_of_hex
 from deixis.ontology.json_text import parse_json
+from deixis.ontology.relation import nearest
+from deixis.ontology.tbox import default_ontology
 from deixis.perception.annotations import annotation_reader
-from deixis.perception.checks import mapping, number, shown, text
+from deixis.perception.checks import MAX_SHOWN, kind, mapping, number, shown, text
 from deixis.perception.errors import SceneError
 from deixis.perception.scene import PerceivedObject, Scene
 
@@ -21,7 +24,7 @@ UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "px": 1.0}
 
 MAX_BYTES = 256 * 2**20
 _SCENE_KEYS = {"frame", "viewpoint", "unit", "objects"}
-_OBJECT_KEYS = {"id", "min", "max", "label", "confidence", "cloud"}
+_OBJECT_KEYS = {"id", "min", "max", "label", "confidence", "cloud", "colour"}
 
 
 def read_scene(source: str | Path | Mapping[str, Any], image: str | int | None = None) -> Scene:
@@ -100,6 +103,7 @@ def _object(data: Any, where: str, scale: float) -> PerceivedObject:
     if missing:
         raise SceneError(f"{where}: '{missing[0]}' is missing")
     label, confidence, cloud = entry.get("label"), entry.get("confidence", 1.0), entry.get("cloud")
+    colour = entry.get("colour")
     return PerceivedObject(
         id=text(entry["id"], f"{where}: 'id'"),
         minimum=_corner(entry["min"], f"{where}: 'min'", scale),
@@ -107,7 +111,34 @@ def _object(data: Any, where: str, scale: float) -> PerceivedObject:
         label=None if label is None else text(label, f"{where}: 'label'"),
         confidence=1.0 if confidence is None else number(confidence, f"{where}: 'confidence'"),
         cloud=None if cloud is None else text(cloud, f"{where}: 'cloud'"),
+        colour=None if colour is None else _colour(colour, f"{where}: 'colour'"),
     )
+
+
+def _colour(data: Any, where: str) -> Rgb:
+    """A colour from a word of the ontology (its prototype), from ``#rrggbb``, or from three numbers."""
+    if isinstance(data, list | tuple):
+        parts = [number(part, where) for part in data]
+        if len(parts) != 3 or not all(0 <= part <= 255 for part in parts):
+            raise SceneError(f"{where} as a list is red, green and blue, each from 0 to 255")
+        return round(parts[0]), round(parts[1]), round(parts[2])
+    if not isinstance(data, str):
+        raise SceneError(f"{where} is a word such as red, #rrggbb, or [red, green, blue], not {kind(data)}")
+    said = text(data, where)
+    if said.startswith("#"):
+        if (found := rgb_of_hex(said)) is None:
+            raise SceneError(f"{where}: '{shown(said)}' is no colour; write #rrggbb in hexadecimal digits")
+        return found
+    return _prototype(said, where)
+
+
+def _prototype(word: str, where: str) -> Rgb:
+    colours = default_ontology().colours
+    if (colour := colours.of_word(word)) is not None:
+        return colour.prototype
+    near = nearest(word.casefold(), list(colours.words)) if len(word) <= MAX_SHOWN else None
+    told = f"did you mean '{near}'?" if near else f"say one of {', '.join(c.label for c in colours)}, or #rrggbb"
+    raise SceneError(f"{where}: there is no colour '{shown(word)}'; {told}")
 
 
 def _mapping(data: Any, where: str, known: set[str]) -> Mapping[str, Any]:
@@ -134,6 +165,8 @@ def scene_to_dict(scene: Scene) -> dict[str, Any]:
             entry["confidence"] = thing.confidence
         if thing.cloud is not None:
             entry["cloud"] = thing.cloud
+        if thing.colour is not None:
+            entry["colour"] = hex_of_rgb(thing.colour)
         objects.append(entry)
     return {"frame": scene.frame, "viewpoint": scene.viewpoint, "unit": scene.unit, "objects": objects}
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.reasoning.evidence import UNMATCHED
+from deixis.reasoning.matching.problem import UNMATCHED
 
 
 def assign(matrix: NDArray[np.float64], allowed: NDArray[np.bool_]) -> NDArray[np.int64]:

@@ -18,9 +18,10 @@ from numpy.typing import NDArray
 
 from deixis.ontology.graph import RelationGraph, dispensable
 from deixis.ontology.kinds import Kinds
-from deixis.reasoning.evidence import UNMATCHED, Evidence
-from deixis.reasoning.grounding import FactOutcome, Grounding, Outcome
+from deixis.reasoning.answer import FactOutcome, Grounding, Outcome
+from deixis.reasoning.evidence import Evidence
 from deixis.reasoning.labels import Label, named_objects, objects_called
+from deixis.reasoning.matching.problem import UNMATCHED
 
 SURE = 0.9
 """Confidence from which a label counts as an identity."""

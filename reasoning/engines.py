@@ -1,9 +1,10 @@
 """The engines that align a description with a scene, behind one small protocol.
 
-``similarity`` is the paper's: equations 5 to 9, the Hungarian method, and a choice among sub-graphs where one side has
-more objects. ``exact`` finds the alignment with the largest sum of degrees by branch and bound, the similarity
-breaking ties, and proves it the best. Both work on the evidence in the order in which they get it; whoever wants an
-answer that does not depend on that order goes through :func:`deixis.reasoning.grounding.ground`.
+``exact`` finds the likeliest map by branch and bound and proves it so; ``scalable`` looks for it by annealing, at any
+size. ``similarity`` is the paper's: equations 5 to 9, the Hungarian method, and a choice among sub-graphs where one
+side has more objects. ``blondel`` and ``heymans-singh`` are node similarities from the literature, to compare with. All
+work on the evidence in the order in which they get it; whoever wants an answer that does not depend on that order goes
+through :func:`deixis.reasoning.grounding.ground`.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ import math
 from dataclasses import dataclass
 from enum import StrEnum
 from itertools import combinations, islice
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,9 +21,14 @@ from numpy.typing import NDArray
 from deixis.ontology.errors import UnknownTermError
 from deixis.ontology.graph import PaperGraph, RelationGraph
 from deixis.reasoning.assignment import assign, graph_similarity
-from deixis.reasoning.evidence import UNMATCHED, Evidence
+from deixis.reasoning.engine_name import EngineName
+from deixis.reasoning.evidence import Evidence
+from deixis.reasoning.matching.problem import UNMATCHED
 from deixis.reasoning.same_word import with_same_word
 from deixis.reasoning.similarity import ITERATIONS, NodeSimilarity, node_similarity
+
+if TYPE_CHECKING:
+    from deixis.reasoning.matching.posterior import Posterior
 
 MAX_SUBGRAPHS = 5000
 """Sub-graphs that are all tried; where there are more, a heuristic chooses, and the result says so."""
@@ -49,9 +55,9 @@ class Alignment:
     converged: bool
     proved_best: bool
     notes: tuple[str, ...] = ()
+    posterior: Posterior | None = None  # of engines that work with likelihoods
     margins: NDArray[np.float64] | None = None  # (n1,) what the next best choice for each would lose; nan: not known
     runners_up: NDArray[np.int64] | None = None  # (n1,) that choice, or UNMATCHED
-    decisive: float = 1e-9  # a match with a larger margin is decided
 
     @property
     def graph_similarity(self) -> float:
@@ -65,22 +71,24 @@ class Engine(Protocol):
 
 
 def engine_named(name: str, select: Select = Select.FACTS) -> Engine:
-    """The engine of that name: ``exact``, ``graded`` or ``similarity``; raises UnknownTermError for another."""
-    if name == "exact":
-        from deixis.reasoning.branch_and_bound import warm
-        from deixis.reasoning.exact import ExactEngine
+    """The engine of that name (:class:`EngineName`); raises UnknownTermError for another."""
+    from deixis.reasoning.likeliest import BaselineEngine, ExactEngine, ScalableEngine
+    from deixis.reasoning.matching.baselines import blondel_similarity, heymans_singh_similarity
+
+    if name == EngineName.SIMILARITY:
+        return SimilarityEngine(select)
+    if name == EngineName.EXACT:
+        from deixis.reasoning.matching.exact import warm
 
         warm()  # so that a time limit is spent on searching, not on compiling
         return ExactEngine()
-    if name == "graded":
-        from deixis.reasoning.graded_engine import GradedEngine
-        from deixis.reasoning.matching.exact import warm as warm_matching
-
-        warm_matching()
-        return GradedEngine()
-    if name == "similarity":
-        return SimilarityEngine(select)
-    raise UnknownTermError(f"there is no engine '{name}'; the engines are: exact, graded, similarity")
+    if name == EngineName.SCALABLE:
+        return ScalableEngine()
+    if name == EngineName.BLONDEL:
+        return BaselineEngine("blondel", blondel_similarity)
+    if name == EngineName.HEYMANS_SINGH:
+        return BaselineEngine("heymans-singh", heymans_singh_similarity)
+    raise UnknownTermError(f"there is no engine '{name}'; the engines are: {', '.join(EngineName)}")
 
 
 MAX_DESCRIBED = 20_000
@@ -95,8 +103,14 @@ def described(description: RelationGraph) -> PaperGraph:
 def paper_similarity(evidence: Evidence, members: NDArray[np.bool_] | None = None) -> NodeSimilarity:
     """Equations 5 to 9 for the evidence: certain labels forbid pairs, uncertain ones multiply equation 5."""
     first, second = described(evidence.description), evidence.scene.paper_view()
-    prior = np.where(evidence.allowed, np.exp(evidence.bonus), 0.0)
-    return node_similarity(first, second, members, prior, iterations=_iterations(first, second))
+    return node_similarity(first, second, members, _prior(evidence), iterations=_iterations(first, second))
+
+
+def _prior(evidence: Evidence) -> NDArray[np.float64]:
+    """By what labels multiply the similarity, (n1, n2): 1 for what a label names best, 0 for what it rules out."""
+    most = evidence.labels.max(axis=0, initial=-np.inf)
+    prior: NDArray[np.float64] = np.exp(evidence.labels - np.where(np.isneginf(most), 0.0, most))
+    return prior
 
 
 def _iterations(first: PaperGraph, second: PaperGraph) -> int:
@@ -130,7 +144,7 @@ class SimilarityEngine:
     def _all_subgraphs(self, evidence: Evidence, larger: int, smaller: int) -> Alignment:
         """The best of all sub-graphs of the larger side that have as many objects as the smaller one."""
         flipped = len(evidence.description.nodes) == smaller
-        prior = np.where(evidence.allowed, np.exp(evidence.bonus), 0.0)
+        prior = _prior(evidence)
         first, second = described(evidence.description), evidence.scene.paper_view()
         best: tuple[tuple[float, ...], Alignment] | None = None
         for members in _blocks(larger, smaller):
@@ -184,7 +198,9 @@ class SimilarityEngine:
         notes: tuple[str, ...] = (),
     ) -> Alignment:
         margins, runners_up = _similarity_margins(matrix, assignment, evidence.allowed)
-        return Alignment("similarity", assignment, matrix, converged, False, notes, margins, runners_up)
+        return Alignment(
+            "similarity", assignment, matrix, converged, False, notes, margins=margins, runners_up=runners_up
+        )
 
 
 def _blocks(n: int, k: int) -> list[NDArray[np.bool_]]:

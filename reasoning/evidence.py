@@ -1,37 +1,94 @@
-"""What grounding has to go by: how far each stated fact holds of each perceived pair, and what labels allow.
+"""What grounding goes by: the facts, what labels, sizes and colours say, and how far each stated fact holds of a pair.
 
-A stated fact holds of a pair to a degree: 1 where the pair's exact name is the word itself, 0.5 where the name only
-implies the word in its wide reading, else 0. A choice (``or``) holds as far as its best alternative; a denial holds
-(1) where none of its relations does, even widely. A fact is *satisfied* where its degree is above 0.
+What an engine searches is :attr:`Evidence.problem`: facts, labels, sizes and colours as log-likelihood ratios that add
+up, with what leaving an object out costs. Beside it stands the crisp reading, by which an answer says what holds: a
+stated fact holds of a pair to the degree 1 where the pair's exact name is the word itself, 0.5 where the name only
+implies the word in its wide reading, else 0. A choice (``or``) holds as far as its best alternative; a denial holds (1)
+where none of its relations does, even widely. A fact is *satisfied* where its degree is above 0.
 """
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.ontology.colours import Colours
 from deixis.ontology.errors import GraphError
 from deixis.ontology.graph import RelationGraph
+from deixis.ontology.kinds import Kinds
 from deixis.ontology.relation import Reading
+from deixis.ontology.sizes import Sizes
+from deixis.reasoning.graded.colours import colour_evidence
+from deixis.reasoning.graded.degrees import log_likelihood_ratio
+from deixis.reasoning.graded.facts import OPTIONAL_WEIGHT, fact_tables, hedged
+from deixis.reasoning.graded.unary import label_ratios, size_evidence
+from deixis.reasoning.labels import Label
+from deixis.reasoning.matching.problem import UNMATCHED, Problem
+from deixis.reasoning.meaning import SHIPPED, Meaning
 
-UNMATCHED = -1
+PRESENT = -30.0
+"""What leaving an object out costs where a certain label says that it is there."""
+
+OUTLIERS = 0.01
+"""Share of facts that are said of anything, where words are taken literally."""
 
 
 @dataclass(frozen=True, eq=False)
 class Evidence:
     """Two graphs side by side: a description of n1 objects by m facts, and a scene of n2 objects, fully related.
 
-    ``allowed`` (n1, n2) says which object may be which perceived one; ``bonus`` (n1, n2), at least 0, is what speaks
-    for it besides the facts, in units of one satisfied fact.
+    ``labels``, ``sizes`` and ``colours`` (n1, n2) are log-likelihood ratios of each object being each perceived thing,
+    -inf in ``labels`` where that is ruled out; no ``colours`` where none are known.
     """
 
     description: RelationGraph
     scene: RelationGraph
-    allowed: NDArray[np.bool_]
-    bonus: NDArray[np.float64]
+    labels: NDArray[np.float64]
+    sizes: NDArray[np.float64]
+    meaning: Meaning = SHIPPED
+    colours: NDArray[np.float64] | None = None
+
+    @cached_property
+    def allowed(self) -> NDArray[np.bool_]:
+        """Which object may be which perceived thing, shape (n1, n2)."""
+        result: NDArray[np.bool_] = ~np.isneginf(self.labels)
+        return result
+
+    @property
+    def unary(self) -> NDArray[np.float64]:
+        """What speaks for each match besides the facts, shape (n1, n2)."""
+        total: NDArray[np.float64] = self.labels + self.sizes
+        return total if self.colours is None else total + self.colours
+
+    @cached_property
+    def problem(self) -> Problem:
+        """What there is to be searched. A scene without boxes is taken literally, by the names of its pairs."""
+        certain = (self.labels > 0) & np.any(~self.allowed, axis=0)[None, :]
+        absent = np.where(certain.any(axis=1), PRESENT, absence(*self.labels.shape))
+        boxes = self.scene.boxes
+        if boxes is None or not self.meaning.graded:
+            return Problem(*self._literal_tables(), self.unary, absent)
+        facts = fact_tables(self.description, boxes, self.meaning.models, unary=self.unary, absent=absent)
+        return Problem(facts.ends, facts.kinds, facts.tables, self.unary, absent)
+
+    def _literal_tables(self) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float32]]:
+        """Ends, kinds and tables of the facts in the crisp reading, chance being one pair for each of the names."""
+        graph, edges = self.description, self.facts
+        weights = np.where(graph.optional[edges], OPTIONAL_WEIGHT, 1.0) * graph.weights[edges]
+        rows, kinds = np.unique(np.column_stack([self.degree_table, weights]), axis=0, return_inverse=True)
+        exact = [relation.index for relation in graph.vocabulary.of_reading(Reading.EXACT)]
+        tables = np.zeros((len(rows), len(self.scene.nodes), len(self.scene.nodes)), dtype=np.float32)
+        for table, row in zip(tables, rows, strict=True):
+            degrees = row[:-1][self.names]
+            table[:] = hedged(log_likelihood_ratio(degrees, OUTLIERS, float(row[exact].mean())), float(row[-1]))
+            np.fill_diagonal(table, 0.0)
+        ends = np.stack([graph.subjects[edges], graph.objects[edges]], axis=1).astype(np.int64)
+        return ends, kinds.ravel().astype(np.int64), tables
 
     @cached_property
     def names(self) -> NDArray[np.int16]:
@@ -72,15 +129,16 @@ class Evidence:
         return degrees
 
     def total(self, assignment: NDArray[np.int64]) -> float:
-        """The sum of degrees times weights, plus the bonus of each match."""
+        """The sum of degrees times weights, plus what labels say for each match."""
         return float(self.totals(assignment[None])[0])
 
     def totals(self, assignments: NDArray[np.int64]) -> NDArray[np.float64]:
         """The total of each of k assignments (k, n1)."""
         matched = assignments != UNMATCHED
-        bonus = self.bonus[np.arange(assignments.shape[1]), np.where(matched, assignments, 0)] if self.bonus.size else 0
         totals: NDArray[np.float64] = self.degrees(assignments) @ self.description.weights[self.facts]
-        totals += np.where(matched, bonus, 0.0).sum(axis=1)
+        if self.labels.size:
+            said = self.labels[np.arange(assignments.shape[1]), np.where(matched, assignments, 0)]
+            totals += np.where(matched, said, 0.0).sum(axis=1)
         return totals
 
     def reordered(self, rows: NDArray[np.int64], columns: NDArray[np.int64]) -> Evidence:
@@ -88,9 +146,26 @@ class Evidence:
         return Evidence(
             self.description.subgraph([self.description.nodes[i] for i in rows]),
             self.scene.subgraph([self.scene.nodes[i] for i in columns]),
-            self.allowed[np.ix_(rows, columns)],
-            self.bonus[np.ix_(rows, columns)],
+            self.labels[np.ix_(rows, columns)],
+            self.sizes[np.ix_(rows, columns)],
+            self.meaning,
+            None if self.colours is None else self.colours[np.ix_(rows, columns)],
         )
+
+
+def absence(objects: int, things: int) -> float:
+    """What leaving one of n1 objects out is worth in log-likelihood, beside n2 things.
+
+    Whoever leaves an object out says that it is not there, and that one thing more was not described. The odds of
+    either are those of Jeffreys' rule, (k + 1/2) / (n - k + 1/2), for the k that there are at least: all but as many
+    as there are on the other side.
+
+    >>> round(absence(12, 12), 1), round(absence(15, 12), 1)
+    (-6.4, -4.5)
+    """
+    absent, extra = max(0, objects - things), max(0, things - objects)
+    of_objects = (absent + 0.5) / (objects - absent + 0.5)
+    return math.log(of_objects) + math.log((extra + 0.5) / (things - extra + 0.5))
 
 
 def exact_names(scene: RelationGraph) -> NDArray[np.int16]:
@@ -112,7 +187,36 @@ def exact_names(scene: RelationGraph) -> NDArray[np.int16]:
     return names
 
 
-def no_unary_evidence(description: RelationGraph, scene: RelationGraph) -> Evidence:
+def no_unary_evidence(description: RelationGraph, scene: RelationGraph, meaning: Meaning = SHIPPED) -> Evidence:
     """The evidence of the facts alone: everything is allowed, and nothing else speaks for a match."""
-    shape = (len(description.nodes), len(scene.nodes))
-    return Evidence(description, scene, np.ones(shape, dtype=bool), np.zeros(shape))
+    nothing = np.zeros((len(description.nodes), len(scene.nodes)))
+    return Evidence(description, scene, nothing, nothing, meaning)
+
+
+def evidence_from(
+    description: RelationGraph,
+    scene: RelationGraph,
+    labels: Sequence[Label | None],
+    kinds: Kinds,
+    sizes: Sizes,
+    *,
+    metric: bool = True,
+    meaning: Meaning = SHIPPED,
+    seen: NDArray[np.float64] | None = None,
+    colours: Colours | None = None,
+) -> Evidence:
+    """Facts, labels, sizes and colours together, each by its weight; ``metric`` where the scene's boxes are in metres.
+
+    ``seen`` are the things' colours in sRGB, shape (n2, 3), NaN where not known; ``colours`` are the known terms.
+    """
+    weights, shape = meaning.weights, (len(description.nodes), len(scene.nodes))
+    said, measured = np.zeros(shape), np.zeros(shape)
+    if weights.labels > 0:
+        said = weights.labels * label_ratios(description, labels, kinds)
+    if weights.sizes > 0 and scene.boxes is not None:
+        known = description.kinds or (None,) * len(description.nodes)
+        measured = weights.sizes * size_evidence(known, scene.boxes, sizes, meaning.sizes, metric)
+    shades = None
+    if weights.colours > 0 and seen is not None and colours is not None and description.colours:
+        shades = weights.colours * colour_evidence(description.colours, seen, colours)
+    return Evidence(description, scene, said, measured, meaning, shades)

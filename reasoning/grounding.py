@@ -4,104 +4,37 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
-from enum import StrEnum
+from dataclasses import replace
 from types import MappingProxyType
 
 import numpy as np
+from numpy.typing import NDArray
 
 from deixis.ontology.graph import Fact
-from deixis.ontology.relation import Relation
+from deixis.reasoning.answer import (
+    DECIDED,
+    Alternative,
+    FactOutcome,
+    Grounding,
+    LeftOut,
+    Match,
+    Outcome,
+    Pivotal,
+    Standing,
+)
+from deixis.reasoning.dropping import Dropped, without_each
 from deixis.reasoning.engines import Alignment, Engine
-from deixis.reasoning.evidence import UNMATCHED, Evidence
+from deixis.reasoning.evidence import Evidence
+from deixis.reasoning.matching.problem import UNMATCHED
 from deixis.reasoning.symmetry import interchangeable
 
 DEFAULT_TIME_LIMIT = 10.0
 
+DROPPING = 0.1
+"""Share of the time limit for finding out what would change without each fact."""
 
-class Outcome(StrEnum):
-    """What became of a stated fact."""
-
-    SATISFIED = "satisfied"  # holds of the matched pair, at least widely
-    VIOLATED = "violated"  # does not hold of the matched pair
-    WAIVED = "waived"  # does not hold, and was optional
-    OPEN = "open"  # an object of it is not matched
-
-
-@dataclass(frozen=True, slots=True)
-class Alternative:
-    """Something else that an object could be, and what choosing it would lose (satisfied facts, or similarity)."""
-
-    perceived: str
-    cost: float
-
-
-@dataclass(frozen=True, slots=True)
-class Match:
-    """An object of the description and the perceived thing that it is.
-
-    ``score`` is the share of what is said of the object and can be compared that holds (by degree and weight; 1 where
-    there is nothing), ``similarity`` the paper's. ``decided`` says that the evidence leaves nothing else as good.
-    """
-
-    object: str
-    perceived: str
-    score: float
-    similarity: float
-    decided: bool
-    alternatives: tuple[Alternative, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class FactOutcome:
-    """A stated fact, what became of it, and the exact relation perceived instead or accordingly."""
-
-    fact: Fact
-    outcome: Outcome
-    degree: float
-    perceived: tuple[str, str] | None
-    seen: Relation | None
-
-
-@dataclass(frozen=True, slots=True)
-class LeftOut:
-    """An object or a perceived thing without a counterpart, and why."""
-
-    name: str
-    reason: str
-
-
-@dataclass(frozen=True)
-class Grounding:
-    """The answer of an engine, with all that qualifies it."""
-
-    engine: str
-    matches: Mapping[str, Match]
-    unmatched_objects: tuple[LeftOut, ...]
-    unmatched_perceived: tuple[LeftOut, ...]
-    interchangeable: tuple[tuple[str, ...], ...]
-    graph_similarity: float
-    outcomes: tuple[FactOutcome, ...]
-    proved_best: bool
-    converged: bool
-    notes: tuple[str, ...]
-    seconds: float
-
-    def of(self, outcome: Outcome) -> tuple[FactOutcome, ...]:
-        return tuple(entry for entry in self.outcomes if entry.outcome is outcome)
-
-    @property
-    def satisfied(self) -> tuple[FactOutcome, ...]:
-        return self.of(Outcome.SATISFIED)
-
-    def noting(self, notes: tuple[str, ...]) -> Grounding:
-        """The same answer with notes before its own."""
-        return replace(self, notes=notes + self.notes)
-
-    @property
-    def violated(self) -> tuple[FactOutcome, ...]:
-        return self.of(Outcome.VIOLATED)
+WORTH_NAMING = 0.01
+"""Probability from which an alternative is named."""
 
 
 def ground(
@@ -117,11 +50,13 @@ def ground(
     rows = np.array(sorted(range(len(evidence.description.nodes)), key=lambda i: evidence.description.nodes[i]), int)
     columns = np.array(sorted(range(len(evidence.scene.nodes)), key=lambda i: evidence.scene.nodes[i]), int)
     ordered = evidence.reordered(rows, columns)
-    alignment = engine.align(_facts_in_order(ordered), started + time_limit)
+    in_order = _facts_in_order(ordered)
+    alignment = engine.align(in_order, started + (1 - DROPPING) * time_limit)
     groups = _groups(ordered)
     outcomes = _outcomes(ordered, alignment)
     matches = _matches(ordered, alignment, outcomes, groups)
     names = evidence.description.nodes
+    posterior = alignment.posterior
     return Grounding(
         engine=alignment.engine,
         matches=MappingProxyType({name: matches[name] for name in names if name in matches}),
@@ -133,6 +68,9 @@ def ground(
         proved_best=alignment.proved_best,
         converged=alignment.converged,
         notes=notes + _notes(ordered, alignment),
+        pivotal=_pivotal(in_order, alignment, matches, time.perf_counter() + DROPPING * time_limit),
+        probabilities=Standing.NONE if posterior is None else (Standing.EXACT if posterior.exact else Standing.SAMPLED),
+        probability_error=0.0 if posterior is None else posterior.error,
         seconds=time.perf_counter() - started,
     )
 
@@ -156,9 +94,7 @@ def _facts_in_order(evidence: Evidence) -> Evidence:
 
 
 def _groups(evidence: Evidence) -> tuple[tuple[str, ...], ...]:
-    known = zip(evidence.allowed, evidence.bonus, strict=True)
-    colours = [(allowed.tobytes(), bonus.tobytes()) for allowed, bonus in known]
-    return tuple(interchangeable(evidence.description, colours))
+    return tuple(interchangeable(evidence.description, [row.tobytes() for row in evidence.unary]))
 
 
 def _outcomes(evidence: Evidence, alignment: Alignment) -> tuple[FactOutcome, ...]:
@@ -201,23 +137,55 @@ def _matches(
     matches = {}
     for i in np.flatnonzero(alignment.assignment != UNMATCHED):
         name, p = evidence.description.nodes[i], int(alignment.assignment[i])
-        margin = math.nan if alignment.margins is None else float(alignment.margins[i])
-        only = evidence.allowed[i].sum() == 1
+        alternatives = _alternatives(evidence, alignment, int(i), groups)
+        probability = None if alignment.posterior is None else float(alignment.posterior.marginals[i, p])
         matches[name] = Match(
             object=name,
             perceived=evidence.scene.nodes[p],
             score=held[name] / said[name] if said[name] else 1.0,
             similarity=float(alignment.matrix[i, p]),
-            decided=bool(only or (margin > alignment.decisive and name not in grouped)),
-            alternatives=_alternatives(evidence, alignment, int(i), margin, groups),
+            decided=_decided(evidence, alignment, int(i), name in grouped),
+            alternatives=alternatives,
+            probability=probability,
         )
     return matches
 
 
+def _decided(evidence: Evidence, alignment: Alignment, i: int, grouped: bool) -> bool:
+    """Whether a match is probable enough; without probabilities, whether nothing else is as similar."""
+    if alignment.posterior is None:
+        similar = alignment.margins is not None and bool(alignment.margins[i] > 1e-9)
+        return bool(evidence.allowed[i].sum() == 1) or (similar and not grouped)
+    known = alignment.posterior.exact or math.isfinite(alignment.posterior.error)
+    return known and bool(alignment.posterior.marginals[i, alignment.assignment[i]] >= DECIDED)
+
+
 def _alternatives(
-    evidence: Evidence, alignment: Alignment, i: int, margin: float, groups: tuple[tuple[str, ...], ...]
+    evidence: Evidence, alignment: Alignment, i: int, groups: tuple[tuple[str, ...], ...]
 ) -> tuple[Alternative, ...]:
-    """What the object's interchangeable fellows are, which costs nothing, and the engine's next best choice."""
+    """What else an object could be, the best first: by probability, else by similarity."""
+    found = (
+        _similar(evidence, alignment, i, groups) if alignment.posterior is None else _probable(evidence, alignment, i)
+    )
+    return tuple(sorted(found, key=lambda other: (other.cost, other.perceived is None, other.perceived)))
+
+
+def _probable(evidence: Evidence, alignment: Alignment, i: int) -> list[Alternative]:
+    assert alignment.posterior is not None
+    row, chosen = alignment.posterior.marginals[i], int(alignment.assignment[i])
+    own = max(float(row[chosen]), 1e-300)  # of what is left out the last column is its own, as UNMATCHED is
+    found = []
+    for p in np.flatnonzero(row >= WORTH_NAMING).tolist():
+        if p != chosen % len(row):
+            perceived = evidence.scene.nodes[p] if p < len(evidence.scene.nodes) else None
+            found.append(Alternative(perceived, max(0.0, round(math.log(own / row[p]), 9)), float(row[p])))
+    return found
+
+
+def _similar(
+    evidence: Evidence, alignment: Alignment, i: int, groups: tuple[tuple[str, ...], ...]
+) -> list[Alternative]:
+    """The object's interchangeable fellows' things, which cost nothing, and the engine's next best choice."""
     name = evidence.description.nodes[i]
     found: dict[str, float] = {}
     for group in groups:
@@ -225,9 +193,54 @@ def _alternatives(
             fellows = (evidence.description.index(other) for other in group if other != name)
             matched = (alignment.assignment[j] for j in fellows if alignment.assignment[j] != UNMATCHED)
             found |= {evidence.scene.nodes[p]: 0.0 for p in matched}
-    if alignment.runners_up is not None and alignment.runners_up[i] != UNMATCHED:
-        found.setdefault(evidence.scene.nodes[alignment.runners_up[i]], max(margin, 0.0))
-    return tuple(Alternative(p, cost) for p, cost in sorted(found.items(), key=lambda item: (item[1], item[0])))
+    if alignment.runners_up is not None and alignment.margins is not None and alignment.runners_up[i] != UNMATCHED:
+        found.setdefault(evidence.scene.nodes[alignment.runners_up[i]], max(float(alignment.margins[i]), 0.0))
+    return [Alternative(p, cost) for p, cost in found.items()]
+
+
+def _pivotal(
+    evidence: Evidence, alignment: Alignment, matches: dict[str, Match], deadline: float
+) -> tuple[Pivotal, ...] | None:
+    """The facts without which something would be otherwise; None where there was no time to look at all."""
+    if alignment.posterior is None or not alignment.proved_best:
+        return None
+    found, seen = [], 0
+    for dropped in without_each(evidence.problem, alignment.assignment, alignment.posterior.exact, deadline):
+        seen += 1
+        pivotal = _without(evidence, alignment, matches, dropped)
+        if pivotal.changes or pivotal.unsettled or pivotal.settled:
+            found.append(pivotal)
+    if seen < len(evidence.problem.ends):
+        return None
+    return tuple(sorted(found, key=lambda pivotal: _place(pivotal.fact)))
+
+
+def _place(fact: Fact) -> tuple[str, int, str]:
+    """Where a fact stands, for listing."""
+    return ("", 0, str(fact)) if fact.source is None else (fact.source.file, fact.source.line, str(fact))
+
+
+def _without(evidence: Evidence, alignment: Alignment, matches: dict[str, Match], dropped: Dropped) -> Pivotal:
+    nodes, things = evidence.description.nodes, evidence.scene.nodes
+    other = dropped.assignment != alignment.assignment
+    if not dropped.better:
+        other[:] = False
+    sure = dropped.probability >= DECIDED
+    decided = np.array([name in matches and matches[name].decided for name in nodes], dtype=bool)
+    known = ~np.isnan(dropped.probability) & ~other & (alignment.assignment != UNMATCHED)
+    targets = zip(nodes, dropped.assignment.tolist(), strict=True)
+    return Pivotal(
+        fact=evidence.description.fact(int(evidence.facts[dropped.fact])),
+        changes={
+            name: None if p == UNMATCHED else things[p] for (name, p), new in zip(targets, other, strict=True) if new
+        },
+        unsettled=_named(nodes, known & decided & ~sure),
+        settled=_named(nodes, known & ~decided & sure),
+    )
+
+
+def _named(nodes: tuple[str, ...], chosen: NDArray[np.bool_]) -> tuple[str, ...]:
+    return tuple(nodes[i] for i in np.flatnonzero(chosen))
 
 
 def _left_out_objects(evidence: Evidence, alignment: Alignment, names: tuple[str, ...]) -> tuple[LeftOut, ...]:
@@ -237,10 +250,14 @@ def _left_out_objects(evidence: Evidence, alignment: Alignment, names: tuple[str
             reason = "nothing was perceived"
         elif not evidence.allowed[i].any():
             reason = "the labels of the scene leave it nothing that it could be"
-        else:
+        elif len(evidence.description.nodes) > len(evidence.scene.nodes):
             reason = "the description names more than was perceived, and the rest explains the scene best without it"
-        reasons[evidence.description.nodes[i]] = reason
-    return tuple(LeftOut(name, reasons[name]) for name in names if name in reasons)
+        else:
+            reason = "what is said of it fits nothing perceived as well as its not being there"
+        reasons[evidence.description.nodes[i]] = LeftOut(
+            evidence.description.nodes[i], reason, _alternatives(evidence, alignment, int(i), ())
+        )
+    return tuple(reasons[name] for name in names if name in reasons)
 
 
 def _left_out_things(evidence: Evidence, alignment: Alignment, ids: tuple[str, ...]) -> tuple[LeftOut, ...]:

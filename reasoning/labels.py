@@ -1,18 +1,13 @@
-"""What the labels of perceived things say about who is who.
+"""Which objects of a description the label of a perceived thing names.
 
-A certain label fixes its thing: it can only be an object that the label names, and where the script names no such
-object it is none of them. A label names the object that bears it as its name (``wine_glass`` names ``wine_glass_1``),
-else every object of a kind that the label stands for. A label of confidence c below 1 weighs -ln(1 - c), the
-logarithm of how often it is right to how often wrong it is at worst, in units of one satisfied fact; so certainty is
-its limit, and what cannot be told from chance weighs nothing.
+A label names the object that bears it as its name (``wine_glass`` names ``wine_glass_1``), else every object of a kind
+that the label stands for. What that weighs: :func:`deixis.reasoning.graded.unary.label_ratios`.
 """
 
 from __future__ import annotations
 
-import math
 import re
 import unicodedata
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -28,23 +23,6 @@ class Label:
 
     text: str
     confidence: float = 1.0
-
-
-def label_evidence(
-    description: RelationGraph, labels: Sequence[Label | None], kinds: Kinds
-) -> tuple[NDArray[np.bool_], NDArray[np.float64]]:
-    """What is allowed and what speaks for it, both (n1, n2), from the labels of n2 perceived things."""
-    allowed = np.ones((len(description.nodes), len(labels)), dtype=bool)
-    bonus = np.zeros(allowed.shape)
-    for column, label in enumerate(labels):
-        if label is None or label.confidence <= 0:
-            continue
-        named = named_objects(description, label.text, kinds)
-        if label.confidence >= 1:
-            allowed[:, column] = named
-        else:
-            bonus[named, column] = -math.log1p(-label.confidence)
-    return allowed, bonus
 
 
 def named_objects(description: RelationGraph, label: str, kinds: Kinds) -> NDArray[np.bool_]:

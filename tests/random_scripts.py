@@ -18,11 +18,12 @@ def meaning(script: Script) -> tuple[Any, ...]:
     """All that a script says, without where it says it."""
     facts = [(str(f), f.positive, f.optional, f.weight) for f in script.facts]
     kinds = {name: kind.iri for name, kind in script.kinds.items()}
-    return facts, script.objects, kinds, script.name, script.title, script.viewpoint
+    colours = {name: colour.iri for name, colour in script.colours.items()}
+    return facts, script.objects, kinds, colours, script.name, script.title, script.viewpoint
 
 
 WORD = st.sampled_from(
-    ["fork", "knife", "Plate", "glass", "löffel", "x2", "left-handed", "a", "napkin", "leftmost", "tea", "皿"]
+    ["fork", "knife", "Plate", "glass", "löffel", "x2", "left-handed", "a", "napkin", "leftmost", "tea", "皿", "red"]
 )
 PLAIN = st.lists(WORD, min_size=1, max_size=3).map(" ".join)
 QUOTED = st.sampled_from(
@@ -41,11 +42,14 @@ FRONT = st.sampled_from(["", "", "usually ", "optional ", "not ", "optional mayb
 LINK = st.sampled_from(["", " is", " are placed", " not", " is usually", " goes"])
 CHAIN = st.sampled_from(["left to right:", "bottom to top:", "above to below :"])
 KIND = st.sampled_from(sorted(ONTOLOGY.kinds.words)).filter(lambda w: not {"and", "under"} & set(w.split()))
+COLOUR = st.sampled_from(sorted(ONTOLOGY.colours.words))
 STATEMENT = st.one_of(
     st.builds(lambda f, s, k, r, o: f"{f}{s}{k} {r} {o}", FRONT, OBJECTS, LINK, RELATIONS, OBJECTS),
     st.builds(lambda f, r, s, o: f"{f}{r}({s}, {o})", FRONT, RELATIONS, OBJECT, OBJECT),
     st.builds(lambda f, c, o: f"{f}{c} {o}", st.sampled_from(["", "usually "]), CHAIN, OBJECTS),
     st.builds(lambda s, k: f"{s} is a {k}", OBJECTS, KIND),
+    st.builds(lambda s, c: f"{s} is {c}", OBJECTS, COLOUR),
+    st.builds(lambda s, c, k: f"{s} are {c} {k}", OBJECTS, COLOUR, KIND),
 )
 END = st.sampled_from(["\n", "\n", "\n\n", ";", ". ", " # note\n", "\n  # alone\n", "\r\n"])
 HEADER = st.sampled_from(

@@ -8,7 +8,6 @@ question about a member takes it out of its group (:meth:`Candidates.pinned`), w
 from __future__ import annotations
 
 import math
-from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
@@ -18,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.reasoning.errors import SettingError
+from deixis.reasoning.matching.exchangeability import exchangeable
 from deixis.reasoning.matching.problem import UNMATCHED, Problem
 
 if TYPE_CHECKING:
@@ -178,28 +178,3 @@ def _held(problem: Problem, best: NDArray[np.int64], groups: tuple[tuple[int, ..
         if best[i] != UNMATCHED:
             unary[i, best[i]] = own
     return Problem(problem.ends, problem.kinds, problem.tables, unary, problem.absent)
-
-
-def exchangeable(problem: Problem) -> tuple[tuple[int, ...], ...]:
-    """The groups of objects any two of which could change places without changing the value of any map.
-
-    Two objects are such where they have the same unary evidence and the same facts with every third object, and what
-    is said of the two is said both ways round. That is an equivalence, so that all orders of a group are as good.
-    """
-    facts: list[Counter[tuple[int, bool, int]]] = [Counter() for _ in problem.absent]
-    for (s, o), kind in zip(problem.ends.tolist(), problem.kinds.tolist(), strict=True):
-        facts[s][kind, True, o] += 1
-        facts[o][kind, False, s] += 1
-    groups: list[list[int]] = []
-    for i in range(len(problem.absent)):
-        home = next((group for group in groups if _twins(group[0], i, problem, facts)), None)
-        groups.append([i]) if home is None else home.append(i)
-    return tuple(tuple(group) for group in groups if len(group) > 1)
-
-
-def _twins(i: int, j: int, problem: Problem, facts: list[Counter[tuple[int, bool, int]]]) -> bool:
-    if problem.absent[i] != problem.absent[j] or not np.array_equal(problem.unary[i], problem.unary[j]):
-        return False
-    swap = {i: j, j: i}
-    swapped = Counter({(kind, first, swap.get(k, k)): n for (kind, first, k), n in facts[i].items()})
-    return swapped == facts[j]

@@ -18,6 +18,9 @@ from deixis.reasoning.graded.views import View, view
 
 Array = NDArray[np.float64]
 
+INVERSES = {"left": "right", "top": "bottom", "top_left": "bottom_right", "top_right": "bottom_left", "on": "under"}
+INVERSES |= {inverse: word for word, inverse in INVERSES.items()}
+
 
 def degree_of_view(model: RelationModel, features: View) -> Array:
     """exp of the sum of terms, shape (n, n), in (0, 1]; terms of features that are not there count as fitting."""
@@ -42,18 +45,37 @@ def word_degree(pairs: PairGeometry, word: str, models: RelationModels) -> Array
     return degree_of_view(models[FAMILIES[word]], view(pairs, word))
 
 
-def relation_degree(pairs: PairGeometry, relation: Relation, models: RelationModels) -> Array:
-    """The degree of a relation, shape (n, n), in [0, 1]; raises UnknownTermError where its word has no model.
+class WordDegrees:
+    """The degrees of words over the pairs of one scene, each worked out once; an inverse's is the transpose."""
 
-    In the exact reading the word has to fit better than the other nine: its degree times its share of the best one.
-    """
-    models.of(relation)
-    own = word_degree(pairs, relation.word, models)
-    if relation.reading is Reading.WIDE:
-        return own
-    best = np.max([word_degree(pairs, word, models) for word in FAMILIES], axis=0)
-    exact: Array = own * (own / best)
-    return exact
+    def __init__(self, pairs: PairGeometry, models: RelationModels) -> None:
+        self._pairs, self._models = pairs, models
+        self._found: dict[str, Array] = {}
+
+    def of_word(self, word: str) -> Array:
+        """As :func:`word_degree`."""
+        if word not in self._found:
+            inverse = self._found.get(INVERSES[word])
+            self._found[word] = word_degree(self._pairs, word, self._models) if inverse is None else inverse.T
+        return self._found[word]
+
+    def of(self, relation: Relation) -> Array:
+        """The degree of a relation, shape (n, n), in [0, 1]; raises UnknownTermError where its word has no model.
+
+        In the exact reading the word has to fit better than the other nine: its degree times its share of the best.
+        """
+        self._models.of(relation)
+        own = self.of_word(relation.word)
+        if relation.reading is Reading.WIDE:
+            return own
+        best = np.max([self.of_word(word) for word in FAMILIES], axis=0)
+        exact: Array = own * (own / best)
+        return exact
+
+
+def relation_degree(pairs: PairGeometry, relation: Relation, models: RelationModels) -> Array:
+    """The degree of one relation: see :meth:`WordDegrees.of`."""
+    return WordDegrees(pairs, models).of(relation)
 
 
 def saying_degree(pairs: PairGeometry, models: RelationModels) -> Array:

@@ -5,14 +5,16 @@ A saying model gives the probability that a fact is said of a pair, up to a cons
 - a word: outliers + (1 - outliers) * s * d, with d the word's degree and s how readily the pair is spoken of;
 - a choice (``or``): the mixture of its words, each as likely as the next: d is the mean of theirs;
 - a denial (``not``): d is the product of the complements 1 - d of its words;
-- of all speakers a share ``literal`` takes words literally: they say of any pair what the crisp reading admits, as
-  readily as the degree 1, 0.5 or 0, which a name borne by one pair in ten has by chance;
+- a fact that is meant literally is said of any pair, near or far, as readily as its name fits: 1 where the name is the
+  word, ``IMPLIED`` where it only implies it, else 0; by chance one name in ten fits. The share of such facts is judged
+  from the whole description (:mod:`deixis.reasoning.graded.speakers`);
 - a hedge of weight w: it holds with probability w, else it says nothing: log(w exp(l) + 1 - w), with l its evidence;
 - ``optional``: a fact that need not hold is one that holds every other time: w is halved.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -22,9 +24,11 @@ from deixis.ontology.graph import RelationGraph
 from deixis.ontology.relation import Relation, Relations
 from deixis.ontology.relation_models import SAYING, RelationModels
 from deixis.reasoning.errors import SettingError
-from deixis.reasoning.graded.degrees import log_likelihood_ratio, relation_degree, saying_degree
+from deixis.reasoning.graded.degrees import WordDegrees, log_likelihood_ratio, saying_degree
 from deixis.reasoning.graded.geometry import PairGeometry, pair_geometry
-from deixis.reasoning.graded.shipped import shipped_models
+from deixis.reasoning.graded.shipped import OUTLIERS, shipped_models
+from deixis.reasoning.graded.speakers import LITERAL, literal_share
+from deixis.reasoning.matching.problem import Problem
 from deixis.reasoning.rectangle import box_relations
 
 Array = NDArray[np.float64]
@@ -32,11 +36,14 @@ Array = NDArray[np.float64]
 OPTIONAL_WEIGHT = 0.5
 """By what the weight of an optional fact is multiplied."""
 
-LITERAL = 0.3
-"""The share of literal speakers that is taken for granted."""
+IMPLIED = 0.1
+"""How readily a literal speaker says *left* of a pair whose name is *top left*: nine times in ten, the name is said."""
 
 LITERAL_CHANCE = 0.1
 """The degree by chance of a word taken literally: it is one of ten names."""
+
+AWAY = -30.0
+"""What leaving an object out is worth to the judgement of how literal words are, where nothing is said of it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,70 +65,109 @@ def fact_tables(
     models: RelationModels | None = None,
     *,
     saying: bool = True,
-    literal: float = LITERAL,
+    literal: float | None = None,
+    unary: Array | None = None,
+    absent: Array | None = None,
 ) -> FactTables:
     """The evidence of every fact for every ordered pair of n2 boxes (n2, 2, d).
 
-    ``saying`` takes into account which pairs people speak of; without it only the words count. Raises GraphError for
-    boxes that are none, UnknownTermError for a word that has no model, SettingError for a weight or a share of literal
-    speakers beyond 0 to 1.
+    ``saying`` takes into account which pairs people speak of; without it only the words count. ``literal`` is the share
+    of facts that are meant literally; where it is None, it is judged from the description by the shipped models, with
+    what is known of things by themselves (``unary``, shape (n1, n2)) and of their absence (``absent``, (n1,)), both as
+    in :class:`deixis.reasoning.matching.problem.Problem`. Raises GraphError for boxes that are none,
+    UnknownTermError for a word that has no model, SettingError for a weight or a share beyond 0 to 1.
     """
-    if not 0 <= literal <= 1:
-        raise SettingError(f"the share of literal speakers lies between 0 and 1, not at {literal:g}")
-    said = _Speakers(pair_geometry(boxes), models or shipped_models(), description.vocabulary, saying, literal)
-    edges = np.flatnonzero(description.subjects != description.objects)
-    rows: dict[tuple[int, bool, float], int] = {}
-    kinds = []
-    for edge in edges.tolist():
-        weight = float(description.weights[edge]) * (OPTIONAL_WEIGHT if description.optional[edge] else 1.0)
-        key = (int(description.relation_sets[edge]), bool(description.positive[edge]), weight)
-        kinds.append(rows.setdefault(key, len(rows)))
-    tables = [said.evidence(description.vocabulary.members(mask), sign, weight) for mask, sign, weight in rows]
-    stacked = np.array(tables, dtype=np.float32).reshape(len(tables), len(boxes), len(boxes))
-    return FactTables(edges.astype(np.int64), _ends(description, edges), np.array(kinds, dtype=np.int64), stacked)
+    if literal is not None and not 0 <= literal <= 1:
+        raise SettingError(f"the share of facts that are meant literally lies between 0 and 1, not at {literal:g}")
+    edges = np.flatnonzero(description.subjects != description.objects).astype(np.int64)
+    keys = [_key(description, edge) for edge in edges.tolist()]
+    distinct = sorted(set(keys))
+    kinds = np.array([distinct.index(key) for key in keys], dtype=np.int64)
+    ends = _ends(description, edges)
+    pairs = pair_geometry(boxes)
+    said = _Said(pairs, models or shipped_models(), description.vocabulary, saying, distinct)
+    if literal is None:
+        usual = _Said(pairs, shipped_models(), description.vocabulary, saying, distinct) if models else said
+        shape = len(description.nodes), len(boxes)
+        alone = np.zeros(shape) if unary is None else unary
+        away = np.full(shape[0], AWAY) if absent is None else absent
+        graded, exact = (Problem(ends, kinds, usual.tables(share), alone, away) for share in (0.0, LITERAL))
+        literal = literal_share(graded, exact, np.argsort(np.array(description.nodes, dtype=str)), _by_place(boxes))
+    return FactTables(edges, ends, kinds, said.tables(literal))
 
 
-class _Speakers:
-    """What is said of the pairs of one scene."""
+def _key(description: RelationGraph, edge: int) -> tuple[int, bool, float]:
+    """What a fact says: its relations, whether it is stated or denied, and its weight."""
+    weight = float(description.weights[edge]) * (OPTIONAL_WEIGHT if description.optional[edge] else 1.0)
+    return int(description.relation_sets[edge]), bool(description.positive[edge]), weight
+
+
+def _by_place(boxes: NDArray[np.float64]) -> NDArray[np.int64]:
+    """The boxes in the order of their coordinates."""
+    return np.lexsort(np.reshape(boxes, (len(boxes), -1)).T[::-1]) if len(boxes) else np.zeros(0, dtype=np.int64)
+
+
+class _Said:
+    """What k different facts (relations, sign, weight) say of the pairs of one scene, to either speaker."""
 
     def __init__(
-        self, pairs: PairGeometry, models: RelationModels, vocabulary: Relations, saying: bool, literal: float
+        self,
+        pairs: PairGeometry,
+        models: RelationModels,
+        vocabulary: Relations,
+        saying: bool,
+        distinct: Sequence[tuple[int, bool, float]],
     ) -> None:
-        self.pairs, self.models, self.vocabulary, self.literal = pairs, models, vocabulary, literal
+        self.models, self.vocabulary, self.distinct = models, vocabulary, distinct
+        self.degrees = WordDegrees(pairs, models)
         self.spoken = saying_degree(pairs, models) if saying else np.ones((len(pairs), len(pairs)))
         self.spoken_by_chance = models[SAYING].chance if saying else 1.0
-        self.names = box_relations(pairs.boxes, vocabulary).names if literal > 0 else None
+        self.names = box_relations(pairs.boxes, vocabulary).names
+        self.graded, self.literal = (np.zeros((len(distinct), *self.spoken.shape)) for _ in range(2))
+        for row, (mask, positive, _) in enumerate(distinct):
+            relations = vocabulary.members(mask)
+            outliers = float(np.mean([models.of(relation).outliers for relation in relations]))
+            self.graded[row] = self._graded(relations, positive, outliers)
+            self.literal[row] = self._literal(relations, positive)
 
-    def evidence(self, relations: tuple[Relation, ...], positive: bool, weight: float) -> Array:
-        """The log-likelihood ratio of one fact, shape (n2, n2)."""
-        known = [self.models.of(relation) for relation in relations]
-        degrees = np.stack([relation_degree(self.pairs, relation, self.models) for relation in relations])
-        degree = combined(degrees, positive) * self.spoken
-        chance = float(combined(np.array([model.chance for model in known]), positive)) * self.spoken_by_chance
-        outliers = float(np.mean([model.outliers for model in known]))
-        evidence = log_likelihood_ratio(degree, outliers, chance)
-        if self.names is not None:
-            crisp = literal_degree(relations, positive, self.names, self.vocabulary)
-            by_chance = min(LITERAL_CHANCE * len(relations), 1.0)
-            taken = log_likelihood_ratio(crisp, outliers, by_chance if positive else 1 - by_chance)
-            evidence = _mixed(evidence, taken, self.literal)
-        evidence = hedged(evidence, weight)
-        np.fill_diagonal(evidence, 0.0)
-        return evidence
+    def tables(self, share: float) -> NDArray[np.float32]:
+        """The evidence where ``share`` of facts is meant literally, shape (k, n2, n2), 0 on the diagonals."""
+        tables = np.zeros(self.graded.shape, dtype=np.float32)
+        for row, (_, _, weight) in enumerate(self.distinct):
+            tables[row] = hedged(_mixed(self.graded[row], self.literal[row], share), weight)
+            np.fill_diagonal(tables[row], 0.0)
+        return tables
+
+    def _graded(self, relations: tuple[Relation, ...], positive: bool, outliers: float) -> Array:
+        degrees = np.stack([self.degrees.of(relation) for relation in relations])
+        chances = np.array([self.models.of(relation).chance for relation in relations])
+        chance = float(combined(chances, positive)) * self.spoken_by_chance
+        return log_likelihood_ratio(combined(degrees, positive) * self.spoken, outliers, chance)
+
+    def _literal(self, relations: tuple[Relation, ...], positive: bool) -> Array:
+        degree = literal_degree(relations, positive, self.names, self.vocabulary, IMPLIED)
+        chance = min(LITERAL_CHANCE * len(relations), 1.0)
+        return log_likelihood_ratio(degree, OUTLIERS, chance if positive else 1 - chance)
 
 
 def _mixed(graded: Array, literal: Array, share: float) -> Array:
     """The logarithm of a mixture of two likelihood ratios."""
-    result: Array = np.log((1 - share) * np.exp(graded) + share * np.exp(literal))
+    if share in (0.0, 1.0):
+        return literal if share else graded
+    result: Array = np.logaddexp(np.log1p(-share) + graded, np.log(share) + literal)
     return result
 
 
 def literal_degree(
-    relations: tuple[Relation, ...], positive: bool, names: NDArray[np.integer], vocabulary: Relations
+    relations: tuple[Relation, ...],
+    positive: bool,
+    names: NDArray[np.integer],
+    vocabulary: Relations,
+    implied: float = 0.5,
 ) -> Array:
-    """The crisp reading, shape (n2, n2): 1, 0.5 or 0 by the exact name that each pair bears (-1: none)."""
+    """By the exact name that each pair bears (-1: none), shape (n2, n2): 1, ``implied`` by it, or 0."""
     best = vocabulary.degrees[[relation.index for relation in relations]].max(axis=0)
-    degree = best if positive else (best == 0).astype(np.float64)
+    degree = np.where((best > 0) & (best < 1), implied, best) if positive else (best == 0).astype(np.float64)
     result: Array = np.where(names >= 0, degree[names], 0.0)
     return result
 

@@ -41,7 +41,7 @@ OUTLIER_BOUNDS = (0.001, 0.2)
 class FitSettings:
     """``strength`` of the prior (1: a difference of 1 between knots costs half a nat), and ``word_contrast``."""
 
-    strength: float = 1.0
+    strength: float = 3.0
     word_contrast: float = 0.0
     iterations: int = 100
 

@@ -19,7 +19,7 @@ BORDER, EXTREME = float(np.log(0.5)), float(np.log(0.05))
 OUTLIERS = 0.01
 """Share of facts that are said of a pair whatever it is like: no fact speaks more than ln 100 against its best pair."""
 
-CHANCE = {"horizontal": 0.074, "vertical": 0.074, "diagonal": 0.038, "support": 0.036, SAYING: 0.303}
+CHANCE = {"horizontal": 0.074, "vertical": 0.074, "diagonal": 0.038, "support": 0.028, SAYING: 0.303}
 """Mean degrees of ordered pairs of random boxes: :func:`deixis.reasoning.graded.chance.random_scenes`, seed 1."""
 
 
@@ -50,8 +50,10 @@ def support_terms() -> tuple[Term, ...]:
     """The terms of ``on``: within the bearer's outline, its foot there, and higher where heights are known."""
     return (
         Term("across", (0.0, 0.5, 1.0), (EXTREME, BORDER, 0.0), Trend.RISING),
-        Term("foot", (-1.0, -0.5, 0.0, 1.0, 1.5, 2.0), (EXTREME, BORDER, 0.0, 0.0, BORDER, EXTREME)),
-        Term("gap", (0.0, 0.2, 1.0), (0.0, BORDER, EXTREME), Trend.FALLING),
+        # what reaches below its bearer is not borne: half at a quarter of the depth; what reaches above may stand on it
+        Term("foot", (-0.5, -0.25, 0.0, 1.0, 1.5, 2.0), (EXTREME, BORDER, 0.0, 0.0, BORDER, EXTREME)),
+        # things in contact touch from wherever they are seen: half at a ninth of the mean size, the extreme at a third
+        Term("gap", (0.0, 0.1, 0.25), (0.0, BORDER, EXTREME), Trend.FALLING),
         Term("rise", (-1.0, 0.0, 0.2, 1.0), (EXTREME, BORDER, 0.0, 0.0), Trend.RISING),
     )
 

@@ -14,7 +14,9 @@ from numpy.typing import NDArray
 
 from deixis.ontology.graph import RelationGraph
 from deixis.ontology.kinds import Kinds
+from deixis.ontology.size_model import SizeModel
 from deixis.ontology.sizes import SizeRange, Sizes
+from deixis.ontology.vocabulary import DX
 from deixis.reasoning.errors import SettingError
 from deixis.reasoning.graded.geometry import pair_geometry
 from deixis.reasoning.labels import Label, named_objects
@@ -24,33 +26,27 @@ Array = NDArray[np.float64]
 OUTLIERS = 0.05
 """Share of things whose size says nothing of their kind."""
 
+TURNED = 0.2
+"""Share of things that lie at any angle to the axes; the others lie along one of them."""
+
+ANGLES = np.radians(np.arange(5.0, 46.0, 5.0))
+"""Angles between a thing and the nearest axis, as likely each, by which a box is larger than what is in it."""
+
 LEAST_SPREAD = 0.05
 """Standard deviation of a logarithm below which no learned range falls: 5 per cent of a length."""
 
 
 @dataclass(frozen=True, slots=True)
 class UnaryWeights:
-    """By how much labels and sizes are multiplied; 1 takes them at their word, 0 leaves them out."""
+    """By how much labels, sizes and colours are multiplied; 1 takes them at their word, 0 leaves them out."""
 
     labels: float = 1.0
     sizes: float = 1.0
+    colours: float = 1.0
 
     def __post_init__(self) -> None:
-        if not (0 <= self.labels < np.inf and 0 <= self.sizes < np.inf):
+        if not all(0 <= weight < np.inf for weight in (self.labels, self.sizes, self.colours)):
             raise SettingError("a weight of evidence is finite and at least 0")
-
-
-@dataclass(frozen=True, slots=True)
-class SizeModel:
-    """Log-normal length (longer side in the plan) and aspect (shorter by longer side) of a kind of thing.
-
-    ``relative``: the length is in units of the scene's median length, as it must be where scenes are in pixels.
-    """
-
-    length: tuple[float, float]  # mean and standard deviation of the natural logarithm
-    aspect: tuple[float, float]
-    relative: bool = False
-    views: float = 0.0
 
 
 def size_model(usual: SizeRange) -> SizeModel:
@@ -104,28 +100,64 @@ def size_evidence(
 ) -> Array:
     """What sizes say of n1 objects of some kinds (class IRIs) being each of n2 boxes, shape (n1, n2), finite.
 
-    A learned model takes the place of the usual size. Where units are pixels (not ``metric``) only relative ones
-    speak. Chance is what things of any kind are like: the scene's own spread around its median, or wider.
+    A learned model takes the place of the usual size; a kind of which no size is known says nothing, nor does, where
+    units are pixels (not ``metric``), one that is not relative. Chance is the scene itself: a thing weighs as much as
+    it fits the kind better than the things around do, log n2 at the most, and nothing where all are alike.
     """
     evidence = np.zeros((len(kinds), len(boxes)))
+    found: dict[SizeModel, Array] = {}
     for row, kind in enumerate(kinds):
-        model = (learned or {}).get(kind or "") or (size_model(sizes.of(kind)) if kind and metric else None)
+        model = (learned or {}).get(kind or "") or (_usual(kind, sizes) if metric else None)
         if model is not None and (model.relative or metric) and len(boxes):
-            evidence[row] = _density_ratio(log_sizes(boxes, model.relative), model)
+            if model not in found:
+                found[model] = _density_ratio(log_sizes(boxes, model.relative), model)
+            evidence[row] = found[model]
     return evidence
 
 
+def _usual(kind: str | None, sizes: Sizes) -> SizeModel | None:
+    """The usual size of a kind, None where only that of all things is stated."""
+    usual = sizes.of(kind)
+    return None if usual.stated_of == DX.THING else size_model(usual)
+
+
 def _density_ratio(measured: Array, model: SizeModel) -> Array:
-    """log of (1 - outliers) * p(size | kind) / p(size) + outliers, for n boxes (n, 2)."""
-    ratio = np.zeros(len(measured))
-    for column, (mean, spread) in enumerate((model.length, model.aspect)):
-        chance_mean = float(np.median(measured[:, column]))
-        chance_spread = max(float(np.std(measured[:, column])), 2 * spread)
-        near = ((measured[:, column] - mean) / spread) ** 2
-        usual = ((measured[:, column] - chance_mean) / chance_spread) ** 2
-        ratio += (usual - near) / 2 + np.log(chance_spread / spread)
+    """log of (1 - outliers) * p(size | kind) / p(size) + outliers, for n boxes (n, 2), log n at the most.
+
+    p(size) is the mean of normal kernels at the things of the scene (Parzen 1962), their width by Scott's rule (1992),
+    but never narrower than the kind's spread.
+    """
+    n, spread = len(measured), np.array([model.length[1], model.aspect[1]])
+    wanted, shares = _as_seen(model)
+    fits = np.logaddexp.reduce(np.log(shares) + _log_kernel(measured, wanted, spread), axis=1)
+    width = np.maximum(spread, measured.std(axis=0) * n ** (-1 / 6))
+    chance = np.logaddexp.reduce(_log_kernel(measured, measured, width), axis=1) - np.log(n)
+    ratio = np.minimum(fits - chance, np.log(n))
     result: Array = np.logaddexp(np.log1p(-OUTLIERS) + ratio, np.log(OUTLIERS))
     return result
+
+
+def _log_kernel(at: Array, centres: Array, spread: Array) -> Array:
+    """Log density of n places (n, 2) under k normal kernels (k, 2), up to a constant, shape (n, k)."""
+    apart = (at[:, None] - centres[None]) / spread
+    result: Array = -0.5 * (apart**2).sum(axis=2) - np.log(spread).sum()
+    return result
+
+
+def _as_seen(model: SizeModel) -> tuple[Array, Array]:
+    """Log length and log aspect of the box around a thing of typical size, (k, 2), and how often each is seen, (k,).
+
+    Of a thing l long and w wide that lies at an angle a, the box is l cos a + w sin a by l sin a + w cos a. A thing
+    about as wide as long is taken to be round, and looks the same however it lies.
+    """
+    straight = np.array([[model.length[0], model.aspect[0]]])
+    if model.aspect[0] > -2 * LEAST_SPREAD:
+        return straight, np.ones(1)
+    length, width = np.exp(model.length[0]), np.exp(model.length[0] + model.aspect[0])
+    long = length * np.cos(ANGLES) + width * np.sin(ANGLES)
+    wide = length * np.sin(ANGLES) + width * np.cos(ANGLES)
+    seen = np.concatenate([straight, np.log(np.stack([long, wide / long], axis=1))])
+    return seen, np.array([1 - TURNED, *[TURNED / len(ANGLES)] * len(ANGLES)])
 
 
 def label_ratios(description: RelationGraph, labels: Sequence[Label | None], kinds: Kinds) -> Array:

@@ -6,13 +6,15 @@ mirror each other share a model, and an inverse looks at the exchanged pair and 
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator, Mapping
+
 import numpy as np
 from numpy.typing import NDArray
 
 from deixis.reasoning.graded.geometry import PairGeometry
 
 Array = NDArray[np.float64]
-View = dict[str, Array]
+View = Mapping[str, Array]
 
 HEADINGS = {
     "left": (-1, 0),
@@ -54,21 +56,51 @@ def _direction(pairs: PairGeometry, heading: tuple[int, int]) -> View:
     )
     to = np.array(heading) / np.hypot(*heading)
     forward = pairs.offset @ to
-    length = np.maximum(np.linalg.norm(pairs.offset, axis=2), NEARBY)
-    lateral = np.abs(pairs.offset @ np.array([-to[1], to[0]]))
-    across = [0, 1] if len(axes) == 2 else [1 - axes[0]]
-    covered = np.maximum(pairs.inside, pairs.inside.transpose(1, 0, 2))[:, :, across].max(axis=2)
-    return {
-        "deviation": np.arccos(np.clip(forward / length, -1.0, 1.0)),
-        "clear": clear,
-        "trail": trail,
-        "lead": lead,
-        "forward": forward / (1 + np.abs(forward)),
-        "lateral": lateral / (1 + lateral),
-        "abreast": covered,
-        "gap": pairs.gap,
-        "alike": np.abs(pairs.smaller),
-    }
+
+    def deviation() -> Array:
+        length = np.maximum(np.linalg.norm(pairs.offset, axis=2), NEARBY)
+        result: Array = np.arccos(np.clip(forward / length, -1.0, 1.0))
+        return result
+
+    def lateral() -> Array:
+        off = np.abs(pairs.offset @ np.array([-to[1], to[0]]))
+        result: Array = off / (1 + off)
+        return result
+
+    def abreast() -> Array:
+        covers = [pairs.inside[:, :, axis] for axis in ((0, 1) if len(axes) == 2 else (1 - axes[0],))]
+        result: Array = np.max([share for one in covers for share in (one, one.T)], axis=0)
+        return result
+
+    return _Features(
+        {
+            "deviation": deviation,
+            "clear": lambda: clear,
+            "trail": lambda: trail,
+            "lead": lambda: lead,
+            "forward": lambda: forward / (1 + np.abs(forward)),
+            "lateral": lateral,
+            "abreast": abreast,
+            "gap": lambda: pairs.gap,
+            "alike": lambda: np.abs(pairs.smaller),
+        }
+    )
+
+
+class _Features(Mapping[str, Array]):
+    """Features that are worked out when they are looked at; most models look at few of them."""
+
+    def __init__(self, features: Mapping[str, Callable[[], Array]]) -> None:
+        self._features = features
+
+    def __getitem__(self, name: str) -> Array:
+        return self._features[name]()
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._features)
+
+    def __len__(self) -> int:
+        return len(self._features)
 
 
 def _along(pairs: PairGeometry, axis: int, sign: int) -> tuple[Array, Array, Array]:

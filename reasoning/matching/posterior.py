@@ -1,9 +1,10 @@
-"""How probable every match is: from all maps that count where they can be listed, else from samples, which says so.
+"""How probable every match is: by adding up all maps that count where they are few, else from samples, which says so.
 
-The probability of a map is proportional to the exponential of its value. The listing is complete to a stated mass: with
-N maps in all, those worth less than the best by log(N / mass) or more have less than that mass together. Where there
-are too many maps for that, Markov chains exchange the things of two objects (Metropolis et al. 1953), from independent
-starts, and what the chains disagree by is the stated error.
+The probability of a map is proportional to the exponential of its value. The sum over all maps but a stated mass is
+exact (``summing.py``). Whether it can be had is judged from sums that leave out more, which cost little. Else several
+ladders of Markov chains, from independent starts, are run twice as long each time until they agree (``sampling.py``);
+what they differ by is the stated error. Objects that are exchangeable have one marginal, so that no chain has to visit
+all of their orders.
 """
 
 from __future__ import annotations
@@ -15,15 +16,33 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.reasoning.matching.compiled import compile_problem
-from deixis.reasoning.matching.exact import maps_within
-from deixis.reasoning.matching.problem import UNMATCHED, MatchingError, Problem
-from deixis.reasoning.matching.sampling import sample
+from deixis.reasoning.matching.compiled import Compiled, compile_problem, to_assignment
+from deixis.reasoning.matching.exact import Maps
+from deixis.reasoning.matching.exchangeability import averaged, exchangeable
+from deixis.reasoning.matching.problem import MatchingError, Problem
+from deixis.reasoning.matching.sampling import Ladder, ladder, most_said_twice, sample
 from deixis.reasoning.matching.scalable import search_from
+from deixis.reasoning.matching.summing import Sum, add_up, factors
 
-CHAINS = 8
-SWEEPS = 4000  # proposals for every object and chain; the first quarter is left out
-SHARE = 0.5  # of the time that the listing may take
+Marginals = NDArray[np.float64]
+Groups = tuple[tuple[int, ...], ...]
+
+THRESHOLDS = (1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12)  # of the best map's weight: less is left out of a sum
+GROWTH, FALL = 5.0, 15.0  # of the nodes, and of the error, from one threshold to the next, about
+SMALL = 100  # a search of so much fewer nodes than there may be is no sign of one that takes too long
+SUM_CELLS, FACTOR_CELLS = 6e6, 4e6  # work for sums, and room for facts; beyond, maps are sampled
+
+LADDERS = 4
+PARTS = 8  # of a run, half of which are compared with the other half
+HOTTEST = 0.7  # the least coldness: where facts decide, colder maps are stuck, and hotter ones say little
+RUNGS = (3, 6)  # fewest and most temperatures
+ROUNDS = 4  # proposals for every object in a sweep
+FIRST_SWEEPS = 8  # of a part of the first run
+TOLERANCE = 0.007  # the standard error that is good enough
+PROPOSALS = 4e5  # for each object, in all ladders and temperatures, of at most so many objects:
+MOST_OBJECTS = 75
+THRESHOLDS_KEPT = 1 << 16
+START_EFFORT = 0.1
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,74 +50,136 @@ class Posterior:
     """``marginals`` (n1, n2 + 1): the probability of each thing for each object; last, of its being left out.
 
     ``error``: at most so much mass is missing where ``exact``; otherwise the largest standard error of a marginal over
-    the chains, which is no guarantee.
+    ladders and halves of their runs, which is no guarantee, and infinite where there are not two to compare. ``maps``:
+    where exact and few, the maps that were added up, best first: all that are probable, and some that hardly are.
     """
 
-    marginals: NDArray[np.float64]
+    marginals: Marginals
     exact: bool
     error: float
+    maps: Maps | None = None
 
     @property
-    def entropy(self) -> NDArray[np.float64]:
+    def entropy(self) -> Marginals:
         """Of each object's marginal, in nats, shape (n1,): 0 where it is certain."""
         p = self.marginals
         logs = np.log(p, out=np.zeros_like(p), where=p > 0)
-        entropy: NDArray[np.float64] = np.maximum(0.0, -(p * logs).sum(axis=1))
+        entropy: Marginals = np.maximum(0.0, -(p * logs).sum(axis=1))
         return entropy
 
 
 def posterior(
-    problem: Problem, deadline: float = math.inf, *, mass: float = 1e-6, limit: int = 10_000, seed: int = 0
+    problem: Problem, deadline: float = math.inf, *, mass: float = 1e-3, limit: int = 10_000, seed: int = 0
 ) -> Posterior:
     """The posterior over maps by its marginals, until ``deadline`` (``time.perf_counter``).
 
-    It is exact to ``mass`` where at most ``limit`` maps are within the margin which that takes, and sampled otherwise.
-    Raises MatchingError for a mass that is not between 0 and 1.
+    It is exact but for ``mass`` where that can be shown by adding up maps in little time, and sampled otherwise; at
+    most ``limit`` maps are listed. Raises MatchingError for a mass that is not between 0 and 1 or a limit below 1.
 
     >>> problem = Problem(np.zeros((0, 2), np.int64), np.zeros(0, np.int64), np.zeros((0, 1, 1), np.float32),
     ...                   np.array([[np.log(3.0)]]), np.zeros(1))
     >>> found = posterior(problem)
-    >>> found.marginals.round(3).tolist(), found.exact
-    ([[0.75, 0.25]], True)
+    >>> found.marginals.round(3).tolist(), found.exact, found.maps.assignments.tolist()
+    ([[0.75, 0.25]], True, [[0], [-1]])
     """
-    if not 0 < mass < 1:
-        raise MatchingError(f"the mass that may be missing lies between 0 and 1, not at {mass}")
+    if not 0 < mass < 1 or limit < 1:
+        raise MatchingError(
+            f"the mass that may be missing lies between 0 and 1, and a limit is 1 or more, not {mass} and {limit}"
+        )
     n1, n2 = problem.unary.shape
     if n1 == 0 or n2 == 0:
-        return Posterior(np.ones((n1, 1)) if n2 == 0 else np.zeros((0, n2 + 1)), exact=True, error=0.0)
-    choices = (~np.isneginf(problem.unary)).sum(axis=1) + 1
-    margin = float(np.log(choices).sum() - math.log(mass))
-    now = time.perf_counter()
-    maps = maps_within(problem, margin, now + SHARE * (deadline - now), limit=limit)
-    if not maps.complete:
-        return _sampled(problem, deadline, seed)
-    weights = np.exp(maps.values - maps.values[0])
-    return Posterior(_marginals(maps.assignments, weights / weights.sum(), n2), exact=True, error=mass)
-
-
-def _marginals(assignments: NDArray[np.int64], weights: NDArray[np.float64], n2: int) -> NDArray[np.float64]:
-    marginals = np.zeros((assignments.shape[1], n2 + 1))
-    labels = np.where(assignments == UNMATCHED, n2, assignments)
-    for i in range(assignments.shape[1]):
-        np.add.at(marginals[i], labels[:, i], weights)
-    return marginals
-
-
-def _sampled(problem: Problem, deadline: float, seed: int) -> Posterior:
+        nobody = Maps(np.full((1, n1), -1), np.array([problem.absent.sum()]), complete=True, limited=False)
+        return Posterior(np.ones((n1, 1)) if n2 == 0 else np.zeros((0, n2 + 1)), True, 0.0, nobody)
     compiled = compile_problem(problem)
-    n1, n2 = problem.unary.shape
-    chains = []
-    for chain in range(CHAINS):
-        labels, _ = search_from(np.full(n1, n2), compiled, deadline, seed + chain, 0.1, 1)
-        counts = np.zeros((n1, n2 + 1))
-        for part in range(20):
-            if part == 5:
-                counts[:] = 0.0
-            sample(labels, counts, compiled, SWEEPS * n1 // 20, seed + 1000 * part + chain)
-            if time.perf_counter() > deadline:
-                break
-        chains.append(counts / counts.sum(axis=1, keepdims=True))
+    return _added_up(problem, compiled, deadline, mass, limit, seed) or _sampled(problem, compiled, deadline, seed)
+
+
+def _added_up(
+    problem: Problem, compiled: Compiled, deadline: float, mass: float, limit: int, seed: int
+) -> Posterior | None:
+    """The sum over maps, or None where it would take too long."""
+    n1, width = compiled.unary.shape
+    if len(compiled.kind) * width * width > FACTOR_CELLS:
+        return None
+    best, _ = search_from(np.full(n1, width - 1), compiled, deadline, seed, START_EFFORT, 2)
+    parts = factors(compiled)
+    top = math.exp(problem.value(to_assignment(best, width - 1)) - parts.log_scale)
+    nodes = int(SUM_CELLS / (n1 * width))
+    for threshold in THRESHOLDS:
+        if time.perf_counter() > deadline:
+            return None
+        state, (total, missing, found, looked_at) = add_up(compiled, parts, threshold * top, nodes, limit)
+        if missing == math.inf or total <= 0:
+            return None
+        error = missing / (total + missing)
+        if error <= mass:
+            maps = _listed(problem, state, int(found)) if found <= limit else None
+            marginals = averaged(state.marginals / total, exchangeable(problem))
+            return Posterior(marginals, True, error, maps)
+        if looked_at * SMALL > nodes and looked_at * GROWTH ** math.log(error / mass, FALL) > nodes:
+            return None
+    return None
+
+
+def _listed(problem: Problem, state: Sum, count: int) -> Maps:
+    assignments = to_assignment(state.maps[:count], problem.unary.shape[1])
+    values = np.array([problem.value(assignment) for assignment in assignments])
+    order = np.lexsort([*assignments.T[::-1], -np.round(values, 7)])
+    return Maps(assignments[order], values[order], complete=True, limited=False)
+
+
+def _sampled(problem: Problem, compiled: Compiled, deadline: float, seed: int) -> Posterior:
+    """A short run of ladders, then one as long as the first one's error shows to be needed, and so on.
+
+    Each leaves out all before, as being on the way.
+    """
+    n1, width = compiled.unary.shape
+    groups, rng = exchangeable(problem), np.random.default_rng(seed)
+    coldness = np.geomspace(1.0, HOTTEST, int(np.clip(1 + 0.7 * math.sqrt(n1), *RUNGS)))
+    thresholds = -rng.exponential(size=THRESHOLDS_KEPT)
+    ladders = []
+    for number in range(LADDERS):
+        labels, _ = search_from(np.full(n1, width - 1), compiled, deadline, seed + number, START_EFFORT, 1)
+        ladders.append(ladder(labels, compiled, coldness))
         if time.perf_counter() > deadline:
             break
-    error = np.std(chains, axis=0, ddof=1).max() / math.sqrt(len(chains)) if len(chains) > 1 else math.inf
-    return Posterior(np.mean(chains, axis=0), exact=False, error=float(error))
+    sweeps, one_sweep = FIRST_SWEEPS, LADDERS * PARTS * ROUNDS * n1 * len(coldness)
+    left = int(PROPOSALS * min(n1, MOST_OBJECTS) / one_sweep)
+    marginals, error = averaged(np.eye(width)[ladders[0].labels[0]], groups), math.inf
+    while True:
+        counts = _run(ladders, compiled, sweeps, deadline, thresholds, rng)
+        if counts is None:
+            break
+        marginals, error = _agreement(averaged(counts / sweeps, groups))
+        left -= sweeps
+        wanted = max(2 * sweeps, math.ceil(sweeps * (error / TOLERANCE) ** 2))
+        if error <= TOLERANCE or left < sweeps:
+            break
+        sweeps = min(wanted, left)
+    return Posterior(marginals, False, error)
+
+
+def _run(
+    ladders: list[Ladder],
+    compiled: Compiled,
+    sweeps: int,
+    deadline: float,
+    thresholds: NDArray[np.float64],
+    rng: np.random.Generator,
+) -> NDArray[np.float64] | None:
+    """Counts by half, ladder and match (2, LADDERS, n1, n2 + 1); None where the deadline struck."""
+    if len(ladders) < LADDERS or time.perf_counter() > deadline:
+        return None
+    counts, most = np.zeros((2, LADDERS, *compiled.unary.shape)), most_said_twice(compiled)
+    for part in range(PARTS):
+        for chains, count in zip(ladders, counts[2 * part // PARTS], strict=True):
+            sample(chains, count, compiled, sweeps, ROUNDS, thresholds, most, int(rng.integers(1 << 31)))
+            if time.perf_counter() > deadline:
+                return None
+    return counts / (PARTS // 2)
+
+
+def _agreement(shares: NDArray[np.float64]) -> tuple[Marginals, float]:
+    """The mean of all halves, and the largest standard error of a marginal, halves taken as independent runs."""
+    halves = shares.reshape(-1, *shares.shape[2:])
+    return halves.mean(axis=0), float(halves.std(axis=0, ddof=1).max() / math.sqrt(len(halves)))

@@ -1,6 +1,6 @@
-"""The scalable engine: annealing by blocks from several starts, then moves and swaps until none helps.
+"""The scalable engine: annealing from several starts, the best reheated, then moves and swaps until none helps.
 
-It proves nothing, and is for any size: its work for a step grows with the block, the facts and the things, and it
+It proves nothing, and is for any size: its work for a step grows with the things and the facts of an object, and it
 holds little more than the tables. What it finds does not depend on the clock, unless the deadline cuts it short, nor in
 quality on the order of the objects.
 """
@@ -14,22 +14,27 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.reasoning.matching.annealing import NOISE, anneal, climb
-from deixis.reasoning.matching.branching import evaluate
+from deixis.reasoning.matching.annealing import NOISE, anneal
+from deixis.reasoning.matching.climbing import climb
 from deixis.reasoning.matching.compiled import Compiled, compile_problem, to_assignment, to_labels
+from deixis.reasoning.matching.kept_gains import keep
 from deixis.reasoning.matching.problem import Problem
+from deixis.reasoning.matching.recombination import combine
 
-HOT, COLD = 0.3, 0.05  # first and last temperature, in units of the mean range of a table
-LEVELS = 40  # temperatures on the way
-STEPS = 160  # blocks matched anew at each temperature
-LEAST_BLOCK, MOST_BLOCK = 4, 128  # objects of a block: a quarter of all, within these
-STARTS = 3
-WORK = 4e6  # cells of blocks at each temperature over all starts, about: large problems get fewer starts
+HOT, WARM, COLD = 0.35, 0.2, 0.06  # temperatures in units of the mean range of a table: first, reheated, and last
+LEVELS, WARM_LEVELS = 15, 10  # temperatures on the way down from the first, and from the second
+ONE_TURN_LEVELS = 40  # where there is one turn only
+SWEEPS = 3600  # over all objects, in all; small problems get more, those of many cells get fewer
+SMALL, MOST_SWEEPS, CELLS = 170_000, 5_600, 1.1e9
+MOST_TURNS, TURN_CELLS = 13, 11_700  # many short turns for few objects, one long one for many
+FRESH = 0.3  # the share of turns that start anew; the others reheat the best map
+LAST_SWEEPS = 3  # without noise, where the deadline struck
+PART = 3e6  # cells of the sweeps between two looks at the clock
 
 
 @dataclass(frozen=True, eq=False)
 class Found:
-    """The best map found (n1,), its value, and whether the deadline left time for all starts."""
+    """The best map found (n1,), its value, and whether the deadline left time for the whole search."""
 
     assignment: NDArray[np.int64]
     value: float
@@ -60,7 +65,7 @@ def scalable(
     best = np.full(n1, n2) if start is None else to_labels(start, n2)
     finished = True
     if n1 and n2:
-        best, finished = search_from(best, compile_problem(problem), deadline, seed, effort, STARTS)
+        best, finished = search_from(best, compile_problem(problem), deadline, seed, effort, MOST_TURNS)
     assignment = to_assignment(best, n2)
     return Found(assignment, problem.value(assignment), finished)
 
@@ -68,42 +73,52 @@ def scalable(
 def search_from(
     labels: NDArray[np.int64], compiled: Compiled, deadline: float, seed: int, effort: float, most: int
 ) -> tuple[NDArray[np.int64], bool]:
-    """The best of at most ``most`` starts, the first from ``labels`` (n1,), and whether all came to their end."""
+    """The best of at most ``most`` turns, the first from ``labels`` (n1,), and whether all came to their end."""
     rng = np.random.default_rng(seed)
-    noise = rng.gumbel(size=NOISE)
     n1, width = compiled.unary.shape
-    block = min(max(LEAST_BLOCK, n1 // 4), MOST_BLOCK)
-    starts = int(np.clip(WORK / (STEPS * block * width), 1, most))
-    best, best_value = labels, evaluate(labels, compiled)
-    for number in range(starts):
-        current = labels.copy() if number == 0 else np.full(n1, width - 1)
-        found = current.copy()
-        whole = _cool(current, found, compiled, deadline, block, noise, rng, max(1, round(effort * STEPS)))
-        climb(found, compiled)
-        value = evaluate(found, compiled)
-        if value > best_value:
-            best, best_value = found, value
-        if not whole:
+    noise = rng.gumbel(size=NOISE + width).astype(np.float32)
+    scale, best, nobody = mean_range(compiled), labels.copy(), np.full(n1, width - 1)
+    plan, sweeps = turns_and_sweeps(n1, width)
+    for turn, (hot, levels) in enumerate(plan[:most]):
+        found = nobody.copy() if turn and hot == HOT else best.copy()
+        schedule = scale * np.append(np.geomspace(hot, COLD, levels), 0.0)
+        finished = _cool(found, compiled, deadline, schedule, max(1, round(effort * sweeps)), noise, rng)
+        if not finished:
+            anneal(keep(found, compiled), found, 0.0, compiled, LAST_SWEEPS, 0.0, noise, seed)
+        combine(best, found, compiled)
+        if not finished:
             return best, False
+    climb(best, compiled)
     return best, True
 
 
+def turns_and_sweeps(objects: int, width: int) -> tuple[list[tuple[float, int]], int]:
+    """For each turn its first temperature and how many, and how many sweeps at each, at an effort of 1."""
+    turns = int(np.clip(TURN_CELLS / objects**2, 1, MOST_TURNS))
+    fresh = math.ceil(FRESH * turns)
+    plan = [(HOT, LEVELS)] * fresh + [(WARM, WARM_LEVELS)] * (turns - fresh) if turns > 1 else [(HOT, ONE_TURN_LEVELS)]
+    sweeps = min(max(SWEEPS, min(SMALL / objects, MOST_SWEEPS)), CELLS / (objects * width))
+    return plan, max(1, round(sweeps / sum(levels for _, levels in plan)))
+
+
 def _cool(
-    current: NDArray[np.int64],
     best: NDArray[np.int64],
     compiled: Compiled,
     deadline: float,
-    block: int,
-    noise: NDArray[np.float64],
+    schedule: NDArray[np.float64],
+    sweeps: int,
+    noise: NDArray[np.float32],
     rng: np.random.Generator,
-    steps: int,
 ) -> bool:
-    """One annealing from hot to cold; false where the deadline struck."""
-    scale = mean_range(compiled)
-    for temperature in [*np.geomspace(HOT, COLD, LEVELS), 0.0]:
-        if time.perf_counter() > deadline:
-            return False
-        anneal(current, best, compiled, steps, temperature * scale, block, noise, int(rng.integers(1 << 31)))
+    """One annealing from ``best`` (n1,), which takes the best map on the way; false where the deadline struck."""
+    state, ahead = keep(best, compiled), 0.0
+    part = max(1, int(PART / state.gains.size))
+    for temperature in schedule:
+        for done in range(0, sweeps, part):
+            if time.perf_counter() > deadline:
+                return False
+            count, seed = min(part, sweeps - done), int(rng.integers(1 << 31))
+            ahead = anneal(state, best, ahead, compiled, count, temperature, noise, seed)
     return True
 
 

@@ -19,13 +19,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from deixis.version import VERSION
+
 if TYPE_CHECKING:
     from deixis.grammar.format import format_script
     from deixis.ontology.errors import DeixisError
     from deixis.perception.scene_file import read_scene, write_scene
     from deixis.session import Session, ground, infer, read_script
 
-__version__ = "0.1.0"
+__version__ = VERSION
 __all__ = [
     "DeixisError",
     "Session",

@@ -14,13 +14,16 @@ from numpy.typing import NDArray
 from deixis.dialogue import AnswerSource, run
 from deixis.grammar.script import Script
 from deixis.perception.scene import Scene
+from deixis.reasoning.answer import Grounding
 from deixis.reasoning.asking.candidates import Candidates, candidates_of
 from deixis.reasoning.asking.inquiry import begin
 from deixis.reasoning.asking.situation import Situation, situation_of
-from deixis.reasoning.evidence import UNMATCHED, Evidence
-from deixis.reasoning.graded_engine import GradedEngine, problem_of
-from deixis.reasoning.grounding import DEFAULT_TIME_LIMIT, Grounding
+from deixis.reasoning.evidence import Evidence
+from deixis.reasoning.grounding import DEFAULT_TIME_LIMIT
 from deixis.reasoning.grounding import ground as ground_evidence
+from deixis.reasoning.likeliest import ExactEngine
+from deixis.reasoning.matching.problem import UNMATCHED
+from deixis.reasoning.meaning import SHIPPED, Meaning
 from deixis.reasoning.viewpoints import Viewpoint, Viewpoints, recover_viewpoint, turned
 from deixis.session import evidence_of
 
@@ -33,34 +36,39 @@ def ask(
     scene: Scene,
     source: Callable[[Situation], AnswerSource],
     out: TextIO,
+    meaning: Meaning = SHIPPED,
     time_limit: float = DEFAULT_TIME_LIMIT,
 ) -> Grounding:
-    """Grounds with graded meaning, asks what would tell the likeliest groundings apart, and grounds again.
+    """Grounds, asks what would tell the likeliest groundings apart, and grounds again.
 
     The dialogue is written to ``out``; ``source`` makes who answers, given what there is to be seen. The time limit is
     for each of the two searches, not for the person.
     """
-    evidence = evidence_of(script, scene)
+    evidence = evidence_of(script, scene, meaning)
     situation = situation_of(evidence.description, evidence.scene)
-    candidates = candidates_of(problem_of(evidence), time.perf_counter() + time_limit, margin=MARGIN)
+    candidates = candidates_of(evidence.problem, time.perf_counter() + time_limit, margin=MARGIN)
     done = run(begin(situation, candidates), source(situation), out)
-    return ground_evidence(_narrowed(evidence, done.candidates), GradedEngine(), time_limit)
+    return ground_evidence(_narrowed(evidence, done.candidates), ExactEngine(), time_limit)
 
 
 def _narrowed(evidence: Evidence, left: Candidates) -> Evidence:
     """Only what the remaining candidates give an object may it be; what they hold as a group is left as it was."""
-    allowed = evidence.allowed.copy()
+    labels = evidence.labels.copy()
     grouped = {i for group in left.groups for i in group}
-    for i in range(len(allowed)):
+    for i in range(len(labels)):
         things = np.unique(left.assignments[:, i])
         things = things[things != UNMATCHED]
         if i not in grouped and len(things):
-            allowed[i] &= np.isin(np.arange(allowed.shape[1]), things)
-    return replace(evidence, allowed=allowed)
+            labels[i, ~np.isin(np.arange(labels.shape[1]), things)] = -np.inf
+    return replace(evidence, labels=labels)
 
 
 def seen_from_anywhere(
-    script: Script, scene: Scene, any_angle: bool = True, time_limit: float = DEFAULT_TIME_LIMIT
+    script: Script,
+    scene: Scene,
+    meaning: Meaning = SHIPPED,
+    any_angle: bool = True,
+    time_limit: float = DEFAULT_TIME_LIMIT,
 ) -> tuple[Scene, tuple[str, ...]]:
     """The scene as seen from the side from which the script most probably speaks, and notes that say which that is.
 
@@ -68,7 +76,7 @@ def seen_from_anywhere(
     """
 
     def problem(boxes: NDArray[np.float64]):  # type: ignore[no-untyped-def]
-        return problem_of(evidence_of(script, _with_boxes(scene, boxes)))
+        return evidence_of(script, _with_boxes(scene, boxes), meaning).problem
 
     deadline = time.perf_counter() + time_limit
     found = recover_viewpoint(scene.boxes, problem, any_angle=any_angle, deadline=deadline)

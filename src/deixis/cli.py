@@ -24,6 +24,7 @@ from deixis.cli_common import (
     print_json,
     print_lines,
 )
+from deixis.cli_experiment import register as register_experiment
 from deixis.cli_ground import ground
 from deixis.cli_imagine import register as register_imagine
 from deixis.cli_infer import infer
@@ -32,6 +33,8 @@ from deixis.cli_reason import reason
 from deixis.cli_relate import relate
 from deixis.cli_relation import register as register_relation
 from deixis.cli_retrieve import retrieve
+from deixis.cli_see import register as register_see
+from deixis.cli_simulate import register as register_simulate
 from deixis.cli_solve import solve
 from deixis.cli_time import time_command
 
@@ -123,27 +126,6 @@ app.command()(ground)
 
 
 @app.command()
-def experiment(
-    name: Annotated[str, typer.Argument(help="figure6: the paper's Figure 6 again.")],
-    out: Annotated[Path, typer.Option("-o", "--out", metavar="DIR", help="Where pictures and figures go.")] = Path(
-        "out"
-    ),
-    variants: Annotated[int, typer.Option(min=1, help="Generated place settings.")] = 50,
-    orders: Annotated[int, typer.Option(min=1, help="Random node orders that an accuracy is a mean over.")] = 200,
-    seed: Annotated[int, typer.Option(min=0, help="Seed of everything random.")] = 1,
-    as_json: AsJson = False,
-) -> None:
-    """Run an experiment of the paper again."""
-    from deixis.experiments import run_experiment
-
-    result = run_experiment(name, out, variants=variants, orders=orders, seed=seed)
-    if as_json:
-        print_json(result.to_dict())
-    else:
-        print_lines(result.lines())
-
-
-@app.command()
 def demo(
     out: Annotated[Path, typer.Option("-o", "--out", metavar="DIR", help="Where the pictures go.")] = Path("out"),
 ) -> None:
@@ -154,8 +136,11 @@ def demo(
 
 
 register(app)
+register_experiment(app)
 register_imagine(app)
 register_relation(app)
+register_see(app)
+register_simulate(app)
 
 
 def _replace(path: Path, text: str) -> None:

@@ -23,6 +23,7 @@ MemoryDir = Annotated[
     Path | None,
     typer.Option("--memory", metavar="DIR", help="The memory (default: $DEIXIS_MEMORY, else a folder of yours)."),
 ]
+NoMemory = Annotated[bool, typer.Option("--no-memory", help="As if nothing were remembered.")]
 
 
 def print_json(data: Any) -> None:

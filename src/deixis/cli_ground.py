@@ -21,17 +21,13 @@ from deixis.cli_common import (
     print_json,
     print_lines,
 )
+from deixis.reasoning.engine_name import EngineName
 
 if TYPE_CHECKING:
     from deixis.grammar.script import Script as ParsedScript
     from deixis.perception.scene import Scene
-    from deixis.reasoning.grounding import Grounding
-
-
-class EngineName(StrEnum):
-    EXACT = "exact"
-    GRADED = "graded"
-    SIMILARITY = "similarity"
+    from deixis.reasoning.answer import Grounding
+    from deixis.reasoning.meaning import Meaning
 
 
 class ViewpointName(StrEnum):
@@ -43,15 +39,22 @@ class ViewpointName(StrEnum):
 def ground(
     script: Script,
     scene: SceneFile,
-    engine: Annotated[EngineName, typer.Option(help="exact; graded; or similarity: the paper's.")] = EngineName.EXACT,
-    ask: Annotated[bool, typer.Option("--ask", help="Ask what tells groundings apart (graded).")] = False,
+    engine: Annotated[
+        EngineName, typer.Option(help="exact; scalable; similarity: the paper's; and two others from the literature.")
+    ] = EngineName.EXACT,
+    literal: Annotated[bool, typer.Option("--literal", help="Take words literally, not by degrees.")] = False,
+    no_sizes: Annotated[bool, typer.Option("--no-sizes", help="Leave out how large things usually are.")] = False,
+    ask: Annotated[bool, typer.Option("--ask", help="Ask what tells groundings apart.")] = False,
     oracle: Annotated[
         Path | None,
         typer.Option(metavar="FILE", help="Ask this file: JSON, from names to ids; null for what is absent."),
     ] = None,
     viewpoint: Annotated[
-        ViewpointName, typer.Option(help="stated; or recover the side: quarter turns, or unknown: any angle (graded).")
+        ViewpointName, typer.Option(help="stated; or recover the side: quarter turns, or unknown: any angle.")
     ] = ViewpointName.STATED,
+    memory: Annotated[
+        Path | None, typer.Option(metavar="DIR", help="Take words and sizes as this memory has learned them.")
+    ] = None,
     plot: Annotated[Path | None, typer.Option(metavar="FILE", help="Draw the scene with the names found.")] = None,
     time_limit: TimeLimit = 10.0,
     hide_labels: HideLabels = False,
@@ -59,6 +62,7 @@ def ground(
     as_json: AsJson = False,
 ) -> None:
     """Work out which perceived thing each object of a script is."""
+    from deixis.reasoning.errors import SettingError
     from deixis.report import grounding_to_dict
     from deixis.session import ground as run
     from deixis.session import load_scene, read_script
@@ -69,16 +73,18 @@ def ground(
 
         require_picture(plot)
     parsed, seen = read_script(script), load_scene(scene, hide_labels, image)
+    meaning = _meaning(literal, no_sizes, memory)
     notes: tuple[str, ...] = ()
     if viewpoint is not ViewpointName.STATED:
         from deixis.asking import seen_from_anywhere
 
-        engine = EngineName.GRADED
-        seen, notes = seen_from_anywhere(parsed, seen, viewpoint is ViewpointName.UNKNOWN, time_limit)
+        seen, notes = seen_from_anywhere(parsed, seen, meaning, viewpoint is ViewpointName.UNKNOWN, time_limit)
     if ask or oracle is not None:
-        found = _ask(parsed, seen, oracle, time_limit, as_json)
+        if engine is not EngineName.EXACT:
+            raise SettingError(f"only the engine 'exact' asks, not '{engine}': leave out --engine")
+        found = _ask(parsed, seen, meaning, oracle, time_limit, as_json)
     else:
-        found = run(parsed, seen, engine=engine, time_limit=time_limit)
+        found = run(parsed, seen, engine=engine, time_limit=time_limit, meaning=meaning)
     found = found.noting(notes)
     if plot is not None:
         from deixis.plot import plot_grounding
@@ -93,16 +99,34 @@ def ground(
     raise typer.Exit(_verdict(found))
 
 
-def _ask(script: ParsedScript, scene: Scene, oracle: Path | None, time_limit: float, as_json: bool) -> Grounding:
+def _meaning(literal: bool, no_sizes: bool, memory: Path | None) -> Meaning:
+    """What a memory has learned, where one is named, else what is shipped; less what is not wanted."""
+    from dataclasses import replace
+
+    from deixis.reasoning.meaning import SHIPPED
+    from deixis.session import Session
+
+    meaning = SHIPPED
+    if memory is not None:
+        with Session(memory) as session:
+            session.memory()  # refused where there is none
+            meaning = session.meaning()
+    weights = replace(meaning.weights, sizes=0.0) if no_sizes else meaning.weights
+    return replace(meaning, graded=meaning.graded and not literal, weights=weights)
+
+
+def _ask(
+    script: ParsedScript, scene: Scene, meaning: Meaning, oracle: Path | None, time_limit: float, as_json: bool
+) -> Grounding:
     """The dialogue goes to standard error where standard output is JSON."""
     from deixis.asking import ask
     from deixis.dialogue import Terminal, read_oracle
 
     out = sys.stderr if as_json else sys.stdout
     if oracle is None:
-        found = ask(script, scene, lambda _: Terminal(sys.stdin, out), out, time_limit)
+        found = ask(script, scene, lambda _: Terminal(sys.stdin, out), out, meaning, time_limit)
     else:
-        found = ask(script, scene, lambda situation: read_oracle(oracle, situation, out), out, time_limit)
+        found = ask(script, scene, lambda situation: read_oracle(oracle, situation, out), out, meaning, time_limit)
     print(file=out)
     return found
 
@@ -110,4 +134,4 @@ def _ask(script: ParsedScript, scene: Scene, oracle: Path | None, time_limit: fl
 def _verdict(found: Grounding) -> int:
     if not found.matches:
         return NO
-    return UNDECIDED if found.engine != EngineName.SIMILARITY and not found.proved_best else 0
+    return UNDECIDED if found.engine == EngineName.EXACT and not found.proved_best else 0

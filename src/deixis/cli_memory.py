@@ -27,6 +27,7 @@ memory_app = typer.Typer(help="Export, import, count, or forget what was learned
 class DumpFormat(StrEnum):
     TRIG = "trig"
     TURTLE = "turtle"
+    VIEWS = "views"
 
 
 class TableFormat(StrEnum):
@@ -167,14 +168,24 @@ def query(
 def export(
     out: Annotated[Path | None, typer.Option("-o", "--out", metavar="FILE", help="Write a file, else print.")] = None,
     format: Annotated[
-        DumpFormat, typer.Option("--format", help="trig: everything; turtle: one graph, for Protégé.")
+        DumpFormat,
+        typer.Option("--format", help="trig: all concepts; turtle: one graph, for Protégé; views: what was taught."),
     ] = DumpFormat.TRIG,
     memory: MemoryDir = None,
 ) -> None:
     """Write everything remembered, sorted: the same bytes for the same content."""
     from deixis.memory.exchange import export_memory
+    from deixis.memory_session import default_memory
+    from deixis.ontology.errors import DeixisError
     from deixis.session import Session
 
+    if format is DumpFormat.VIEWS:
+        from deixis.memory.perceptual.whole import export_all
+
+        if out is None:
+            raise DeixisError("views are no text: name a file with -o")
+        export_all(memory or default_memory(), out)
+        return
     with Session(memory) as session:
         text = export_memory(session.memory(), format.value)
     if out is None:
@@ -189,8 +200,17 @@ def import_(
     memory: MemoryDir = None,
 ) -> None:
     """Take in what was exported; what is there stays."""
+    from deixis.memory.perceptual.whole import import_all, is_archive
+    from deixis.memory_session import default_memory
     from deixis.session import Session
 
+    if is_archive(dump):
+        where = memory or default_memory()
+        done = import_all(dump, where)
+        print(f"{dump} is in the memory {where}.")
+        if done.relearn:
+            print(f"Categories to be learned anew from their views: {', '.join(done.relearn)}.")
+        return
     with Session(memory) as session:
         session.import_(dump)
         print(f"{dump} is in the memory {session.path}.")
@@ -201,16 +221,36 @@ def stats(memory: MemoryDir = None, as_json: AsJson = False) -> None:
     """Count what is remembered."""
     from dataclasses import asdict
 
+    from deixis.memory.perceptual.whole import stats_of
     from deixis.session import Session
     from deixis.show import stats_lines
 
     with Session(memory) as session:
-        counted = asdict(session.memory().stats())
-        lessons = session.memory().lessons()
+        views = stats_of(session.path)
+        concepts = session.remembers() or views is None
+        counted = asdict(session.memory().stats()) if concepts else {}
+        lessons = session.memory().lessons() if concepts else ()
+    if views is not None:
+        counted["perceptual"] = asdict(views)
     if as_json:
         print_json({**counted, "lesson_ids": list(lessons)})
     else:
         print_lines(stats_lines(counted, lessons))
+
+
+@memory_app.command("verify")
+def verify(memory: MemoryDir = None, as_json: AsJson = False) -> None:
+    """Read every view that was taught, and say what is not as it was written; exit 1 where something is not."""
+    from deixis.memory.perceptual.whole import verify_views
+    from deixis.memory_session import default_memory
+
+    found = verify_views(memory or default_memory())
+    if as_json:
+        print_json({"findings": [{"where": entry.where, "what": entry.what} for entry in found]})
+    else:
+        print_lines([str(entry) for entry in found] or ["All views are as they were written."])
+    if found:
+        raise typer.Exit(1)
 
 
 @memory_app.command("forget")

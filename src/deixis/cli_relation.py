@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from deixis.cli_common import AsJson, print_json, print_lines
+from deixis.cli_common import AsJson, MemoryDir, NoMemory, print_json, print_lines
 
 if TYPE_CHECKING:
+    from deixis.grammar.script import Script
+    from deixis.learned_words import LearnedWords
     from deixis.ontology.relation_models import RelationModels
-    from deixis.reasoning.graded.lessons import SaidPairs
+    from deixis.perception.scene import Scene
+    from deixis.session import Session
 
 Models = Annotated[
     Path | None, typer.Option("--models", metavar="FILE", help="Graded models (.ttl) in place of the shipped ones.")
@@ -22,9 +26,11 @@ def relation(
     word: Annotated[str, typer.Argument(metavar="WORD", help="A relation word: left, 'on top of', exactly_left.")],
     plot: Annotated[Path | None, typer.Option(metavar="FILE", help="Draw its field (.png, .svg, .pdf).")] = None,
     models: Models = None,
+    memory: MemoryDir = None,
+    no_memory: NoMemory = False,
     as_json: AsJson = False,
 ) -> None:
-    """Print what a relation word means: in both readings, and by degrees."""
+    """Print what a relation word means: in both readings, and by degrees, as it was learned or is shipped."""
     from deixis.ontology.errors import UnknownTermError
     from deixis.ontology.relation import nearest, plain_phrase
     from deixis.ontology.tbox import default_ontology
@@ -37,7 +43,7 @@ def relation(
         hint = nearest(plain_phrase(word), relations.by_word)
         advice = f"; did you mean '{hint}'?" if hint else ""
         raise UnknownTermError(f"no relation is called '{word}'" + advice)
-    known = read_models(models)
+    known = _in_force(memory, no_memory) if models is None else read_models(models)
     if plot is not None:
         require_picture(plot)
     if as_json:
@@ -52,41 +58,109 @@ def relation(
             print(f"Written: {plot}")
 
 
+def _in_force(memory: Path | None, no_memory: bool) -> RelationModels:
+    """The models of the memory, where it has some; a memory that is named must be there."""
+    from deixis.reasoning.graded.shipped import shipped_models
+    from deixis.session import Session
+
+    if no_memory:
+        return shipped_models()
+    with Session(memory) as session:
+        if memory is not None:
+            session.memory()
+        return session.meaning().models or shipped_models()
+
+
 def learn_relation(
     files: Annotated[
-        list[str], typer.Argument(metavar="SCRIPT SCENE...", help="Scripts, each with the labelled scene it describes.")
-    ],
-    out: Annotated[Path, typer.Option("-o", "--out", metavar="FILE", help="Write the models as Turtle (.ttl).")],
+        list[str] | None,
+        typer.Argument(metavar="[SCRIPT SCENE]...", help="Scripts, each with the labelled scene it describes."),
+    ] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option("-o", "--out", metavar="FILE", help="Write the models to a file (.ttl), not to the memory."),
+    ] = None,
     models: Models = None,
-    strength: Annotated[float, typer.Option(help="How strongly what is known already holds; above 0.")] = 1.0,
+    strength: Annotated[float, typer.Option(help="How strongly what is shipped holds; above 0.")] = 3.0,
+    reset: Annotated[bool, typer.Option("--reset", help="Take the learned models away; the lessons stay.")] = False,
+    memory: MemoryDir = None,
+    no_memory: NoMemory = False,
     as_json: AsJson = False,
 ) -> None:
-    """Learn what relation words mean from scenes whose things are labelled as the scripts name them."""
-    from deixis import __version__
+    """Learn what relation words mean: from everything remembered, and from scripts with labelled scenes."""
+    from deixis.session import Session
+    from deixis.show_relation import learned_words_lines, learned_words_to_dict
+
+    _require_fitting(files, out, models, reset, no_memory)
+    with Session(memory) as session:
+        if reset:
+            session.forget_relations()
+            where = session.path
+            print_json({"reset": str(where)}) if as_json else print(f"The shipped models are in force in {where}.")
+            return
+        examples = _examples(files or [])
+        if out is None:
+            learned, where = session.learn_relations(examples, strength), session.path
+        else:
+            learned, where = _fitted(session, examples, strength, models, no_memory), out
+            _write(learned, out)
+    if as_json:
+        print_json(learned_words_to_dict(learned, str(where)))
+    else:
+        print_lines(learned_words_lines(learned, str(where), out is None))
+
+
+def _require_fitting(
+    files: list[str] | None, out: Path | None, models: Path | None, reset: bool, no_memory: bool
+) -> None:
+    """Raises DeixisError for options that do not go together."""
+    from deixis.ontology.errors import DeixisError
+
+    if reset and (files or out or models or no_memory):
+        raise DeixisError("--reset only takes learned models away; learn in a command of its own")
+    if files and len(files) % 2:
+        raise DeixisError(f"scripts and scenes come in pairs; '{files[-1]}' has no scene")
+    if out is None and no_memory:
+        raise DeixisError("--no-memory leaves nowhere to keep the models; name a file with -o FILE")
+    if out is None and models is not None:
+        raise DeixisError("what a memory learns starts from the shipped models; --models goes with -o FILE")
+    if no_memory and not files:
+        raise DeixisError("without the memory there is nothing to learn from; name scripts and labelled scenes")
+
+
+def _examples(files: list[str]) -> list[tuple[Script, Scene]]:
+    from deixis.session import load_scene, read_script
+
+    return [(read_script(script), load_scene(scene)) for script, scene in zip(files[::2], files[1::2], strict=True)]
+
+
+def _fitted(
+    session: Session, examples: list[tuple[Script, Scene]], strength: float, models: Path | None, no_memory: bool
+) -> LearnedWords:
+    """What the examples and the memory teach, with nothing kept; raises DeixisError where there is nothing to learn."""
+    from deixis.learned_words import example_pairs, fit, teaching
+    from deixis.ontology.errors import DeixisError
+    from deixis.remembered import Recollection
+
+    taught, left_out = teaching(examples)
+    recollection = Recollection(()) if no_memory else session.recollection()
+    sources = [f"{script.file} {scene.file}" for script, scene in taught]
+    pairs = [example_pairs(example) for example in taught]
+    learned = fit(recollection, strength, read_models(models), pairs, sources)
+    if not learned.taught:
+        raise DeixisError("; ".join(("nothing to learn", *learned.left_out, *left_out)))
+    return replace(learned, left_out=(*learned.left_out, *left_out))
+
+
+def _write(learned: LearnedWords, out: Path) -> None:
     from deixis.ontology.errors import DeixisError
     from deixis.ontology.relation_model_triples import models_to_turtle
-    from deixis.reasoning.graded.fitting import FitSettings, learn_relations
-    from deixis.show_relation import learned_lines, model_to_dict
 
-    if len(files) % 2:
-        raise DeixisError(f"scripts and scenes come in pairs; '{files[-1]}' has no scene")
-    pairs = list(zip(files[::2], files[1::2], strict=True))
-    known = read_models(models)
-    lessons = [_lesson(script, scene) for script, scene in pairs]
-    if not any(len(lesson.words) for lesson in lessons):
-        raise DeixisError("nothing to learn: no plain fact has both its objects among the labels of its scene")
-    sources = [f"{script} {scene}" for script, scene in pairs]
-    learned = learn_relations(lessons, known, FitSettings(strength), sources, __version__)
-    changed = [name for name in learned.models if learned[name] != known[name]]
     try:
         out.parent.mkdir(parents=True, exist_ok=True)
-        out.write_text(models_to_turtle(learned.models.values()), encoding="utf-8")
+        out.write_text(models_to_turtle(learned.models.models.values()), encoding="utf-8")
     except OSError as error:
         raise DeixisError(f"{out}: the models cannot be written: {error.strerror}") from error
-    if as_json:
-        print_json({"learned": [model_to_dict(learned[name]) for name in changed], "written": str(out)})
-    else:
-        print_lines(learned_lines(learned, changed, str(out)))
 
 
 def read_models(path: Path | None) -> RelationModels:
@@ -106,26 +180,6 @@ def read_models(path: Path | None) -> RelationModels:
     if not found:
         raise OntologyError(f"{path}: there is no relation model in it; write one with 'deixis learn-relation'")
     return shipped_models().replaced(*found)
-
-
-def _lesson(script_file: str, scene_file: str) -> SaidPairs:
-    """What a script and its labelled scene teach: an object is the one thing whose label calls it."""
-    from deixis.grammar.parser import read_script
-    from deixis.reasoning.graded.lessons import said_pairs
-    from deixis.reasoning.labels import objects_called
-    from deixis.session import load_scene
-
-    description, scene = read_script(script_file).graph(), load_scene(scene_file)
-    called: list[list[int]] = [[] for _ in description.nodes]
-    for i, thing in enumerate(scene.objects):
-        if thing.label is not None:
-            for object in objects_called(description, thing.label).nonzero()[0].tolist():
-                called[object].append(i)
-    one = [things[0] if len(things) == 1 else None for things in called]
-    taken = [thing for thing in one if thing is not None]
-    things = [thing if thing is not None and taken.count(thing) == 1 else None for thing in one]
-    confidence = [1.0 if thing is None else scene.objects[thing].confidence for thing in things]
-    return said_pairs(description, scene.boxes, things, confidence)
 
 
 def register(app: typer.Typer) -> None:

@@ -3,19 +3,32 @@
 from __future__ import annotations
 
 import re
+import sys
 import time
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, TypeVar
 
 import typer
 
-from deixis.cli_common import NO, UNDECIDED, AsJson, HideLabels, MemoryDir, TimeLimit, print_json, print_lines
+from deixis.cli_common import (
+    NO,
+    UNDECIDED,
+    AsJson,
+    HideLabels,
+    MemoryDir,
+    NoMemory,
+    TimeLimit,
+    print_json,
+    print_lines,
+)
 
 if TYPE_CHECKING:
     from deixis.ontology.tbox import Ontology
     from deixis.perception.scene import Scene
     from deixis.reasoning.likeness import Described, Likeness, Seen
+    from deixis.session import Session
     from deixis.show_retrieve import Retrieved
 
 SURE = 0.5
@@ -26,7 +39,7 @@ Query = Annotated[
 ]
 Among = Annotated[
     Path | None,
-    typer.Option(metavar="DIR", help="A folder of scripts (for a scene; default: what is remembered) or of scenes."),
+    typer.Option(metavar="DIR", help="A folder of scripts (for a scene) or of scenes, beside what is remembered."),
 ]
 
 
@@ -36,11 +49,12 @@ def retrieve(
     top: Annotated[int, typer.Option(min=1, metavar="K", help="So many at the most.")] = 5,
     least: Annotated[float, typer.Option(min=0.0, max=1.0, metavar="SIMILARITY", help="None less similar.")] = 0.5,
     memory: MemoryDir = None,
+    no_memory: NoMemory = False,
     hide_labels: HideLabels = False,
     time_limit: TimeLimit = 60.0,
     as_json: AsJson = False,
 ) -> None:
-    """Rank the layouts that a scene is like, or the scenes that a script is like (exit 1 where none is similar)."""
+    """Rank all known layouts that a scene is like, or all scenes that a script is like (exit 1 where none is)."""
     from deixis.ontology.tbox import default_ontology
     from deixis.reasoning.likeness import Comparison
     from deixis.reasoning.retrieval import rank_layouts, rank_scenes
@@ -50,15 +64,18 @@ def retrieve(
     ontology, deadline = default_ontology(), time.perf_counter() + time_limit
     comparison = Comparison(ontology)
     by_script = is_script_file(query) and not query.endswith(".json")
+    compared: Mapping[str, object]
+    with _remembering(memory, no_memory) as session:
+        if by_script:
+            compared = scenes = _known_scenes(session, among, hide_labels, ontology)
+            layouts = {query: _script(query)}
+        else:
+            compared = layouts = _known_layouts(session, among, ontology)
+            scenes = {query: seen_scene(query, load_scene(query, hide_labels), ontology)}
     if by_script:
-        layouts, scenes = {query: _script(query)}, _scenes(among, hide_labels, ontology)
         ranked = rank_scenes(layouts[query], scenes.values(), comparison, top, deadline)
-        compared: Mapping[str, object] = scenes
     else:
-        scenes = {query: seen_scene(query, load_scene(query, hide_labels), ontology)}
-        layouts = _remembered(memory, ontology) if among is None else _scripts(among)
         ranked = rank_layouts(scenes[query], layouts.values(), comparison, top, deadline)
-        compared = layouts
     similar = [one for one in ranked if one.similarity >= least]
     found = [_retrieved(one, layouts[one.layout], scenes[one.scene], by_script) for one in similar]
     if as_json:
@@ -106,24 +123,10 @@ def _script(file: str) -> Described:
     return Described(file, read_script(file).graph())
 
 
-def _scripts(folder: Path) -> dict[str, Described]:
-    return {path.name: _named(path.name, _script(str(path))) for path in _files(folder, "*.layout", "layout scripts")}
-
-
 def _named(name: str, layout: Described) -> Described:
     from deixis.reasoning.likeness import Described
 
     return Described(name, layout.graph)
-
-
-def _scenes(folder: Path | None, hide_labels: bool, ontology: Ontology) -> dict[str, Seen]:
-    from deixis.ontology.errors import DeixisError
-    from deixis.session import load_scene
-
-    if folder is None:
-        raise DeixisError("retrieve: a script is compared with the scenes of a folder; name it with --among DIR")
-    paths = _files(folder, "*.scene.json", "scenes")
-    return {path.name: seen_scene(path.name, load_scene(path, hide_labels), ontology) for path in paths}
 
 
 def _files(folder: Path, pattern: str, what: str) -> list[Path]:
@@ -137,16 +140,58 @@ def _files(folder: Path, pattern: str, what: str) -> list[Path]:
     return found
 
 
-def _remembered(memory: Path | None, ontology: Ontology) -> dict[str, Described]:
-    """Every layout in memory; of a name learned more than once every lesson, told by its id."""
-    from deixis.ontology.errors import DeixisError
-    from deixis.reasoning.likeness import Described
+@contextmanager
+def _remembering(memory: Path | None, no_memory: bool) -> Iterator[Session | None]:
+    """The memory; None without one, but a memory that is named must be there."""
     from deixis.session import Session
 
-    with Session(memory=memory) as session:
-        layouts = session.layouts()
-    if not layouts:
-        raise DeixisError("retrieve: no layout has been learned; learn some, or name a folder with --among DIR")
+    if no_memory:
+        yield None
+        return
+    with Session(memory) as session:
+        if memory is not None:
+            session.memory()
+        yield session if session.remembers() else None
+
+
+def _known_layouts(session: Session | None, among: Path | None, ontology: Ontology) -> dict[str, Described]:
+    """The scripts of a folder, and every layout in memory; of a name learned more than once, every lesson by its id."""
+    from deixis.reasoning.likeness import Described
+
+    paths = _files(among, "*.layout", "layout scripts") if among is not None else []
+    known = {path.name: _named(path.name, _script(str(path))) for path in paths}
+    layouts = session.layouts() if session is not None else ()
     names = [layout.name for layout in layouts]
-    told = [layout.name if names.count(layout.name) == 1 else layout.lesson for layout in layouts]
-    return {name: Described(name, layout.graph(ontology.relations)) for name, layout in zip(told, layouts, strict=True)}
+    for layout in layouts:
+        name = layout.name if names.count(layout.name) == 1 else layout.lesson
+        known[name] = Described(name, layout.graph(ontology.relations))
+    return _some(known, "layout")
+
+
+def _known_scenes(
+    session: Session | None, among: Path | None, hide_labels: bool, ontology: Ontology
+) -> dict[str, Seen]:
+    """The scenes of a folder, and every scene in memory, told by the first lesson, by name, that showed it."""
+    from deixis.remembered import Recollection
+    from deixis.session import load_scene
+
+    paths = _files(among, "*.scene.json", "scenes") if among is not None else []
+    known = {path.name: load_scene(path, hide_labels) for path in paths}
+    recollection = session.recollection() if session is not None else Recollection(())
+    for why in recollection.unreadable:
+        print(f"deixis: left out: {why}", file=sys.stderr)
+    first = {lesson.texts[1]: lesson for lesson in reversed(recollection.lessons)}
+    for one in first.values():
+        known[one.lesson] = one.scene.without_labels() if hide_labels else one.scene
+    return {name: seen_scene(name, scene, ontology) for name, scene in sorted(_some(known, "scene").items())}
+
+
+Known = TypeVar("Known")
+
+
+def _some(known: dict[str, Known], what: str) -> dict[str, Known]:
+    from deixis.ontology.errors import DeixisError
+
+    if not known:
+        raise DeixisError(f"retrieve: no {what} is remembered; learn from some, or name a folder with --among DIR")
+    return known

@@ -7,6 +7,7 @@ import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from datetime import datetime
+from functools import lru_cache
 from pathlib import Path
 
 import pyoxigraph as ox
@@ -23,10 +24,10 @@ from deixis.ontology.skolem import GENID, with_blank_nodes
 from deixis.ontology.vocabulary import PROV, W3C
 from deixis.perception.scene import Scene
 from deixis.perception.scene_file import scene_to_dict
-from deixis.reasoning.description_logic import classify
+from deixis.reasoning.answer import Grounding, Match
+from deixis.reasoning.description_logic import Classification, classify
 from deixis.reasoning.errors import InconsistencyError
 from deixis.reasoning.evidence import exact_names
-from deixis.reasoning.grounding import Grounding, Match
 
 MAX_PAIRS = 2000
 """Ordered pairs of a scene whose relations are all kept; of a larger scene only those that the script compares."""
@@ -48,7 +49,7 @@ def layout_concept(script: Script, lesson: str, interchangeable: Iterable[tuple[
     """The layout that a script describes, as a concept of that lesson."""
     graph = script.graph()
     roles = [
-        Role(name, kind, declared=name in script.kinds)
+        Role(name, kind, name in script.kinds, script.colours[name].iri if name in script.colours else None)
         for name, kind in zip(graph.nodes, graph.kinds or (None,) * len(graph.nodes), strict=True)
     ]
     return LayoutConcept(
@@ -89,19 +90,27 @@ def lesson_of(script: Script, scene: Scene, found: Grounding, id: str, occasion:
 
 
 def _match(match: Match) -> MatchRecord:
-    equal = tuple(other.perceived for other in match.alternatives if other.cost <= 1e-9)
-    could_be = () if match.decided else (match.perceived, *equal)
-    return MatchRecord(match.object, match.perceived if match.decided else None, match.decided, match.score, could_be)
+    others = tuple(other.perceived for other in match.alternatives if other.perceived is not None)
+    could_be = () if match.decided else (match.perceived, *others)
+    return MatchRecord(
+        role=match.object,
+        perceived=match.perceived if match.decided else None,
+        decided=match.decided,
+        score=match.score,
+        could_be=could_be,
+        probability=match.probability,
+        likeliest=None if match.decided else match.perceived,
+    )
 
 
-def scene_record(scene: Scene, relations: Relations, found: Grounding) -> SceneRecord:
-    """A scene as a lesson keeps it."""
+def scene_record(scene: Scene, relations: Relations, found: Grounding | None) -> SceneRecord:
+    """A scene as a lesson keeps it; without a grounding, the relations of its things are left out."""
     return SceneRecord(
         frame=scene.frame,
         viewpoint=scene.viewpoint,
         unit=scene.unit,
-        objects=tuple(SeenObject(o.id, o.minimum, o.maximum, o.label, o.confidence) for o in scene.objects),
-        relations=tuple(_seen_relations(scene, relations, found)),
+        objects=tuple(SeenObject(o.id, o.minimum, o.maximum, o.label, o.confidence, o.colour) for o in scene.objects),
+        relations=tuple(_seen_relations(scene, relations, found)) if found is not None else (),
     )
 
 
@@ -124,9 +133,8 @@ def consequences(
     relations of pairs from their exact ones. Raises InconsistencyError where a learned class has become impossible.
     """
     learned, asserted = list(learned), list(asserted)
-    axioms = [*ontology, *_class_axioms(learned)]
-    nt = ox.serialize(with_blank_nodes(axioms), format=ox.RdfFormat.N_TRIPLES)
-    classified = classify((nt or b"").decode("utf-8"))
+    axioms = ox.serialize(with_blank_nodes([*ontology, *_class_axioms(learned)]), format=ox.RdfFormat.N_TRIPLES)
+    classified = _classified("".join(sorted((axioms or b"").decode("utf-8").splitlines(keepends=True))))
     if classified.unsatisfiable:
         listed = ", ".join(iri.rsplit("/", 1)[-1] for iri in classified.unsatisfiable)
         raise InconsistencyError(
@@ -139,6 +147,12 @@ def consequences(
     types = _types(asserted, [*learned, *classes])
     wide = _wide(asserted, relations)
     return sorted({*({*classes, *types, *wide} - known), *_origin()}, key=str)
+
+
+@lru_cache(maxsize=4)
+def _classified(axioms: str) -> Classification:
+    """HermiT's answer, which takes seconds: lessons about words alone, or taken back, bring no new axioms."""
+    return classify(axioms)
 
 
 def _origin() -> Iterator[ox.Triple]:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from deixis.ontology.errors import DeixisError
 from deixis.perception.scene import PerceivedObject, Scene
-from deixis.reasoning.grounding import FactOutcome, Grounding
+from deixis.reasoning.answer import FactOutcome, Grounding
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

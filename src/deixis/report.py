@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any
 
 from deixis.ontology.export import fact_to_dict, graph_to_dict
@@ -9,8 +10,8 @@ from deixis.ontology.export import fact_to_dict, graph_to_dict
 if TYPE_CHECKING:
     from deixis.grammar.script import Script
     from deixis.inference import Inference, Inferred
+    from deixis.reasoning.answer import Alternative, FactOutcome, Grounding, Pivotal
     from deixis.reasoning.derivation import Claim, Derivation
-    from deixis.reasoning.grounding import FactOutcome, Grounding
     from deixis.reasoning.why_not import WhyNot
     from deixis.session import Checked, Learned
 
@@ -75,9 +76,30 @@ def why_not_to_dict(found: WhyNot) -> dict[str, Any]:
     return answer
 
 
+def _rounded(value: float | None) -> float | None:
+    return None if value is None or not math.isfinite(value) else round(value, 6)
+
+
+def _alternative_to_dict(other: Alternative) -> dict[str, Any]:
+    return {
+        "perceived": other.perceived,
+        "cost": round(other.cost, 6),
+        "probability": _rounded(other.probability),
+    }
+
+
+def _pivotal_to_dict(pivotal: Pivotal) -> dict[str, Any]:
+    return {
+        "fact": fact_to_dict(pivotal.fact),
+        "changes": dict(pivotal.changes),
+        "unsettled": list(pivotal.unsettled),
+        "settled": list(pivotal.settled),
+    }
+
+
 def grounding_to_dict(found: Grounding) -> dict[str, Any]:
     """Who is who, and everything that qualifies it."""
-    from deixis.reasoning.grounding import Outcome
+    from deixis.reasoning.answer import Outcome
 
     return {
         "engine": found.engine,
@@ -88,14 +110,16 @@ def grounding_to_dict(found: Grounding) -> dict[str, Any]:
                 "score": round(match.score, 6),
                 "similarity": round(match.similarity, 6),
                 "decided": match.decided,
-                "alternatives": [
-                    {"perceived": other.perceived, "cost": round(other.cost, 6)} for other in match.alternatives
-                ],
+                "probability": _rounded(match.probability),
+                "alternatives": [_alternative_to_dict(other) for other in match.alternatives],
             }
             for match in found.matches.values()
         ],
         "unmatched_objects": [left.name for left in found.unmatched_objects],
         "unmatched_perceived": [left.name for left in found.unmatched_perceived],
+        "might_be": {
+            left.name: [_alternative_to_dict(other) for other in left.alternatives] for left in found.unmatched_objects
+        },
         "left_out": {left.name: left.reason for left in (*found.unmatched_objects, *found.unmatched_perceived)},
         "interchangeable": [list(group) for group in found.interchangeable],
         "graph_similarity": round(found.graph_similarity, 9),
@@ -106,6 +130,8 @@ def grounding_to_dict(found: Grounding) -> dict[str, Any]:
             "waived": [outcome_to_dict(entry) for entry in found.of(Outcome.WAIVED)],
             "open": [outcome_to_dict(entry) for entry in found.of(Outcome.OPEN)],
         },
+        "pivotal": None if found.pivotal is None else [_pivotal_to_dict(entry) for entry in found.pivotal],
+        "probabilities": {"standing": found.probabilities.value, "error": _rounded(found.probability_error)},
         "proved_best": found.proved_best,
         "converged": found.converged,
         "notes": list(found.notes),

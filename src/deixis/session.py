@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import os
-import tempfile
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
-from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
 from deixis.grammar.parser import parse_script
@@ -19,20 +18,23 @@ from deixis.ontology.graph import RelationGraph
 from deixis.ontology.tbox import Ontology
 from deixis.perception.scene import Scene
 from deixis.perception.scene_file import read_scene
+from deixis.perceptual_session import PerceptualSession
+from deixis.reasoning.answer import Grounding
 from deixis.reasoning.conflict import find_conflict
 from deixis.reasoning.engines import Select, engine_named
 from deixis.reasoning.errors import InconsistencyError, NothingFoundError, SettingError
-from deixis.reasoning.evidence import Evidence
-from deixis.reasoning.grounding import DEFAULT_TIME_LIMIT, Grounding
+from deixis.reasoning.evidence import Evidence, evidence_from
+from deixis.reasoning.grounding import DEFAULT_TIME_LIMIT
 from deixis.reasoning.grounding import ground as ground_evidence
 from deixis.reasoning.implications import TIME_LIMIT, Implications
-from deixis.reasoning.labels import Label, label_evidence
+from deixis.reasoning.labels import Label
+from deixis.reasoning.meaning import SHIPPED, Meaning
+from deixis.version import VERSION
 
 if TYPE_CHECKING:
-    from deixis.memory.results import QueryResult
-    from deixis.memory.semantic import SemanticMemory
     from deixis.ontology.concepts import LayoutConcept, Lesson
     from deixis.reasoning.checking import TableCheck
+    from deixis.recognising import Taught
 
 
 def read_script(path: str | Path | None = None, *, text: str | None = None, ontology: Ontology | None = None) -> Script:
@@ -54,11 +56,25 @@ def infer(script: Script | str | Path, time_limit: float = TIME_LIMIT) -> Infere
     return inference_of(_script(script), time_limit)
 
 
-def evidence_of(script: Script, scene: Scene) -> Evidence:
-    """All that speaks for who is who: the script's facts, the scene's relations, and the scene's labels."""
-    description = script.graph()
-    allowed, bonus = label_evidence(description, list(scene_labels(scene).values()), script.ontology.kinds)
-    return Evidence(description, scene.graph(script.ontology.relations), allowed, bonus)
+def evidence_of(script: Script, scene: Scene, meaning: Meaning = SHIPPED) -> Evidence:
+    """All that speaks for who is who: the script's facts, and the scene's relations, labels, sizes and colours."""
+    return _evidence(script.graph(), scene, script.ontology, meaning)
+
+
+def _evidence(description: RelationGraph, scene: Scene, ontology: Ontology, meaning: Meaning) -> Evidence:
+    labels = list(scene_labels(scene).values())
+    seen = scene.graph(ontology.relations)
+    return evidence_from(
+        description,
+        seen,
+        labels,
+        ontology.kinds,
+        ontology.sizes,
+        metric=scene.unit == "m",
+        meaning=meaning,
+        seen=scene.colours,
+        colours=ontology.colours,
+    )
 
 
 def ground(
@@ -67,12 +83,14 @@ def ground(
     engine: str = "exact",
     time_limit: float = DEFAULT_TIME_LIMIT,
     select: str = Select.FACTS,
+    meaning: Meaning = SHIPPED,
 ) -> Grounding:
     """Works out which perceived thing each object of a script is.
 
-    ``engine`` is ``exact`` or ``similarity`` (the paper's); ``select`` says what chooses among sub-graphs under the
-    latter: ``facts``, or ``similarity`` alone as in the paper. The answer comes within about ``time_limit`` seconds,
-    proved or not, and says which. Raises DeixisError for bad input.
+    ``engine`` is ``exact``, ``scalable``, ``similarity`` (the paper's), ``blondel`` or ``heymans-singh``; ``select``
+    says what chooses among sub-graphs under the paper's: ``facts``, or ``similarity`` alone as in the paper.
+    ``meaning`` says how words and sizes are taken. The answer comes within about ``time_limit`` seconds, proved or not,
+    and says which. Raises DeixisError for bad input.
     """
     script = _script(script)
     scene = scene if isinstance(scene, Scene) else read_scene(scene)
@@ -81,7 +99,7 @@ def ground(
         raise SettingError(f"a time limit is 0 or more seconds, not {time_limit}")
     if select not in list(Select):
         raise SettingError(f"select is one of {', '.join(Select)}, not '{select}'")
-    return ground_evidence(evidence_of(script, scene), engine_named(engine, Select(select)), time_limit, notes)
+    return ground_evidence(evidence_of(script, scene, meaning), engine_named(engine, Select(select)), time_limit, notes)
 
 
 def _script(script: Script | str | Path) -> Script:
@@ -104,21 +122,13 @@ def _conflict_notes(graph: RelationGraph) -> tuple[str, ...]:
     return (f"the script contradicts itself, so that not all of it can hold: {conflict.reason}",)
 
 
-def default_memory() -> Path:
-    """``$DEIXIS_MEMORY``, else a folder for the user's data."""
-    named = os.environ.get("DEIXIS_MEMORY")
-    if named:
-        return Path(named)
-    data = os.environ.get("XDG_DATA_HOME")
-    return (Path(data) if data else Path.home() / ".local" / "share") / "deixis" / "memory"
-
-
 @dataclass(frozen=True)
 class Learned:
     """What a lesson left behind."""
 
     lesson: Lesson
     grounding: Grounding
+    seen: tuple[Taught, ...] = ()  # the views that it taught, of things with clouds
 
     @property
     def categories(self) -> tuple[str, ...]:
@@ -141,40 +151,11 @@ class Checked:
     report: str  # Turtle
 
 
-class Session:
-    """A memory, and what is done with it. Use it as a context manager, or close it.
+class Session(PerceptualSession):
+    """A memory, and what is done with it and a table. Use it as a context manager, or close it.
 
     The memory is opened by the first call that needs it, and held by this process until the session is closed.
     """
-
-    def __init__(self, memory: str | Path | None = None, ontology: Ontology | None = None) -> None:
-        from deixis.ontology.tbox import default_ontology
-
-        self.path = default_memory() if memory is None else Path(memory)
-        self.ontology = default_ontology() if ontology is None else ontology
-        self._memory: SemanticMemory | None = None
-
-    def __enter__(self) -> Session:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self.close()
-
-    def close(self) -> None:
-        """Lets go of the memory."""
-        if self._memory is not None:
-            self._memory.close()
-            self._memory = None
-
-    def memory(self, create: bool = False) -> SemanticMemory:
-        """The open memory; raises DeixisError where there is none and ``create`` is not set."""
-        from deixis.memory.semantic import SemanticMemory
-
-        if self._memory is None:
-            self._memory = SemanticMemory.open(self.path, create=create)
-        return self._memory
 
     def learn(
         self,
@@ -185,10 +166,11 @@ class Session:
     ) -> Learned:
         """Grounds a script in a scene, and keeps the layout and what its objects look like, with where it comes from.
 
-        What is doubtful or interchangeable is kept as such and teaches no category. Raises DeixisError, having
+        What is doubtful or interchangeable is kept as such and teaches no category; how sure each match is is kept too,
+        for :meth:`learn_relations`. Sizes are learned at once. Raises DeixisError, having
         changed nothing, where the script contradicts itself or what was learned before.
         """
-        from deixis import __version__
+        from deixis.keeping import keep
         from deixis.learning import Occasion, layout_name, lesson_of
         from deixis.ontology.concepts import next_lesson_id
 
@@ -199,83 +181,24 @@ class Session:
             lines = ", ".join(str(fact.source) for fact in conflict.facts)
             raise InconsistencyError(f"the script contradicts itself, nothing was learned: {conflict.reason} ({lines})")
         started = datetime.now(UTC)
-        found = ground(script, scene, engine, time_limit)
+        found = ground(script, scene, engine, time_limit, meaning=self.meaning())
         if not found.matches:
             raise NothingFoundError("nothing that the script names was found in the scene, so nothing was learned")
         memory = self.memory(create=True)
         id = next_lesson_id(layout_name(script), memory.lessons())
-        lesson = lesson_of(script, scene, found, id, Occasion(started, datetime.now(UTC), __version__))
-        self._keep(memory, lesson)
-        return Learned(lesson, found)
+        lesson = lesson_of(script, scene, found, id, Occasion(started, datetime.now(UTC), VERSION))
+        seen = self._show(scene, found)
+        keep(memory, self.ontology, lesson)
+        self._meaning = None
+        return Learned(lesson, found, seen)
 
-    def _keep(self, memory: SemanticMemory, lesson: Lesson) -> None:
-        from deixis.memory.graphs import GraphName
-        from deixis.ontology.layout_shapes import layout_shapes
-        from deixis.ontology.lesson_triples import asserted_triples, episode_triples, learned_triples
-
-        new = {
-            GraphName.LEARNED: list(learned_triples(lesson, self.ontology.relations)),
-            GraphName.ASSERTED: list(asserted_triples(lesson)),
-            GraphName.EPISODES: list(episode_triples(lesson)),
-            GraphName.SHAPES: list(layout_shapes(lesson.layout)),
-        }
-        graphs = {name: [*memory.triples(name), *new.get(name, ())] for name in GraphName}
-        memory.learn(lesson.id, new, self._consequences(graphs))
-
-    def _consequences(self, graphs: Mapping[Any, list[Any]]) -> list[Any]:
-        from deixis.learning import consequences
-        from deixis.memory.graphs import GraphName
-
-        ontology, learned, asserted = (graphs[n] for n in (GraphName.ONTOLOGY, GraphName.LEARNED, GraphName.ASSERTED))
-        return consequences(ontology, learned, asserted, self.ontology.relations)
-
-    def forget(self, lesson: str) -> None:
-        """Takes back one lesson, with everything that follows from it alone."""
-        memory = self.memory()
-        remaining = memory.remaining(lesson)
-        memory.forget(lesson, self._consequences(remaining))
-
-    def import_(self, file: str | Path) -> None:
-        """Takes in what another memory exported, or plain triples; what is there stays.
-
-        What follows from both together is worked out first: raises InconsistencyError, having changed nothing, where
-        they contradict each other.
-        """
-        from deixis.memory.exchange import import_dump
-        from deixis.memory.graphs import GraphName
-        from deixis.memory.semantic import SemanticMemory
-
-        self.close()
-        with tempfile.TemporaryDirectory() as scratch:
-            aside = Path(scratch) / "memory"
-            import_dump(file, aside)
-            with SemanticMemory.open(aside) as other:
-                graphs = {name: list(other.triples(name)) for name in GraphName}
-        if self.path.exists() and any(self.path.iterdir()):
-            graphs = {name: list({*triples, *self.memory().triples(name)}) for name, triples in graphs.items()}
-        inferred = self._consequences(graphs)
-        self.close()
-        import_dump(file, self.path)
-        self.memory().conclude(inferred)
-
-    def layouts(self) -> tuple[LayoutConcept, ...]:
-        """Every learned layout."""
-        from deixis.memory.graphs import GraphName
-        from deixis.ontology.lesson_reading import layouts
-
-        return layouts(self.memory().triples(GraphName.LEARNED), self.ontology.relations)
-
-    def layout(self, name: str) -> LayoutConcept:
-        """The layout of that name, learned last, or of the lesson with that id; raises UnknownTermError for none."""
-        from deixis.ontology.lesson_reading import layout_named
-
-        return layout_named(self.layouts(), name, self.memory().lessons())
-
-    def show(self, name: str) -> str:
-        """A learned layout as a script again."""
-        from deixis.grammar.rebuild import layout_script
-
-        return layout_script(self.layout(name), self.ontology)
+    def _show(self, scene: Scene, found: Grounding) -> tuple[Taught, ...]:
+        """Teaches what each decided thing looks like, where the scene has its cloud."""
+        return tuple(
+            self.teach(scene, match.perceived, re.sub(r"_\d+$", "", match.object), teacher="grounding")
+            for match in found.matches.values()
+            if match.decided and scene[match.perceived].cloud is not None
+        )
 
     def check(
         self,
@@ -296,18 +219,13 @@ class Session:
         scene = scene if isinstance(scene, Scene) else read_scene(scene)
         graph, relations = concept.graph(self.ontology.relations), self.ontology.relations
         labels = scene_labels(scene)
-        allowed, bonus = label_evidence(graph, list(labels.values()), self.ontology.kinds)
-        evidence = Evidence(graph, scene.graph(relations), allowed, bonus)
+        evidence = _evidence(graph, scene, self.ontology, self.meaning())
         notes = _viewpoint_notes(concept.viewpoint, scene) + _conflict_notes(graph)
         found = ground_evidence(evidence, engine_named("exact"), time_limit)
         kept = tuple(note for note in found.notes if "similarity" not in note)  # a check shows no similarity
         found = replace(found, notes=notes + kept)
         table = check_table(evidence, labels, self.ontology.kinds, found)
         return Checked(concept, table, *shacl_report(concept, scene, table, relations))
-
-    def query(self, sparql: str) -> QueryResult:
-        """Asks SPARQL of everything remembered: SELECT, ASK, CONSTRUCT or DESCRIBE; nothing else is let in."""
-        return self.memory().query(sparql)
 
     def _script(self, script: Script | str | Path) -> Script:
         return script if isinstance(script, Script) else read_script(script, ontology=self.ontology)

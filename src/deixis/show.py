@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence, Sized
 from itertools import islice
 from typing import TYPE_CHECKING, Any
@@ -16,8 +17,8 @@ if TYPE_CHECKING:
     from deixis.grammar.script import Script
     from deixis.inference import Inference, Inferred
     from deixis.ontology.graph import Fact
+    from deixis.reasoning.answer import Alternative, FactOutcome, Grounding, Match, Pivotal
     from deixis.reasoning.checking import RoleCheck
-    from deixis.reasoning.grounding import FactOutcome, Grounding, Match
     from deixis.reasoning.why_not import WhyNot
     from deixis.session import Checked, Learned
 
@@ -28,6 +29,7 @@ def script_lines(script: Script) -> list[str]:
     viewpoint = f", seen from {script.viewpoint}" if script.viewpoint else ""
     head = f"{script.name or script.file}{title}: {_count(script.objects, 'object')}, {_count(script.facts, 'fact')}"
     kinds = [f"        {name} is a {kind.label}" for name, kind in script.kinds.items()]
+    kinds += [f"        {name} is {colour.label}" for name, colour in script.colours.items()]
     return [
         f"{head}{viewpoint}",
         *(f"{_line(fact, script.file):>6}  {qualified(fact)}" for fact in script.facts),
@@ -124,24 +126,48 @@ def grounding_lines(found: Grounding) -> list[str]:
     lines += [
         f"Left out: {left.name}: {left.reason}." for left in (*found.unmatched_objects, *found.unmatched_perceived)
     ]
+    lines += [_pivotal_line(pivotal) for pivotal in (found.pivotal or ())[:MANY]]
+    if len(found.pivotal or ()) > MANY:
+        lines.append(f"and {len(found.pivotal or ()) - MANY} more facts that matter (--json has them)")
     lines.append(f"Graph similarity {found.graph_similarity:.3f}; engine {found.engine}, {_standing(found)}.")
     return lines + [f"Note: {note}." for note in found.notes]
 
 
 def _match_line(match: Match) -> str:
-    name = f"{match.object:<24} {match.perceived:<10}"
-    if match.decided:
-        return name.rstrip()
-    equal = [other.perceived for other in match.alternatives if other.cost <= 1e-9]
-    if equal:
-        return f"{name} or {', '.join(equal)}"
-    if match.alternatives:
-        return f"{name} or, less likely, {', '.join(other.perceived for other in match.alternatives)}"
-    return f"{name} not proved: nothing else was ruled out"
+    """An object, its thing, how probable that is, and what else it may be."""
+    line = f"{match.object:<24} {match.perceived:<10}"
+    if match.probability is not None:
+        line += f" {_probability(match.probability)}"
+        others = [f"{_thing(other)} {_probability(other.probability or 0)}" for other in match.alternatives]
+        return line + (f"   or {', '.join(others)}" if others and not match.decided else "")
+    equal = [_thing(other) for other in match.alternatives if other.cost <= 1e-9]
+    if match.decided or not match.alternatives:
+        return line.rstrip()
+    return f"{line} or {', '.join(equal)}" if equal else f"{line} or, less likely, {_thing(match.alternatives[0])}"
+
+
+def _thing(other: Alternative) -> str:
+    return other.perceived or "not there"
+
+
+def _probability(value: float) -> str:
+    """Two digits, and never 1 for what is not certain."""
+    return "1   " if value > 1 - 1e-6 else f"{min(value, 0.99):.2f}"
+
+
+def _pivotal_line(pivotal: Pivotal) -> str:
+    """What would be otherwise without a fact."""
+    place = f" ({pivotal.fact.source})" if pivotal.fact.source else ""
+    would = [f"{name} would be {thing or 'left out'}" for name, thing in pivotal.changes.items()]
+    if pivotal.unsettled:
+        would.append(f"{', '.join(pivotal.unsettled)} would not be settled")
+    if pivotal.settled:
+        would.append(f"{', '.join(pivotal.settled)} would be settled")
+    return f"Without {pivotal.fact}{place}: {'; '.join(would)}."
 
 
 def _rest(found: Grounding) -> str:
-    from deixis.reasoning.grounding import Outcome
+    from deixis.reasoning.answer import Outcome
 
     counts = {outcome: len(found.of(outcome)) for outcome in (Outcome.VIOLATED, Outcome.WAIVED, Outcome.OPEN)}
     words = {
@@ -162,9 +188,12 @@ def violation_text(entry: FactOutcome) -> str:
 
 
 def _standing(found: Grounding) -> str:
-    if found.proved_best:
-        return f"proved the best in {found.seconds:.2f} s"
-    return f"{found.seconds:.2f} s, not proved the best"
+    from deixis.reasoning.answer import Standing
+
+    how = "proved the best in" if found.proved_best else "not proved the best,"
+    sampled = found.probabilities is Standing.SAMPLED and math.isfinite(found.probability_error)
+    error = f"; probabilities are sampled, within about {found.probability_error:.1g}" if sampled else ""
+    return f"{how} {found.seconds:.2f} s{error}"
 
 
 def learned_lines(learned: Learned, memory: str) -> list[str]:
@@ -176,6 +205,8 @@ def learned_lines(learned: Learned, memory: str) -> list[str]:
     ]
     if learned.categories:
         lines.append("Categories with a new view: " + ", ".join(learned.categories))
+    if learned.seen:
+        lines.append("What it looks like is kept of: " + ", ".join(taught.category for taught in learned.seen))
     if learned.doubtful:
         lines.append("Recorded as not settled, and teaching nothing: " + ", ".join(learned.doubtful))
     lines += [f"Left out: {left.name}: {left.reason}." for left in learned.grounding.unmatched_objects]

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from deixis.ontology.allen import SYMBOLS
 from deixis.ontology.relation import Relation, Relations
 from deixis.ontology.relation_models import RelationModel, RelationModels
+
+if TYPE_CHECKING:
+    from deixis.learned_words import LearnedWords
 
 
 def relation_lines(relation: Relation, relations: Relations, models: RelationModels) -> list[str]:
@@ -53,16 +56,30 @@ def model_to_dict(model: RelationModel) -> dict[str, Any]:
             }
             for term in model.terms
         ],
-        "learned_from": list(origin.sources),
+        "learned_from": [*origin.sources, *origin.lessons],
         "examples": origin.examples,
         "made": origin.made.isoformat() if origin.made else None,
     }
 
 
-def learned_lines(models: RelationModels, learned: list[str], path: str) -> list[str]:
-    """What was learned of which words, and where it was written."""
-    lines = [f"{name:<11} learned from {models[name].provenance.examples:g} facts" for name in learned]
-    return [*lines, f"Written: {path}"]
+def learned_words_lines(learned: LearnedWords, where: str, kept: bool) -> list[str]:
+    """What was learned of which words, from what, what taught nothing and why, and where it is."""
+    lines = [f"{model.name:<11} learned from {_facts(model)}" for model in learned.changed]
+    for word, ids in (("lessons", learned.lessons), ("kept as", learned.kept)):
+        lines += [f"{word:<11} {', '.join(ids)}"] if ids else []
+    lines += [f"left out    {why}" for why in learned.left_out]
+    return [*lines, f"In force in {where}." if kept else f"Written: {where}"]
+
+
+def learned_words_to_dict(learned: LearnedWords, where: str) -> dict[str, Any]:
+    """The same as plain data, with the models' parameters."""
+    return {
+        "learned": [model_to_dict(model) for model in learned.changed],
+        "lessons": list(learned.lessons),
+        "kept": list(learned.kept),
+        "left_out": list(learned.left_out),
+        "written": where,
+    }
 
 
 def _atoms(relation: Relation) -> dict[str, list[str]]:
@@ -86,7 +103,15 @@ def _origin(model: RelationModel) -> str:
     origin = model.provenance
     if origin.made is None:
         return "shipped, from prototypes"
-    return f"learned from {origin.examples:g} facts of {len(origin.sources)} scenes on {origin.made:%Y-%m-%d}"
+    scenes = len(origin.sources) + len(origin.lessons)
+    of = "one scene" if scenes == 1 else f"{scenes} scenes"
+    return f"learned from {_facts(model)} of {of} on {origin.made:%Y-%m-%d}"
+
+
+def _facts(model: RelationModel) -> str:
+    """How many facts taught a model, by how sure they were, so that the number need not be whole."""
+    number = round(model.provenance.examples, 1)
+    return f"{number:g} fact" if number == 1 else f"{number:g} facts"
 
 
 def _degree(value: float) -> str:

@@ -13,7 +13,9 @@ from deixis.perception.scene import Scene
 from deixis.perception.scene_file import read_scene
 from deixis.plot import plot_grounding, require_picture
 from deixis.plot_check import plot_check
-from deixis.reasoning.grounding import Grounding
+from deixis.reasoning.answer import Grounding
+from deixis.reasoning.graded.unary import UnaryWeights
+from deixis.reasoning.meaning import Meaning
 from deixis.session import Session, ground, infer, read_script
 from deixis.show import check_lines, grounding_lines, inference_lines, learned_lines, script_lines
 
@@ -41,10 +43,10 @@ def tell(out: Path) -> None:
     _chapter(console, 2, "The robot looks at a table and can name nothing on it")
     _say(console, f"It sees {len(scene.objects)} boxes, from the {scene.viewpoint}: {', '.join(scene.ids)}.")
 
-    _chapter(console, 3, "Who is who?")
-    found = ground(script1, scene)
+    _chapter(console, 3, "Who is who, going by the words alone?")
+    found = ground(script1, scene, meaning=Meaning(weights=UnaryWeights(sizes=0.0)))
     _listing(console, grounding_lines(found))
-    _say(console, *_ambiguity(found))
+    _say(console, *_ambiguity(found, ground(script1, scene)))
     plot_grounding(found, scene, out / "script1.png", script1.title)
     _say(console, f"Picture: {out / 'script1.png'}")
 
@@ -88,12 +90,14 @@ def full_text(name: str) -> list[str]:
     return example(name).read_text(encoding="utf-8").splitlines()
 
 
-def _ambiguity(found: Grounding) -> list[str]:
-    open_names = [match.object for match in found.matches.values() if not match.decided]
+def _ambiguity(found: Grounding, with_sizes: Grounding) -> list[str]:
+    open_names, left = ([m.object for m in f.matches.values() if not m.decided] for f in (found, with_sizes))
+    settled = "settles them all" if not left else f"leaves {len(left)}"
     return [
-        f"All {len(found.satisfied)} facts hold, and still {len(open_names)} of {len(found.matches)} names are open:",
+        f"By the words alone all {len(found.satisfied)} facts hold, and still {len(open_names)} of "
+        f"{len(found.matches)} names are open:",
         "three pairs could trade names unnoticed, and fish knife and soup spoon be any two in a row on the right.",
-        "Deixis says so, instead of passing off a lucky order as knowledge.",
+        f"Deixis says so, instead of passing off a lucky order as knowledge. How large such things are {settled}.",
     ]
 
 

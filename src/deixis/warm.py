@@ -5,13 +5,22 @@ from __future__ import annotations
 
 def warm() -> None:
     """Runs one tiny job of each kind; the compiled code is kept on disk."""
-    from deixis.reasoning.branch_and_bound import warm as warm_engine
-
-    warm_engine()
+    _ground()
     _infer()
     _solve()
     _tell_time()
     _imagine()
+    _read_clouds()
+    _describe()
+
+
+def _ground() -> None:
+    from deixis.session import ground, read_script
+
+    boxes = [{"id": f"o{i}", "min": [0.2 * i, 0], "max": [0.2 * i + 0.1, 0.1]} for i in range(12)]
+    script = read_script(text="fork left of plate\nglass above plate\n")
+    for engine in ("exact", "scalable"):
+        ground(script, {"frame": "table", "viewpoint": "chair", "unit": "m", "objects": boxes}, engine=engine)
 
 
 def _infer() -> None:
@@ -56,6 +65,33 @@ def _imagine() -> None:
     from deixis.session import read_script
 
     imagine(read_script(text="fork left of plate\nnapkin on plate\n"))
+
+
+def _read_clouds() -> None:
+    import tempfile
+    from pathlib import Path
+
+    import numpy as np
+
+    from deixis.perception.clouds.cloud import PointCloud
+    from deixis.perception.clouds.cloud_file import read_cloud, write_cloud
+
+    cloud = PointCloud(np.array([[0, 0, 1], [0, 1, 1]], np.float32))
+    with tempfile.TemporaryDirectory() as folder:
+        for encoding in ("ascii", "binary_compressed"):
+            write_cloud(Path(folder) / "cloud.pcd", cloud, encoding)
+            read_cloud(Path(folder) / "cloud.pcd")
+        write_cloud(Path(folder) / "cloud.ply", cloud)
+        read_cloud(Path(folder) / "cloud.ply")
+
+
+def _describe() -> None:
+    from deixis.perception.detection.warm import warm as warm_detection
+    from deixis.perception.features.warm import warm as warm_features
+    from deixis.perception.recognition.warm import warm as warm_recognition
+
+    for warm_room in (warm_detection, warm_features, warm_recognition):
+        warm_room()
 
 
 if __name__ == "__main__":

@@ -26,7 +26,7 @@ def matches(out: str) -> dict[str, str]:
 def test_an_oracle_settles_who_is_who_in_few_questions(script: str, tmp_path: Path) -> None:
     oracle = tmp_path / "truth.json"
     oracle.write_text(json.dumps(TRUTH), encoding="utf-8")
-    code, out, err = deixis("ground", example(script), SCENE, "--oracle", oracle, "--json")
+    code, out, err = deixis("ground", example(script), SCENE, "--oracle", oracle, "--json", "--no-sizes")
     assert code == 0
     assert matches(out) == TRUTH
     assert all(match["decided"] for match in json.loads(out)["matches"])
@@ -36,10 +36,17 @@ def test_an_oracle_settles_who_is_who_in_few_questions(script: str, tmp_path: Pa
 
 def test_without_answers_the_dialogue_ends_and_the_answer_is_as_without_it(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("sys.stdin", io.StringIO(""))
-    code, out, _ = deixis("ground", example("script1.layout"), SCENE, "--ask")
+    code, out, _ = deixis("ground", example("script1.layout"), SCENE, "--ask", "--no-sizes")
     assert code == 0
     assert "No further answers." in out
-    assert "fish_knife               o6         or, less likely, " in out
+    (fish_knife,) = [line for line in out.splitlines() if line.startswith("fish_knife ")]
+    assert " or " in fish_knife
+
+
+def test_only_the_exact_engine_asks() -> None:
+    code, _, err = deixis("ground", example("script1.layout"), SCENE, "--ask", "--engine", "similarity")
+    assert code == 2
+    assert "leave out --engine" in err
 
 
 def test_a_truth_file_that_is_none_is_bad_input(tmp_path: Path) -> None:
@@ -62,7 +69,7 @@ def test_a_turned_table_is_grounded_as_if_it_were_not(quarters: int, option: str
     file.write_text(
         json.dumps({"frame": "table", "viewpoint": "chair", "unit": "m", "objects": objects}), encoding="utf-8"
     )
-    straight = deixis("ground", example("formal_dinner.layout"), SCENE, "--engine", "graded", "--json")[1]
+    straight = deixis("ground", example("formal_dinner.layout"), SCENE, "--json")[1]
     code, out, _ = deixis("ground", example("formal_dinner.layout"), file, "--viewpoint", option, "--json")
     assert code == 0
     assert matches(out) == matches(straight) == TRUTH

@@ -146,5 +146,5 @@ def test_any_boxes(tmp_path: Path, seen: list[tuple[float, float, float, float]]
     path = tmp_path / "any.scene.json"
     path.write_text(f'{{"objects": [{", ".join(things)}]}}', encoding="utf-8")
     code, _, err = deixis("ground", example("contradiction.layout"), path, "--engine", engine)
-    assert code == (0 if seen else 1)
+    assert code in ((0, 1) if seen else (1,))  # 1: what was seen is nothing like what was described
     assert err == ""

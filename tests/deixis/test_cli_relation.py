@@ -20,6 +20,13 @@ APP = typer.Typer(pretty_exceptions_enable=False)
 register(APP)
 
 
+@pytest.fixture(autouse=True)
+def memory(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:
+    """The default memory: a folder that is not there yet."""
+    monkeypatch.setenv("DEIXIS_MEMORY", str(tmp_path / "memory"))
+    return tmp_path / "memory"
+
+
 def run(*args: object) -> Result:
     return CliRunner().invoke(APP, [*map(str, args)])
 
@@ -76,7 +83,7 @@ def test_the_field_of_left_is_highest_just_to_the_left() -> None:
     assert -1.1 < places[column] <= -0.5
 
 
-def test_learned_models_are_written_read_and_shown(lesson: list[str], tmp_path: Path) -> None:
+def test_learned_models_are_written_read_and_shown(lesson: list[str], tmp_path: Path, memory: Path) -> None:
     out = tmp_path / "models.ttl"
     found = run("learn-relation", *lesson, "-o", out)
     assert found.exit_code == 0
@@ -85,11 +92,12 @@ def test_learned_models_are_written_read_and_shown(lesson: list[str], tmp_path: 
         "saying      learned from 2 facts",
         f"Written: {out}",
     ]
+    assert not memory.exists()
     models = read_models(out)
     assert models["horizontal"].provenance.examples == 2
     assert models["horizontal"].provenance.sources == (f"{lesson[0]} {lesson[1]}",)
     assert models["vertical"] == shipped_models()["vertical"] or models["vertical"].provenance.examples == 0
-    assert "learned from 2 facts of 1 scenes" in run("relation", "left", "--models", out).stdout
+    assert "learned from 2 facts of one scene" in run("relation", "left", "--models", out).stdout
 
 
 def test_learning_says_as_json_what_it_learned(lesson: list[str], tmp_path: Path) -> None:
@@ -108,7 +116,37 @@ def test_what_relation_refuses(tmp_path: Path) -> None:
     assert "must be numbers" in refused("relation", "left", "--models", empty)
 
 
-def test_what_learning_refuses(lesson: list[str], tmp_path: Path) -> None:
+def test_the_memory_keeps_what_was_learned_and_shows_what_is_in_force(lesson: list[str], memory: Path) -> None:
+    found = run("learn-relation", *lesson)
+    assert found.exit_code == 0, found.exception
+    assert found.stdout.splitlines()[2:] == [
+        "lessons     words_t-1",
+        "kept as     words_t-1",
+        f"In force in {memory}.",
+    ]
+    assert "learned from 2 facts of one scene" in run("relation", "left").stdout
+    assert "shipped, from prototypes" in run("relation", "left", "--no-memory").stdout
+    assert "shipped, from prototypes" in run("relation", "on").stdout
+    again = json.loads(run("learn-relation", *lesson, "--json").stdout)
+    assert again["left_out"] == [f"{lesson[0]} {lesson[1]}: remembered already, as words_t-1"]
+    assert again["learned"][0]["examples"] == 2 and again["learned"][0]["learned_from"] == ["words_t-1"]
+    assert "The shipped models are in force" in run("learn-relation", "--reset").stdout
+    assert "shipped, from prototypes" in run("relation", "left").stdout
+    assert "learned from 2 facts" in run("learn-relation").stdout
+
+
+def test_what_is_remembered_counts_in_a_file_too_unless_it_is_left_out(lesson: list[str], tmp_path: Path) -> None:
+    run("learn-relation", *lesson)
+    other, out = tmp_path / "other.layout", tmp_path / "m.ttl"
+    other.write_text("knife right of fork\n", encoding="utf-8")
+    assert run("learn-relation", other, lesson[1], "-o", out).exit_code == 0
+    where = read_models(out)["horizontal"].provenance
+    assert (where.examples, where.sources, where.lessons) == (3, (f"{other} {lesson[1]}",), ("words_t-1",))
+    assert run("learn-relation", other, lesson[1], "-o", out, "--no-memory").exit_code == 0
+    assert read_models(out)["horizontal"].provenance.examples == 1
+
+
+def test_what_learning_refuses(lesson: list[str], tmp_path: Path, memory: Path) -> None:
     out = tmp_path / "m.ttl"
     assert "come in pairs" in refused("learn-relation", lesson[0], "-o", out)
     assert "strength" in refused("learn-relation", *lesson, "-o", out, "--strength", "0")
@@ -117,3 +155,12 @@ def test_what_learning_refuses(lesson: list[str], tmp_path: Path) -> None:
     bare.write_text('{"objects": [{"id": "a", "min": [0, 0], "max": [1, 1]}]}', encoding="utf-8")
     assert "nothing to learn" in refused("learn-relation", lesson[0], bare, "-o", out)
     assert not out.exists()
+    assert "nothing to learn" in refused("learn-relation", lesson[0], bare)
+    assert "nothing is remembered at" in refused("learn-relation")
+    assert "--no-memory leaves nowhere" in refused("learn-relation", *lesson, "--no-memory")
+    assert "--models goes with -o" in refused("learn-relation", *lesson, "--models", out)
+    assert "name scripts and labelled scenes" in refused("learn-relation", "--no-memory", "-o", out)
+    assert "command of its own" in refused("learn-relation", *lesson, "--reset")
+    assert "there is no memory at" in refused("learn-relation", "--reset")
+    assert "there is no memory at" in refused("relation", "left", "--memory", tmp_path / "gone")
+    assert not memory.exists()

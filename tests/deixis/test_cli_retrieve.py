@@ -19,6 +19,11 @@ EXAMPLES = Path(__file__).parents[2] / "examples"
 SETTING = EXAMPLES / "place_setting.scene.json"
 
 
+@pytest.fixture(autouse=True)
+def _nothing_remembered(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setenv("DEIXIS_MEMORY", str(tmp_path / "none"))
+
+
 def run(*args: object) -> tuple[int, str]:
     """Runs the command by itself: exit code and what it printed."""
     app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
@@ -64,6 +69,28 @@ def test_a_scene_ranks_what_is_remembered(tmp_path: Path) -> None:
     lines = out.splitlines()
     assert lines[1].split()[:2] == ["formal_dinner", "1.000"]
     assert lines[2].startswith("script2 ")
+
+
+def test_layouts_and_scenes_of_a_folder_and_of_the_memory_are_ranked_together(tmp_path: Path) -> None:
+    memory, folder = tmp_path / "memory", tmp_path / "scenes"
+    folder.mkdir()
+    setting = read_scene(SETTING)
+    write_scene(setting.reordered(range(5)), folder / "part.scene.json")
+    with Session(memory=memory) as session:
+        session.learn(EXAMPLES / "formal_dinner.layout", SETTING)
+    script = EXAMPLES / "formal_dinner.layout"
+    assert names(run(script, "--memory", memory, "--json")[1]) == ["formal_dinner-1"]
+    both = run(script, "--memory", memory, "--among", folder, "--json", "--least", 0)[1]
+    assert names(both) == ["formal_dinner-1", "part.scene.json"]
+    both = run(SETTING, "--memory", memory, "--among", EXAMPLES, "--json")[1]
+    assert names(both)[:2] == ["formal_dinner", "formal_dinner.layout"]
+    alone = run(SETTING, "--memory", memory, "--no-memory", "--among", EXAMPLES, "--json")[1]
+    assert "formal_dinner" not in names(alone)
+
+
+def test_a_memory_that_is_named_must_be_there(tmp_path: Path) -> None:
+    with pytest.raises(DeixisError, match="there is no memory at"):
+        run(SETTING, "--memory", tmp_path / "gone", "--among", EXAMPLES)
 
 
 def test_no_more_are_printed_than_were_asked_for() -> None:

@@ -11,7 +11,7 @@ from deixis.story import tell
 CHAPTERS = [
     "1. Somebody says how a table is laid",
     "2. The robot looks at a table and can name nothing on it",
-    "3. Who is who?",
+    "3. Who is who, going by the words alone?",
     "4. A fuller script settles it",
     "5. What the script implies without saying so",
     "6. A script that cannot be laid",

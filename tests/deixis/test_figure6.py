@@ -14,9 +14,7 @@ import pytest
 from numpy.typing import NDArray
 
 from deixis.cli import main
-from deixis.experiments import run_experiment
-from deixis.experiments.figure6 import Figure6, Points, Spread
-from deixis.ontology.errors import UnknownTermError
+from deixis.experiments.figure6 import Figure6, Points, Spread, run
 
 CHOICES = ("facts decide", "similarity decides")
 RIGHT = {f"{what}, {choice}" for what in ("right", "right up to interchangeability") for choice in CHOICES}
@@ -25,7 +23,7 @@ DROPPED = {f"exactly the absent dropped, {choice}" for choice in CHOICES}
 
 @pytest.fixture(scope="module")
 def result(tmp_path_factory: pytest.TempPathFactory) -> Figure6:
-    return run_experiment("figure6", tmp_path_factory.mktemp("a"), variants=1, orders=3, seed=1)
+    return run(tmp_path_factory.mktemp("a"), variants=1, orders=3, seed=1)
 
 
 def test_structure(result: Figure6) -> None:
@@ -88,11 +86,6 @@ def test_the_text(result: Figure6) -> None:
     assert lines[0] == "Figure 6 again: 1 variants, 3 node orders, seed 1"
     assert sum("Spearman's rho" in line for line in lines) == 2
     assert lines[-2:] == list(result.pictures)
-
-
-def test_no_such_experiment(tmp_path: Path) -> None:
-    with pytest.raises(UnknownTermError, match="there is no experiment 'figure7'"):
-        run_experiment("figure7", tmp_path, variants=1, orders=1, seed=1)
 
 
 def test_a_spread() -> None:

@@ -16,8 +16,8 @@ from deixis.grammar.parser import parse_script, read_script
 from deixis.grammar.script import Script
 from deixis.imagination import Table, imagine, kind_by_words
 from deixis.ontology.tbox import default_ontology
+from deixis.reasoning.answer import Outcome
 from deixis.reasoning.errors import SettingError
-from deixis.reasoning.grounding import Outcome
 from deixis.session import Session, ground
 
 EXAMPLES = Path(__file__).parents[2] / "examples"

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 import deixis
 from deixis.examples_data import example
 from deixis.perception.scene import Scene
-from deixis.reasoning.grounding import Grounding
+from deixis.reasoning.answer import Grounding
 
 SCRIPT1 = deixis.read_script(example("script1.layout"))
 SCENE = deixis.read_scene(example("place_setting.scene.json"))
@@ -27,6 +27,29 @@ def names(found: Grounding) -> dict[str, str]:
 
 def box(id: str, x: float, **more: Any) -> dict[str, Any]:
     return {"id": id, "min": [x, 0.0], "max": [x + 1, 1.0], **more}
+
+
+MUGS = deixis.read_script(text="the red mug, blue_mug, green mug left of plate; the plate is white")
+SEEN = {"red_mug": "#b01c24", "blue_mug": "#2040a0", "green_mug": "green", "plate": [232, 230, 224]}
+
+
+def mugs(colours: Mapping[str, Any]) -> dict[str, Any]:
+    """Three mugs that nothing but their colours tells apart, and a plate."""
+    at = {"green_mug": 0.0, "red_mug": 1.5, "blue_mug": 3.0, "plate": 6.0}
+    return {"objects": [box(f"the {name}", x, colour=colours.get(name)) for name, x in at.items()]}
+
+
+def test_colours_tell_apart_what_words_cannot() -> None:
+    found = deixis.ground(MUGS, mugs(SEEN))
+    assert names(found) == {name: f"the {name}" for name in SEEN}
+    assert all(match.decided for match in found.matches.values())
+    assert not found.interchangeable
+    assert ("blue_mug", "green_mug", "red_mug") in deixis.ground(MUGS, mugs({})).interchangeable
+
+
+def test_a_colour_that_does_not_fit_loses_to_the_facts() -> None:
+    swapped = {**SEEN, "plate": "black"}
+    assert names(deixis.ground(MUGS, mugs(swapped)))["plate"] == "the plate"
 
 
 def test_as_the_design_has_it() -> None:
@@ -117,10 +140,12 @@ def test_an_uncertain_label_weighs(confidence: float, fork: str) -> None:
 
 def test_an_uncertain_label_settles_what_facts_leave_open() -> None:
     script = deixis.read_script(text="fork left of plate; spoon left of plate")
-    things = [box("p", 0), box("q", 2, label="fork", confidence=0.3), box("r", 8)]
-    found = deixis.ground(script, {"objects": things})
+    things = [box("p", 0), box("q", 2, label="fork", confidence=0.9), box("r", 8)]
+    found = deixis.ground(script, {"unit": "px", "objects": things})
     assert names(found) == {"fork": "q", "plate": "r", "spoon": "p"}
-    assert found.matches["fork"].decided
+    unlabelled = deixis.ground(script, {"unit": "px", "objects": [box("p", 0), box("q", 2), box("r", 8)]})
+    assert unlabelled.interchangeable == (("fork", "spoon"),)
+    assert (found.matches["fork"].probability or 0) > 0.5 >= (unlabelled.matches["fork"].probability or 0)
 
 
 @settings(max_examples=8, deadline=None)

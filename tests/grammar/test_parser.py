@@ -123,6 +123,41 @@ def test_the_narrower_declaration_stays() -> None:
     assert declared(parse_script("x is a DinnerFork; x is a Fork; x is a thing")) == {"x": "DinnerFork"}
 
 
+def coloured(script: Script) -> dict[str, str]:
+    return {name: colour.label for name, colour in script.colours.items()}
+
+
+def test_colours_are_declared_as_kinds_are() -> None:
+    script = parse_script("napkin is red; the plate is dark blue; x is a white mug; 2 y are gray; x, z are white")
+    colours = {"napkin": "red", "plate": "blue", "x": "white", "y_1": "grey", "y_2": "grey", "z": "white"}
+    assert coloured(script) == colours
+    assert declared(script) == {"x": "Mug"}
+    assert script.facts == ()
+
+
+def test_kind_and_colour_may_stand_in_statements_of_their_own() -> None:
+    script = parse_script("x is a mug; x is red; x is a red thing; x left of y")
+    assert (coloured(script), declared(script)) == ({"x": "red"}, {"x": "Mug"})
+
+
+def test_a_colour_at_the_head_of_a_name_is_meant_unless_the_name_is_a_kind_or_declared_otherwise() -> None:
+    script = parse_script(
+        "the red mug left of red_wine_glass; 2 green_plate on mat; orange on mat; white_wine is yellow"
+    )
+    colours = {"red_mug": "red", "green_plate_1": "green", "green_plate_2": "green", "white_wine": "yellow"}
+    assert coloured(script) == colours
+
+
+def test_a_name_s_colour_leaves_the_kind_of_the_rest() -> None:
+    graph = parse_script("the red mug left of blue thingummy").graph()
+    assert [kind and kind.rpartition("#")[2] for kind in graph.kinds] == ["Mug", None]
+    assert [colour and colour.rpartition("#")[2] for colour in graph.colours] == ["red", "blue"]
+
+
+def test_a_script_without_colours_gives_a_graph_without_any() -> None:
+    assert parse_script("fork left of plate").graph().colours == ()
+
+
 def test_header() -> None:
     script = parse_script('layout formal dinner "Formal dinner" seen from the chair\na on b')
     assert (script.name, script.title, script.viewpoint) == ("formal_dinner", "Formal dinner", "chair")

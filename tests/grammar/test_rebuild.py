@@ -21,6 +21,7 @@ def test_parse_learn_show_parse_gives_the_same_facts(script: Script) -> None:
     said = [(str(f), f.positive, f.optional, f.weight) for f in script.graph().facts()]
     assert [(str(f), f.positive, f.optional, f.weight) for f in again.graph().facts()] == said
     assert again.kinds == script.kinds
+    assert again.colours == script.colours
     assert (again.title, again.viewpoint) == (script.title, script.viewpoint)
 
 

@@ -3,12 +3,20 @@
 from __future__ import annotations
 
 import re
+from datetime import UTC, datetime
+from math import log
 from pathlib import Path
 
 import pytest
 
+from deixis.memory.graphs import ModelSet
 from deixis.memory.results import QueryKind
 from deixis.memory.semantic import SemanticMemory
+from deixis.ontology.relation_model_triples import model_triples
+from deixis.ontology.relation_models import Provenance, RelationModel, Term
+from deixis.ontology.size_model import SizeModel
+from deixis.ontology.size_model_triples import size_triples
+from deixis.ontology.vocabulary import BASE
 
 PAGE = Path(__file__).parents[2] / "docs" / "queries.md"
 SECTIONS = re.findall(r"^## (.+?)\n\n(.+?)\n\n```sparql\n(.+?)```", PAGE.read_text(encoding="utf-8"), re.M | re.S)
@@ -24,19 +32,34 @@ EXPECTED = {
     "8. What was": "dx:Plate",
     "9. Which": "lx:scene/s1  o2",
     "10. Where": "2026-11-21T10:00:00Z  0.1.0    exact   dinner.layout  lx:scene/s1",
+    "11. Which": "horizontal  3      2026-11-21T00:00:00Z  lx:lesson/dinner-1",
+    "12. How": "dx:DinnerPlate  0.27    false     0.98    3      2",
     "And how": "dxg:learned",
 }
 
 
-def test_the_page_has_ten_queries_and_the_counts() -> None:
-    assert len(SECTIONS) == 11
-    assert PAGE.read_text(encoding="utf-8").count("```sparql") == 11
+MADE = Provenance((), 3.0, datetime(2026, 11, 21, tzinfo=UTC), "0.1.0", ("dinner-1", "dinner-2"), 1.0)
+MODEL = RelationModel("horizontal", (Term("gap", (0.0, 1.0), (0.0, -1.5)),), 0.01, 0.07, MADE)
+SCENES = [f"https://w3id.org/deixis/learned/scene/s{number}" for number in (1, 2)]
+
+
+@pytest.fixture
+def modelled(taught: SemanticMemory) -> SemanticMemory:
+    """The memory of two lessons, with a learned word and a learned size."""
+    size = size_triples(BASE + "DinnerPlate", SizeModel((log(0.27), 0.1), (log(0.98), 0.1), False, 3.0), SCENES)
+    taught.keep_models({ModelSet.WORDS: list(model_triples(MODEL)), ModelSet.SIZES: list(size)})
+    return taught
+
+
+def test_the_page_has_twelve_queries_and_the_counts() -> None:
+    assert len(SECTIONS) == 13
+    assert PAGE.read_text(encoding="utf-8").count("```sparql") == 13
     assert all(sentence.rstrip().endswith(".") for _, sentence, _ in SECTIONS)
 
 
 @pytest.mark.parametrize(("title", "query"), [(title, query) for title, _, query in SECTIONS])
-def test_every_query_finds_what_is_there(taught: SemanticMemory, title: str, query: str) -> None:
-    answer = taught.query(query)
+def test_every_query_finds_what_is_there(modelled: SemanticMemory, title: str, query: str) -> None:
+    answer = modelled.query(query)
     assert answer.kind is QueryKind.SELECT
     assert answer.rows
     (expected,) = [line for start, line in EXPECTED.items() if title.startswith(f"{start} ")]

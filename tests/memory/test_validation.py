@@ -43,6 +43,15 @@ BROKEN = {
     "confidence in percent": (
         "<L/scene/s1/o1> dx:confidence 0.9 .", "<L/scene/s1/o1> dx:confidence 90.0 .", "divide percentages by 100",
     ),
+    "a perceived colour in words": (
+        "<L/scene/s1/o1> dx:confidence 0.9 .",
+        "<L/scene/s1/o1> dx:confidence 0.9 ; dx:perceivedColour 'red' .", "two hexadecimal digits each",
+    ),
+    "a role of two colours": (
+        "<L/layout/dinner-1/role/fish_knife> rdfs:label 'fish_knife' .",
+        "<L/layout/dinner-1/role/fish_knife> rdfs:label 'fish_knife' ; dx:ofColour dx:red, dx:blue .",
+        "at most one dx:ofColour",
+    ),
     "a scene in inches": ("<L/scene/s1> dx:unit 'm' .", "<L/scene/s1> dx:unit 'in' .", "convert the boxes to metres"),
     "a role without a name": (
         "<L/layout/dinner-1/role/fish_knife> rdfs:label 'fish_knife' .", "", "say rdfs:label once",

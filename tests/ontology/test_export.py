@@ -72,12 +72,27 @@ def graphs(draw: st.DrawFn) -> RelationGraph:
         )
     boxes = np.arange(len(nodes) * 4.0).reshape(-1, 2, 2) if draw(st.booleans()) else None
     kinds = [draw(st.sampled_from([None, "urn:k:Plate"])) for _ in nodes] if draw(st.booleans()) else []
-    return RelationGraph.from_facts(R, nodes, facts, kinds=kinds, boxes=boxes)
+    colours = [draw(st.sampled_from([None, "urn:c:red"])) for _ in nodes] if draw(st.booleans()) else []
+    return RelationGraph.from_facts(R, nodes, facts, kinds=kinds, boxes=boxes, colours=colours)
 
 
 def odd_graph() -> RelationGraph:
     facts = [Fact(a, (R["left"],), b) for a, b in pairwise(ODD)]
     return RelationGraph.from_facts(R, ODD, facts)
+
+
+def test_a_colour_is_said_in_turtle_and_by_networkx() -> None:
+    graph = RelationGraph.from_facts(R, ["a", "b"], [], colours=["urn:c:red", None])
+    told = Graph().parse(data=graph_to_turtle(graph), format="turtle")
+    said = list(told.subject_objects(URIRef(DX.OF_COLOUR)))
+    assert said == [(URIRef("urn:deixis:graph:a"), URIRef("urn:c:red"))]
+    assert dict(graph.to_networkx().nodes(data="colour")) == {"a": "urn:c:red", "b": None}
+    assert graph.subgraph(["b", "a"]).colours == (None, "urn:c:red")
+
+
+def test_colours_are_one_a_node() -> None:
+    with pytest.raises(GraphError, match="one kind a node, or none at all, and so with colours"):
+        RelationGraph.from_facts(R, ["a", "b"], [], colours=["urn:c:red"])
 
 
 @settings(max_examples=60, deadline=None)
@@ -87,6 +102,7 @@ def test_a_graph_comes_back_from_its_json(graph: RelationGraph) -> None:
     assert again.nodes == graph.nodes
     assert list(again.facts()) == list(graph.facts())
     assert [k for k in again.kinds if k] == [k for k in graph.kinds if k]
+    assert again.colours == (graph.colours if any(graph.colours) else ())
     if graph.boxes is None:
         assert again.boxes is None
     else:

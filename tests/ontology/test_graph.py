@@ -141,7 +141,7 @@ def test_the_networkx_view_has_every_node_and_parallel_edges_with_their_attribut
     view = made.to_networkx()
     assert isinstance(view, nx.MultiDiGraph)
     assert list(view.nodes) == ["a", "b", "c"]
-    assert view.nodes["a"] == {"kind": "urn:k", "box": None}
+    assert view.nodes["a"] == {"kind": "urn:k", "colour": None, "box": None}
     first, second = (data for _, _, data in view.edges(data=True))
     assert first == {
         "relations": ("left", "right"),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from datetime import UTC, datetime
 
 import pyoxigraph as ox
@@ -14,19 +15,24 @@ from deixis.ontology.errors import UnknownTermError
 from deixis.ontology.graph import Fact
 from deixis.ontology.iris import LEARNED, last_part, learned_iri
 from deixis.ontology.lesson_reading import layout_named, layouts
+from deixis.ontology.lesson_records import lesson_records
 from deixis.ontology.lesson_triples import asserted_triples, episode_triples, learned_triples
 from deixis.ontology.rdf import decimal, typed
 from deixis.ontology.skolem import GENID, with_blank_nodes, with_names
 from deixis.ontology.source import Source
 from deixis.ontology.tbox import default_ontology
+from deixis.ontology.vocabulary import DX
 
 RELATIONS = default_ontology().relations
+RED = "https://w3id.org/deixis/onto#red"
 FISH_KNIFE = "https://w3id.org/deixis/onto#FishKnife"
 NAMES = st.text(st.characters(exclude_categories=["Cs", "Cc"]), min_size=1, max_size=12)
 
 
 def lesson(names: list[str], id: str = "dinner-1", decided: bool = True) -> Lesson:
-    roles = tuple(Role(name, FISH_KNIFE if i == 0 else None, i == 0) for i, name in enumerate(names))
+    roles = tuple(
+        Role(name, FISH_KNIFE if i == 0 else None, i == 0, RED if i == 1 else None) for i, name in enumerate(names)
+    )
     facts = [
         Fact(names[0], (RELATIONS["left"],), names[1], source=Source('a"b:c.layout', 3, 1, 3, 1)),
         Fact(names[1], (RELATIONS["right"], RELATIONS["top_right"]), names[0], weight=0.8),
@@ -57,6 +63,35 @@ def test_a_layout_read_back_from_its_triples_is_the_layout_that_was_learned(name
     taught = lesson(names)
     (again,) = layouts(learned_triples(taught, RELATIONS), RELATIONS)
     assert again == taught.layout
+
+
+@settings(deadline=None, max_examples=40)
+@given(st.lists(NAMES, min_size=2, max_size=4, unique=True), st.booleans(), st.floats(0, 1))
+def test_a_record_read_back_holds_the_texts_and_how_sure_every_match_is(
+    names: list[str], decided: bool, probability: float
+) -> None:
+    plain = lesson(names, "dinner 1/x", decided)
+    likeliest = None if decided else "o1"
+    matches = tuple(replace(match, probability=probability, likeliest=likeliest) for match in plain.matches)
+    taught = replace(plain, matches=matches)
+    (record,) = lesson_records(learned_triples(taught, RELATIONS), episode_triples(taught))
+    assert (record.id, record.script_file, record.words_only) == ("dinner 1/x", "a.layout", False)
+    assert (record.script_text, record.scene_text) == (taught.script_text, taught.scene_text)
+    assert sorted(record.matches, key=str) == sorted(matches, key=str)
+    taken = {f"o{i}" for i in range(len(names))} if decided else {"o1"}
+    assert {match.taken for match in record.matches} == taken
+
+
+def test_a_match_without_a_probability_is_sure_where_it_is_decided_and_else_shares() -> None:
+    assert MatchRecord("fork", "o1", True, 1.0).sureness == 1
+    assert MatchRecord("fork", None, False, 1.0, ("o1", "o2"), likeliest="o2").sureness == 0.5
+    assert MatchRecord("fork", None, False, 1.0, ("o1", "o2"), 0.3, "o2").sureness == 0.3
+
+
+def test_a_lesson_without_its_texts_is_no_record() -> None:
+    taught = lesson(["fork", "plate"])
+    told = [triple for triple in episode_triples(taught) if triple.predicate.value != DX.SCENE_TEXT]
+    assert lesson_records(learned_triples(taught, RELATIONS), told) == ()
 
 
 @settings(deadline=None, max_examples=40)

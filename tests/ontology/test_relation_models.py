@@ -23,7 +23,10 @@ LEARNED = replace(
 )
 
 
-@pytest.mark.parametrize("model", [MODEL, LEARNED])
+TAUGHT = replace(LEARNED, provenance=replace(LEARNED.provenance, sources=(), lessons=("a b-1", "c-2"), strength=0.5))
+
+
+@pytest.mark.parametrize("model", [MODEL, LEARNED, TAUGHT])
 def test_a_model_comes_back_from_its_triples(model: RelationModel) -> None:
     (back,) = models_from_turtle(models_to_turtle([model]))
     assert replace(back, terms=()) == replace(model, terms=())

@@ -6,6 +6,7 @@ import json
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -35,6 +36,7 @@ def objects(draw: st.DrawFn, id: str, axes: int) -> PerceivedObject:
         label=label,
         confidence=1.0 if label is None else draw(st.floats(0, 1)),
         cloud=draw(st.none() | texts),
+        colour=draw(st.none() | st.tuples(*[st.integers(0, 255)] * 3)),
     )
 
 
@@ -110,7 +112,30 @@ def without(key: str) -> dict[str, Any]:
     return {"objects": [{k: v for k, v in BOX.items() if k != key}]}
 
 
-KEYS = "cloud, confidence, id, label, max, min"
+@pytest.mark.parametrize(
+    ("given_as", "rgb"),
+    [
+        ("red", (199, 38, 42)),
+        ("Dark Blue", (91, 122, 191)),
+        ("#Ff8000", (255, 128, 0)),
+        ([255, 127.6, 0], (255, 128, 0)),
+        (None, None),
+    ],
+)
+def test_a_colour_is_a_word_or_hexadecimal_or_three_numbers(given_as: Any, rgb: tuple[int, ...] | None) -> None:
+    scene = read_scene(one(colour=given_as))
+    assert scene.objects[0].colour == rgb
+    assert scene.without_labels().objects[0].colour == rgb
+    assert np.isnan(scene.colours).all() if rgb is None else scene.colours.tolist() == [list(rgb)]
+
+
+@pytest.mark.parametrize("colour", [(0, 0), (0, 0, 256), (-1, 0, 0), (0.0, float("nan"), 0.0)])
+def test_an_object_made_in_python_has_a_colour_or_is_refused(colour: Any) -> None:
+    with pytest.raises(SceneError, match="object 'o1': a colour is red, green and blue, each from 0 to 255"):
+        Scene((PerceivedObject("o1", (0.0, 0.0), (1.0, 1.0), colour=colour),))
+
+
+KEYS = "cloud, colour, confidence, id, label, max, min"
 
 CATALOGUE: list[tuple[Any, str]] = [
     ([], "an object {…} is expected here, not a list"),
@@ -160,6 +185,18 @@ CATALOGUE: list[tuple[Any, str]] = [
     (one(label="fork", confidence=1.5), "object 'o1': a confidence lies between 0 and 1, not at 1.5"),
     (one(label="fork", confidence=-0.1), "object 'o1': a confidence lies between 0 and 1, not at -0.1"),
     (one(label="fork", confidence="sure"), "objects[0]: 'confidence': a number is expected, not a text"),
+    (one(colour="rde"), "objects[0]: 'colour': there is no colour 'rde'; did you mean 'red'?"),
+    (
+        one(colour="transparent"),
+        "objects[0]: 'colour': there is no colour 'transparent'; say one of black, blue, brown, green, grey, orange, "
+        "pink, purple, red, white, yellow, or #rrggbb",
+    ),
+    (one(colour="#f80"), "objects[0]: 'colour': '#f80' is no colour; write #rrggbb in hexadecimal digits"),
+    (one(colour=[0, 0]), "objects[0]: 'colour' as a list is red, green and blue, each from 0 to 255"),
+    (one(colour=[0, 0, 256]), "objects[0]: 'colour' as a list is red, green and blue, each from 0 to 255"),
+    (one(colour=[0, 0, "9"]), "objects[0]: 'colour': a number is expected, not a text"),
+    (one(colour=7), "objects[0]: 'colour' is a word such as red, #rrggbb, or [red, green, blue], not a number"),
+    (one(colour=""), "objects[0]: 'colour': a text is expected, and this one is blank"),
     ({"objects": [BOX, BOX]}, "the id 'o1' is used twice; give every object an id of its own"),
     (
         {"objects": [BOX, {"id": "o2", "min": [0, 0, 0], "max": [1, 1, 1]}]},

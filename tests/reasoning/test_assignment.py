@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from deixis.reasoning.assignment import assign, graph_similarity
-from deixis.reasoning.evidence import UNMATCHED
+from deixis.reasoning.matching.problem import UNMATCHED
 
 Matrix = NDArray[np.float64]
 

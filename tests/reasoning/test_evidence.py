@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from deixis.ontology.errors import GraphError
 from deixis.ontology.graph import RelationGraph
 from deixis.ontology.relation import Relations
-from deixis.reasoning.evidence import UNMATCHED, Evidence, exact_names, no_unary_evidence
+from deixis.reasoning.evidence import Evidence, exact_names, no_unary_evidence
+from deixis.reasoning.matching.problem import UNMATCHED
 from deixis.reasoning.rectangle import perceived_graph
 
 MakeGraph = Callable[..., RelationGraph]
@@ -54,7 +55,7 @@ def test_degrees_by_hand(sentence: str, degree: float, top_left_pair: RelationGr
 def test_the_total_weighs_degrees_and_adds_what_labels_say(top_left_pair: RelationGraph, graph_of: MakeGraph) -> None:
     description = graph_of("top_left(a, b)", "0.8 left(a, b)", "0.5 right(a, b)", nodes="a b")
     bonus = np.array([[0.25, 4.0], [8.0, 2.0]])
-    evidence = Evidence(description, top_left_pair, np.ones((2, 2), dtype=bool), bonus)
+    evidence = Evidence(description, top_left_pair, bonus, np.zeros((2, 2)))
     assert evidence.total(np.array([0, 1])) == pytest.approx(1.0 + 0.4 + 0.25 + 2.0)
     assert evidence.total(np.array([1, 0])) == pytest.approx(0.5 * 0.5 + 4.0 + 8.0)
     assert evidence.total(np.array([0, UNMATCHED])) == pytest.approx(0.25)
@@ -69,12 +70,13 @@ def test_a_fact_about_an_object_and_itself_is_not_compared(top_left_pair: Relati
 
 def test_reordered_evidence_says_the_same(top_left_pair: RelationGraph, graph_of: MakeGraph) -> None:
     bonus = np.array([[0.25, 4.0], [8.0, 2.0]])
-    allowed = np.array([[True, False], [True, True]])
-    evidence = Evidence(graph_of("left(a, b)", nodes="a b"), top_left_pair, allowed, bonus)
+    bonus[0, 1] = -np.inf
+    evidence = Evidence(graph_of("left(a, b)", nodes="a b"), top_left_pair, bonus, np.array([[0.5, 1.0], [1.5, 2.0]]))
     turned = evidence.reordered(np.array([1, 0]), np.array([1, 0]))
     assert turned.description.nodes == ("b", "a")
     assert turned.scene.nodes == ("q", "p")
-    np.testing.assert_array_equal(turned.allowed, allowed[::-1, ::-1])
+    np.testing.assert_array_equal(turned.unary, evidence.unary[::-1, ::-1])
+    np.testing.assert_array_equal(turned.allowed, [[True, True], [False, True]])
     assert turned.total(np.array([0, 1])) == evidence.total(np.array([0, 1]))
 
 

@@ -1,8 +1,7 @@
-"""What the labels of perceived things allow and weigh."""
+"""Which objects the labels of perceived things name."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 
 import numpy as np
@@ -11,7 +10,7 @@ import pytest
 from deixis.ontology.graph import RelationGraph
 from deixis.ontology.kinds import Kinds
 from deixis.ontology.tbox import default_ontology
-from deixis.reasoning.labels import Label, label_evidence, named_objects
+from deixis.reasoning.labels import named_objects
 
 MakeGraph = Callable[..., RelationGraph]
 KINDS: Kinds = default_ontology().kinds
@@ -58,34 +57,3 @@ def test_an_accent_may_be_written_in_two_ways(graph_of: MakeGraph) -> None:
 
 def test_without_kinds_a_word_for_a_kind_names_nothing(graph_of: MakeGraph) -> None:
     assert not named_objects(graph_of(nodes="salad_fork"), "fork", KINDS).any()
-
-
-def test_a_certain_label_allows_what_it_names_and_nothing_else(table: RelationGraph) -> None:
-    allowed, bonus = label_evidence(table, [Label("fork"), None, Label("gizmo")], KINDS)
-    assert allowed[:, 0].tolist() == [True, True, False, False, False, False]
-    assert allowed[:, 1].all()
-    assert not allowed[:, 2].any()
-    assert not bonus.any()
-
-
-def test_an_uncertain_label_weighs_its_odds_of_being_wrong(table: RelationGraph) -> None:
-    allowed, bonus = label_evidence(table, [Label("fork", 0.9), Label("gizmo", 0.9)], KINDS)
-    assert allowed.all()
-    assert bonus[:2, 0] == pytest.approx([math.log(10), math.log(10)])
-    assert not bonus[2:, 0].any()
-    assert not bonus[:, 1].any()
-
-
-def test_the_surer_a_label_the_more_it_weighs_and_no_confidence_weighs_nothing(table: RelationGraph) -> None:
-    labels = [Label("plate", confidence) for confidence in (0.0, 0.1, 0.5, 0.99)]
-    allowed, bonus = label_evidence(table, labels, KINDS)
-    assert allowed.all()
-    assert bonus[2, 0] == 0.0
-    assert (np.diff(bonus[2]) > 0).all()
-    assert np.isfinite(bonus).all()
-
-
-def test_no_labels_and_no_objects_have_empty_evidence(graph_of: MakeGraph) -> None:
-    allowed, bonus = label_evidence(graph_of(), [Label("fork")], KINDS)
-    assert allowed.shape == bonus.shape == (0, 1)
-    assert label_evidence(graph_of(nodes="a b"), [], KINDS)[0].shape == (2, 0)

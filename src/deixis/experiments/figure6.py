@@ -28,7 +28,8 @@ from deixis.perception.scene import Scene
 from deixis.perception.scene_file import read_scene
 from deixis.perception.settings import formal_setting
 from deixis.reasoning.engines import described
-from deixis.reasoning.evidence import UNMATCHED, Evidence, no_unary_evidence
+from deixis.reasoning.evidence import Evidence, no_unary_evidence
+from deixis.reasoning.matching.problem import UNMATCHED
 from deixis.reasoning.similarity import node_similarity
 from deixis.reasoning.symmetry import interchangeable
 from deixis.session import read_script

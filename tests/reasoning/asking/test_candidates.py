@@ -10,9 +10,10 @@ import pytest
 from hypothesis import given, settings
 from matching_problems import problems, reordered
 
-from deixis.reasoning.asking.candidates import Candidates, candidates_of, exchangeable
+from deixis.reasoning.asking.candidates import Candidates, candidates_of
 from deixis.reasoning.errors import SettingError
 from deixis.reasoning.matching.exact import maps_within
+from deixis.reasoning.matching.exchangeability import exchangeable
 from deixis.reasoning.matching.problem import UNMATCHED, Problem
 
 

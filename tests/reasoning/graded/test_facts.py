@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from laid_boxes import tables
 from numpy.typing import NDArray
@@ -76,6 +76,7 @@ def test_a_weight_that_is_none_is_refused(weight: float) -> None:
 
 
 @given(tables(axes=3), st.sampled_from(list(R)), st.booleans(), st.booleans(), st.sampled_from([0.2, 1.0]))
+@settings(deadline=None)
 def test_every_table_is_finite(
     boxes: NDArray[np.float64], name: str, positive: bool, optional: bool, by: float
 ) -> None:
@@ -110,8 +111,16 @@ def test_literal_speakers_make_what_holds_likelier_than_what_does_not() -> None:
     none, some, all_of = (fact_tables(graph, far, literal=share).tables[0] for share in (0.0, 0.3, 1.0))
     assert none[0, 1] < some[0, 1] < all_of[0, 1]
     assert all_of[0, 1] == pytest.approx(np.log(1 / (0.01 + 0.99 * 0.1)), abs=1e-4)
-    with pytest.raises(SettingError, match="literal speakers"):
+    with pytest.raises(SettingError, match="meant literally"):
         fact_tables(graph, far, literal=1.5)
+
+
+def test_of_a_neighbouring_name_a_literal_speaker_says_the_word_one_time_in_ten() -> None:
+    beside, off = [[0, 0], [1, 1]], [[3, 5], [4, 6]]
+    graph = RelationGraph.from_facts(R, ["a", "b"], [Fact("a", (R["left"],), "b")])
+    found = fact_tables(graph, np.array([beside, [[3, 0], [4, 1]], off], dtype=float), literal=1.0).tables[0]
+    assert np.exp(found[0, 2] - found[0, 1]) == pytest.approx(0.01 + 0.99 * 0.1, abs=1e-4)
+    assert np.exp(found[1, 0] - found[0, 1]) == pytest.approx(0.01, abs=1e-4)
 
 
 def test_no_facts_make_no_tables() -> None:

@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 
 from deixis.ontology.graph import RelationGraph
+from deixis.ontology.size_model import SizeModel
 from deixis.ontology.tbox import default_ontology
+from deixis.ontology.vocabulary import DX
 from deixis.reasoning.errors import SettingError
 from deixis.reasoning.graded.unary import (
-    SizeModel,
     UnaryWeights,
     label_ratios,
     learn_size,
@@ -21,7 +22,9 @@ from deixis.reasoning.labels import Label
 
 ONTOLOGY = default_ontology()
 R, KINDS, SIZES = ONTOLOGY.relations, ONTOLOGY.kinds, ONTOLOGY.sizes
-SPOON, PLATE = (kind.iri for word in ("soup spoon", "dinner plate") if (kind := KINDS.of_word(word)))
+SPOON, PLATE, FORK = (
+    kind.iri for word in ("soup spoon", "dinner plate", "dinner fork") if (kind := KINDS.of_word(word))
+)
 TABLE = np.array([[[0.0, 0.0], [0.04, 0.18]], [[0.1, 0.0], [0.37, 0.27]], [[0.5, 0.0], [0.5, 0.0]]])
 TWO = RelationGraph.from_facts(R, ["soup_spoon", "dinner_plate"], [], kinds=[SPOON, PLATE])
 
@@ -37,6 +40,39 @@ def test_sizes_are_finite_of_points_and_never_rule_out() -> None:
     assert np.isfinite(found).all()
     assert found.min() >= np.log(0.05) - 1e-9
     assert (found[2] == 0).all()
+
+
+def test_sizes_say_which_of_the_things_it_is_and_so_no_more_than_the_logarithm_of_their_number() -> None:
+    found = size_evidence([SPOON, PLATE], TABLE, SIZES)
+    assert found.max() <= np.log(len(TABLE)) + 1e-9
+
+
+def test_where_all_things_are_alike_sizes_say_nothing() -> None:
+    alike = np.stack([TABLE[0] + 0.3 * i for i in range(4)])
+    (found,) = size_evidence([SPOON], alike, SIZES)
+    assert found == pytest.approx(np.full(4, found[0]))
+    assert abs(found[0]) < 0.5
+
+
+def test_a_kind_whose_size_is_not_stated_says_nothing_but_a_learned_one_does() -> None:
+    thing = DX.THING.value
+    assert (size_evidence([thing, None, "https://example.org/unheard"], TABLE, SIZES) == 0).all()
+    learned = {thing: learn_size([(TABLE, 1)])}
+    assert size_evidence([thing], TABLE, SIZES, learned).argmax() == 1
+
+
+@pytest.mark.parametrize("degrees", [0, 10, 25, 45, 80])
+def test_a_fork_at_any_angle_is_a_fork_before_it_is_a_plate(degrees: int) -> None:
+    long, wide, angle = 0.19, 0.025, np.radians(degrees)
+    box = [long * np.cos(angle) + wide * np.sin(angle), long * np.sin(angle) + wide * np.cos(angle)]
+    fork = np.array([[[0.0, 0.0], box], TABLE[1] + 0.5, [[1.0, 1.0], [1.07, 1.07]]])
+    (found,) = size_evidence([FORK], fork, SIZES)
+    assert found[0] > found[1:].max() + 1
+
+
+def test_heights_are_no_part_of_the_plan() -> None:
+    upright = np.concatenate([TABLE, np.array([[[0.0], [0.3]]] * 3)], axis=2)
+    assert size_evidence([SPOON, PLATE], upright, SIZES) == pytest.approx(size_evidence([SPOON, PLATE], TABLE, SIZES))
 
 
 def test_a_spoon_lies_as_well_across() -> None:

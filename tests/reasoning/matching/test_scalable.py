@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from matching_problems import every_map, problems
 
-from deixis.reasoning.matching.annealing import climb
+from deixis.reasoning.matching.climbing import climb
 from deixis.reasoning.matching.compiled import compile_problem, to_assignment, to_labels
 from deixis.reasoning.matching.problem import MatchingError, Problem
 from deixis.reasoning.matching.scalable import scalable

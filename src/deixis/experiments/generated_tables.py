@@ -4,7 +4,7 @@ Seats stand in rows; each is laid with some pieces of a formal setting, a little
 pieces by facts between two of them, half of the facts between near neighbours and half between any two. A share of the
 facts is off: its relation is replaced by a neighbouring one (the next direction around, where a piece lies on another
 any direction, and the reverse). ``missing`` described pieces are then taken off the table, ``extra`` ones were never
-described. The same seed gives the same table.
+described. The same seed gives the same table. Every piece has a kind, which a description may tell or keep back.
 """
 
 from __future__ import annotations
@@ -20,24 +20,24 @@ from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.matching.problem import UNMATCHED, Problem
 from deixis.reasoning.rectangle import box_relations, perceived_graph
 
-# A formal setting: centre (x, y) from the middle of the dinner plate, then width and depth, metres.
-PIECES = np.array(
-    [
-        [0.00, 0.00, 0.27, 0.27],  # dinner plate
-        [0.00, 0.00, 0.16, 0.10],  # napkin on it
-        [-0.17, 0.00, 0.025, 0.20],  # dinner fork
-        [-0.21, -0.01, 0.022, 0.17],  # salad fork
-        [0.17, 0.00, 0.022, 0.23],  # dinner knife
-        [0.21, 0.00, 0.022, 0.20],  # fish knife
-        [0.25, -0.01, 0.035, 0.18],  # soup spoon
-        [0.00, 0.17, 0.16, 0.022],  # dessert fork
-        [0.00, 0.21, 0.17, 0.030],  # dessert spoon
-        [-0.24, 0.19, 0.15, 0.15],  # bread plate
-        [-0.24, 0.19, 0.14, 0.018],  # butter knife on it
-        [0.17, 0.20, 0.08, 0.08],  # water glass
-        [0.26, 0.23, 0.07, 0.07],  # wine glass
-    ]
-)
+# A formal setting: centre (x, y) from the middle of the dinner plate, then width and depth, metres. The napkin lies on
+# the dinner plate, the butter knife on the bread plate.
+SETTING = {
+    "dinner plate": (0.00, 0.00, 0.27, 0.27),
+    "napkin": (0.00, 0.00, 0.16, 0.10),
+    "dinner fork": (-0.17, 0.00, 0.025, 0.20),
+    "salad fork": (-0.21, -0.01, 0.022, 0.17),
+    "dinner knife": (0.17, 0.00, 0.022, 0.23),
+    "fish knife": (0.21, 0.00, 0.022, 0.20),
+    "soup spoon": (0.25, -0.01, 0.035, 0.18),
+    "dessert fork": (0.00, 0.17, 0.16, 0.022),
+    "dessert spoon": (0.00, 0.21, 0.17, 0.030),
+    "bread plate": (-0.24, 0.19, 0.15, 0.15),
+    "butter knife": (-0.24, 0.19, 0.14, 0.018),
+    "water glass": (0.17, 0.20, 0.08, 0.08),
+    "wine glass": (0.26, 0.23, 0.07, 0.07),
+}
+PIECES = np.array(list(SETTING.values()))
 SEAT = np.array([0.75, 0.70])  # from one seat to the next, metres
 JITTER = 0.015  # how far a piece lies off its place, metres (standard deviation)
 NEAR = 6  # a near neighbour is one of so many
@@ -53,17 +53,20 @@ class GeneratedTable:
     words: NDArray[np.int64]  # (m,): index of the exact relation that was said
     off: NDArray[np.bool_]  # (m,): whether it was replaced by a neighbouring one
     truth: NDArray[np.int64]  # (n1,): which thing each object is, UNMATCHED where it is missing
+    pieces: NDArray[np.int64]  # (n1,): which piece of SETTING each object is
 
-    def description(self) -> RelationGraph:
-        """What was said, in the wide reading, as a script says it."""
-        relations = default_ontology().relations
+    def description(self, *, kinds: bool = False) -> RelationGraph:
+        """What was said, in the wide reading, as a script says it; with ``kinds`` also what kind each object is."""
+        ontology = default_ontology()
+        relations = ontology.relations
         exact = list(relations.values())
         names = [f"d{i:04}" for i in range(len(self.truth))]
         facts = [
             Fact(names[s], (relations.wide(exact[word]),), names[o])
             for (s, o), word in zip(self.ends.tolist(), self.words.tolist(), strict=True)
         ]
-        return RelationGraph.from_facts(relations, names, facts)
+        told = [ontology.kinds.words[piece].iri for piece in SETTING] if kinds else []
+        return RelationGraph.from_facts(relations, names, facts, [told[i] for i in self.pieces] if kinds else ())
 
     def scene(self) -> RelationGraph:
         """What was perceived: the exact name of every ordered pair."""
@@ -95,39 +98,37 @@ def generate(
 ) -> GeneratedTable:
     """A table of ``objects`` described pieces and ``extra`` others, ``missing`` described ones then taken off."""
     rng = np.random.default_rng([seed, objects])
-    boxes = _laid(objects + extra, rng)
+    boxes, pieces = _laid(objects + extra, rng)
     relations = default_ontology().relations
     ends = _pairs(boxes, objects, round(facts_each * objects), rng)
     names = box_relations(boxes, relations).names[ends[:, 0], ends[:, 1]]
     wrong = np.zeros(len(ends), dtype=bool)
     wrong[rng.choice(len(ends), round(off * len(ends)), replace=False)] = True
     words = names.astype(np.int64)
-    words[wrong] = [_neighbouring(int(name), relations, rng) for name in names[wrong]]
+    words[wrong] = [rng.choice(neighbours(int(name), relations)) for name in names[wrong]]
     kept = np.ones(len(boxes), dtype=bool)
     kept[rng.choice(objects, missing, replace=False)] = False
     shown = rng.permutation(np.flatnonzero(kept))
     truth = np.full(len(boxes), UNMATCHED, dtype=np.int64)
     truth[shown] = np.arange(len(shown))
-    return GeneratedTable(boxes[shown], ends, words, wrong, truth[:objects])
+    return GeneratedTable(boxes[shown], ends, words, wrong, truth[:objects], pieces[:objects])
 
 
-def _laid(count: int, rng: np.random.Generator) -> NDArray[np.float64]:
-    """Boxes of seats in rows about four times as long as deep, each seat with three quarters of its pieces."""
+def _laid(count: int, rng: np.random.Generator) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """Boxes of seats in rows about four times as long as deep, each seat with three quarters of its pieces; which."""
     seats = max(1, round(count / (0.75 * len(PIECES)) + 0.5))
     columns = max(1, round(2 * np.sqrt(seats)))
     places = np.stack([np.arange(seats) % columns, np.arange(seats) // columns], axis=1) * SEAT
     chosen = rng.permutation(seats * len(PIECES))[:count]
-    pieces = PIECES[chosen % len(PIECES)]
-    centres = places[chosen // len(PIECES)] + pieces[:, :2] + rng.normal(0, JITTER, (count, 2))
-    halves = pieces[:, 2:] * rng.uniform(0.9, 1.1, (count, 1)) / 2
-    return np.stack([centres - halves, centres + halves], axis=1)
+    seat, piece = np.divmod(chosen, len(PIECES))
+    centres = places[seat] + PIECES[piece, :2] + rng.normal(0, JITTER, (count, 2))
+    halves = PIECES[piece, 2:] * rng.uniform(0.9, 1.1, (count, 1)) / 2
+    return np.stack([centres - halves, centres + halves], axis=1), piece.astype(np.int64)
 
 
 def _pairs(boxes: NDArray[np.float64], objects: int, count: int, rng: np.random.Generator) -> NDArray[np.int64]:
     """Ordered pairs of different objects: half with one of the nearest, half with any; no unordered pair twice."""
-    centres = boxes[:objects].mean(axis=1)
-    distance = np.linalg.norm(centres[:, None] - centres[None], axis=2)
-    near = np.argsort(distance, axis=1)[:, 1 : NEAR + 1]
+    near = nearest(boxes[:objects])
     count = min(count, objects * (objects - 1) // 2)
     found: dict[tuple[int, int], tuple[int, int]] = {}
     while len(found) < count:
@@ -138,10 +139,17 @@ def _pairs(boxes: NDArray[np.float64], objects: int, count: int, rng: np.random.
     return np.array(list(found.values()), dtype=np.int64).reshape(-1, 2)
 
 
-def _neighbouring(name: int, relations: Relations, rng: np.random.Generator) -> int:
-    """A relation next to that one: the direction before or after it; of *on* and *under* any direction."""
+def nearest(boxes: NDArray[np.float64]) -> NDArray[np.int64]:
+    """The NEAR nearest others of every box, by their centres, shape (n, NEAR) or less."""
+    centres = boxes.mean(axis=1)
+    distance = np.linalg.norm(centres[:, None] - centres[None], axis=2)
+    return np.argsort(distance, axis=1)[:, 1 : NEAR + 1]
+
+
+def neighbours(name: int, relations: Relations) -> list[int]:
+    """The exact relations next to that one: the direction before and after it; of *on* and *under* all directions."""
     word = list(relations.values())[name].word
     around = RING.index(word) if word in RING else -1
     near = [RING[around - 1], RING[(around + 1) % len(RING)]] if word in RING else list(RING)
     exact = {relation.word: relation.index for relation in relations.of_reading(Reading.EXACT)}
-    return exact[str(rng.choice(near))]
+    return [exact[other] for other in near]

@@ -1,0 +1,110 @@
+"""The scoreboard of ``deixis experiment scoreboard`` with other people's solvers beside the engines.
+
+The peers get the same problem as the engines (log-likelihood ratios of graded meaning) and are run at the settings that
+the table states; those that are not installed, and sizes that are too large for them, are skipped with a word. ``pip
+install ortools pygmtools`` gets them. Options as for the command: ``--quick``, ``--cases``, ``--seed``,
+``--time-limit``, ``--plot``, ``--json``.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+from functools import partial
+from importlib.util import find_spec
+from pathlib import Path
+
+from peers import annealing, cp_sat, faq, graph_matching
+
+from deixis.cli_common import print_json, print_lines
+from deixis.cli_experiment import progress
+from deixis.experiments.photographs import photographs_folder
+from deixis.experiments.scoreboard.contestants import Answer, Contestant, engines, peer
+from deixis.experiments.scoreboard.plot import plot_scoreboard
+from deixis.experiments.scoreboard.report import to_dict
+from deixis.experiments.scoreboard.run import Plan, run, steps
+from deixis.experiments.scoreboard.text import lines
+from deixis.reasoning.matching.problem import Problem
+
+MOST = {"annealing": 300, "faq": 100, "cp-sat": 8, "pygmtools": 30}
+"""Objects: beyond, a case takes minutes, or more memory than a desktop has."""
+
+LEAST_STEPS = 2_000_000
+"""Proposals of the annealing; its usual number where that is more."""
+
+
+def peers() -> list[Contestant]:
+    """Swap annealing, FAQ, CP-SAT and three spectral or iterative solvers of pygmtools."""
+    found = [
+        peer("annealing", f"swap annealing, {LEAST_STEPS:,} proposals or more", _annealing, most=MOST["annealing"]),
+        peer("faq", "Frank-Wolfe (Vogelstein et al. 2015), ten starts", _faq, most=MOST["faq"]),
+        peer(
+            "cp-sat",
+            f"ortools, {cp_sat.WORKERS} workers, to the time limit",
+            _cp_sat,
+            most=MOST["cp-sat"],
+            lacking=_lacking("ortools"),
+        ),
+    ]
+    settings = {
+        "sm": "Leordeanu and Hebert 2005",
+        "rrwm": "Cho et al. 2010",
+        "ipfp": "Leordeanu et al. 2009",
+    }
+    for solver in graph_matching.SOLVERS:
+        found.append(
+            peer(
+                solver,
+                f"pygmtools at its defaults ({settings[solver]})",
+                partial(_graph_matching, solver=solver),
+                most=MOST["pygmtools"],
+                lacking=_lacking("pygmtools"),
+            )
+        )
+    return found
+
+
+def _lacking(package: str) -> str:
+    return "" if find_spec(package) else f"{package} is not installed"
+
+
+def _annealing(problem: Problem, seconds: float) -> Answer:
+    return Answer(annealing.solve(problem, steps=max(LEAST_STEPS, annealing.proposals(len(problem.absent)))))
+
+
+def _faq(problem: Problem, seconds: float) -> Answer:
+    return Answer(faq.solve(problem))
+
+
+def _cp_sat(problem: Problem, seconds: float) -> Answer:
+    solved = cp_sat.solve(problem, seconds)
+    return Answer(solved.assignment, solved.proved)
+
+
+def _graph_matching(problem: Problem, seconds: float, solver: str) -> Answer:
+    return Answer(graph_matching.solve(problem, solver))
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--quick", action="store_true", help="a small part of it")
+    parser.add_argument("--cases", type=int, default=10, help="tables of each setting; of large ones fewer")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--time-limit", type=float, default=5.0, help="seconds of an engine for a case")
+    parser.add_argument("--plot", type=Path, help="draw it (.png, .svg, .pdf)")
+    parser.add_argument("--json", action="store_true")
+    options = parser.parse_args(arguments)
+    plan = Plan(cases=options.cases, seed=options.seed, time_limit=options.time_limit, photographs=photographs_folder())
+    plan = plan.quick() if options.quick else plan
+    with progress(steps(plan)) as tick:
+        found = run(plan, [*engines(), *peers()], tick)
+    if options.plot:
+        plot_scoreboard(found, options.plot)
+    if options.json:
+        print_json(to_dict(found))
+    else:
+        print_lines(lines(found))
+
+
+if __name__ == "__main__":
+    main()

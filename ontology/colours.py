@@ -1,0 +1,154 @@
+"""Colours: the basic colour terms, with what people call by them, looked up by word and at the head of a name."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.ontology.errors import OntologyError
+from deixis.ontology.vocabulary import DX, W3C
+
+if TYPE_CHECKING:
+    from deixis.ontology.tbox import Triples
+
+Rgb = tuple[int, int, int]
+"""Red, green and blue in sRGB, each 0 to 255."""
+
+
+@dataclass(frozen=True, slots=True)
+class Colour:
+    """A colour term: its words (label and synonyms, case-folded), and the colours that people call by it.
+
+    ``prototype`` is the middle of them, ``covariance`` how they lie around it in CIELAB: LL, La, Lb, aa, ab, bb.
+    """
+
+    iri: str
+    label: str
+    words: tuple[str, ...]
+    prototype: Rgb
+    covariance: tuple[float, float, float, float, float, float]
+
+    def matrix(self) -> NDArray[np.float64]:
+        """The covariance as a symmetric matrix, shape (3, 3)."""
+        return _matrix(self.covariance)
+
+
+class Colours:
+    """All colours, by IRI and by word.
+
+    >>> from deixis.ontology.tbox import default_ontology
+    >>> colours = default_ontology().colours
+    >>> colours.of_word("Gray").label, colours.of_word("dark_blue").label, colours.of_word("loud")
+    ('grey', 'blue', None)
+    """
+
+    def __init__(self, colours: tuple[Colour, ...]) -> None:
+        self._all = colours
+        self._by_iri = {colour.iri: colour for colour in colours}
+
+    def __iter__(self) -> Iterator[Colour]:
+        return iter(self._all)
+
+    def __len__(self) -> int:
+        return len(self._all)
+
+    def __getitem__(self, iri: str) -> Colour:
+        return self._by_iri[iri]
+
+    @cached_property
+    def words(self) -> dict[str, Colour]:
+        """Every word for a colour, spaces single, case-folded; where two share a word the first one has it."""
+        words: dict[str, Colour] = {}
+        for colour in self._all:
+            for word in colour.words:
+                words.setdefault(word, colour)
+        return words
+
+    @cached_property
+    def _first_words(self) -> frozenset[str]:
+        return frozenset(word.split()[0] for word in self.words)
+
+    @cached_property
+    def _longest(self) -> int:
+        return max((len(word.split()) for word in self.words), default=0)
+
+    def of_word(self, word: str) -> Colour | None:
+        """The colour that a word stands for; ``dark_blue``, ``Dark blue`` and ``dark-blue`` alike."""
+        return self.words.get(" ".join(_parts(word)))
+
+    def split(self, name: str) -> tuple[Colour | None, str]:
+        """The colour that the first words of a name say, the most of them, and the rest; None where none is left.
+
+        >>> from deixis.ontology.tbox import default_ontology
+        >>> colours = default_ontology().colours
+        >>> [(colour and colour.label, rest) for colour, rest in map(colours.split, ("light_blue_mug", "orange"))]
+        [('blue', 'mug'), (None, 'orange')]
+        """
+        parts = _parts(name)
+        if len(parts) < 2 or parts[0] not in self._first_words:
+            return None, name
+        for end in range(min(self._longest, len(parts)), 0, -1):
+            colour = self.words.get(" ".join(parts[:end]))
+            if colour is not None:
+                return (colour, " ".join(parts[end:])) if end < len(parts) else (None, name)
+        return None, name
+
+
+def _parts(name: str) -> list[str]:
+    return name.casefold().replace("_", " ").replace("-", " ").split()
+
+
+def rgb_of_hex(text: str) -> Rgb | None:
+    """The colour that ``#rrggbb`` stands for; None where a text is no such thing.
+
+    >>> rgb_of_hex("#Ff8000"), rgb_of_hex("#f80")
+    ((255, 128, 0), None)
+    """
+    if not re.fullmatch("#[0-9A-Fa-f]{6}", text):
+        return None
+    red, green, blue = (int(text[start : start + 2], 16) for start in (1, 3, 5))
+    return red, green, blue
+
+
+def hex_of_rgb(rgb: Rgb) -> str:
+    """The colour as ``#rrggbb``.
+
+    >>> hex_of_rgb((255, 128, 0))
+    '#ff8000'
+    """
+    return "#{:02x}{:02x}{:02x}".format(*rgb)
+
+
+def colours_from_triples(triples: Triples, words: dict[str, tuple[str, ...]]) -> Colours:
+    """Reads all colours, ``words`` by IRI; raises OntologyError where a prototype or a spread is none."""
+    return Colours(tuple(_colour(iri, triples, words[iri]) for iri in words))
+
+
+def _colour(iri: str, triples: Triples, words: tuple[str, ...]) -> Colour:
+    prototype = rgb_of_hex(triples.value(iri, DX.PROTOTYPE))
+    if prototype is None:
+        raise OntologyError(f"<{iri}>: a prototype is written as #rrggbb, not '{triples.value(iri, DX.PROTOTYPE)}'")
+    return Colour(iri, triples.value(iri, W3C.RDFS_LABEL), words, prototype, _covariance(iri, triples))
+
+
+def _covariance(iri: str, triples: Triples) -> tuple[float, float, float, float, float, float]:
+    text = triples.value(iri, DX.SPREAD)
+    try:
+        ll, la, lb, aa, ab, bb = map(float, text.split())
+    except ValueError:
+        raise OntologyError(f"<{iri}>: a spread is six numbers (LL La Lb aa ab bb), not '{text}'") from None
+    spread = (ll, la, lb, aa, ab, bb)
+    if not np.isfinite(spread).all() or np.linalg.eigvalsh(_matrix(spread)).min() <= 0:
+        raise OntologyError(f"<{iri}>: its spread is no covariance: the matrix of '{text}' is not positive definite")
+    return spread
+
+
+def _matrix(covariance: tuple[float, float, float, float, float, float]) -> NDArray[np.float64]:
+    ll, la, lb, aa, ab, bb = covariance
+    return np.array([[ll, la, lb], [la, aa, ab], [lb, ab, bb]])

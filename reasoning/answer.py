@@ -1,0 +1,133 @@
+"""The types of an answer: who is who, and everything that qualifies it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from enum import StrEnum
+
+from deixis.ontology.graph import Fact
+from deixis.ontology.relation import Relation
+
+DECIDED = 0.95
+"""Probability from which a match is called decided."""
+
+
+class Standing(StrEnum):
+    """What the probabilities of an answer are worth."""
+
+    NONE = "none"  # the engine gives none
+    EXACT = "exact"  # from all maps that count
+    SAMPLED = "sampled"  # an approximation
+
+
+class Outcome(StrEnum):
+    """What became of a stated fact."""
+
+    SATISFIED = "satisfied"  # holds of the matched pair, at least widely
+    VIOLATED = "violated"  # does not hold of the matched pair
+    WAIVED = "waived"  # does not hold, and was optional
+    OPEN = "open"  # an object of it is not matched
+
+
+@dataclass(frozen=True, slots=True)
+class Alternative:
+    """Something else that an object could be; ``perceived`` None is that it is not there.
+
+    ``cost`` is what choosing it would lose: log-likelihood, or similarity where the engine gives no ``probability``.
+    """
+
+    perceived: str | None
+    cost: float
+    probability: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Match:
+    """An object of the description and the perceived thing that it is.
+
+    ``score`` is the share of what is said of the object and can be compared that holds (by degree and weight; 1 where
+    there is nothing), ``similarity`` the paper's, ``probability`` that of the match given all the evidence (None where
+    the engine gives none). ``decided`` says that it is at least ``DECIDED``, or that nothing else is as similar.
+    """
+
+    object: str
+    perceived: str
+    score: float
+    similarity: float
+    decided: bool
+    alternatives: tuple[Alternative, ...]
+    probability: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class FactOutcome:
+    """A stated fact, what became of it, and the exact relation perceived instead or accordingly."""
+
+    fact: Fact
+    outcome: Outcome
+    degree: float
+    perceived: tuple[str, str] | None
+    seen: Relation | None
+
+
+@dataclass(frozen=True, slots=True)
+class LeftOut:
+    """An object or a perceived thing without a counterpart, and why; what an object could be all the same."""
+
+    name: str
+    reason: str
+    alternatives: tuple[Alternative, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Pivotal:
+    """A fact without which the answer would be another.
+
+    ``changes`` are the objects that would be something else then (None: not there), ``unsettled`` those that would no
+    longer be decided, ``settled`` those that only then would be.
+    """
+
+    fact: Fact
+    changes: Mapping[str, str | None]
+    unsettled: tuple[str, ...]
+    settled: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Grounding:
+    """The answer of an engine, with all that qualifies it.
+
+    ``probabilities`` says what those of the matches are worth, and ``probability_error`` by how much they may be off.
+    ``pivotal`` is None where it was not looked for what would change without a fact.
+    """
+
+    engine: str
+    matches: Mapping[str, Match]
+    unmatched_objects: tuple[LeftOut, ...]
+    unmatched_perceived: tuple[LeftOut, ...]
+    interchangeable: tuple[tuple[str, ...], ...]
+    graph_similarity: float
+    outcomes: tuple[FactOutcome, ...]
+    proved_best: bool
+    converged: bool
+    notes: tuple[str, ...]
+    seconds: float
+    pivotal: tuple[Pivotal, ...] | None = None
+    probabilities: Standing = Standing.NONE
+    probability_error: float = 0.0
+
+    def of(self, outcome: Outcome) -> tuple[FactOutcome, ...]:
+        return tuple(entry for entry in self.outcomes if entry.outcome is outcome)
+
+    @property
+    def satisfied(self) -> tuple[FactOutcome, ...]:
+        return self.of(Outcome.SATISFIED)
+
+    def noting(self, notes: tuple[str, ...]) -> Grounding:
+        """The same answer with notes before its own."""
+        return replace(self, notes=notes + self.notes)
+
+    @property
+    def violated(self) -> tuple[FactOutcome, ...]:
+        return self.of(Outcome.VIOLATED)

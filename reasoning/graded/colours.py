@@ -1,0 +1,82 @@
+"""What colours say of who is who: how much likelier a described colour is of a thing than of things at large.
+
+A colour term is a normal density in CIELAB (:mod:`deixis.ontology.colours`). Chance is a mixture of all terms, each by
+its share of the scene, which begins as an equal one: red says much of the only red thing, and nothing where all are.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.ontology.colours import Colour, Colours
+
+Array = NDArray[np.float64]
+
+OUTLIERS = 0.05
+"""Share of things seen in any colour, whatever is said of them: by how they are lit, or since they have several."""
+
+TO_XYZ = np.array([[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]])
+"""From linear sRGB to CIE XYZ, white point D65 (IEC 61966-2-1)."""
+
+
+def lab_of_srgb(rgb: NDArray[np.float64]) -> Array:
+    """CIELAB of colours in sRGB, 0 to 255, shape (…, 3): L 0 to 100, a towards red, b towards yellow; NaN stays NaN.
+
+    IEC 61966-2-1 for sRGB, CIE 15 for CIELAB under the white of sRGB (D65).
+
+    >>> lab_of_srgb(np.array([[255.0, 255.0, 255.0], [255.0, 0.0, 0.0]])).round(1).tolist()
+    [[100.0, 0.0, 0.0], [53.2, 80.1, 67.2]]
+    """
+    share = np.asarray(rgb, dtype=np.float64) / 255
+    linear = np.where(share <= 0.04045, share / 12.92, ((share + 0.055) / 1.055) ** 2.4)
+    xyz = linear @ TO_XYZ.T / TO_XYZ.sum(axis=1)
+    limit = 6 / 29
+    f = np.where(xyz > limit**3, np.cbrt(xyz), xyz / (3 * limit**2) + 4 / 29)
+    lab: Array = np.stack([116 * f[..., 1] - 16, 500 * (f[..., 0] - f[..., 1]), 200 * (f[..., 1] - f[..., 2])], axis=-1)
+    return lab + 0.0  # no minus zero
+
+
+def colour_evidence(described: Sequence[str | None], seen: NDArray[np.float64], colours: Colours) -> Array:
+    """What colours say of n1 objects described in some (IRIs) being each of n2 things, shape (n1, n2), finite.
+
+    ``seen`` holds the things' colours in sRGB, 0 to 255, shape (n2, 3), a row of NaN where none is known; that thing
+    says nothing, nor does an object of which no colour is described. Otherwise it is
+    log((1 - outliers) p(seen | described) / p(seen) + outliers). The ratio is never above one over the share of the
+    described colour, so that a scene all in one colour says little.
+    """
+    evidence = np.zeros((len(described), len(seen)))
+    known = np.flatnonzero(~np.isnan(seen).any(axis=1))
+    if not len(known) or not any(described):
+        return evidence
+    lab, terms = lab_of_srgb(seen[known]), list(colours)
+    densities = np.stack([_log_density(lab, term) for term in terms], axis=1)
+    chance = np.logaddexp.reduce(densities + np.log(_shares(densities, len(seen))), axis=1)
+    ratios = np.logaddexp(np.log1p(-OUTLIERS) + densities - chance[:, None], np.log(OUTLIERS))
+    column = {term.iri: position for position, term in enumerate(terms)}
+    for row, iri in enumerate(described):
+        if iri is not None:
+            evidence[row, known] = ratios[:, column[iri]]
+    return evidence
+
+
+def _shares(densities: Array, things: int) -> Array:
+    """The share of each of k terms among the things of a scene, shape (k,), from the log densities (n, k) of n of them.
+
+    Each thing counts by how likely each term is to be its name; the others, and one thing more, for all terms alike.
+    """
+    terms = densities.shape[1]
+    naming = np.exp(densities - np.logaddexp.reduce(densities, axis=1, keepdims=True))
+    unknown = things - len(densities) + 1
+    shares: Array = (naming.sum(axis=0) + unknown / terms) / (things + 1)
+    return shares
+
+
+def _log_density(lab: Array, term: Colour) -> Array:
+    """Log density of colours (n, 3) under a term's normal distribution, up to a constant, shape (n,)."""
+    apart = lab - lab_of_srgb(np.array(term.prototype, dtype=np.float64))
+    precision = np.linalg.inv(term.matrix())
+    result: Array = -0.5 * np.einsum("ni,ij,nj->n", apart, precision, apart) + 0.5 * np.linalg.slogdet(precision)[1]
+    return result

@@ -1,0 +1,80 @@
+"""The engines that look for the likeliest map: exact, scalable, and two similarities from the literature beside them.
+
+All of them get the same problem (:attr:`deixis.reasoning.evidence.Evidence.problem`): every fact, label and size says
+by how much likelier it makes a match than chance does, and leaving an object out has its price.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.reasoning.assignment import assign
+from deixis.reasoning.engines import Alignment, paper_similarity
+from deixis.reasoning.evidence import Evidence
+from deixis.reasoning.matching.exact import exact
+from deixis.reasoning.matching.posterior import posterior
+from deixis.reasoning.matching.problem import Problem
+from deixis.reasoning.matching.scalable import scalable
+
+PROOF, SEARCH = 0.5, 0.8
+"""Shares of the time that a proof, and a search without one, may take; the rest is for the probabilities."""
+
+
+@dataclass(frozen=True)
+class ExactEngine:
+    """The likeliest map, proved so as far as the time allows."""
+
+    def align(self, evidence: Evidence, deadline: float) -> Alignment:
+        problem, now = evidence.problem, time.perf_counter()
+        found = exact(problem, now + PROOF * (deadline - now))
+        notes = () if found.proved else ("the time limit struck before the alignment was proved the best",)
+        return _answer("exact", evidence, found.assignment, deadline, found.proved, notes)
+
+
+@dataclass(frozen=True)
+class ScalableEngine:
+    """The likeliest map that annealing finds; it proves nothing."""
+
+    def align(self, evidence: Evidence, deadline: float) -> Alignment:
+        now = time.perf_counter()
+        found = scalable(evidence.problem, now + SEARCH * (deadline - now))
+        notes = () if found.finished else ("the time limit struck before the search came to its end",)
+        return _answer("scalable", evidence, found.assignment, deadline, False, notes)
+
+
+@dataclass(frozen=True)
+class BaselineEngine:
+    """A node similarity from the literature, made a map by the Hungarian method."""
+
+    name: str
+    similarity: Callable[[Problem], NDArray[np.float64]]
+
+    def align(self, evidence: Evidence, deadline: float) -> Alignment:
+        matrix = self.similarity(evidence.problem)
+        return Alignment(self.name, assign(matrix, evidence.allowed), matrix, converged=True, proved_best=False)
+
+
+def _answer(
+    engine: str,
+    evidence: Evidence,
+    assignment: NDArray[np.int64],
+    deadline: float,
+    proved: bool,
+    notes: tuple[str, ...],
+) -> Alignment:
+    """The map with its probability, and the paper's similarity for comparison."""
+    similarity = paper_similarity(evidence)
+    return Alignment(
+        engine=engine,
+        assignment=assignment,
+        matrix=similarity.matrices[0],
+        converged=bool(similarity.converged[0]),
+        proved_best=proved,
+        notes=notes,
+        posterior=posterior(evidence.problem, deadline),
+    )

@@ -1,0 +1,314 @@
+"""The commands that begin with a point cloud: perceive, teach, recognise, ask; and the categories that were taught."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from deixis.cli_common import NO, AsJson, MemoryDir, print_json, print_lines
+
+if TYPE_CHECKING:
+    from deixis.perception.recognition.recognition import Recognition
+    from deixis.perception.scene import Scene
+    from deixis.recognising import Recognised, Taught
+
+PerceivedScene = Annotated[str, typer.Argument(metavar="SCENE", help="A scene that perceive wrote, with clouds.")]
+Picture = Annotated[Path | None, typer.Option("--plot", metavar="FILE", help="Draw it (.png, .svg, .pdf).")]
+
+category_app = typer.Typer(help="List, rename, merge or forget what was taught.", no_args_is_help=True)
+
+
+def register(app: typer.Typer) -> None:
+    """Adds these commands to the command line."""
+    for command in (perceive, teach, recognise, ask):
+        app.command()(command)
+    app.add_typer(category_app, name="category")
+
+
+def perceive(
+    cloud: Annotated[str, typer.Argument(metavar="CLOUD", help="PCD, PLY, XYZ, NPZ, or a depth image.")],
+    out: Annotated[
+        Path | None, typer.Option("-o", "--out", metavar="FILE", help="Write the scene, and clouds beside it.")
+    ] = None,
+    labels: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Write the thing of every point (.npy, int32, -1: none).")
+    ] = None,
+    intrinsics: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="The camera's intrinsics (.json) of a depth image.")
+    ] = None,
+    viewpoint: Annotated[str, typer.Option(help="What the camera's side is called.")] = "chair",
+    plot: Picture = None,
+    as_json: AsJson = False,
+) -> None:
+    """Find the table in a point cloud, and the things on it."""
+    from deixis.perceiving import perceive as run
+    from deixis.perceiving import write_perceived
+    from deixis.perception.scene_file import scene_to_dict
+
+    if plot is not None:
+        from deixis.plot import require_picture
+
+        require_picture(plot)
+    found = run(cloud, intrinsics, viewpoint)
+    scene = write_perceived(found, out) if out is not None else found.scene
+    if labels is not None:
+        _write_labels(labels, found.detection.labels)
+    if plot is not None:
+        from deixis.plot_seen import plot_perceived
+
+        plot_perceived(found, plot)
+    if as_json or out is None:
+        print_json(scene_to_dict(scene))
+        print_notes(found.detection.notes)
+    else:
+        print_lines(_scene_lines(scene))
+        print_lines(f"Note: {note}." for note in found.detection.notes)
+        print(f"The scene is in {out}, its clouds beside it.")
+    if not scene.objects:
+        raise typer.Exit(NO)
+
+
+def print_notes(notes: tuple[str, ...]) -> None:
+    """What is no part of the JSON goes to standard error."""
+    for note in notes:
+        print(f"deixis: {note}", file=sys.stderr)
+
+
+def _write_labels(file: Path, labels: Any) -> None:
+    import numpy as np
+
+    from deixis.ontology.errors import DeixisError
+
+    if file.suffix != ".npy":
+        raise DeixisError(f"{file}: the labels are a numpy array; name a file that ends in .npy")
+    try:
+        file.parent.mkdir(parents=True, exist_ok=True)
+        np.save(file, labels)
+    except OSError as error:
+        raise DeixisError(f"{file}: the labels cannot be written: {error.strerror}") from error
+
+
+def _scene_lines(scene: Scene) -> list[str]:
+    lines = []
+    for thing in scene.objects:
+        low, high = (100 * value for value in thing.minimum), (100 * value for value in thing.maximum)
+        sides = " x ".join(f"{b - a:.1f}" for a, b in zip(low, high, strict=True))
+        x, y = (50 * (thing.minimum[k] + thing.maximum[k]) for k in (0, 1))
+        lines.append(f"{thing.id:<5} {sides:>20} cm at {x:6.1f}, {y:6.1f}")
+    return lines or ["Nothing was found."]
+
+
+def teach(
+    scene: PerceivedScene,
+    object: Annotated[str, typer.Argument(metavar="OBJECT", help="The id of a thing in the scene.")],
+    label: Annotated[str, typer.Argument(metavar="LABEL", help="What it is.")],
+    teacher: Annotated[str, typer.Option(metavar="NAME", help="Who says so.")] = "user",
+    memory: MemoryDir = None,
+    as_json: AsJson = False,
+) -> None:
+    """Show what a word looks like: one view more of a category; said again of the same view, a correction."""
+    from deixis.session import Session
+
+    with Session(memory) as session:
+        taught = session.teach(scene, object, label, teacher)
+    if as_json:
+        print_json({"view": taught.view, "category": taught.category, "views": taught.views, "before": taught.before})
+    else:
+        print(_taught_line(taught, object))
+
+
+def _taught_line(taught: Taught, object: str) -> str:
+    corrected = f", and no longer of '{taught.before}'" if taught.before else ""
+    return f"{object} is a view of '{taught.category}'{corrected}; {taught.views} in all."
+
+
+def recognise(
+    scene: PerceivedScene,
+    out: Annotated[Path | None, typer.Option("-o", "--out", metavar="FILE", help="Write the scene with names.")] = None,
+    plot: Picture = None,
+    memory: MemoryDir = None,
+    as_json: AsJson = False,
+) -> None:
+    """Name the things of a scene that look like what was taught; exit 1 where none is known."""
+    from deixis.session import Session, load_scene
+
+    if plot is not None:
+        from deixis.plot import require_picture
+
+        require_picture(plot)
+    with Session(memory) as session:
+        found = session.recognise(load_scene(scene))
+    if out is not None:
+        _write_scene(found.scene, out)
+    if plot is not None:
+        from deixis.plot_seen import plot_recognised
+
+        plot_recognised(found, plot)
+    if as_json:
+        print_json(recognised_to_dict(found))
+    else:
+        print_lines(_answer_line(id, answer) for id, answer in found.answers.items())
+        if not found.answers:
+            print("Nothing in this scene has a cloud: only what perceive -o wrote can be recognised.")
+    if not any(answer.label for answer in found.answers.values()):
+        raise typer.Exit(NO)
+
+
+def _write_scene(scene: Scene, out: Path) -> None:
+    """With the clouds' places as seen from where the scene is written."""
+    import os
+    from dataclasses import replace
+
+    from deixis.perception.scene_file import write_scene
+
+    base = Path(scene.file).parent
+    things = tuple(
+        thing if thing.cloud is None else replace(thing, cloud=os.path.relpath(base / thing.cloud, out.parent))
+        for thing in scene.objects
+    )
+    out.parent.mkdir(parents=True, exist_ok=True)
+    write_scene(replace(scene, objects=things), out)
+
+
+def _answer_line(id: str, answer: Recognition) -> str:
+    name = answer.label or "unknown"
+    return f"{id:<5} {name:<20} {answer.probability:.2f}   {'; '.join(answer.reasons)}"
+
+
+def recognised_to_dict(found: Recognised) -> dict[str, Any]:
+    """Each thing's name, its probability, and the distances behind it."""
+    return {
+        "objects": [
+            {
+                "object": id,
+                "label": answer.label,
+                "probability": round(answer.probability, 6),
+                "unknown": round(answer.unknown, 6),
+                "threshold": round(answer.calibration.threshold, 6),
+                "reasons": list(answer.reasons),
+                "candidates": [_candidate(candidate) for candidate in answer.candidates],
+            }
+            for id, answer in found.answers.items()
+        ]
+    }
+
+
+def _candidate(candidate: Any) -> dict[str, Any]:
+    import math
+
+    finite = math.isfinite(candidate.distance)
+    return {
+        "category": candidate.category,
+        "D_C": round(candidate.distance, 6) if finite else None,
+        "ICD": round(candidate.spread.value, 6),
+        "ND": round(candidate.normalised, 6) if finite else None,
+        "nearest": candidate.nearest,
+        "views": candidate.views,
+        "probability": round(candidate.probability, 6),
+    }
+
+
+def ask(
+    word: Annotated[str, typer.Argument(metavar="WORD", help="A word that may never have been shown.")],
+    scene: PerceivedScene,
+    points_at: Annotated[str | None, typer.Option(metavar="OBJECT", help="Answer with this id.")] = None,
+    teacher: Annotated[str, typer.Option(metavar="NAME", help="Who answers.")] = "user",
+    memory: MemoryDir = None,
+) -> None:
+    """Have the robot ask which thing a word means; what is pointed at becomes its first view.
+
+    Where the word is known, it says which things it takes for one, and asks nothing. Exit 1 without an answer.
+    """
+    from deixis.perceptual_session import category_name
+    from deixis.session import Session, load_scene
+
+    name, seen = category_name(word), load_scene(scene)
+    with Session(memory) as session:
+        if name in session.categories() and points_at is None:
+            answers = session.recognise(seen.without_labels()).answers
+            ones = [f"{id} ({answer.probability:.2f})" for id, answer in answers.items() if answer.label == name]
+            print(
+                f"I know '{name}'. Here it is: {', '.join(ones)}." if ones else f"I know '{name}', and see none here."
+            )
+            raise typer.Exit(0 if ones else NO)
+        pointed = points_at or _pointed_at(name, seen)
+        if pointed is None:
+            print(f"I still do not know what '{name}' is.")
+            raise typer.Exit(NO)
+        print(_taught_line(session.teach(seen, pointed, name, teacher), pointed))
+
+
+def _pointed_at(name: str, scene: Scene) -> str | None:
+    """Asks until an id of the scene is given, or nothing."""
+    print_lines(_scene_lines(scene))
+    while True:
+        print(
+            f"I do not know what '{name}' is. Which one of these is one? (its id; nothing: none) ", end="", flush=True
+        )
+        answer = sys.stdin.readline().strip()
+        if not answer:
+            print()
+            return None
+        if answer in scene.ids:
+            return answer
+        print(f"There is no '{answer}' here.")
+
+
+@category_app.command("list")
+def list_categories(memory: MemoryDir = None, as_json: AsJson = False) -> None:
+    """What was taught, with the number of views."""
+    from deixis.session import Session
+
+    with Session(memory) as session:
+        known = session.categories()
+    if as_json:
+        print_json(known)
+    else:
+        print_lines([f"{name:<24} {count}" for name, count in known.items()] or ["Nothing was taught."])
+
+
+@category_app.command("rename")
+def rename(
+    old: Annotated[str, typer.Argument(metavar="OLD")],
+    new: Annotated[str, typer.Argument(metavar="NEW")],
+    memory: MemoryDir = None,
+) -> None:
+    """Give a category another name; its views stay."""
+    from deixis.perceptual_session import category_name
+    from deixis.session import Session
+
+    with Session(memory) as session:
+        session.views().rename(category_name(old), category_name(new))
+    print(f"'{category_name(old)}' is '{category_name(new)}' now.")
+
+
+@category_app.command("merge")
+def merge(
+    source: Annotated[str, typer.Argument(metavar="SOURCE")],
+    into: Annotated[str, typer.Argument(metavar="INTO")],
+    memory: MemoryDir = None,
+) -> None:
+    """Make the views of one category views of another: two words for one thing."""
+    from deixis.perceptual_session import category_name
+    from deixis.session import Session
+
+    with Session(memory) as session:
+        session.views().merge(category_name(source), category_name(into))
+    print(f"What was '{category_name(source)}' is '{category_name(into)}' now.")
+
+
+@category_app.command("forget")
+def forget_category(
+    name: Annotated[str, typer.Argument(metavar="CATEGORY")],
+    memory: MemoryDir = None,
+) -> None:
+    """Forget a category with all its views."""
+    from deixis.perceptual_session import category_name
+    from deixis.session import Session
+
+    with Session(memory) as session:
+        session.views().forget(category_name(name))
+    print(f"Forgotten: {category_name(name)}.")

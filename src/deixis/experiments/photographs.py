@@ -1,0 +1,82 @@
+"""What people wrote down about photographs (Visual Relationship Detection, Lu et al. 2016), as descriptions and boxes.
+
+Each image with four or more related objects becomes a scene (its boxes, y turned up, nothing named) and a description:
+what people said of them, in the words that the layout language has. The truth is which box was meant. The data is read
+from ``$DEIXIS_DATA/vrd``.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.ontology.errors import DeixisError
+from deixis.ontology.graph import Fact, RelationGraph
+from deixis.ontology.relation import Relations
+
+FOLDER = "vrd"
+LEAST_OBJECTS = 4
+WORDS = {
+    "on": "on",
+    "on the top of": "on",
+    "above": "top",
+    "over": "top",
+    "below": "bottom",
+    "under": "bottom",
+    "beneath": "bottom",
+    "on the left of": "left",
+    "on the right of": "right",
+}
+
+
+class PhotographError(DeixisError, ValueError):
+    """Files that are no annotations of photographs."""
+
+
+class Photograph(NamedTuple):
+    """What was said of n objects, and the boxes that they mean, in the order of the description's nodes."""
+
+    description: RelationGraph
+    boxes: NDArray[np.float64]  # (n, 2, 2): least and greatest corner, pixels, y up
+
+
+def photographs_folder() -> Path | None:
+    """Where the annotations are, or None where DEIXIS_DATA does not lead to them."""
+    root = os.environ.get("DEIXIS_DATA")
+    folder = Path(root) / FOLDER if root else None
+    return folder if folder is not None and folder.is_dir() else None
+
+
+def photographs(folder: Path, relations: Relations) -> Iterator[Photograph]:
+    """All images of which enough was said, by name; raises PhotographError where the files are no annotations."""
+    try:
+        annotations: dict[str, list[Any]] = json.loads((folder / "annotations.json").read_text(encoding="utf-8"))
+        predicates: list[str] = json.loads((folder / "predicates.json").read_text(encoding="utf-8"))
+        for name in sorted(annotations):
+            found = _photograph(annotations[name], predicates, relations)
+            if len(found.boxes) >= LEAST_OBJECTS:
+                yield found
+    except (KeyError, IndexError, TypeError, AttributeError, json.JSONDecodeError) as error:
+        raise PhotographError(
+            f"{folder}: no annotations of Visual Relationship Detection ({type(error).__name__}: {error})"
+        ) from error
+
+
+def _photograph(entries: list[Any], predicates: list[str], relations: Relations) -> Photograph:
+    boxes: dict[tuple[int, ...], str] = {}
+    facts: dict[tuple[str, str, str], None] = {}
+    for entry in entries:
+        word = WORDS.get(predicates[entry["predicate"]])
+        ends = [(entry[end]["category"], *entry[end]["bbox"]) for end in ("subject", "object")]
+        if word is not None and ends[0] != ends[1]:
+            subject, object = (boxes.setdefault(end, f"thing_{len(boxes)}") for end in ends)
+            facts[word, subject, object] = None
+    stated = [Fact(subject, (relations[word],), object) for word, subject, object in facts]
+    corners = [[[x0, -y1], [x1, -y0]] for _, y0, y1, x0, x1 in boxes]
+    return Photograph(RelationGraph.from_facts(relations, list(boxes.values()), stated), np.array(corners, dtype=float))

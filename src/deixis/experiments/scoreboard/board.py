@@ -1,0 +1,175 @@
+"""Contestants over cases: a score for each, and the means and differences that are read off the scores."""
+
+from __future__ import annotations
+
+import time
+from collections import defaultdict
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.experiments.scoreboard.calibration import Forecasts
+from deixis.experiments.scoreboard.cases import Case, Group, Setting
+from deixis.experiments.scoreboard.contestants import Answer, Contestant
+from deixis.experiments.scoreboard.measures import (
+    groups,
+    relative,
+    right,
+    right_up_to_interchangeability,
+    satisfied,
+)
+from deixis.experiments.scoreboard.statistics import Interval, holm, interval, paired_p
+from deixis.reasoning.meaning import SHIPPED
+
+MEASURES = ("right", "grouped", "facts", "value")
+ALPHA = 0.05
+
+
+@dataclass(frozen=True, slots=True)
+class Score:
+    """One contestant on one case: shares of objects right (and up to interchangeability), facts and value relative to
+    the best found by any contestant on the case (nan where that is not above 0), and seconds from evidence to answer.
+    """
+
+    setting: Setting
+    unit: int
+    contestant: str
+    right: float
+    grouped: float
+    facts: float
+    value: float
+    seconds: float
+    proved: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """How far the default is ahead of another contestant in a group, with p and p adjusted for all comparisons."""
+
+    group: Group
+    other: str
+    measure: str
+    difference: Interval
+    p: float
+    adjusted: float
+
+    @property
+    def verdict(self) -> str:
+        """Whether the default is significantly ``better`` or ``worse``, or neither."""
+        if not self.adjusted < ALPHA:
+            return ""
+        return "better" if self.difference.mean > 0 else "worse"
+
+
+@dataclass(frozen=True, eq=False)
+class Board:
+    """All scores of a run of contestants, the default first, over cases."""
+
+    contestants: tuple[Contestant, ...]
+    scores: tuple[Score, ...]
+    forecasts: tuple[Forecasts, ...]
+
+    @property
+    def groups(self) -> list[Group]:
+        """The sizes and noises, photographs last."""
+        return sorted({score.setting.group for score in self.scores}, key=lambda group: (group.objects == 0, group))
+
+    @cached_property
+    def _by_place(self) -> dict[tuple[str, Group | Setting], list[Score]]:
+        found: dict[tuple[str, Group | Setting], list[Score]] = defaultdict(list)
+        for score in self.scores:
+            found[score.contestant, score.setting].append(score)
+            found[score.contestant, score.setting.group].append(score)
+        return found
+
+    def of(self, contestant: str, group: Group | Setting) -> list[Score]:
+        """The scores of one contestant in a group, or in one setting of it."""
+        return self._by_place.get((contestant, group), [])
+
+    def by_unit(self, contestant: str, group: Group | Setting, measure: str) -> dict[tuple[Setting, int], float]:
+        """The measure for every table or image, a mean over the orders in which it was given."""
+        found: dict[tuple[Setting, int], list[float]] = defaultdict(list)
+        for score in self.of(contestant, group):
+            found[score.setting, score.unit].append(getattr(score, measure))
+        return {unit: float(np.mean(values)) for unit, values in found.items()}
+
+    def mean(self, contestant: str, group: Group | Setting, measure: str) -> Interval:
+        return interval(list(self.by_unit(contestant, group, measure).values()))
+
+    def comparisons(self, measure: str, seed: int) -> list[Comparison]:
+        """The default against each other contestant in each group, over the same cases, adjusted together (Holm)."""
+        default, *others = (contestant.name for contestant in self.contestants)
+        found = []
+        for group in self.groups:
+            mine = self.by_unit(default, group, measure)
+            for other in others:
+                theirs = self.by_unit(other, group, measure)
+                differences = [mine[unit] - theirs[unit] for unit in theirs]
+                if differences:
+                    found.append((group, other, interval(differences), paired_p(differences, seed)))
+        adjusted = holm([p for *_, p in found])
+        return [
+            Comparison(group, other, measure, difference, p, q)
+            for (group, other, difference, p), q in zip(found, adjusted, strict=True)
+        ]
+
+
+def median_seconds(scores: Sequence[Score]) -> float:
+    """Of at least one score."""
+    return float(np.median([score.seconds for score in scores]))
+
+
+def play(
+    contestants: Sequence[Contestant], cases: Iterable[Case], seconds: float, tick: Callable[[str], None]
+) -> Board:
+    """Every contestant on every case that is not too large for it; ``tick`` is told the group after each case."""
+    able = [contestant for contestant in contestants if not contestant.lacking]
+    scores: list[Score] = []
+    forecasts: list[Forecasts] = []
+    warm: set[str] = set()
+    for case in cases:
+        entered = [contestant for contestant in able if case.setting.size <= contestant.most]
+        for contestant in entered:
+            if contestant.name not in warm:  # compiled code is compiled or loaded once, which does not count
+                warm.add(_answered(contestant, case, seconds)[0])
+        answers = [_answered(contestant, case, seconds) for contestant in entered]
+        scores += _scores(case, answers)
+        forecasts += [Forecasts.of(name, case, answer) for name, answer, _ in answers if answer.marginals is not None]
+        tick(str(case.setting.group))
+    return Board(tuple(able), tuple(scores), tuple(forecasts))
+
+
+_Answered = tuple[str, Answer, float]
+
+
+def _answered(contestant: Contestant, case: Case, seconds: float) -> _Answered:
+    """The answer and the time from evidence to answer; each contestant gets evidence of its own, nothing computed."""
+    case.scene  # noqa: B018 - what was perceived is there before anybody is asked
+    evidence = case.evidence(contestant.meaning)
+    started = time.perf_counter()
+    answer = contestant.solve(evidence, started + seconds)
+    return contestant.name, answer, time.perf_counter() - started
+
+
+def _scores(case: Case, answers: Sequence[_Answered]) -> list[Score]:
+    judge, alike = case.evidence(SHIPPED), groups(case.description)
+    maps: list[NDArray[np.int64]] = [answer.assignment for _, answer, _ in answers]
+    facts = relative([float(satisfied(judge, found)) for found in maps])
+    values = relative([judge.problem.value(found) for found in maps])
+    return [
+        Score(
+            setting=case.setting,
+            unit=case.unit,
+            contestant=name,
+            right=float(right(found, case.truth).mean()),
+            grouped=right_up_to_interchangeability(found, case.truth, alike),
+            facts=fact,
+            value=value,
+            seconds=seconds,
+            proved=answer.proved,
+        )
+        for (name, answer, seconds), found, fact, value in zip(answers, maps, facts, values, strict=True)
+    ]

@@ -1,0 +1,90 @@
+"""Are matches as often right as the answer says? Reliability, calibration error, and what is decided."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.experiments.scoreboard.cases import Case, Group
+from deixis.experiments.scoreboard.contestants import Answer
+from deixis.reasoning.answer import DECIDED
+from deixis.reasoning.matching.problem import UNMATCHED
+
+BINS = 10
+
+
+@dataclass(frozen=True, eq=False)
+class Forecasts:
+    """The k matches of one answer: how probable it calls each, and whether it is right."""
+
+    contestant: str
+    group: Group
+    probability: NDArray[np.float64]  # (k,)
+    right: NDArray[np.bool_]  # (k,)
+
+    @classmethod
+    def of(cls, contestant: str, case: Case, answer: Answer) -> Forecasts:
+        """Raises ValueError where the answer gives no probabilities."""
+        if answer.marginals is None:
+            raise ValueError(f"{contestant} gives no probabilities")
+        matched = np.flatnonzero(answer.assignment != UNMATCHED)
+        given = answer.assignment[matched]
+        return cls(contestant, case.setting.group, answer.marginals[matched, given], given == case.truth[matched])
+
+
+@dataclass(frozen=True, slots=True)
+class Bin:
+    """Matches whose probability lies between two bounds; means are nan where there is none."""
+
+    least: float
+    greatest: float
+    count: int
+    probability: float  # mean
+    right: float  # share
+
+
+@dataclass(frozen=True, slots=True)
+class Calibration:
+    """The reliability of ``count`` matches. ``error`` is the expected calibration error: the mean distance of the
+    share right from the mean probability over the bins, by how many they hold (Naeini, Cooper, Hauskrecht 2015).
+    """
+
+    bins: tuple[Bin, ...]
+    count: int
+    error: float
+    decided: float  # share of the matches that are called decided
+    precision: float  # share of those that are right; nan where there is none
+
+
+def calibration(forecasts: Sequence[Forecasts]) -> Calibration:
+    """All matches together, in bins of equal width.
+
+    >>> said = np.array([0.65, 0.65, 1.0, 1.0])
+    >>> found = calibration([Forecasts("exact", Group(2, 0.0), said, np.array([True, False, True, True]))])
+    >>> round(found.error, 3), found.decided, found.precision
+    (0.075, 0.5, 1.0)
+    """
+    said = np.concatenate([np.zeros(0), *(one.probability for one in forecasts)])
+    right = np.concatenate([np.zeros(0, bool), *(one.right for one in forecasts)])
+    number = np.clip((said * BINS).astype(int), 0, BINS - 1)
+    bins = tuple(_bin(b, said[number == b], right[number == b]) for b in range(BINS))
+    off = sum(b.count * abs(b.right - b.probability) for b in bins if b.count)
+    sure = said >= DECIDED
+    return Calibration(
+        bins,
+        len(said),
+        off / len(said) if len(said) else float("nan"),
+        _mean(sure),
+        _mean(right[sure]),
+    )
+
+
+def _bin(number: int, said: NDArray[np.float64], right: NDArray[np.bool_]) -> Bin:
+    return Bin(number / BINS, (number + 1) / BINS, len(said), _mean(said), _mean(right))
+
+
+def _mean(values: NDArray[np.float64] | NDArray[np.bool_]) -> float:
+    return float(values.mean()) if len(values) else float("nan")

@@ -1,0 +1,145 @@
+"""The cases that engines are compared on: generated tables and photographs, each in a random order of both sides."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.experiments.generated_tables import GeneratedTable, generate
+from deixis.experiments.photographs import photographs
+from deixis.ontology.graph import RelationGraph
+from deixis.ontology.tbox import default_ontology
+from deixis.reasoning.evidence import Evidence, evidence_from
+from deixis.reasoning.meaning import Meaning
+from deixis.reasoning.rectangle import perceived_graph
+
+PHOTOGRAPHS = 0
+"""The number of objects that stands for photographs, which have any number."""
+
+
+LARGEST_PHOTOGRAPH = 12
+"""Objects that an engine must be able to take to enter the photographs, so that all are compared on the same ones."""
+
+
+@dataclass(frozen=True, order=True, slots=True)
+class Setting:
+    """How a table is generated; of photographs all is 0."""
+
+    objects: int
+    off: float
+    facts_each: float
+    changed: bool  # a tenth of the described pieces is missing, and as many others were never described
+
+    @property
+    def size(self) -> int:
+        """How many objects an engine must be able to take."""
+        return self.objects if self.objects != PHOTOGRAPHS else LARGEST_PHOTOGRAPH
+
+    @property
+    def group(self) -> Group:
+        return Group(self.objects, self.off)
+
+
+@dataclass(frozen=True, order=True, slots=True)
+class Group:
+    """A size and a noise: the cases that a mean is taken over and a difference tested on."""
+
+    objects: int
+    off: float
+
+    def __str__(self) -> str:
+        return "photographs" if self.objects == PHOTOGRAPHS else f"{self.objects} objects, {100 * self.off:.0f} % off"
+
+
+@dataclass(frozen=True, eq=False)
+class Case:
+    """A description of n1 objects, n2 boxes, and the truth. Cases of the same unit differ in the order alone."""
+
+    setting: Setting
+    unit: int
+    description: RelationGraph
+    boxes: NDArray[np.float64]  # (n2, 2, 2): least and greatest corner
+    things: tuple[str, ...]  # (n2,) their names, by which boxes that are alike are told apart in any order
+    truth: NDArray[np.int64]  # (n1,): which thing each object is, UNMATCHED where it is missing
+    metric: bool = True  # boxes are in metres
+
+    @cached_property
+    def scene(self) -> RelationGraph:
+        """What was perceived: the exact name of every ordered pair."""
+        return perceived_graph(self.things, self.boxes, self.description.vocabulary)
+
+    def evidence(self, meaning: Meaning) -> Evidence:
+        """What an engine gets to see: facts, and sizes where the description tells kinds; nothing is labelled."""
+        ontology, unlabelled = default_ontology(), [None] * len(self.boxes)
+        return evidence_from(
+            self.description,
+            self.scene,
+            unlabelled,
+            ontology.kinds,
+            ontology.sizes,
+            metric=self.metric,
+            meaning=meaning,
+        )
+
+    def shuffled(self, rng: np.random.Generator) -> Case:
+        """The same case in a random order of objects and of things."""
+        rows, columns = rng.permutation(len(self.truth)), rng.permutation(len(self.boxes))
+        place = np.append(np.argsort(columns), -1)  # of each thing in the new order; the last is for UNMATCHED
+        nodes = [self.description.nodes[i] for i in rows]
+        return Case(
+            self.setting,
+            self.unit,
+            self.description.subgraph(nodes),
+            self.boxes[columns],
+            tuple(self.things[p] for p in columns),
+            place[self.truth[rows]],
+            self.metric,
+        )
+
+
+def _names(count: int) -> tuple[str, ...]:
+    return tuple(f"o{p:04}" for p in range(count))
+
+
+def table(setting: Setting, number: int, seed: int) -> GeneratedTable:
+    """The table of that number in a setting. Tables of different settings are drawn independently."""
+    drawn = np.random.SeedSequence(
+        [
+            seed,
+            setting.objects,
+            round(1000 * setting.facts_each),
+            round(1000 * setting.off),
+            int(setting.changed),
+            number,
+        ]
+    )
+    out = max(1, round(setting.objects / 10)) if setting.changed else 0
+    return generate(
+        setting.objects, setting.facts_each, setting.off, out, out, seed=int(drawn.generate_state(1, np.uint64)[0])
+    )
+
+
+def generated_cases(settings: Sequence[Setting], count: int, seed: int, *, kinds: bool = False) -> Iterator[Case]:
+    """``count`` tables of each setting; with ``kinds`` the descriptions say what kind of thing each object is."""
+    for setting in settings:
+        for number in range(count):
+            drawn = table(setting, number, seed)
+            rng = np.random.default_rng([seed, number, setting.objects])
+            said, things = drawn.description(kinds=kinds), _names(len(drawn.boxes))
+            yield Case(setting, number, said, drawn.boxes, things, drawn.truth).shuffled(rng)
+
+
+def photograph_cases(folder: Path, orders: int, most: int | None, seed: int) -> Iterator[Case]:
+    """Photographs (at most so many), each in so many random orders."""
+    setting = Setting(PHOTOGRAPHS, 0.0, 0.0, False)
+    for unit, (description, boxes) in enumerate(photographs(folder, default_ontology().relations)):
+        if most is not None and unit >= most:
+            return
+        case = Case(setting, unit, description, boxes, _names(len(boxes)), np.arange(len(boxes)), metric=False)
+        for order in range(orders):
+            yield case.shuffled(np.random.default_rng([seed, unit, order]))

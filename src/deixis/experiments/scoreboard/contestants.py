@@ -1,0 +1,94 @@
+"""Who is compared: the engines, and variants of the default one, each with its settings in words."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.reasoning.engine_name import EngineName
+from deixis.reasoning.engines import engine_named
+from deixis.reasoning.evidence import Evidence
+from deixis.reasoning.graded.unary import UnaryWeights
+from deixis.reasoning.matching.problem import Problem
+from deixis.reasoning.meaning import LITERAL, SHIPPED, Meaning
+
+DEFAULT = EngineName.EXACT.value
+
+
+@dataclass(frozen=True, eq=False)
+class Answer:
+    """What a contestant said: a map (n1,), whether it proved it the best, and its probabilities (n1, n2 + 1)."""
+
+    assignment: NDArray[np.int64]
+    proved: bool = False
+    marginals: NDArray[np.float64] | None = None
+
+
+@dataclass(frozen=True)
+class Contestant:
+    """A way to ground: ``solve`` gets the evidence and a deadline (``time.perf_counter``)."""
+
+    name: str
+    settings: str
+    solve: Callable[[Evidence, float], Answer]
+    most: int = 1000  # objects, beyond which it takes too long or too much memory
+    meaning: Meaning = SHIPPED
+    ablation: bool = False  # the default engine with something taken away
+    lacking: str = ""  # why it cannot be run at all
+
+
+def engine(
+    name: str, settings: str, *, called: str = "", most: int = 1000, meaning: Meaning = SHIPPED, ablation: bool = False
+) -> Contestant:
+    """A shipped engine as a contestant, maybe under another name and meaning."""
+
+    def solve(evidence: Evidence, deadline: float) -> Answer:
+        found = engine_named(name).align(evidence, deadline)
+        marginals = None if found.posterior is None else found.posterior.marginals
+        return Answer(found.assignment, found.proved_best, marginals)
+
+    return Contestant(called or name, settings, solve, most, meaning, ablation)
+
+
+def peer(
+    name: str, settings: str, solve: Callable[[Problem, float], Answer], *, most: int, lacking: str = ""
+) -> Contestant:
+    """Another solver for the same problem (graded meaning); it gets the seconds that are left."""
+    return Contestant(
+        name,
+        settings,
+        lambda evidence, deadline: solve(evidence.problem, max(0.0, deadline - time.perf_counter())),
+        most,
+        lacking=lacking,
+    )
+
+
+def engines() -> list[Contestant]:
+    """The shipped engines, the default first, and the default with words taken literally."""
+    return [
+        engine(EngineName.EXACT, "the default: branch and bound to the time limit, with probabilities"),
+        engine(EngineName.SCALABLE, "annealing by blocks, three starts or fewer, with probabilities"),
+        engine(EngineName.SIMILARITY, "the paper's: equations 5 to 9, the Hungarian method"),
+        engine(EngineName.BLONDEL, "Blondel et al. 2004, to convergence or 100 steps", most=300),
+        engine(EngineName.HEYMANS_SINGH, "Heymans and Singh 2003, to convergence or 100 steps", most=300),
+        engine(EngineName.EXACT, "ablation: words literally", called="graded off", meaning=LITERAL, ablation=True),
+    ]
+
+
+def ablations() -> list[Contestant]:
+    """The default engine with and without graded meaning and sizes."""
+    no_sizes = UnaryWeights(labels=1.0, sizes=0.0)
+    variants = {
+        DEFAULT: SHIPPED,
+        "graded off": LITERAL,
+        "unary off": Meaning(weights=no_sizes),
+        "both off": Meaning(graded=False, weights=no_sizes),
+    }
+    return [
+        engine(EngineName.EXACT, name, called=name, meaning=meaning, ablation=name != DEFAULT)
+        for name, meaning in variants.items()
+    ]

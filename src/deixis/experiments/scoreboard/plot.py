@@ -1,0 +1,176 @@
+"""The scoreboard as a picture of nine panels."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from deixis.experiments.scoreboard.board import Board, median_seconds
+from deixis.experiments.scoreboard.cases import PHOTOGRAPHS, Group
+from deixis.experiments.scoreboard.contestants import DEFAULT
+from deixis.experiments.scoreboard.run import Scoreboard
+from deixis.plot import INK, PAPER, QUIET, new_figure, save
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+COLOURS = (
+    "#1f4e79", "#e0a02c", "#c0392b", "#5a9a5a", "#8e6bbf", "#7f8c8d",
+    "#2a9d9d", "#b5703c", "#d16ba5", "#7fb3d5", "#4d5b1f", "#22313f",
+)  # fmt: skip
+MARKERS = "osD^vPX<>*hd"
+LEAST = -0.25
+"""Shares of the best likelihood below that are not shown."""
+
+SHADES = ("#1f4e79", "#6d93b8", "#b9cbdc", "#d9d2c3")
+DODGE = 1.008
+"""Lines stand that much beside each other, so that their intervals can be told apart."""
+
+NOISES = ("#1f4e79", "#e0a02c", "#c0392b")
+
+
+def plot_scoreboard(found: Scoreboard, path: str | Path) -> None:
+    """Draws it as PNG, SVG or PDF by the file's ending; raises DeixisError where the file cannot be written."""
+    figure, axes = new_figure(12.0, 10.2, nrows=3, ncols=3)
+    panels = iter(axes.ravel())
+    offs = found.plan.off[:3]
+    for off in offs:
+        _by_size(next(panels), found.main, off, "right", f"share right, {100 * off:.0f} % off")
+    for _ in range(3 - len(offs)):
+        next(panels).set_visible(False)
+    middle = offs[len(offs) // 2]
+    title = f"share right up to interchangeability, {100 * middle:.0f} % off"
+    _by_size(next(panels), found.main, middle, "grouped", title)
+    _by_size(next(panels), found.main, middle, "value", f"log-likelihood over the best, {100 * middle:.0f} % off")
+    _times(next(panels), found.main)
+    _limits(next(panels), found)
+    _reliability(next(panels), found)
+    _bars(next(panels), found)
+    handles, labels = axes[0, 0].get_legend_handles_labels()
+    legend = figure.legend(handles, labels, loc="outside lower center", ncols=7, frameon=False, fontsize=9)
+    for text in legend.get_texts():
+        text.set_color(INK)
+    save(figure, path)
+
+
+def _dress(axes: Axes, title: str, across: str) -> None:
+    axes.set_title(title, color=INK, fontsize=10, loc="left")
+    axes.set_xlabel(across, color=INK, fontsize=9)
+    axes.tick_params(colors=INK, labelsize=8)
+    axes.set_facecolor(PAPER)
+    axes.grid(color=QUIET, alpha=0.25, linewidth=0.6)
+    for side in axes.spines.values():
+        side.set_color(QUIET)
+
+
+def _sizes(axes: Axes, sizes: Sequence[int]) -> None:
+    axes.set_xscale("log")
+    axes.set_xticks(sizes, [str(size) for size in sizes])
+    axes.minorticks_off()
+
+
+def _style(number: int) -> dict[str, Any]:
+    style = {"color": COLOURS[number % len(COLOURS)], "marker": MARKERS[number % len(MARKERS)], "markersize": 4.5}
+    return style | {"linewidth": 2.2 if number == 0 else 1.2, "zorder": 3 if number == 0 else 2}
+
+
+def _by_size(axes: Axes, board: Board, off: float, measure: str, title: str) -> None:
+    """A line for every contestant, with its intervals."""
+    sizes = sorted({group.objects for group in board.groups if group.objects != PHOTOGRAPHS})
+    for number, one in enumerate(board.contestants):
+        there = [size for size in sizes if board.of(one.name, Group(size, off))]
+        means = [board.mean(one.name, Group(size, off), measure) for size in there]
+        axes.errorbar(
+            [size * DODGE ** (number - len(board.contestants) // 2) for size in there],
+            [mean.mean for mean in means],
+            np.nan_to_num([mean.half for mean in means]),
+            label=one.name,
+            elinewidth=0.8,
+            capsize=2,
+            **_style(number),
+        )
+    _sizes(axes, sizes)
+    least = min((mean for line in axes.containers for mean in line[0].get_ydata()), default=0.0)
+    axes.set_ylim(max(LEAST, min(0.0, least)), 1.02)
+    _dress(axes, title, "objects")
+
+
+def _times(axes: Axes, board: Board) -> None:
+    """The median over all noises."""
+    sizes = sorted({group.objects for group in board.groups if group.objects != PHOTOGRAPHS})
+    for number, one in enumerate(board.contestants):
+        scores = [score for group in board.groups for score in board.of(one.name, group)]
+        taken = {size: [score for score in scores if score.setting.objects == size] for size in sizes}
+        there = [size for size in sizes if taken[size]]
+        axes.plot(there, [median_seconds(taken[size]) for size in there], **_style(number))
+    _sizes(axes, sizes)
+    axes.set_yscale("log")
+    axes.tick_params(axis="y", which="minor", labelleft=False)
+    _dress(axes, "time to the full answer, seconds", "objects")
+
+
+def _limits(axes: Axes, found: Scoreboard) -> None:
+    """The default engine (solid) below the exact limit (dashed) on the largest tables that have one."""
+    largest = max((one.setting.objects for one in found.limits), default=0)
+    for off, colour in zip(found.plan.off, NOISES, strict=False):
+        some = [one for one in found.limits if one.setting.objects == largest and one.setting.off == off]
+        across = [one.setting.facts_each for one in some]
+        axes.errorbar(
+            across,
+            [one.right.mean for one in some],
+            np.nan_to_num([one.right.half for one in some]),
+            color=colour,
+            marker="o",
+            markersize=4.5,
+            linewidth=2,
+            capsize=2,
+            elinewidth=0.8,
+            label=f"{DEFAULT}, {100 * off:.0f} % off",
+        )
+        axes.plot(across, [one.words.mean for one in some], color=colour, linestyle="--", linewidth=1.2)
+    axes.plot([], [], color=INK, linestyle="--", linewidth=1.2, label="exact Bayes limit")
+    axes.legend(fontsize=8, frameon=False, labelcolor=INK, loc="lower right")
+    axes.set_ylim(0, 1.02)
+    axes.set_xticks(found.plan.facts_each)
+    _dress(axes, f"share right and its limit, {largest} objects", "facts an object")
+
+
+def _reliability(axes: Axes, found: Scoreboard) -> None:
+    """How often matches are right against how probable the answer calls them; the area of a point is its share."""
+    axes.plot([0, 1], [0, 1], color=QUIET, linewidth=1, linestyle=":")
+    for (name, one), colour in zip(found.calibrations().items(), (*NOISES, *COLOURS[3:]), strict=False):
+        bins = [each for each in one.bins if each.count]
+        said, right = [each.probability for each in bins], [each.right for each in bins]
+        axes.plot(said, right, color=colour, linewidth=1.2, label=f"{name} ({one.error:.3f})")
+        areas = [4 + 60 * each.count / one.count for each in bins]
+        axes.scatter(said, right, s=areas, color=colour, linewidths=0, alpha=0.8)
+    axes.legend(fontsize=7, frameon=False, labelcolor=INK, title="expected calibration error", title_fontsize=7)
+    axes.set_ylabel("share right", color=INK, fontsize=9)
+    _dress(axes, f"calibration of {DEFAULT}", "probability that the answer gives")
+
+
+def _bars(axes: Axes, found: Scoreboard) -> None:
+    """What each ablation costs: all noises of the largest ablated size, and photographs."""
+    board = found.ablations
+    largest = max((group.objects for group in board.groups), default=0)
+    shown = [group for group in board.groups if group.objects in (largest, PHOTOGRAPHS)]
+    width = 0.8 / len(board.contestants)
+    for number, one in enumerate(board.contestants):
+        means = [board.mean(one.name, group, "right") for group in shown]
+        axes.bar(
+            [at + (number + 0.5) * width - 0.4 for at in range(len(shown))],
+            [mean.mean for mean in means],
+            width,
+            yerr=np.nan_to_num([mean.half for mean in means]),
+            color=SHADES[number % len(SHADES)],
+            label=one.name,
+            error_kw={"elinewidth": 0.8, "capsize": 2, "ecolor": INK},
+        )
+    names = ["photographs" if group.objects == PHOTOGRAPHS else f"{100 * group.off:.0f} % off" for group in shown]
+    _dress(axes, f"ablations, share right, {largest} objects of known kinds", "")
+    axes.set_xticks(range(len(shown)), names)
+    axes.set_ylim(0, 1.3)
+    axes.legend(fontsize=8, frameon=False, labelcolor=INK, ncols=2, loc="upper right")

@@ -1,0 +1,189 @@
+"""The whole scoreboard: what is run is stated in a plan, and the same plan gives the same figures, times aside."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import chain, product
+from pathlib import Path
+
+import numpy as np
+
+from deixis.experiments.photographs import FOLDER
+from deixis.experiments.scoreboard.bayes_limit import Limit, bayes_limit
+from deixis.experiments.scoreboard.board import Board, play
+from deixis.experiments.scoreboard.calibration import Calibration, calibration
+from deixis.experiments.scoreboard.cases import (
+    LARGEST_PHOTOGRAPH,
+    PHOTOGRAPHS,
+    Case,
+    Setting,
+    generated_cases,
+    photograph_cases,
+    table,
+)
+from deixis.experiments.scoreboard.contestants import DEFAULT, Contestant, ablations, engines
+from deixis.experiments.scoreboard.statistics import Interval, interval
+
+SHARES = {100: 0.5, 300: 0.2, 1000: 0.1}
+"""Of the cases of a setting, how many there are of that many objects: each takes so much longer."""
+
+LEAST_CASES = 2
+SMALL = 30
+"""Objects up to which calibration is one pool; larger tables, of which probabilities are sampled, are another."""
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What is run: every combination of sizes, facts an object, share off, and without and with changes.
+
+    ``cases`` is the number of tables of a setting (fewer of large ones), ``most_photographs`` None for all of them.
+    """
+
+    cases: int = 10
+    seed: int = 1
+    time_limit: float = 5.0  # seconds of an engine for a case
+    sizes: tuple[int, ...] = (8, 12, 15, 30, 100, 300, 1000)
+    facts_each: tuple[float, ...] = (1.0, 1.5, 2.5)
+    off: tuple[float, ...] = (0.0, 0.1, 0.2)
+    ablated_sizes: tuple[int, ...] = (8, 12, 15)
+    limited_sizes: tuple[int, ...] = (8, 12)
+    photographs: Path | None = None
+    most_photographs: int | None = None
+    orders: int = 3  # node orders of a photograph
+
+    def quick(self) -> Plan:
+        """A small part of it, in a minute or two."""
+        return replace(
+            self,
+            cases=min(self.cases, 2),
+            time_limit=min(self.time_limit, 0.5),
+            sizes=(8, 12, 30),
+            facts_each=(1.0, 2.5),
+            ablated_sizes=(8,),
+            most_photographs=15,
+            orders=1,
+        )
+
+    def count(self, objects: int) -> int:
+        """Tables of each setting of that size."""
+        least = min(self.cases, LEAST_CASES)
+        share = next((share for size, share in SHARES.items() if objects <= size), min(SHARES.values()))
+        return max(least, round(self.cases * (1.0 if objects <= SMALL else share)))
+
+    def settings(self, objects: int) -> list[Setting]:
+        return [
+            Setting(objects, off, facts, changed)
+            for off, facts, changed in product(self.off, self.facts_each, (False, True))
+        ]
+
+    def generated(self, sizes: Sequence[int], *, kinds: bool = False) -> Iterator[Case]:
+        return chain.from_iterable(
+            generated_cases(self.settings(size), self.count(size), self.seed, kinds=kinds) for size in sizes
+        )
+
+    def photographed(self) -> Iterator[Case]:
+        if self.photographs is None:
+            return iter(())
+        return photograph_cases(self.photographs, self.orders, self.most_photographs, self.seed)
+
+
+@dataclass(frozen=True, slots=True)
+class Limited:
+    """The default engine beside the Bayes limits in a setting; ``short`` is by how much it misses the first."""
+
+    setting: Setting
+    right: Interval
+    words: Interval
+    words_and_pairs: Interval
+    short: Interval
+    maps: int  # the most that were possible on one table
+    incomplete: int  # tables whose maps could not all be listed
+
+
+@dataclass(frozen=True, eq=False)
+class Scoreboard:
+    """The main board, the ablations (kinds are told), the limits, and what was left out."""
+
+    plan: Plan
+    main: Board
+    ablations: Board
+    limits: tuple[Limited, ...]
+    skipped: tuple[str, ...]
+
+    def calibrations(self) -> dict[str, Calibration]:
+        """Of the default engine: by noise, small tables and large ones apart, and of photographs."""
+        pools = {f"up to {SMALL}, {100 * off:.0f} % off": (off, 1, SMALL) for off in self.plan.off}
+        pools |= {f"larger, {100 * off:.0f} % off": (off, SMALL + 1, max(self.plan.sizes)) for off in self.plan.off}
+        pools["photographs"] = (0.0, PHOTOGRAPHS, PHOTOGRAPHS)
+        found = {}
+        for name, (off, least, most) in pools.items():
+            chosen = [
+                one
+                for one in self.main.forecasts
+                if one.contestant == DEFAULT and one.group.off == off and least <= one.group.objects <= most
+            ]
+            if chosen:
+                found[name] = calibration(chosen)
+        return found
+
+
+def run(
+    plan: Plan,
+    contestants: Sequence[Contestant] | None = None,
+    tick: Callable[[str], None] = lambda _: None,
+) -> Scoreboard:
+    """Runs everything; ``contestants`` (default: the shipped engines) begin with the default engine.
+
+    ``tick`` is told what has just been done, ``steps(plan)`` times.
+    """
+    entered = engines() if contestants is None else list(contestants)
+    main = play(entered, chain(plan.generated(plan.sizes), plan.photographed()), plan.time_limit, tick)
+    ablated = play(
+        ablations(), chain(plan.generated(plan.ablated_sizes, kinds=True), plan.photographed()), plan.time_limit, tick
+    )
+    limits = tuple(
+        _limited(plan, setting, main, tick)
+        for size in plan.limited_sizes
+        if size in plan.sizes
+        for setting in plan.settings(size)
+        if not setting.changed
+    )
+    return Scoreboard(plan, main, ablated, limits, _skipped(plan, entered))
+
+
+def steps(plan: Plan) -> int:
+    """How often a run ticks."""
+    tables = sum(plan.count(size) * len(plan.settings(size)) for size in (*plan.sizes, *plan.ablated_sizes))
+    limits = sum(len(plan.settings(size)) // 2 for size in plan.limited_sizes if size in plan.sizes)
+    return tables + limits + 2 * sum(1 for _ in plan.photographed())
+
+
+def _limited(plan: Plan, setting: Setting, main: Board, tick: Callable[[str], None]) -> Limited:
+    limits: list[Limit] = [bayes_limit(table(setting, n, plan.seed)) for n in range(plan.count(setting.objects))]
+    mine = main.by_unit(DEFAULT, setting, "right")
+    rights = [mine[setting, number] for number in range(len(limits))]
+    words = [limit.words for limit in limits]
+    tick(f"Bayes limit, {setting.objects} objects")
+    return Limited(
+        setting,
+        interval(rights),
+        interval(words),
+        interval([limit.words_and_pairs for limit in limits]),
+        interval(np.subtract(words, rights)),
+        max(limit.maps for limit in limits),
+        sum(not limit.complete for limit in limits),
+    )
+
+
+def _skipped(plan: Plan, contestants: Sequence[Contestant]) -> tuple[str, ...]:
+    notes = [f"{one.name}: {one.lacking}" for one in contestants if one.lacking]
+    for one in contestants:
+        larger = [f"{size} objects" for size in plan.sizes if size > one.most]
+        if plan.photographs is not None and one.most < LARGEST_PHOTOGRAPH:
+            larger.append("photographs")
+        if larger and not one.lacking:
+            notes.append(f"{one.name} with {', '.join(larger)}: too large for it (at most {one.most})")
+    if plan.photographs is None:
+        notes.append(f"photographs: set DEIXIS_DATA to the folder that holds {FOLDER}/")
+    return tuple(notes)

@@ -1,0 +1,164 @@
+"""A memory that is opened when it is needed: what is done with it alone, without a table to look at."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from types import TracebackType
+from typing import TYPE_CHECKING, Self
+
+from deixis.grammar.script import Script
+from deixis.ontology.tbox import Ontology, default_ontology
+from deixis.perception.scene import Scene
+from deixis.reasoning.errors import NothingFoundError
+from deixis.reasoning.meaning import SHIPPED, Meaning
+
+if TYPE_CHECKING:
+    from deixis.learned_words import LearnedWords
+    from deixis.memory.results import QueryResult
+    from deixis.memory.semantic import SemanticMemory
+    from deixis.ontology.concepts import LayoutConcept
+    from deixis.remembered import Recollection
+
+
+def default_memory() -> Path:
+    """``$DEIXIS_MEMORY``, else a folder for the user's data."""
+    named = os.environ.get("DEIXIS_MEMORY")
+    if named:
+        return Path(named)
+    data = os.environ.get("XDG_DATA_HOME")
+    return (Path(data) if data else Path.home() / ".local" / "share") / "deixis" / "memory"
+
+
+class MemorySession:
+    """A memory held by this process from the first call that needs it until the session is closed."""
+
+    def __init__(self, memory: str | Path | None = None, ontology: Ontology | None = None) -> None:
+        self.path = default_memory() if memory is None else Path(memory)
+        self.ontology = default_ontology() if ontology is None else ontology
+        self._memory: SemanticMemory | None = None
+        self._meaning: Meaning | None = None  # what is in force, since the last change
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Lets go of the memory."""
+        self._meaning = None
+        if self._memory is not None:
+            self._memory.close()
+            self._memory = None
+
+    def remembers(self) -> bool:
+        """Whether there is a memory at the path; raises MemoryFormatError where something else or a damaged one is."""
+        from deixis.memory.folder import State, inspect
+
+        return self._memory is not None or inspect(self.path) not in (State.ABSENT, State.EMPTY)
+
+    def memory(self, create: bool = False) -> SemanticMemory:
+        """The open memory; raises DeixisError where there is none and ``create`` is not set."""
+        from deixis.memory.semantic import SemanticMemory
+
+        if self._memory is None:
+            self._memory = SemanticMemory.open(self.path, create=create)
+        return self._memory
+
+    def meaning(self) -> Meaning:
+        """The words and sizes in force: what is shipped, but for what was learned; where there is no memory, all of it.
+
+        Raises OntologyError where a learned model in the memory is not whole, MemoryBusyError where another process
+        has the memory.
+        """
+        if self._meaning is None:
+            self._meaning = self._in_force() if self.remembers() else SHIPPED
+        return self._meaning
+
+    def _in_force(self) -> Meaning:
+        from deixis.memory.graphs import ModelSet
+        from deixis.ontology.relation_model_triples import models_from_triples
+        from deixis.ontology.size_model_triples import sizes_from_triples
+        from deixis.reasoning.graded.shipped import shipped_models
+
+        words = models_from_triples(self.memory().models(ModelSet.WORDS))
+        sizes = sizes_from_triples(self.memory().models(ModelSet.SIZES))
+        return Meaning(shipped_models().replaced(*words) if words else None, sizes)
+
+    def recollection(self) -> Recollection:
+        """All lessons of the memory, ready to be learned from; none where there is no memory."""
+        from deixis.keeping import remembered
+        from deixis.remembered import Recollection
+
+        return remembered(self.memory(), self.ontology) if self.remembers() else Recollection(())
+
+    def learn_relations(self, examples: Sequence[tuple[Script, Scene]] = (), strength: float = 3.0) -> LearnedWords:
+        """Fits what relation words mean to everything remembered, and to examples: scripts, each with a labelled scene.
+
+        The examples are kept as lessons, and the models take the place of those that were learned before. Raises
+        NothingFoundError, having changed nothing, where there is nothing to learn from; SettingError for a strength
+        that is not above 0.
+        """
+        from deixis.keeping import keep_words
+        from deixis.learned_words import new_lessons
+
+        ids = self.memory().lessons() if self.remembers() else ()
+        lessons, left_out = new_lessons(examples, self.recollection(), ids)
+        if not lessons and not self.remembers():
+            none = f"nothing is remembered at {self.path}, and no example teaches anything"
+            raise NothingFoundError("; ".join((f"nothing to learn: {none}", *left_out)))
+        learned = keep_words(self.memory(create=True), self.ontology, lessons, strength)
+        self._meaning = None
+        return replace(learned, kept=tuple(lesson.id for lesson in lessons), left_out=(*learned.left_out, *left_out))
+
+    def forget_relations(self) -> None:
+        """Takes the learned models of relation words away: the shipped ones are in force again. Lessons stay."""
+        from deixis.memory.graphs import ModelSet
+
+        self.memory().keep_models({ModelSet.WORDS: []})
+        self._meaning = None
+
+    def forget(self, lesson: str) -> None:
+        """Takes back one lesson, with everything that follows from it alone, and what it taught of words and sizes."""
+        from deixis.keeping import forget
+
+        forget(self.memory(), self.ontology, lesson)
+        self._meaning = None
+
+    def import_(self, file: str | Path) -> None:
+        """Takes in what another memory exported, or plain triples; what is there stays.
+
+        Raises InconsistencyError, having changed nothing, where what is there and what comes contradict each other.
+        """
+        from deixis.keeping import take_in
+
+        self.close()
+        take_in(file, self.path, self.ontology)
+
+    def layouts(self) -> tuple[LayoutConcept, ...]:
+        """Every learned layout."""
+        from deixis.memory.graphs import GraphName
+        from deixis.ontology.lesson_reading import layouts
+
+        return layouts(self.memory().triples(GraphName.LEARNED), self.ontology.relations)
+
+    def layout(self, name: str) -> LayoutConcept:
+        """The layout of that name, learned last, or of the lesson with that id; raises UnknownTermError for none."""
+        from deixis.ontology.lesson_reading import layout_named
+
+        return layout_named(self.layouts(), name, self.memory().lessons())
+
+    def show(self, name: str) -> str:
+        """A learned layout as a script again."""
+        from deixis.grammar.rebuild import layout_script
+
+        return layout_script(self.layout(name), self.ontology)
+
+    def query(self, sparql: str) -> QueryResult:
+        """Asks SPARQL of everything remembered: SELECT, ASK, CONSTRUCT or DESCRIBE; nothing else is let in."""
+        return self.memory().query(sparql)

@@ -1,0 +1,86 @@
+"""From a cloud file to a scene on disk: what ``deixis perceive`` does."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.ontology.errors import DeixisError
+from deixis.perception.clouds.cloud import PointCloud
+from deixis.perception.clouds.cloud_file import read_cloud, write_cloud
+from deixis.perception.detection.detect import Detection, detect
+from deixis.perception.detection.frame import moved
+from deixis.perception.errors import SceneError
+from deixis.perception.scene import PerceivedObject, Scene
+from deixis.perception.scene_file import write_scene
+
+
+@dataclass(frozen=True, eq=False)
+class Perceived:
+    """A cloud, what was detected in it, and the scene that this makes."""
+
+    cloud: PointCloud
+    detection: Detection
+    scene: Scene
+
+    def cloud_of(self, number: int) -> PointCloud:
+        """The points of one thing, counted from 0, in the table's frame, with where the sensor stood."""
+        return in_frame(self.cloud.take(self.detection.labels == number), self.detection.frame)
+
+
+def perceive(
+    cloud: PointCloud | str | Path, intrinsics: str | Path | None = None, viewpoint: str = "chair"
+) -> Perceived:
+    """Finds the table and the things on it; raises CloudError for a file that is no cloud, or one without a point."""
+    seen = cloud if isinstance(cloud, PointCloud) else read_cloud(cloud, intrinsics)
+    found = detect(seen)
+    return Perceived(seen, found, found.scene(viewpoint))
+
+
+def in_frame(cloud: PointCloud, frame: NDArray[np.float64]) -> PointCloud:
+    """The same points in another frame; ``frame`` (4, 4) takes the cloud's frame to it."""
+    origin = moved(np.array([cloud.origin]), frame)[0]
+    normals = None if cloud.normals is None else (cloud.normals @ frame[:3, :3].T).astype(np.float32)
+    points = moved(cloud.points, frame).astype(np.float32)
+    x, y, z = origin.tolist()
+    return PointCloud(points, cloud.colours, None, normals, origin=(x, y, z))
+
+
+def write_perceived(perceived: Perceived, file: Path) -> Scene:
+    """Writes the scene, and each thing's points into a folder beside it, which the scene names.
+
+    The clouds are written first, so that no scene names a cloud that is not there. Raises DeixisError where the place
+    cannot be written.
+    """
+    folder = clouds_folder(file)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        things = []
+        for number, thing in enumerate(perceived.scene.objects):
+            cloud = folder / f"{thing.id}.pcd"
+            write_cloud(cloud, perceived.cloud_of(number))
+            things.append(replace(thing, cloud=os.fspath(cloud.relative_to(file.parent))))
+        scene = replace(perceived.scene, objects=tuple(things), file=str(file))
+        write_scene(scene, file)
+    except OSError as error:
+        raise DeixisError(f"{file}: the scene cannot be written: {error.strerror}") from error
+    return scene
+
+
+def clouds_folder(scene: Path) -> Path:
+    """Where the clouds of a scene's things are: ``table.clouds`` beside ``table.scene.json``."""
+    return scene.with_name(f"{scene.name.removesuffix('.json').removesuffix('.scene')}.clouds")
+
+
+def cloud_of(scene: Scene, thing: PerceivedObject) -> PointCloud:
+    """The points of a thing of a scene; raises SceneError where the scene names no cloud of it."""
+    if thing.cloud is None:
+        raise SceneError(
+            f"{scene.file}: the object '{thing.id}' has no cloud, so that what it looks like is not known; "
+            "deixis perceive -o writes scenes with clouds"
+        )
+    return read_cloud(Path(scene.file).parent / thing.cloud)

@@ -1,0 +1,96 @@
+"""A memory of what things look like, beside what is known of them: teaching, recognising, asking for a word."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from deixis.memory_session import MemorySession
+from deixis.perception.scene import PerceivedObject, Scene
+from deixis.perception.scene_file import read_scene
+
+if TYPE_CHECKING:
+    from deixis.memory.perceptual.level import LevelMemory
+    from deixis.recognising import Recognised, Taught
+
+
+class PerceptualSession(MemorySession):
+    """What a session does with clouds; its perceptual memory is opened by the first call that needs it."""
+
+    _views: LevelMemory | None = None
+
+    def close(self) -> None:
+        """Lets go of both memories."""
+        if self._views is not None:
+            self._views.close()
+            self._views = None
+        super().close()
+
+    def has_views(self) -> bool:
+        """Whether anything was ever taught."""
+        from deixis.memory.perceptual.whole import stats_of
+
+        return self._views is not None or stats_of(self.path) is not None
+
+    def views(self, create: bool = False) -> LevelMemory:
+        """The open perceptual memory; raises DeixisError where there is none and ``create`` is not set."""
+        from deixis.memory.perceptual.whole import open_in
+
+        if self._views is None:
+            self._views = open_in(self.path, create)
+        return self._views
+
+    def teach(
+        self, scene: Scene | str | Path | Mapping[str, Any], object: str, category: str, teacher: str = "user"
+    ) -> Taught:
+        """Keeps what a thing of a scene looks like as a view of a category, which comes into being if it is new.
+
+        Taught again under another word, the view is corrected. Raises SceneError where the scene has no such thing, or
+        no cloud of it; SettingError for a name that is none.
+        """
+        from deixis.perceiving import cloud_of
+        from deixis.recognising import teach
+
+        scene = scene if isinstance(scene, Scene) else read_scene(scene)
+        name = category_name(category)
+        cloud = cloud_of(scene, _thing(scene, object))
+        metadata = {"scene": scene.file, "object": object, "teacher": teacher}
+        return teach(self.views(create=True), cloud, name, datetime.now(UTC), metadata)
+
+    def recognise(self, scene: Scene | str | Path | Mapping[str, Any]) -> Recognised:
+        """Names what is known among the things of a scene; without a memory nothing is."""
+        from deixis.perceiving import cloud_of
+        from deixis.perception.recognition.recogniser import Recogniser
+        from deixis.recognising import recognise, recogniser_of
+
+        scene = scene if isinstance(scene, Scene) else read_scene(scene)
+        known = recogniser_of(self.views()) if self.has_views() else Recogniser.of([])
+        clouds = [cloud_of(scene, thing) if thing.cloud is not None else None for thing in scene.objects]
+        return recognise(known, scene, clouds)
+
+    def categories(self) -> dict[str, int]:
+        """The names of what was taught, each with its number of views."""
+        if not self.has_views():
+            return {}
+        memory = self.views()
+        return {name: sum(1 for _ in memory.listing(name)) for name in memory.categories()}
+
+
+def category_name(text: str) -> str:
+    """A category's name as scripts write it: ``dinner fork`` is ``dinner_fork``; raises SettingError for nothing."""
+    from deixis.reasoning.errors import SettingError
+
+    name = "_".join(text.split())
+    if not name:
+        raise SettingError("a category's name is a word or more, not nothing")
+    return name
+
+
+def _thing(scene: Scene, object: str) -> PerceivedObject:
+    from deixis.perception.errors import SceneError
+
+    if object not in scene.ids:
+        raise SceneError(f"{scene.file}: there is no object '{object}'; there are: {', '.join(scene.ids) or 'none'}")
+    return scene[object]

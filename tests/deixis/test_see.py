@@ -1,0 +1,165 @@
+"""perceive, teach, recognise, ask, category: from a simulated cloud to words, and back."""
+
+from __future__ import annotations
+
+import io
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from commands import deixis
+
+from deixis.examples_data import example
+from deixis.perception.clouds.cloud import PointCloud
+from deixis.perception.clouds.cloud_file import read_cloud, write_cloud
+from deixis.perception.scene_file import read_scene
+from deixis.session import Session, ground
+
+FULL = example("formal_dinner.layout")
+
+
+@pytest.fixture(scope="module")
+def tables(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Two laid tables as clouds with their truth, perceived; and a memory that learned the first one."""
+    folder = tmp_path_factory.mktemp("tables")
+    for seed in (7, 20):
+        cloud, truth = folder / f"{seed}.pcd", folder / f"{seed}.truth.scene.json"
+        assert deixis("simulate", FULL, "-o", cloud, "--seed", str(seed), "--truth", truth)[0] == 0
+        out, labels = folder / f"{seed}.scene.json", folder / f"{seed}.npy"
+        assert deixis("perceive", cloud, "-o", out, "--labels", labels)[0] == 0
+    assert deixis("learn", FULL, folder / "7.scene.json", "--memory", folder / "memory")[0] == 0
+    return folder
+
+
+def test_every_thing_of_a_laid_table_is_found_and_named_by_the_script(tables: Path) -> None:
+    scene = read_scene(tables / "20.scene.json")
+    truth = {thing.label: thing for thing in read_scene(tables / "20.truth.scene.json").objects}
+    assert len(scene.objects) == len(truth) == 12
+    found = ground(FULL, scene)
+    assert not found.violated
+    seen = {name: scene[match.perceived] for name, match in found.matches.items()}
+    sizes = {n: np.subtract(t.maximum[:2], t.minimum[:2]) for n, t in seen.items()}
+    for name, thing in truth.items():
+        assert name is not None
+        assert sizes[name] == pytest.approx(np.subtract(thing.maximum[:2], thing.minimum[:2]), abs=0.02), name
+
+
+def test_labels_are_those_of_the_clouds_beside_the_scene(tables: Path) -> None:
+    labels, scene = np.load(tables / "7.npy"), read_scene(tables / "7.scene.json")
+    assert labels.dtype == np.int32
+    assert len(labels) == 640 * 480
+    assert set(labels.tolist()) == {-1, *range(len(scene.objects))}
+    for number, thing in enumerate(scene.objects):
+        cloud = read_cloud(tables / str(thing.cloud))
+        assert len(cloud) == (labels == number).sum()
+        inside = (cloud.points[:, :2] > np.array(thing.minimum[:2]) - 1e-3).all(axis=1)
+        assert inside.mean() > 0.95
+
+
+def test_what_was_learned_is_recognised_on_another_table(tables: Path, tmp_path: Path) -> None:
+    named, picture = tmp_path / "named.scene.json", tmp_path / "named.png"
+    code, out, _ = deixis(
+        "recognise", tables / "20.scene.json", "--memory", tables / "memory", "--json", "-o", named, "--plot", picture
+    )
+    assert code == 0
+    answers = {entry["object"]: entry for entry in json.loads(out)["objects"]}
+    scene = read_scene(tables / "20.scene.json")
+    truth = {match.perceived: name for name, match in ground(FULL, scene).matches.items()}
+    assert answers.keys() == truth.keys()
+    first = {id: entry["candidates"][0]["category"] for id, entry in answers.items()}
+    assert sum(first[id] == name for id, name in truth.items()) >= 7  # of twelve, from one view each
+    for entry in answers.values():
+        assert entry["candidates"][0].keys() == {"category", "D_C", "ICD", "ND", "nearest", "views", "probability"}
+        assert (entry["label"] is None) == (entry["candidates"][0]["ND"] > entry["threshold"])
+    written = read_scene(named)
+    assert {thing.id: thing.label for thing in written.objects} == {id: e["label"] for id, e in answers.items()}
+    assert all(thing.confidence < 1 for thing in written.objects if thing.label)
+    assert all((named.parent / str(thing.cloud)).exists() for thing in written.objects)
+    assert picture.read_bytes().startswith(b"\x89PNG")
+
+
+def test_a_view_is_taught_and_corrected_and_categories_are_renamed_merged_and_forgotten(
+    tables: Path, tmp_path: Path
+) -> None:
+    scene, memory = tables / "7.scene.json", ("--memory", tmp_path / "memory")
+    assert json.loads(deixis("category", "list", "--json", *memory)[1]) == {}
+    assert deixis("teach", scene, "o1", "Bread plate", *memory)[1] == "o1 is a view of 'Bread_plate'; 1 in all.\n"
+    out = deixis("teach", scene, "o1", "saucer", *memory)[1]
+    assert out == "o1 is a view of 'saucer', and no longer of 'Bread_plate'; 1 in all.\n"
+    assert json.loads(deixis("category", "list", "--json", *memory)[1]) == {"saucer": 1}
+    deixis("teach", scene, "o5", "plate", *memory)
+    assert deixis("category", "merge", "saucer", "plate", *memory)[0] == 0
+    assert deixis("category", "rename", "plate", "dish", *memory)[0] == 0
+    assert json.loads(deixis("category", "list", "--json", *memory)[1]) == {"dish": 2}
+    entry = json.loads(deixis("recognise", scene, "--json", *memory)[1])["objects"][0]
+    assert (entry["object"], entry["candidates"][0]["category"], entry["candidates"][0]["views"]) == ("o1", "dish", 2)
+    assert entry["candidates"][0]["D_C"] == 0
+    assert deixis("memory", "verify", *memory)[0] == 0
+    views = tmp_path / "views.zip"
+    assert deixis("memory", "export", "--format", "views", "-o", views, *memory)[0] == 0
+    assert deixis("category", "forget", "dish", *memory)[0] == 0
+    assert deixis("recognise", scene, *memory)[0] == 1
+    assert deixis("memory", "import", views, *memory)[0] == 0
+    assert json.loads(deixis("category", "list", "--json", *memory)[1]) == {"dish": 2}
+
+
+def test_what_a_category_has_learned_is_kept_and_is_what_its_views_give(tables: Path, tmp_path: Path) -> None:
+    from deixis.perception.recognition.instances import InstanceCategory
+    from deixis.recognising import DESCRIBER, DISTANCES, instances_of
+
+    with Session(tmp_path / "memory") as session:
+        for object in ("o1", "o5", "o8"):
+            session.teach(tables / "7.scene.json", object, "flat thing")
+        kept = instances_of(session.views(), "flat_thing")
+        views = [(view.id, view.descriptors[DESCRIBER]) for view in session.views().views("flat_thing")]
+        assert DISTANCES in session.views().category("flat_thing").state
+    fresh = InstanceCategory.of("flat_thing", views)
+    assert kept.views.ids == fresh.views.ids
+    np.testing.assert_allclose(kept.distances, fresh.distances, atol=1e-6)
+
+
+def test_a_word_is_asked_for_until_something_is_pointed_at(
+    tables: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    scene, memory = tables / "7.scene.json", ("--memory", tmp_path / "memory")
+    monkeypatch.setattr("sys.stdin", io.StringIO("\n"))
+    code, out, _ = deixis("ask", "saucer", scene, *memory)
+    assert (code, "I still do not know what 'saucer' is." in out) == (1, True)
+    monkeypatch.setattr("sys.stdin", io.StringIO("o99\no1\n"))
+    code, out, _ = deixis("ask", "saucer", scene, *memory)
+    assert code == 0
+    assert "There is no 'o99' here." in out
+    assert "o1 is a view of 'saucer'; 1 in all." in out
+    assert "Here it is: o1" in deixis("ask", "saucer", scene, *memory)[1]
+    assert "a view of 'fork'" in deixis("ask", "fork", scene, "--points-at", "o3", *memory)[1]
+
+
+def test_bad_input_has_one_line(tables: Path, tmp_path: Path) -> None:
+    scene, memory = tables / "7.scene.json", ("--memory", tmp_path / "memory")
+    nothing = tmp_path / "nothing.pcd"
+    write_cloud(nothing, PointCloud(np.full((4, 3), np.nan, np.float32)))
+    truth = tables / "7.truth.scene.json"
+    for arguments in (
+        ("perceive", nothing),
+        ("perceive", tmp_path / "none.pcd"),
+        ("perceive", tables / "7.pcd", "--labels", tmp_path / "labels.txt"),
+        ("teach", scene, "o99", "plate", *memory),
+        ("teach", scene, "o1", "  ", *memory),
+        ("teach", truth, "o1", "plate", *memory),
+        ("category", "forget", "plate", *memory),
+        ("memory", "export", "--format", "views", "-o", tmp_path / "v.zip", *memory),
+    ):
+        code, out, err = deixis(*arguments)
+        assert (code, out) == (2, ""), arguments
+        assert len(err.splitlines()) == 1, arguments
+
+
+def test_a_table_with_nothing_on_it_is_an_answer(tmp_path: Path) -> None:
+    x, y = (axis.ravel() for axis in np.mgrid[-0.5:0.5:0.01, 0.5:1.5:0.01])
+    points = np.stack([x, y, np.full(x.shape, -0.7)], axis=1).astype(np.float32)
+    write_cloud(tmp_path / "bare.pcd", PointCloud(points))
+    code, out, err = deixis("perceive", tmp_path / "bare.pcd")
+    assert code == 1
+    assert json.loads(out)["objects"] == []
+    assert "nothing is on the table" in err

@@ -1,0 +1,118 @@
+"""The colour terms: their words, the names that begin with one, and where prototypes and spreads come from."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from matplotlib.colors import XKCD_COLORS
+
+from deixis.ontology.colours import Colour, Rgb, hex_of_rgb, rgb_of_hex
+from deixis.ontology.errors import OntologyError
+from deixis.ontology.tbox import default_ontology, load_ontology
+from deixis.reasoning.graded.colours import lab_of_srgb
+
+ONTOLOGY = default_ontology()
+COLOURS, KINDS = ONTOLOGY.colours, ONTOLOGY.kinds
+BASIC = {"black", "white", "grey", "red", "green", "yellow", "blue", "brown", "orange", "pink", "purple"}
+
+PREFIXES = """@prefix dx: <https://w3id.org/deixis/onto#> . @prefix dcterms: <http://purl.org/dc/terms/> .
+@prefix rdfs: <http://www.w3.org/2000/01/rdf-schema#> . @prefix skos: <http://www.w3.org/2004/02/skos/core#> .
+"""
+TEAL = 'dx:teal a dx:Colour ; rdfs:label "teal" ; dx:prototype "#008080" ; dx:spread "100 0 0 100 0 100" .'
+
+
+def test_the_colours_are_the_eleven_basic_terms() -> None:
+    assert {colour.label for colour in COLOURS} == BASIC
+
+
+@pytest.mark.parametrize(
+    ("word", "label"), [("gray", "grey"), ("Violet", "purple"), ("dark_blue", "blue"), ("light-green", "green")]
+)
+def test_a_colour_is_found_by_every_word_however_it_is_written(word: str, label: str) -> None:
+    found = COLOURS.of_word(word)
+    assert found is not None
+    assert found.label == label
+    assert COLOURS[found.iri] is found
+
+
+def test_no_word_is_both_a_colour_and_a_kind() -> None:
+    assert COLOURS.words.keys() & KINDS.words.keys() == set()
+
+
+@pytest.mark.parametrize(
+    ("name", "kind", "colour"),
+    [
+        ("red_mug", "Mug", "red"),
+        ("Dark_Blue_Mug_3", "Mug", "blue"),
+        ("light_thingummy", None, None),
+        ("red_thingummy", None, "red"),
+        ("red_wine_glass", "RedWineGlass", None),
+        ("white_wine_glass_2", "WhiteWineGlass", None),
+        ("orange", None, None),
+        ("orange_2", None, None),
+        ("dark_blue", None, None),
+        ("mug_red", None, None),
+        ("redmug", None, None),
+        ("", None, None),
+    ],
+)
+def test_a_name_stands_for_a_kind_and_a_colour(name: str, kind: str | None, colour: str | None) -> None:
+    found_kind, found_colour = ONTOLOGY.of_name(name)
+    assert (found_kind and found_kind.name, found_colour and found_colour.label) == (kind, colour)
+
+
+@given(st.tuples(*[st.integers(0, 255)] * 3))
+def test_a_colour_comes_back_from_its_hexadecimal_digits(rgb: Rgb) -> None:
+    assert rgb_of_hex(hex_of_rgb(rgb)) == rgb
+
+
+@pytest.mark.parametrize("text", ["", "#fff", "ff0000", "#ff00001", "#ff000g", "#ff0000\n", "#١٢٣٤٥٦"])
+def test_what_is_no_colour_gives_none(text: str) -> None:
+    assert rgb_of_hex(text) is None
+
+
+def named(term: Colour) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
+    """CIELAB of the survey's names that end in a word, shape (n, 3); matplotlib ships the survey's table."""
+    found = [rgb_of_hex(str(value)) for name, value in XKCD_COLORS.items() if name[5:].split()[-1] == term.label]
+    return lab_of_srgb(np.array(found, dtype=np.float64))
+
+
+@pytest.mark.parametrize("term", [c for c in COLOURS if c.label not in ("black", "white")], ids=lambda c: c.label)
+def test_prototype_and_spread_are_those_of_the_survey(term: Colour) -> None:
+    seen = named(term)
+    assert len(seen) >= 25
+    assert np.abs(lab_of_srgb(np.array(term.prototype, dtype=np.float64)) - seen.mean(axis=0)).max() < 0.5
+    assert np.abs(term.matrix() - np.cov(seen.T)).max() <= 0.5 + 1e-6
+
+
+def test_black_and_white_are_the_survey_s_and_spread_as_grey_does() -> None:
+    black, white, grey = (colour for word in ("black", "white", "grey") if (colour := COLOURS.of_word(word)))
+    assert (hex_of_rgb(black.prototype), hex_of_rgb(white.prototype)) == (
+        XKCD_COLORS["xkcd:black"],
+        XKCD_COLORS["xkcd:white"],
+    )
+    assert black.covariance == white.covariance == grey.covariance
+
+
+def test_a_colour_may_be_added() -> None:
+    more = load_ontology(PREFIXES + TEAL, PREFIXES + 'dx:red skos:altLabel "ruby" .')
+    found, ruby = more.colours.of_word("teal"), more.colours.of_word("ruby")
+    assert found is not None and ruby is not None
+    assert (found.prototype, ruby.label) == ((0, 128, 128), "red")
+
+
+@pytest.mark.parametrize(
+    ("wrong", "message"),
+    [
+        (("#008080", "teal"), "a prototype is written as #rrggbb, not 'teal'"),
+        (("100 0 0 100 0 100", "100 100"), "a spread is six numbers"),
+        (("100 0 0 100 0 100", "a b c d e f"), "a spread is six numbers"),
+        (("100 0 0 100 0 100", "100 200 0 100 0 100"), "is not positive definite"),
+        (("100 0 0 100 0 100", "nan 0 0 100 0 100"), "is not positive definite"),
+    ],
+)
+def test_what_a_colour_lacks_is_told(wrong: tuple[str, str], message: str) -> None:
+    with pytest.raises(OntologyError, match=message):
+        load_ontology(PREFIXES + TEAL.replace(*wrong))
