@@ -22,11 +22,16 @@ from deixis.show import check_lines, grounding_lines, inference_lines, learned_l
 if TYPE_CHECKING:
     from rich.console import Console
 
+    from deixis.perception.recognition.recognition import Recognition
+
 
 QUERY = """SELECT ?object ?kind ?lesson WHERE {
   ?match dx:category ?category ; dx:ofRole/dx:ofKind ?kind ; prov:wasGeneratedBy ?lesson .
   ?category rdfs:label ?object ; rdfs:subClassOf dx:Cutlery .
 } ORDER BY ?object"""
+
+MORE_TABLES = (8, 9)
+"""Seeds of the tables from which what things look like is learned, beside the first."""
 
 
 def tell(out: Path) -> None:
@@ -83,6 +88,44 @@ def _remembered(console: Console, session: Session, full: Script, scene: Scene, 
     _listing(console, check_lines(checked))
     plot_check(checked, second, out / "second_table.png")
     _say(console, f"Picture: {out / 'second_table.png'}")
+    _seen(console, session, full, out)
+
+
+def _seen(console: Console, session: Session, full: Script, out: Path) -> None:
+    """The part of the story that begins with a point cloud."""
+    from deixis.laying import lay_script
+    from deixis.perceiving import Perceived, perceive, write_perceived
+    from deixis.plot_seen import plot_perceived, plot_recognised
+    from deixis.simulation import simulate
+
+    def look(seed: int) -> Perceived:
+        return perceive(simulate(lay_script(full, seed), seed=seed).cloud)
+
+    _chapter(console, 10, "The same with a depth camera, simulated: points, and no boxes")
+    first = look(7)
+    table = write_perceived(first, out / "table.scene.json")
+    _say(console, f"{len(first.cloud)} points; {len(table.objects)} things found on the table.")
+    plot_perceived(first, out / "table.png")
+    _say(console, f"Picture: {out / 'table.png'}")
+    taught = session.learn(full, table)
+    _listing(console, grounding_lines(taught.grounding)[: len(taught.grounding.matches)])
+    for seed in MORE_TABLES:
+        session.learn(full, write_perceived(look(seed), out / f"table-{seed}.scene.json"))
+    views = sum(session.categories().values())
+    _say(console, f"After {len(MORE_TABLES)} more tables it has kept {views} views, each under its name.")
+
+    _chapter(console, 11, "Another table of points, and nobody says a word. What looks familiar?")
+    found = session.recognise(write_perceived(look(20), out / "another.scene.json"))
+    _listing(console, [f"{id:<5} {_name(answer)}" for id, answer in found.answers.items()])
+    plot_recognised(found, out / "another.png")
+    _say(console, f"Picture: {out / 'another.png'}")
+
+
+def _name(answer: Recognition) -> str:
+    nearest = answer.candidates[0]
+    if answer.label is not None:
+        return f"{answer.label:<16} {answer.probability:.2f}"
+    return f"unknown; most like {nearest.category} (ND {nearest.normalised:.2f})"
 
 
 def full_text(name: str) -> list[str]:
