@@ -1,4 +1,4 @@
-"""The commands that run experiments: the paper's Figure 6 again, and the scoreboard of all engines."""
+"""The commands that run experiments: the paper's Figure 6, the scoreboard of engines, open-ended learning."""
 
 from __future__ import annotations
 
@@ -69,6 +69,36 @@ def scoreboard(
         print_lines(lines(found))
 
 
+@experiment.command("open-ended")
+def open_ended(
+    orders: Annotated[int, typer.Option(min=1, help="Random orders of teaching.")] = 10,
+    seed: Seed = 1,
+    quick: Annotated[bool, typer.Option("--quick", help="Nine kinds, no meshes, in a minute or two.")] = False,
+    cache: Annotated[Path | None, typer.Option(metavar="DIR", help="Where described views are kept.")] = None,
+    plot: Annotated[Path | None, typer.Option(metavar="FILE", help="Draw it (.png, .svg, .pdf).")] = None,
+    as_json: AsJson = False,
+) -> None:
+    """Teach every learner kind after kind, in random orders, until it learns no more."""
+    from deixis.experiments.open_ended.report import to_dict
+    from deixis.experiments.open_ended.run import Plan, run
+    from deixis.experiments.open_ended.text import lines
+    from deixis.experiments.open_ended.things import meshes_folder
+    from deixis.plot import require_picture
+
+    if plot is not None:
+        require_picture(plot)
+    plan = Plan(orders=orders, seed=seed, meshes=meshes_folder(), cache=cache)
+    found = run(plan.quick() if quick else plan, stage=progress)
+    if plot is not None:
+        from deixis.experiments.open_ended.plot import plot_open_ended
+
+        plot_open_ended(found, plot)
+    if as_json:
+        print_json(to_dict(found))
+    else:
+        print_lines(lines(found))
+
+
 @contextmanager
 def progress(total: int) -> Iterator[Callable[[str], None]]:
     """A progress bar on standard error; to be told, ``total`` times, what has just been done."""
@@ -77,7 +107,7 @@ def progress(total: int) -> Iterator[Callable[[str], None]]:
 
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
     with Progress(*columns, console=Console(stderr=True), transient=True, disable=not sys.stderr.isatty()) as bar:
-        task = bar.add_task("scoreboard", total=total)
+        task = bar.add_task("experiment", total=total)
         yield lambda done: bar.update(task, advance=1, description=done)
 
 

@@ -1,0 +1,67 @@
+"""A description of each word's own views, learnt without any other's: one-class learning."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.perception.recognition.errors import RecognitionError
+from deixis.perception.recognition.learners.learner import Prediction
+from deixis.perception.recognition.learners.taught_views import TaughtViews
+from deixis.perception.recognition.learners.view_features import ViewFeatures, pooled
+
+SHAPES = ("spin_images", "good", "d2_extents")
+"""What a view's vector is pooled from."""
+
+
+class SupportVectorDescription(TaughtViews):
+    """A support vector data description (SVDD) per word over a view's pooled descriptors, with an RBF kernel.
+
+    Taken from L. Seabra Lopes, A. Chauhan: How many words can my robot learn? An approach and experiments with
+    one-class learning, Interaction Studies 8(1), 2007: a word is described by its own instances alone, so that a new
+    word disturbs no other; it is retrained when an instance is added; a view belongs to the word whose boundary it is
+    deepest within, or least outside, distances being over the size of the description. Left out: their features of 2-D
+    contours, and the words' names in speech.
+
+    scikit-learn's one-class SVM is used: with a kernel whose k(x, x) is constant, as of the RBF, it finds the same
+    support vectors as the smallest ball of SVDD (Schoelkopf et al. 2001). With f(x) = sum of a_i k(x_i, x), which is
+    rho on the boundary, scores are f(x) / rho: 1 there, more inside. ``outliers`` is nu, the share of a word's own
+    views that may lie outside; ``reach`` is the width of the kernel, exp(-|x - y|^2 / reach^2).
+    """
+
+    name = "SVDD"
+
+    def __init__(self, descriptors: Sequence[str] = SHAPES, outliers: float = 0.1, reach: float = 0.5) -> None:
+        super().__init__()
+        if not 0.0 < outliers < 1.0 or not reach > 0.0:
+            raise RecognitionError(f"a share of outliers in (0, 1) and a reach above 0, not {outliers:g} and {reach:g}")
+        self._descriptors, self._outliers, self._gamma = tuple(descriptors), outliers, reach**-2
+        self._machines: dict[str, Any] = {}
+
+    def predict(self, view: ViewFeatures) -> Prediction:
+        """Ranks by how deep within each word's description the view lies; unknown is one less the best score."""
+        vector = pooled(view, self._descriptors)
+        if vector is None or not self._machines:
+            return Prediction()
+        scores = {name: _depth(machine, vector) for name, machine in self._machines.items()}
+        return Prediction.of(scores, 1.0 - max(scores.values()))
+
+    def _added(self, category: str, view: ViewFeatures) -> None:
+        self._rebuilt(category, self._views[category])
+
+    def _rebuilt(self, category: str, views: tuple[ViewFeatures, ...]) -> None:
+        self._machines.pop(category, None)
+        vectors = [vector for view in views if (vector := pooled(view, self._descriptors)) is not None]
+        if vectors:
+            from sklearn.svm import OneClassSVM
+
+            machine = OneClassSVM(kernel="rbf", gamma=self._gamma, nu=self._outliers)
+            self._machines[category] = machine.fit(np.stack(vectors))
+
+
+def _depth(machine: Any, vector: NDArray[np.float64]) -> float:
+    rho = -float(np.ravel(machine.intercept_)[0])
+    return float(machine.score_samples(vector[None])[0]) / max(rho, 1e-12)

@@ -1,0 +1,1 @@
+"""Open-ended learning: learners are taught kind after kind by a simulated teacher, until they learn no more."""

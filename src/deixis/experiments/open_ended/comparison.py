@@ -1,0 +1,87 @@
+"""Single views, named by what is nearest: how often rightly, and how well the unknown is told from the known."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.experiments.open_ended.contestants import D2
+from deixis.experiments.open_ended.shown import Shown
+from deixis.experiments.open_ended.splits import Split
+from deixis.perception.recognition.distances import Target, view_distances
+from deixis.perception.recognition.learners.instance_based import shrunk
+from deixis.perception.recognition.learners.view_features import roots
+from deixis.perception.recognition.views import PackedViews
+
+Matrix = NDArray[np.float32]
+
+
+@dataclass(frozen=True)
+class Nearest:
+    """A way to name a view: by D_C (``shrinkage`` None) or by ND; over spin images, or D2 and extents."""
+
+    name: str
+    spin_images: bool
+    shrinkage: float | None
+
+
+@dataclass(frozen=True)
+class Scores:
+    """The share of views named rightly, and the AUROC of the least ND (or D_C) as a sign of what is unknown: each
+    asked view once as it is, and once with its category left out of what was taught."""
+
+    accuracy: float
+    auroc: float
+
+
+def spin_distances(shown: Shown, tick: Callable[[str], None]) -> Matrix:
+    """D_V (n, n) from each view, a row, to each, by square roots of spin images."""
+    sets = [roots(view["spin_images"]) for view in shown.views]
+    packed = PackedViews.of((str(number), rows) for number, rows in enumerate(sets))
+    out = np.empty((len(sets), len(sets)), np.float32)
+    for number, rows in enumerate(sets):
+        out[number] = view_distances(Target.of(rows), packed)
+        tick(f"{shown.name}: distances")
+    return out
+
+
+def d2_distances(shown: Shown) -> Matrix:
+    """Euclidean distances (n, n) of D2 histograms and extents."""
+    rows = np.concatenate([view[D2] for view in shown.views])
+    return np.stack([np.linalg.norm(rows - row, axis=1) for row in rows])
+
+
+def compared(shown: Shown, distances: Matrix, split: Split, shrinkage: float | None) -> Scores:
+    """One way of naming on one split."""
+    kinds = np.array(shown.kinds)
+    category = np.searchsorted(kinds, shown.categories)
+    places = [split.taught[category[split.taught] == number] for number in range(len(kinds))]
+    nearest = np.stack([distances[np.ix_(split.asked, views)].min(axis=1) for views in places], axis=1)
+    if shrinkage is not None:
+        widths = [_intra(distances, views) for views in places]
+        nearest = nearest / shrunk(widths, [len(views) for views in places], shrinkage)
+    right = category[split.asked]
+    left_out = nearest.copy()
+    left_out[np.arange(len(right)), right] = np.inf
+    accuracy = float((nearest.argmin(axis=1) == right).mean())
+    return Scores(accuracy, auroc(nearest.min(axis=1), left_out.min(axis=1)))
+
+
+def auroc(known: NDArray[np.floating], unknown: NDArray[np.floating]) -> float:
+    """The probability that something unknown has a higher score than something known; equal ones count half.
+
+    >>> auroc(np.array([1.0, 2.0]), np.array([2.0, 3.0]))
+    0.875
+    """
+    order = np.sort(known)
+    below, upto = np.searchsorted(order, unknown, "left"), np.searchsorted(order, unknown, "right")
+    return float((below + upto).mean() / (2 * len(known)))
+
+
+def _intra(distances: Matrix, views: NDArray[np.int64]) -> float:
+    """ICD (equation 3) of two views or more."""
+    some = distances[np.ix_(views, views)].astype(np.float64)
+    return float((some.sum() - np.trace(some)) / (len(views) * (len(views) - 1)))

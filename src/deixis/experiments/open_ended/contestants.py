@@ -1,0 +1,39 @@
+"""The learners that are compared, each made anew for every course."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+from deixis.perception.recognition.learners.codebook import Codebook
+from deixis.perception.recognition.learners.committee import Committee
+from deixis.perception.recognition.learners.instance_based import InstanceBased
+from deixis.perception.recognition.learners.learner import Learner
+from deixis.perception.recognition.learners.naive_bayes import NaiveBayes
+from deixis.perception.recognition.learners.one_class import SupportVectorDescription
+from deixis.perception.recognition.learners.vector_quantisation import VectorQuantisation
+
+PAPER = "equations 1-4"
+SHRUNK = "eqs. 1-4, ICD shrunk"
+NEAREST = "equations 1-2"
+D2 = "d2_extents"
+
+Contestants = Mapping[str, Callable[[], Learner]]
+
+
+def contestants(codebook: Codebook) -> Contestants:
+    """Every learner by name, the paper's first."""
+    return {
+        PAPER: lambda: InstanceBased(shrinkage=0.0, name=PAPER),
+        SHRUNK: lambda: InstanceBased(name=SHRUNK),
+        NEAREST: lambda: InstanceBased(by_distance=True, name=NEAREST),
+        "D2 and extents": lambda: InstanceBased(D2, root=False, by_distance=True, name="D2 and extents"),
+        "SVDD": SupportVectorDescription,
+        "committee": lambda: _committee(codebook),
+        "LVQ": VectorQuantisation,
+        "naive Bayes": lambda: NaiveBayes(codebook),
+    }
+
+
+def _committee(codebook: Codebook) -> Committee:
+    members: list[Learner] = [InstanceBased(name=SHRUNK), InstanceBased("good", name="good")]
+    return Committee([*members, InstanceBased(D2, name=D2), NaiveBayes(codebook)])

@@ -1,0 +1,172 @@
+"""The whole experiment: what is run is stated in a plan, and the same plan gives the same figures."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import AbstractContextManager, contextmanager
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from deixis.experiments.open_ended.comparison import Nearest, Scores, compared, d2_distances, spin_distances
+from deixis.experiments.open_ended.contestants import NEAREST, PAPER, SHRUNK, Contestants, contestants
+from deixis.experiments.open_ended.shown import Shown, described, kept
+from deixis.experiments.open_ended.splits import Split, by_things, by_views
+from deixis.experiments.open_ended.things import FOLDER, from_meshes, rows_of, simulated
+from deixis.perception.recognition.learners.codebook import Codebook
+from deixis.perception.recognition.learners.instance_based import SHRINKAGE
+from deixis.perception.recognition.learners.learner import Learner
+from deixis.perception.recognition.learners.view_features import ViewFeatures
+from deixis.perception.recognition.teaching import Course, Teaching, teach
+from deixis.perception.simulator.tableware import FORMS
+
+Tick = Callable[[str], None]
+Stage = Callable[[int], AbstractContextManager[Tick]]
+"""Opens a stage of so many steps, and gives what is to be told after each."""
+
+WAYS = (
+    Nearest(NEAREST, True, None),
+    Nearest(PAPER, True, 0.0),
+    Nearest(SHRUNK, True, SHRINKAGE),
+    Nearest("D2 and extents", False, None),
+)
+SPLITS = {"new things": by_things, "new views of things taught": by_views}
+
+FEW = ("Plate", "Bowl", "Mug", "WineGlass", "Fork", "Knife", "Spoon", "Napkin", "Bottle")
+"""The kinds of a quick run."""
+
+
+@dataclass(frozen=True)
+class Plan:
+    """``instances`` of each of the simulator's ``kinds``, in ``views`` views each; ``mesh_views`` views of each
+    category of meshes. Each learner is taught in ``orders`` random orders, each with a split of its own."""
+
+    orders: int = 10
+    seed: int = 1
+    kinds: tuple[str, ...] = tuple(FORMS)
+    instances: int = 30
+    views: int = 2
+    mesh_views: int = 60
+    asked: int = 10  # views a category of things never taught, after each course
+    teaching: Teaching = Teaching()  # noqa: RUF009 (frozen)
+    meshes: Path | None = None
+    cache: Path | None = None
+
+    def quick(self) -> Plan:
+        """A small part of it, in a minute or two: few of the simulator's kinds, and no meshes."""
+        return replace(self, orders=min(self.orders, 3), kinds=FEW, meshes=None)
+
+    def seeds(self) -> range:
+        """Those of the orders."""
+        return range(self.seed, self.seed + self.orders)
+
+
+@dataclass(frozen=True)
+class Taught:
+    """A course, and the share of views of things never taught that the learner named rightly after it."""
+
+    contestant: str
+    course: Course
+    afterwards: float
+
+
+@dataclass(frozen=True, eq=False)
+class Findings:
+    """What was found over one set of things: courses, one for each contestant and order, and single views."""
+
+    name: str
+    kinds: tuple[str, ...]
+    things: int
+    views: int
+    taught: tuple[Taught, ...]
+    nearest: dict[tuple[str, str], tuple[Scores, ...]]  # (split, way): one for each order
+
+    def of(self, contestant: str) -> list[Taught]:
+        """The courses of one contestant."""
+        return [one for one in self.taught if one.contestant == contestant]
+
+
+@dataclass(frozen=True, eq=False)
+class OpenEnded:
+    """The plan, what was found over each set of things, and what was left out."""
+
+    plan: Plan
+    findings: tuple[Findings, ...]
+    skipped: tuple[str, ...]
+
+
+@contextmanager
+def silent(_: int) -> Iterator[Tick]:
+    """A stage that shows nothing."""
+    yield lambda _: None
+
+
+def run(plan: Plan, stage: Stage = silent, entered: Sequence[str] | None = None) -> OpenEnded:
+    """Runs everything; ``entered`` are the contestants, all if None."""
+    codebook = Codebook.of(_simulated(plan, 2, plan.seed + 1000, stage).views, seed=plan.seed)
+    able = {name: make for name, make in contestants(codebook).items() if entered is None or name in entered}
+    sets = [_simulated(plan, plan.instances, plan.seed, stage)]
+    skipped = []
+    if plan.meshes is None:
+        skipped.append(f"meshes: a quick run has none, another those that DEIXIS_DATA leads to ({FOLDER}/)")
+    else:
+        sets.append(_meshes(plan, plan.meshes, stage))
+    return OpenEnded(plan, tuple(_found(plan, shown, able, stage) for shown in sets), tuple(skipped))
+
+
+def _simulated(plan: Plan, instances: int, seed: int, stage: Stage) -> Shown:
+    def make() -> Shown:
+        with stage(instances * len(plan.kinds)) as tick:
+            return described("simulator", simulated(plan.kinds, instances, plan.views, seed), tick)
+
+    return kept(plan.cache, f"simulator {plan.kinds} {instances} {plan.views} {seed}", make)
+
+
+def _meshes(plan: Plan, folder: Path, stage: Stage) -> Shown:
+    def make() -> Shown:
+        with stage(len(rows_of(folder))) as tick:
+            return described("meshes", from_meshes(folder, plan.mesh_views, plan.seed), tick)
+
+    return kept(plan.cache, f"meshes {folder.resolve()} {plan.mesh_views} {plan.seed}", make)
+
+
+def _found(plan: Plan, shown: Shown, able: Contestants, stage: Stage) -> Findings:
+    with stage(len(able) * plan.orders) as tick:
+        taught = tuple(
+            _taught(plan, shown, name, make, seed, tick) for name, make in able.items() for seed in plan.seeds()
+        )
+    things = len(np.unique(shown.instances))
+    return Findings(shown.name, shown.kinds, things, len(shown.views), taught, _nearest(plan, shown, stage))
+
+
+def _taught(plan: Plan, shown: Shown, name: str, make: Callable[[], Learner], seed: int, tick: Tick) -> Taught:
+    """One course: everything about it follows from the seed, and is the same for every contestant."""
+    split, learner = by_things(shown, seed), make()
+    order = [str(kind) for kind in np.random.default_rng(seed).permutation(shown.kinds)]
+    course = teach(learner, _views(shown, split, None), order, plan.teaching, seed)
+    rest = _views(shown, split, plan.asked)
+    known = order[: len(course.introduced)]
+    right = [learner.predict(view).best == kind for kind in known for view in rest[kind]]
+    tick(f"{shown.name}: {name}")
+    return Taught(name, course, float(np.mean(right)))
+
+
+def _views(shown: Shown, split: Split, asked: int | None) -> dict[str, list[ViewFeatures]]:
+    places = split.taught if asked is None else split.asked
+    found: dict[str, list[ViewFeatures]] = {kind: [] for kind in shown.kinds}
+    for place in places:
+        found[shown.categories[place]].append(shown.views[place])
+    return {kind: views[:asked] for kind, views in found.items()}
+
+
+def _nearest(plan: Plan, shown: Shown, stage: Stage) -> dict[tuple[str, str], tuple[Scores, ...]]:
+    with stage(len(shown.views)) as tick:
+        matrices = {True: spin_distances(shown, tick), False: d2_distances(shown)}
+    return {
+        (title, way.name): tuple(
+            compared(shown, matrices[way.spin_images], cut(shown, seed), way.shrinkage) for seed in plan.seeds()
+        )
+        for title, cut in SPLITS.items()
+        for way in WAYS
+    }

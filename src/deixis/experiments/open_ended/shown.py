@@ -1,0 +1,127 @@
+"""Described views of things, with what they are and which things they are, kept on disk between runs."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import NamedTuple
+from zipfile import BadZipFile
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.ontology.errors import DeixisError
+from deixis.perception.clouds.cloud import PointCloud
+from deixis.perception.features.d2_extents import D2ExtentsDescriber
+from deixis.perception.features.describer import Describer
+from deixis.perception.features.good import GoodDescriber
+from deixis.perception.features.spin_describer import SpinImageDescriber
+from deixis.perception.recognition.learners.view_features import ViewFeatures, features_of
+
+DESCRIBERS: tuple[Describer, ...] = (
+    SpinImageDescriber(support=0.2, voxel=0.025),
+    GoodDescriber(),
+    D2ExtentsDescriber(),
+)
+"""Settings are the same for all data. The support was chosen on the simulator's views (docs/open_ended.md)."""
+
+
+class Seen(NamedTuple):
+    """A thing and views of it; ``instance`` tells things of a category apart."""
+
+    category: str
+    instance: str
+    clouds: list[PointCloud]
+
+
+@dataclass(frozen=True, eq=False)
+class Shown:
+    """n described views; ``instances`` are numbers, no two categories having one in common."""
+
+    name: str
+    categories: tuple[str, ...]  # (n,)
+    instances: NDArray[np.int64]  # (n,)
+    views: tuple[ViewFeatures, ...]
+
+    @property
+    def kinds(self) -> tuple[str, ...]:
+        """The categories, each once, in alphabetical order."""
+        return tuple(sorted(set(self.categories)))
+
+    def of(self, category: str, instances: Iterable[int] | None = None) -> NDArray[np.int64]:
+        """The places of a category's views, of some of its instances only if these are given."""
+        chosen = np.array(self.categories) == category
+        if instances is not None:
+            chosen &= np.isin(self.instances, list(instances))
+        return np.flatnonzero(chosen)
+
+    def instances_of(self, category: str) -> NDArray[np.int64]:
+        """The numbers of a category's instances."""
+        return np.unique(self.instances[self.of(category)])
+
+
+def described(name: str, things: Iterable[Seen], tick: Callable[[str], None] = lambda _: None) -> Shown:
+    """Describes all views; those that a describer finds nothing in are left out. ``tick`` is called for each thing."""
+    categories: list[str] = []
+    instances: list[int] = []
+    views: list[ViewFeatures] = []
+    for number, thing in enumerate(things):
+        found = [features_of(cloud, DESCRIBERS) for cloud in thing.clouds]
+        usable = [view for view in found if all(view.has(describer.name) for describer in DESCRIBERS)]
+        views += usable
+        categories += [thing.category] * len(usable)
+        instances += [number] * len(usable)
+        tick(f"{name}: {thing.category}")
+    return Shown(name, tuple(categories), np.array(instances, np.int64), tuple(views))
+
+
+class CacheError(DeixisError, OSError):
+    """A folder in which views cannot be kept."""
+
+
+def kept(folder: Path | None, key: str, make: Callable[[], Shown]) -> Shown:
+    """What ``make`` gives, or what it gave before: the file is named after ``key`` and the describers' settings.
+
+    A file that cannot be read is made again. Raises CacheError where none can be written.
+    """
+    if folder is None:
+        return make()
+    digest = hashlib.sha256(f"{key} {DESCRIBERS}".encode()).hexdigest()[:16]
+    file = folder / f"views-{digest}.npz"
+    try:
+        return _read(file)
+    except (OSError, ValueError, KeyError, BadZipFile):
+        shown = make()
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        _write(shown, file)
+    except OSError as error:
+        raise CacheError(f"{folder}: views cannot be kept here ({error.strerror}); choose another folder") from error
+    return shown
+
+
+def _write(shown: Shown, file: Path) -> None:
+    arrays: dict[str, NDArray[np.generic]] = {
+        "name": np.array(shown.name),
+        "categories": np.array(shown.categories),
+        "instances": shown.instances,
+    }
+    for describer in DESCRIBERS:
+        parts = [view[describer.name] for view in shown.views]
+        arrays[f"{describer.name} lengths"] = np.array([len(part) for part in parts])
+        arrays[describer.name] = np.concatenate(parts)
+    unfinished = file.with_suffix(".part.npz")
+    np.savez(unfinished, allow_pickle=False, **arrays)
+    unfinished.replace(file)
+
+
+def _read(file: Path) -> Shown:
+    with open(file, "rb") as stream, np.load(stream, allow_pickle=False) as stored:
+        split = {
+            describer.name: np.split(stored[describer.name], np.cumsum(stored[f"{describer.name} lengths"])[:-1])
+            for describer in DESCRIBERS
+        }
+        views = [ViewFeatures(dict(zip(split, parts, strict=True))) for parts in zip(*split.values(), strict=True)]
+        return Shown(str(stored["name"]), tuple(map(str, stored["categories"])), stored["instances"], tuple(views))

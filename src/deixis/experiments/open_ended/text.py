@@ -1,0 +1,82 @@
+"""The findings as text of at most 120 columns."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from textwrap import wrap
+
+import numpy as np
+
+from deixis.experiments.open_ended.run import SPLITS, WAYS, Findings, OpenEnded, Taught
+from deixis.experiments.open_ended.shown import DESCRIBERS
+from deixis.perception.recognition.teaching import End
+
+NAME = 21
+MEASURES: dict[str, Callable[[Taught], float]] = {
+    "QCI": lambda one: one.course.iterations,
+    "ALC": lambda one: one.course.learnt,
+    "AIC": lambda one: one.course.instances,
+    "GCA": lambda one: one.course.global_accuracy,
+    "APA": lambda one: one.course.protocol_accuracy,
+    "new": lambda one: one.afterwards,
+}
+
+
+def lines(found: OpenEnded) -> list[str]:
+    """Everything, from what was run to the figures."""
+    return [line.rstrip() for line in [*_head(found), *(line for one in found.findings for line in _set(found, one))]]
+
+
+def _head(found: OpenEnded) -> Iterator[str]:
+    plan, teaching = found.plan, found.plan.teaching
+    seeds = plan.seeds()
+    yield f"Open-ended learning in {plan.orders} random orders, seeds {seeds[0]} to {seeds[-1]}"
+    yield (
+        f"Teacher: {teaching.first} views introduce a category, the next one comes when accuracy over the last"
+        f" {teaching.window}n answers is above {teaching.threshold:g};"
+    )
+    yield f"patience {teaching.patience} answers. Half of the things of a category are taught, the others are new."
+    for describer in DESCRIBERS:
+        yield from wrap(repr(describer), 116, initial_indent="  ", subsequent_indent="    ")
+    yield from (f"  skipped: {note}" for note in found.skipped)
+    yield ""
+    yield "Means and standard deviations over orders. QCI: question and correction iterations; ALC: categories learnt;"
+    yield "AIC: instances stored per category; GCA: share of right answers; APA: mean of what the teacher watched;"
+    yield "new: share right, in the end, on things never taught; all: orders in which every category was learnt."
+
+
+def _set(found: OpenEnded, one: Findings) -> Iterator[str]:
+    yield ""
+    yield f"{one.name}: {len(one.kinds)} categories, {one.things} things, {one.views} views"
+    yield f"{'':<{NAME}}" + "".join(f" {measure:>12}" for measure in MEASURES) + " least GCA  all"
+    for name in dict.fromkeys(taught.contestant for taught in one.taught):
+        yield _row(name, one.of(name))
+    yield ""
+    yield f"Single views of the {one.name}: accuracy and, with categories left out, AUROC of unknown"
+    yield f"{'':<{NAME}}" + "".join(f" {title:>27}" for title in SPLITS)
+    yield f"{'':<{NAME}}" + f" {'accuracy':>13} {'AUROC':>13}" * len(SPLITS)
+    for way in WAYS:
+        cells = [one.nearest[title, way.name] for title in SPLITS]
+        texts = [f"{spread([s.accuracy for s in cell]):>13} {spread([s.auroc for s in cell]):>13}" for cell in cells]
+        yield f"{way.name:<{NAME}} " + " ".join(texts)
+
+
+def _row(name: str, courses: Sequence[Taught]) -> str:
+    cells = "".join(f" {spread([measure(one) for one in courses]):>12}" for measure in MEASURES.values())
+    least = min(one.course.global_accuracy for one in courses)
+    whole = sum(one.course.end is End.LEARNT for one in courses)
+    return f"{name:<{NAME}}{cells} {least:>9.2f} {whole:>4}/{len(courses)}"
+
+
+def spread(values: Sequence[float]) -> str:
+    """Mean and standard deviation (n - 1); the mean alone of one value.
+
+    >>> spread([0.5, 0.7]), spread([12.0]), spread([171.0, 175.0])
+    ('0.60 ± 0.14', '12', '173 ± 2.8')
+    """
+    mean = float(np.mean(values))
+    text = f"{mean:.3g}" if abs(mean) >= 2 else f"{mean:.2f}"
+    if len(values) < 2:
+        return text
+    deviation = float(np.std(values, ddof=1))
+    return f"{text} ± {deviation:.1f}" if abs(mean) >= 2 else f"{text} ± {deviation:.2f}"
