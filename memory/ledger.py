@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from datetime import UTC, datetime
 from itertools import islice
 
 import pyoxigraph as ox
@@ -26,6 +27,9 @@ Triples = Mapping[GraphName, frozenset[ox.Triple]]
 
 _STARTED = ox.NamedNode(PROV.STARTED_AT_TIME)
 
+NEVER = datetime.min.replace(tzinfo=UTC)
+"""When a lesson started that does not say so: before all others."""
+
 
 def lessons(store: ox.Store) -> tuple[str, ...]:
     """The lessons that a store holds, in the order learned: by when they started, then by id."""
@@ -33,10 +37,19 @@ def lessons(store: ox.Store) -> tuple[str, ...]:
     return tuple(sorted(found, key=lambda lesson: (_started(store, lesson), lesson)))
 
 
-def _started(store: ox.Store, lesson: str) -> str:
+def _started(store: ox.Store, lesson: str) -> datetime:
+    """When a lesson started; as text, times do not sort, since the store drops zeros at the end of a fraction."""
     node, episodes = ox.NamedNode(learned_iri("lesson", lesson)), graph_iri(GraphName.EPISODES)
     times = (getattr(quad.object, "value", "") for quad in store.quads_for_pattern(node, _STARTED, None, episodes))
-    return min(times, default="")
+    return min((time for text in times if (time := _time(text)) is not None), default=NEVER)
+
+
+def _time(text: str) -> datetime | None:
+    try:
+        time = datetime.fromisoformat(text)
+    except ValueError:
+        return None
+    return time if time.tzinfo is not None else time.replace(tzinfo=UTC)
 
 
 def triples_in(store: ox.Store, graph: ox.NamedNode) -> Iterator[ox.Triple]:

@@ -65,10 +65,15 @@ class MatchRecord:
 
     @property
     def sureness(self) -> float:
-        """How sure that is, 0 to 1: the probability; without one 1, or an equal share among what it could be."""
+        """How sure that is, 0 to 1: the probability; without one 1, or an equal share among what it could be.
+
+        0 where it is not decided, and not known what else it could be.
+        """
         if self.probability is not None:
             return self.probability
-        return 1.0 if self.perceived is not None else 1.0 / max(len(self.could_be), 1)
+        if self.perceived is not None:
+            return 1.0
+        return 1.0 / len(self.could_be) if len(self.could_be) > 1 else 0.0
 
 
 @dataclass(frozen=True, slots=True)

@@ -100,10 +100,13 @@ def described(description: RelationGraph) -> PaperGraph:
     return with_same_word(description, MAX_DESCRIBED).paper_view()
 
 
-def paper_similarity(evidence: Evidence, members: NDArray[np.bool_] | None = None) -> NodeSimilarity:
+def paper_similarity(
+    evidence: Evidence, members: NDArray[np.bool_] | None = None, deadline: float = math.inf
+) -> NodeSimilarity:
     """Equations 5 to 9 for the evidence: certain labels forbid pairs, uncertain ones multiply equation 5."""
     first, second = described(evidence.description), evidence.scene.paper_view()
-    return node_similarity(first, second, members, _prior(evidence), iterations=_iterations(first, second))
+    iterations = _iterations(first, second)
+    return node_similarity(first, second, members, _prior(evidence), iterations=iterations, deadline=deadline)
 
 
 def _prior(evidence: Evidence) -> NDArray[np.float64]:

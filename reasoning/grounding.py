@@ -36,6 +36,9 @@ DROPPING = 0.1
 WORTH_NAMING = 0.01
 """Probability from which an alternative is named."""
 
+MANY_FELLOWS = 100
+"""Interchangeable objects up to which each lists the others' things: of k that would be k * k."""
+
 
 def ground(
     evidence: Evidence, engine: Engine, time_limit: float = DEFAULT_TIME_LIMIT, notes: tuple[str, ...] = ()
@@ -156,8 +159,7 @@ def _decided(evidence: Evidence, alignment: Alignment, i: int, grouped: bool) ->
     if alignment.posterior is None:
         similar = alignment.margins is not None and bool(alignment.margins[i] > 1e-9)
         return bool(evidence.allowed[i].sum() == 1) or (similar and not grouped)
-    known = alignment.posterior.exact or math.isfinite(alignment.posterior.error)
-    return known and bool(alignment.posterior.marginals[i, alignment.assignment[i]] >= DECIDED)
+    return bool(alignment.posterior.marginals[i, alignment.assignment[i]] >= DECIDED)
 
 
 def _alternatives(
@@ -185,11 +187,11 @@ def _probable(evidence: Evidence, alignment: Alignment, i: int) -> list[Alternat
 def _similar(
     evidence: Evidence, alignment: Alignment, i: int, groups: tuple[tuple[str, ...], ...]
 ) -> list[Alternative]:
-    """The object's interchangeable fellows' things, which cost nothing, and the engine's next best choice."""
+    """Interchangeable fellows' things, which cost nothing, if not too many; and the engine's next best choice."""
     name = evidence.description.nodes[i]
     found: dict[str, float] = {}
     for group in groups:
-        if name in group:
+        if name in group and len(group) <= MANY_FELLOWS:
             fellows = (evidence.description.index(other) for other in group if other != name)
             matched = (alignment.assignment[j] for j in fellows if alignment.assignment[j] != UNMATCHED)
             found |= {evidence.scene.nodes[p]: 0.0 for p in matched}

@@ -6,6 +6,7 @@ by how much likelier it makes a match than chance does, and leaving an object ou
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -23,6 +24,9 @@ from deixis.reasoning.matching.scalable import scalable
 
 PROOF, SEARCH = 0.5, 0.8
 """Shares of the time that a proof, and a search without one, may take; the rest is for the probabilities."""
+
+COMPARISON = 0.3
+"""Share of that rest that the similarity may take."""
 
 
 @dataclass(frozen=True)
@@ -67,8 +71,12 @@ def _answer(
     proved: bool,
     notes: tuple[str, ...],
 ) -> Alignment:
-    """The map with its probability, and the paper's similarity for comparison."""
-    similarity = paper_similarity(evidence)
+    """The map with its probability, where the time sufficed for one, and the paper's similarity for comparison."""
+    now = time.perf_counter()
+    similarity = paper_similarity(evidence, deadline=now + COMPARISON * (deadline - now))
+    probable = posterior(evidence.problem, deadline)
+    known = math.isfinite(probable.error)
+    notes += () if known else ("there was no time to find out how probable the matches are",)
     return Alignment(
         engine=engine,
         assignment=assignment,
@@ -76,5 +84,5 @@ def _answer(
         converged=bool(similarity.converged[0]),
         proved_best=proved,
         notes=notes,
-        posterior=posterior(evidence.problem, deadline),
+        posterior=probable if known else None,
     )

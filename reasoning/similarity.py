@@ -8,12 +8,18 @@ collapses to zero, which it does where the graphs share no label.
 
 from __future__ import annotations
 
+import math
+import time
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from deixis.ontology.graph import PaperGraph
+
+if TYPE_CHECKING:
+    from scipy.sparse import csr_array
 
 TOLERANCE = 1e-8
 ITERATIONS = 500
@@ -40,11 +46,12 @@ def node_similarity(
     prior: NDArray[np.float64] | None = None,
     tolerance: float = TOLERANCE,
     iterations: int = ITERATIONS,
+    deadline: float = math.inf,
 ) -> NodeSimilarity:
     """Iterates equations 5 to 9 for induced sub-graphs of ``first`` against the whole of ``second``.
 
     ``members`` (b, n1) says which nodes each sub-graph has (default: one, of all nodes). ``prior`` (n1, n2), at least
-    0, multiplies equation 5: 0 forbids a pair, 1 leaves it.
+    0, multiplies equation 5: 0 forbids a pair, 1 leaves it. At the ``deadline`` (``time.perf_counter``) it stops.
 
     >>> import numpy as np
     >>> graph = PaperGraph(("a", "b"), ("a", "b"), np.array([[0, 1]], np.int32), np.zeros(1, np.int8), ("left",))
@@ -58,7 +65,7 @@ def node_similarity(
     matrices = _normalised(base)
     converged = np.zeros(len(kept), dtype=bool)
     done = 0
-    while done < iterations and not converged.all():
+    while done < iterations and not converged.all() and time.perf_counter() < deadline:
         following = _normalised(step.neighbourhood(matrices) * base)
         converged = np.abs(following - matrices).max(axis=(0, 2), initial=0.0) <= tolerance
         matrices = following
@@ -76,7 +83,8 @@ def _normalised(matrices: NDArray[np.float64]) -> NDArray[np.float64]:
 class _Step:
     """Equations 5 to 7 on arrays of shape (n1, b, n2): b sub-graphs of the first graph, L shared labels.
 
-    Nodes of the first graph come first, so that what one of its edges carries is one product of matrices.
+    Nodes of the first graph come first, so that what its edges of one label carry is two products of matrices, one of
+    them sparse.
     """
 
     def __init__(self, first: PaperGraph, second: PaperGraph, kept: NDArray[np.bool_]) -> None:
@@ -84,6 +92,7 @@ class _Step:
         self._kept = kept.T.copy()
         self._sizes = kept.sum(axis=1) * len(second.vertices)
         self._edges = _labelled_edges(first, shared)
+        self._forward, self._backward = self._by_label(len(shared))
         adjacency = second.adjacency()[shared]
         self._in1, self._out1 = self._degrees(len(shared))
         self._in2, self._out2 = adjacency.sum(axis=1), adjacency.sum(axis=2)
@@ -100,6 +109,17 @@ class _Step:
             incoming[label, end] += present
             outgoing[label, start] += present
         return incoming, outgoing
+
+    def _by_label(self, labels: int) -> tuple[list[csr_array], list[csr_array]]:
+        """The first graph's edges of each label, from start to end and back: sparse, (n1, n1)."""
+        from scipy.sparse import csr_array
+
+        n1 = len(self._kept)
+        forward = []
+        for label in range(labels):
+            edges = np.array([edge[:2] for edge in self._edges if edge[2] == label], dtype=np.int64).reshape(-1, 2)
+            forward.append(csr_array((np.ones(len(edges)), (edges[:, 1], edges[:, 0])), shape=(n1, n1)))
+        return forward, [csr_array(edges.T) for edges in forward]
 
     def _zero_pairs(self, degrees1: NDArray[np.float64], degrees2: NDArray[np.float64]) -> NDArray[np.float64]:
         """For how many of the labels that a sub-graph uses both degrees are zero, shape (n1, b, n2)."""
@@ -120,9 +140,13 @@ class _Step:
         """The mean of equations 6 and 7, shape (n1, b, n2)."""
         mean = matrices.sum(axis=(0, 2)) / np.maximum(self._sizes, 1)
         total: NDArray[np.float64] = mean[:, None] * self._both_zero
-        for start, end, label in self._edges:
-            total[end] += self._in_scale[label, end][:, None] * (matrices[start] @ self._into[label])
-            total[start] += self._out_scale[label, start][:, None] * (matrices[end] @ self._out_of[label])
+        n1, b, n2 = matrices.shape
+        flat = matrices.reshape(n1, b * n2)
+        for label, (forward, backward) in enumerate(zip(self._forward, self._backward, strict=True)):
+            incoming = (forward @ flat).reshape(n1 * b, n2) @ self._into[label]
+            outgoing = (backward @ flat).reshape(n1 * b, n2) @ self._out_of[label]
+            total += self._in_scale[label][:, :, None] * incoming.reshape(n1, b, n2)
+            total += self._out_scale[label][:, :, None] * outgoing.reshape(n1, b, n2)
         total /= 2
         return total
 

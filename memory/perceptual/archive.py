@@ -18,7 +18,7 @@ from typing import Any
 from numpy.typing import NDArray
 
 from deixis.memory.errors import ImportFormatError, MemoryWriteError
-from deixis.memory.perceptual.codec import arrays_of_view, view_of_arrays
+from deixis.memory.perceptual.codec import arrays_by_use, arrays_of_view
 from deixis.memory.perceptual.errors import RecordError
 from deixis.memory.perceptual.protocol import PerceptualReading
 from deixis.memory.perceptual.records import CategoryRecord, View
@@ -112,7 +112,7 @@ class Archive:
         for name, said, arrays in self._entries("views/"):
             with _told(self.file, name):
                 time = datetime.fromisoformat(said["time"])
-                yield view_of_arrays(said["id"], said["category"], time, said["metadata"], arrays)
+                yield View(said["id"], said["category"], time, *arrays_by_use(arrays), said["metadata"])
 
     def _check_head(self) -> None:
         with _told(self.file, _HEAD):

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Any
 
 from deixis.memory.perceptual import keys
-from deixis.memory.perceptual.codec import About, about, write_about, write_arrays, write_category, write_order
+from deixis.memory.perceptual.codec import About, write_about, write_category, write_order, write_view
 from deixis.memory.perceptual.errors import DamagedMemoryError, UnknownViewError
-from deixis.memory.perceptual.reading import Snapshot
-from deixis.memory.perceptual.records import Batch, CategoryRecord, View
+from deixis.memory.perceptual.reading import Snapshot, stored_about
+from deixis.memory.perceptual.records import Batch, CategoryRecord, View, check_name
 
 
 @dataclass
@@ -20,16 +21,14 @@ class Change:
 
     def add(self, view: View) -> None:
         """A view that was not there."""
-        said = about(view)
+        said, key, sealed = write_view(view)
         self.say(said)
-        key = said.arrays_key
-        self.pairs.append((key, write_arrays(key, view)))
+        self.pairs.append((key, sealed))
         self.views += 1
 
     def say(self, said: About) -> None:
         """All of a view but its arrays."""
-        order = said.order_key
-        self.pairs += [(said.key, write_about(said)), (order, write_order(order))]
+        self.pairs += [write_about(said), write_order(said)]
 
     def drop(self, said: About) -> None:
         """A view that is there."""
@@ -37,16 +36,19 @@ class Change:
         self.views -= 1
 
 
-def of_batch(now: Snapshot, batch: Batch) -> Change:
-    """Views and records written and views forgotten; raises UnknownViewError for one that is not there."""
+def of_batch(now: Any, batch: Batch) -> Change:
+    """Views and records written and views forgotten, in a database or a snapshot of one.
+
+    Raises UnknownViewError for a view that is not there.
+    """
     change = Change()
     for id in batch.forgotten:
-        said = now.about(id)
+        said = stored_about(now, check_name("a view's id", id))
         if said is None:
             raise UnknownViewError(f"no view '{id}' to forget; nothing was written")
         change.drop(said)
     for view in batch.views:
-        old = now.about(view.id)
+        old = stored_about(now, view.id)
         if old is not None:
             change.drop(old)
         change.add(view)

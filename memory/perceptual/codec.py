@@ -4,34 +4,37 @@ from __future__ import annotations
 
 import json
 import struct
-from collections.abc import Callable, Mapping
-from datetime import datetime
+from json.encoder import encode_basestring_ascii as _quoted
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from numpy.typing import NDArray
 
 from deixis.memory.perceptual import keys
-from deixis.memory.perceptual.checksum import open_small, open_wide, seal_small, seal_wide
+from deixis.memory.perceptual.checksum import open_small, open_wide, seal_small, seal_wide, wide_sum
 from deixis.memory.perceptual.errors import DamagedMemoryError
-from deixis.memory.perceptual.records import CategoryRecord, View
+from deixis.memory.perceptual.records import CategoryRecord, JsonObject, View, json_text
 from deixis.memory.perceptual.tensors import pack, unpack
 
 _COUNTS = struct.Struct("<3Q")
 _DESCRIPTOR, _POINTS = "descriptor/", "points"
 
-_encode = json.JSONEncoder(allow_nan=False, separators=(",", ":")).encode
-_decode = json.JSONDecoder().decode
+_decode = json.JSONDecoder().raw_decode
 
 
 class About(NamedTuple):
-    """All of a view but its arrays; ``place`` is the category under which the arrays were first written."""
+    """All of a view but its arrays.
+
+    ``place`` is the category under which the arrays were first written. ``sum`` is their checksum, so that arrays which
+    lay under the same key before are not taken for them.
+    """
 
     category: str
     id: str
     time: int
     place: str
-    metadata: Mapping[str, Any]
+    sum: int
+    metadata: str  # JSON
 
     @property
     def key(self) -> bytes:
@@ -49,28 +52,40 @@ class About(NamedTuple):
         return keys.view_key(keys.ARRAYS, self.place, self.id, self.time)
 
 
-def about(view: View) -> About:
-    """A new view, to be written where it belongs."""
-    return About(view.category, view.id, keys.microseconds(view.time), view.category, view.metadata)
+def write_view(view: View) -> tuple[About, bytes, bytearray]:
+    """What is said of a new view, and key and value of its arrays."""
+    time = keys.microseconds(view.time)
+    key = keys.view_key(keys.ARRAYS, view.category, view.id, time)
+    sealed = seal_wide(key, *pack(arrays_of_view(view)))
+    return About(view.category, view.id, time, view.category, wide_sum(sealed), json_text(view.metadata)), key, sealed
 
 
-def write_about(said: About) -> bytes:
-    """The value of :attr:`About.key`."""
-    return seal_small(said.key, _encode([said.category, said.time, said.place, dict(said.metadata)]).encode())
+def write_about(said: About) -> tuple[bytes, bytes]:
+    """Key and value of what is said of a view."""
+    key = keys.name_key(keys.ABOUT, said.id)
+    text = f"[{_quoted(said.category)},{said.time},{_quoted(said.place)},{said.sum}]{said.metadata}"
+    return key, seal_small(key, text.encode())
 
 
-def read_about(id: str, sealed: bytes) -> About:
-    """The same again."""
-    value = open_small(keys.name_key(keys.ABOUT, id), sealed)
+def read_about(id: str, key: bytes, sealed: bytes) -> About:
+    """The same again, of its id, key and value."""
+    value = open_small(key, sealed)
     if value is None:
         raise DamagedMemoryError(f"view '{id}': what is said of it is not what was written")
-    category, time, place, metadata = _decode(value.decode())
-    return About(category, id, time, place, metadata)
+    text = value.decode()
+    try:
+        (category, time, place, sum), end = _decode(text)
+    except ValueError as error:
+        raise DamagedMemoryError(
+            f"view '{id}': what is said of it is written as no version of this program does"
+        ) from error
+    return About(category, id, time, place, sum, text[end:])
 
 
-def write_order(key: bytes) -> bytes:
-    """The value of :attr:`About.order_key`: a checksum of the key alone."""
-    return seal_small(key, b"")
+def write_order(said: About) -> tuple[bytes, bytes]:
+    """Key and value of its place in the order of all views: the value is a checksum of the key alone."""
+    key = said.order_key
+    return key, seal_small(key, b"")
 
 
 def read_order(key: bytes, sealed: bytes) -> tuple[str, str, int]:
@@ -81,11 +96,6 @@ def read_order(key: bytes, sealed: bytes) -> tuple[str, str, int]:
     except ValueError:
         pass
     raise DamagedMemoryError(f"an entry of the order of views is not what was written: {key[:60]!r}")
-
-
-def write_arrays(key: bytes, view: View) -> bytearray:
-    """The value of :attr:`About.arrays_key`."""
-    return seal_wide(key, *pack(arrays_of_view(view)))
 
 
 def arrays_of_view(view: View) -> dict[str, NDArray[Any]]:
@@ -101,40 +111,33 @@ def read_view(said: About, key: bytes, sealed: bytes | None) -> View:
     if sealed is None:
         raise DamagedMemoryError(f"view '{said.id}' of '{said.category}': its arrays are missing")
     value = open_wide(key, sealed)
-    if value is None:
+    if value is None or wide_sum(sealed) != said.sum:
         raise DamagedMemoryError(f"view '{said.id}' of '{said.category}': its arrays are not what was written")
-    time = keys.moment(said.time)
-    return view_of_arrays(said.id, said.category, time, said.metadata, unpack(value)[0], View.stored)
+    descriptors, points = arrays_by_use(unpack(value)[0])
+    return View.stored(
+        id=said.id,
+        category=said.category,
+        time=keys.moment(said.time),
+        descriptors=MappingProxyType(descriptors),
+        points=points,
+        metadata=JsonObject(said.metadata),
+    )
 
 
-def view_of_arrays(
-    id: str,
-    category: str,
-    time: datetime,
-    metadata: Mapping[str, Any],
-    arrays: dict[str, NDArray[Any]],
-    make: Callable[..., View] = View,
-) -> View:
-    """A view whose arrays go by the names under which they are kept. Raises ValueError for another name."""
+def arrays_by_use(arrays: dict[str, NDArray[Any]]) -> tuple[dict[str, NDArray[Any]], NDArray[Any] | None]:
+    """Descriptors and points, of arrays by the names under which they are kept. Raises ValueError for another name."""
     points = arrays.pop(_POINTS, None)
     start = len(_DESCRIPTOR)
     descriptors = {name[start:]: array for name, array in arrays.items() if name.startswith(_DESCRIPTOR)}
     if len(descriptors) < len(arrays):
         raise ValueError(f"a view has {_POINTS} and {_DESCRIPTOR}…, and no other arrays")
-    return make(
-        id=id,
-        category=category,
-        time=time,
-        descriptors=MappingProxyType(descriptors),
-        points=points,
-        metadata=MappingProxyType(metadata),
-    )
+    return descriptors, points
 
 
 def write_category(record: CategoryRecord) -> tuple[bytes, bytearray]:
     """Key and value of a category's record."""
     key = keys.name_key(keys.CATEGORY, record.name)
-    return key, seal_wide(key, *pack(record.state, _encode(dict(record.metadata))))
+    return key, seal_wide(key, *pack(record.state, json_text(record.metadata)))
 
 
 def read_category(name: str, sealed: bytes) -> CategoryRecord:
@@ -143,7 +146,7 @@ def read_category(name: str, sealed: bytes) -> CategoryRecord:
     if value is None:
         raise DamagedMemoryError(f"what is known of category '{name}' is not what was written")
     state, note = unpack(value)
-    return CategoryRecord(name, state, _decode(note))
+    return CategoryRecord(name, state, _decode(note)[0])
 
 
 class Counts(NamedTuple):

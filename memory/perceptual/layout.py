@@ -2,8 +2,9 @@
 
 ``store-1/`` is a LevelDB of version 1, and the name is what says so. A new store is made as ``store-2.new/`` and
 renamed when it is whole, so that a crash at any moment leaves one whole store with the greatest number. Beside it lie
-``owner.lock``, ``acknowledged`` (see :mod:`deixis.memory.perceptual.tally`) and, while nobody has the memory open,
-``seal.json`` (see :mod:`deixis.memory.perceptual.seal`).
+``owner.lock``, ``acknowledged`` (see :mod:`deixis.memory.perceptual.tally`), ``calibration.json`` (see
+:mod:`deixis.memory.perceptual.calibrated`) and, while nobody has the memory open, ``seal.json`` (see
+:mod:`deixis.memory.perceptual.seal`).
 
 To change how things are kept: raise :data:`VERSION`, and add the step from the version before to :data:`MIGRATIONS`. A
 step reads the old database and fills a new one.
@@ -29,7 +30,7 @@ VERSION = 1
 MIGRATIONS: dict[int, Callable[[plyvel.DB, plyvel.DB], None]] = {}
 """From a version to the step that leads to the next."""
 
-TALLY, SEAL = "acknowledged", "seal.json"
+TALLY, SEAL, CALIBRATION = "acknowledged", "seal.json", "calibration.json"
 _STORE = re.compile(r"store-(\d+)(\.new)?")
 
 
@@ -49,7 +50,8 @@ def version_in(folder: Path) -> int | None:
         return None
     if not folder.is_dir():
         raise MemoryFormatError(f"{folder} is a file: a memory is a folder; name another path")
-    names = set(os.listdir(folder)) - {LOCK_FILE, TALLY, SEAL, SEAL + ".new"}
+    ours = {LOCK_FILE, TALLY, *(name + end for name in (SEAL, CALIBRATION) for end in ("", ".new"))}
+    names = set(os.listdir(folder)) - ours
     foreign = sorted(name for name in names if not _STORE.fullmatch(name))
     if foreign:
         raise MemoryFormatError(

@@ -116,7 +116,7 @@ class LevelMemory:
 
     def write(self, batch: Batch, sync: bool = False) -> None:
         """Writes a batch in one step."""
-        with self.exclusive(), self.snapshot() as now:
+        with self.exclusive(), self.handle as now:
             self._do(of_batch(now, batch), sync)
 
     def rename(self, old: str, new: str) -> None:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from functools import partial
 from types import TracebackType
 from typing import Any, Self
 
@@ -21,7 +22,7 @@ from deixis.ontology.relation import nearest
 class Snapshot:
     """A database as it was when this was made, until it is closed.
 
-    Every value is read with LevelDB's checksums verified, and has one of ours besides.
+    Every value is verified: all have a checksum of ours, and all but a view's arrays are read with LevelDB's as well.
     """
 
     def __init__(self, handle: Handle) -> None:
@@ -62,21 +63,23 @@ class Snapshot:
 
     def pairs(self, begin: bytes) -> Iterator[tuple[bytes, bytes]]:
         """Keys that begin so, with their values, in order."""
-        return self._walk(prefix=begin)
+        return self._walk(_same, prefix=begin)
 
     def bare_keys(self, begin: bytes) -> Iterator[bytes]:
         """The same without values."""
-        return self._walk(prefix=begin, include_value=False)
+        return self._walk(_same, prefix=begin, include_value=False)
 
-    def _walk(self, **what: Any) -> Iterator[Any]:
+    def _walk(self, made: Callable[[Any], Any], **what: Any) -> Iterator[Any]:
+        """What is made of each item, one call under way at a time."""
         with self._handle:
             found = self._open.iterator(verify_checksums=True, **what)
         while True:
             with self._handle:
                 item = next(found, None)
-            if item is None:
-                return
-            yield item
+                if item is None:
+                    return
+                result = made(item)
+            yield result
 
     def first_after(self, key: bytes, kind: bytes) -> tuple[bytes, bytes] | None:
         """The first pair of a kind from a key on."""
@@ -90,7 +93,7 @@ class Snapshot:
     def about(self, id: str) -> About | None:
         """All of a view but its arrays, or None."""
         with self._handle:
-            return stored_about(self._open, id)
+            return stored_about(self._open, check_name("a view's id", id))
 
     def view(self, id: str) -> View:
         """See :class:`deixis.memory.perceptual.protocol.PerceptualReading`, here and below."""
@@ -99,15 +102,23 @@ class Snapshot:
 
     def views(self, category: str | None = None) -> Iterator[View]:
         """The views, read one by one."""
-        return map(self._listed, self.places(category))
-
-    def _listed(self, entry: tuple[str, str, int]) -> View:
-        category, id, time = entry
+        begin = self._beginning(category)
         with self._handle:
-            said = stored_about(self._open, id)
-            if said is None or said.category != category or said.time != time:
-                raise DamagedMemoryError(f"view '{id}' of '{category}': what is said of it does not fit its place")
-            return stored_arrays(self._open, said)
+            arrays = self._open.iterator(prefix=keys.ARRAYS, fill_cache=False)
+        return self._walk(partial(self._listed, arrays), prefix=begin)
+
+    def _listed(self, arrays: Any, pair: tuple[bytes, bytes]) -> View:
+        """A view by its place in the order, in which its arrays mostly lie as well."""
+        category, id, time = read_order(*pair)
+        said = stored_about(self._open, id)
+        if said is None or said.category != category or said.time != time:
+            raise DamagedMemoryError(f"view '{id}' of '{category}': what is said of it does not fit its place")
+        key = said.arrays_key
+        found, sealed = next(arrays, (b"", None))
+        if found != key:  # after renaming and merging
+            arrays.seek(key)
+            found, sealed = next(arrays, (b"", None))
+        return read_view(said, key, sealed if found == key else None)
 
     def listing(self, category: str | None = None) -> Iterator[ViewKey]:
         """The views without their arrays."""
@@ -115,10 +126,13 @@ class Snapshot:
 
     def places(self, category: str | None = None) -> Iterator[tuple[str, str, int]]:
         """Category, id and time of views; raises UnknownCategoryError at once."""
-        if category is not None:
-            self.require(category)
-        begin = keys.VIEW if category is None else keys.category_prefix(category)
-        return (read_order(key, sealed) for key, sealed in self.pairs(begin))
+        return (read_order(key, sealed) for key, sealed in self.pairs(self._beginning(category)))
+
+    def _beginning(self, category: str | None) -> bytes:
+        if category is None:
+            return keys.VIEW
+        self.require(category)
+        return keys.category_prefix(category)
 
     def categories(self) -> tuple[str, ...]:
         """The names of the categories: one look-up each, however many views they have."""
@@ -173,25 +187,32 @@ class Snapshot:
         return tuple(findings(self, progress))
 
 
+def _same(item: Any) -> Any:
+    return item
+
+
 def stored_about(source: Any, id: str) -> About | None:
     """All of a view but its arrays, from a database or a snapshot of one."""
-    check_name("a view's id", id)
-    sealed = source.get(keys.name_key(keys.ABOUT, id), verify_checksums=True)
-    return None if sealed is None else read_about(id, sealed)
+    key = keys.name_key(keys.ABOUT, id)
+    sealed = source.get(key, verify_checksums=True)
+    return None if sealed is None else read_about(id, key, sealed)
 
 
 def stored_view(source: Any, id: str) -> View:
     """A view, from a snapshot. Raises UnknownViewError."""
-    said = stored_about(source, id)
+    said = stored_about(source, check_name("a view's id", id))
     if said is None:
         raise UnknownViewError(f"no view '{id}' in this memory")
     return stored_arrays(source, said)
 
 
 def stored_arrays(source: Any, said: About) -> View:
-    """A view of which all is known but the arrays."""
+    """A view of which all is known but the arrays.
+
+    These alone are read without LevelDB's checksums: ours is stronger, covers the key, and is known beforehand.
+    """
     key = said.arrays_key
-    return read_view(said, key, source.get(key, verify_checksums=True))
+    return read_view(said, key, source.get(key, fill_cache=False))
 
 
 def unknown_category(name: str, known: tuple[str, ...]) -> UnknownCategoryError:

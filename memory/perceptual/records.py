@@ -10,9 +10,10 @@ False
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
+from functools import cached_property
 from types import MappingProxyType
 from typing import Any
 
@@ -29,6 +30,30 @@ DTYPES = {dtype.name for dtype in TYPES.values()}
 """What the arrays of a learner's state may hold: bools, integers, floats."""
 
 _LONGEST = 1000  # bytes of a name in UTF-8
+
+
+class JsonObject(Mapping[str, Any]):
+    """An object of JSON, kept as its text, which is read when something in it is first asked for."""
+
+    def __init__(self, text: str) -> None:
+        self.text = text
+
+    @cached_property
+    def _said(self) -> dict[str, Any]:
+        said: dict[str, Any] = json.loads(self.text)
+        return said
+
+    def __getitem__(self, name: str) -> Any:
+        return self._said[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._said)
+
+    def __len__(self) -> int:
+        return len(self._said)
+
+    def __repr__(self) -> str:
+        return repr(self._said)
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,7 +91,7 @@ class View:
     def stored(cls, **values: Any) -> View:
         """A view of values that were checked when they were written."""
         view = object.__new__(cls)
-        view.__dict__.update(values)
+        object.__setattr__(view, "__dict__", values)
         return view
 
 
@@ -113,8 +138,13 @@ class Batch:
                 raise RecordError(f"the {what} '{twice}' comes twice in one batch")
 
 
-def check_name(what: str, name: object) -> None:
-    """Raises RecordError for what cannot be a name: one or more characters that UTF-8 can write."""
+def json_text(metadata: Json) -> str:
+    """The metadata of a view or a category as JSON."""
+    return metadata.text if isinstance(metadata, JsonObject) else json.dumps(dict(metadata))
+
+
+def check_name(what: str, name: object) -> str:
+    """The name; raises RecordError for what cannot be one: one or more characters that UTF-8 can write."""
     if not isinstance(name, str) or not name:
         raise RecordError(f"{what} is a text of one or more characters, not {name!r}")
     try:
@@ -123,6 +153,7 @@ def check_name(what: str, name: object) -> None:
         raise RecordError(f"{what}, {name!r}, holds half a character (a lone surrogate) at {error.start}") from error
     if length > _LONGEST:
         raise RecordError(f"{what} is too long: {length} bytes, at most {_LONGEST} ({name[:40]}…)")
+    return name
 
 
 def frozen(array: NDArray[Any]) -> NDArray[Any]:
@@ -150,11 +181,12 @@ def _utc(view: str, time: object) -> datetime:
         raise RecordError(f"the time of view '{view}', {time}, is in no year from 1 to 9999 of UTC") from error
 
 
-def _json(what: str, data: object) -> Json:
+def _json(what: str, data: object) -> JsonObject:
     try:
-        copy = json.loads(json.dumps(dict(data), allow_nan=False))  # type: ignore[call-overload]
+        text = json.dumps(dict(data), allow_nan=False, separators=(",", ":"))  # type: ignore[call-overload]
+        copy = json.loads(text)
     except (TypeError, ValueError, RecursionError) as error:
         raise RecordError(f"{what} cannot be written as JSON: {error}") from error
     if copy != data:
         raise RecordError(f"{what} would not come back as it is from JSON: use lists, and strings as keys")
-    return MappingProxyType(copy)
+    return JsonObject(text)

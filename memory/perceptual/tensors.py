@@ -31,7 +31,6 @@ class _Part(NamedTuple):
     name: str
     dtype: np.dtype[Any]
     shape: tuple[int, ...]
-    size: int
     offset: int  # from the beginning of the header
 
 
@@ -43,8 +42,8 @@ class _Layout(NamedTuple):
 
 def pack(arrays: Mapping[str, NDArray[Any]], note: str = "") -> list[bytes | memoryview]:
     """The pieces of a safetensors file: joined, they are it. ``note`` is a text kept in its header."""
-    layout = _layout_of(tuple((name, array.dtype.str, array.shape) for name, array in arrays.items()), note)
-    return [layout.header, *(arrays[part.name].data.cast("B") for part in layout.parts if part.size)]
+    layout = _layout_of(tuple([(name, array.dtype, array.shape) for name, array in arrays.items()]), note)
+    return [layout.header, *[arrays[part.name].data for part in layout.parts]]
 
 
 def unpack(data: memoryview) -> tuple[dict[str, NDArray[Any]], str]:
@@ -54,13 +53,11 @@ def unpack(data: memoryview) -> tuple[dict[str, NDArray[Any]], str]:
     """
     end = 8 + int.from_bytes(data[:8], "little")
     layout = _layout_in(bytes(data[:end]))
-    return {
-        part.name: np.frombuffer(data, part.dtype, part.size, part.offset).reshape(part.shape) for part in layout.parts
-    }, layout.note
+    return {part.name: np.ndarray(part.shape, part.dtype, data, part.offset) for part in layout.parts}, layout.note
 
 
 @lru_cache(256)
-def _layout_of(named: tuple[tuple[str, str, tuple[int, ...]], ...], note: str) -> _Layout:
+def _layout_of(named: tuple[tuple[str, np.dtype[Any], tuple[int, ...]], ...], note: str) -> _Layout:
     from safetensors.numpy import save
 
     example = {name: np.zeros(shape, dtype) for name, dtype, shape in named}
@@ -74,6 +71,6 @@ def _layout_in(header: bytes) -> _Layout:
     note = said.pop("__metadata__", {}).get(_NOTE, "")
     parts = []
     for name, entry in sorted(said.items(), key=lambda item: item[1]["data_offsets"]):
-        dtype, shape, (begin, end) = TYPES[entry["dtype"]], tuple(entry["shape"]), entry["data_offsets"]
-        parts.append(_Part(name, dtype, shape, (end - begin) // dtype.itemsize, len(header) + begin))
+        offset = len(header) + entry["data_offsets"][0]
+        parts.append(_Part(name, TYPES[entry["dtype"]], tuple(entry["shape"]), offset))
     return _Layout(header, tuple(parts), note)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,6 +15,10 @@ from deixis.perception.recognition.spread import spreads
 
 MOST = 400
 """Views that are held out, at most; evenly over the categories."""
+
+
+Progress = Callable[[int, int], None]
+"""Is told how many views are done, and how many there are."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,6 +52,7 @@ def hold_out(
     prior_spread: float,
     objects: Mapping[str, str] | None = None,
     most: int = MOST,
+    progress: Progress | None = None,
 ) -> HeldOut:
     """Holds views out, ``most`` of all categories together, evenly chosen.
 
@@ -55,12 +60,13 @@ def hold_out(
     view is judged by other views of the same thing too, and what follows is about things seen before.
     """
     share = -(-most // max(1, len(categories)))
-    rows, truth = [], []
-    for number, category in enumerate(categories):
-        for place in _evenly(len(category), share):
-            rows.append(_row(number, place, categories, indexes, prior_spread, objects or {}))
-            truth.append(number)
-    return HeldOut(np.array(rows).reshape(len(rows), len(categories)), np.array(truth, np.int64))
+    chosen = [(number, place) for number, each in enumerate(categories) for place in _evenly(len(each), share)]
+    rows = np.empty((len(chosen), len(categories)))
+    for done, (number, place) in enumerate(chosen):
+        if progress is not None:
+            progress(done, len(chosen))
+        rows[done] = _row(number, place, categories, indexes, prior_spread, objects or {})
+    return HeldOut(rows, np.array([number for number, _ in chosen], np.int64))
 
 
 def _row(

@@ -19,6 +19,10 @@ LANES = 32
 EPSILON = 2.0**-24
 """Relative error of a rounding in single precision."""
 
+ONE_THREAD = 2**18
+"""Multiplications up to which OpenBLAS computes a product in one thread (interface/gemm.c: SMP_THRESHOLD_MIN times
+GEMM_MULTITHREAD_THRESHOLD)."""
+
 _NO_NAN = {"nnan", "nsz"}
 _SUMS_IN_ANY_ORDER = {"nnan", "nsz", "reassoc", "contract"}
 
@@ -50,6 +54,20 @@ def lower_bounds(columns, squares, reduced, starts, chosen, slack, out):  # type
         out[place] = total / len(squares)
 
 
+@njit(cache=True, nogil=True, error_model="numpy")
+def _products(view, columns):  # type: ignore[no-untyped-def]
+    """Dot products (k, q) of rows (k, d) with columns (d, q), in pieces that a BLAS computes in one thread.
+
+    Products of views are small. Where other programs keep the processors busy, the threads of a BLAS wait for each
+    other some hundred times as long as they compute.
+    """
+    products = np.empty((len(view), columns.shape[1]), np.float32)
+    rows = max(1, ONE_THREAD // columns.size)
+    for low in range(0, len(view), rows):
+        np.dot(view[low : low + rows], columns, products[low : low + rows])
+    return products
+
+
 @njit(cache=True, nogil=True, error_model="numpy", fastmath=_NO_NAN)
 def _least_of_columns(products, squares, least):  # type: ignore[no-untyped-def]
     """Turns dot products (k, q) into |v|^2 - 2 t.v, in place, and fills ``least`` (q,) with each column's least."""
@@ -68,7 +86,7 @@ def view_distance(target, columns, lengths, view, squares, limit):  # type: igno
     ``columns`` (d, q) is the target transposed, ``lengths`` (q,) are its descriptors' lengths; ``squares`` (k,) are
     the squared lengths of the view's. A distance that is surely above ``limit`` is not worked out: infinite.
     """
-    products = np.dot(view, columns)
+    products = _products(view, columns)
     least = np.empty(len(target), np.float32)
     _least_of_columns(products, squares, least)
     longest = np.sqrt(np.float64(squares.max()))

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from deixis.perception.recognition.calibration import SHIPPED, Calibration, calibrate
 from deixis.perception.recognition.distances import Target
 from deixis.perception.recognition.errors import RecognitionError
-from deixis.perception.recognition.held_out import hold_out
+from deixis.perception.recognition.held_out import Progress, hold_out
 from deixis.perception.recognition.index import Effort, Nearest, ViewIndex, indexes_of
 from deixis.perception.recognition.instances import InstanceCategory
 from deixis.perception.recognition.recognition import Candidate, Recognition, decided, no_answer
@@ -120,12 +120,12 @@ class Recogniser:
             indexes=tuple(self.indexes[i] for i in places),
         )
 
-    def calibrated(self, objects: Mapping[str, str] | None = None) -> Recogniser:
+    def calibrated(self, objects: Mapping[str, str] | None = None, progress: Progress | None = None) -> Recogniser:
         """The same with threshold and probabilities from its own views, held out one by one.
 
         ``objects`` leads from a view's id to the thing it shows, so that a thing is not judged by its other views.
         """
-        held = hold_out(self.categories, self.indexes, self.settings.prior_spread, objects)
+        held = hold_out(self.categories, self.indexes, self.settings.prior_spread, objects, progress=progress)
         return replace(self, calibration=calibrate(held, self.settings.prior_unknown))
 
     def _nearest(self, target: Target, effort: Effort | None) -> list[Nearest]:

@@ -106,6 +106,16 @@ def looking_pose(eye: ArrayLike, target: ArrayLike) -> NDArray[np.float64]:
     return pose
 
 
+def check_place(height: float, back: float, azimuth: float) -> None:
+    """Raises SimulationError for a place where no camera can be; lengths in metres, the azimuth in radians."""
+    if not 0 < height < FARTHEST:
+        raise SimulationError(f"a camera stands above the table, below {FARTHEST:g} m, not at {height:g} m")
+    if not abs(back) < FARTHEST:
+        raise SimulationError(f"a camera stands within {FARTHEST:g} m of the table's edge, not {back:g} m back")
+    if not np.isfinite(azimuth):
+        raise SimulationError(f"a camera's azimuth is a number, not {azimuth:g}")
+
+
 def chair_camera(
     table: LaidTable, height: float = HEIGHT, back: float = 0.0, azimuth: float = 0.0, lens: Intrinsics = KINECT
 ) -> Camera:
@@ -115,10 +125,7 @@ def chair_camera(
     the table, counter-clockwise from above. Where not everything is in view it stands farther away along the same
     line. Raises SimulationError for a camera that is not above the table.
     """
-    if not (0 < height < FARTHEST and abs(back) < FARTHEST and np.isfinite(azimuth)):
-        raise SimulationError(
-            f"a camera stands up to {FARTHEST:g} m above the table, not {height:g}, and {back:g} m back"
-        )
+    check_place(height, back, azimuth)
     corners = np.concatenate([_corners(thing.box) for thing in table.things] or [np.zeros((1, 3))])
     middle = (corners.min(axis=0) + corners.max(axis=0)) / 2
     target = np.array([middle[0], middle[1], 0.0])

@@ -39,8 +39,8 @@ RUNGS = (3, 6)  # fewest and most temperatures
 ROUNDS = 4  # proposals for every object in a sweep
 FIRST_SWEEPS = 8  # of a part of the first run
 TOLERANCE = 0.007  # the standard error that is good enough
-PROPOSALS = 4e5  # for each object, in all ladders and temperatures, of at most so many objects:
-MOST_OBJECTS = 75
+PROPOSALS = 3e5  # for each object, in all ladders and temperatures, of at most so many objects:
+MOST_OBJECTS = 80
 THRESHOLDS_KEPT = 1 << 16
 START_EFFORT = 0.1
 

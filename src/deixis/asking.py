@@ -72,8 +72,11 @@ def seen_from_anywhere(
 ) -> tuple[Scene, tuple[str, ...]]:
     """The scene as seen from the side from which the script most probably speaks, and notes that say which that is.
 
-    Turned by quarters only, unless ``any_angle``; mirrored where that explains it better.
+    Turned by quarters only, unless ``any_angle``; mirrored where that explains it better. Where no fact compares two
+    things, nothing tells a side, and the scene stays as it is.
     """
+    if not len(evidence_of(script, scene, meaning).facts) or len(scene.objects) < 2:
+        return scene, ("the scene was taken as it stands: nothing tells from which side the description speaks",)
 
     def problem(boxes: NDArray[np.float64]):  # type: ignore[no-untyped-def]
         return evidence_of(script, _with_boxes(scene, boxes), meaning).problem

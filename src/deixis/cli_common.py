@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable
+import sys
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
 NO, BAD_INPUT, UNDECIDED = 1, 2, 3
+
+PATIENCE = 2.0  # seconds without a progress bar
 
 Script = Annotated[str, typer.Argument(metavar="SCRIPT", help="A layout script (.layout).")]
 SceneFile = Annotated[
@@ -33,3 +37,55 @@ def print_json(data: Any) -> None:
 def print_lines(lines: Iterable[str]) -> None:
     for line in lines:
         print(line)
+
+
+def require_writable(written: Iterable[Path | None], read: Iterable[str | Path | None]) -> None:
+    """Raises DeixisError, before any work, where a file cannot be written, or is read or written for something else."""
+    from deixis.ontology.errors import DeixisError
+
+    sources = [Path(source) for source in read if source is not None]
+    files = [file for file in written if file is not None]
+    for place, file in enumerate(files):
+        if file.is_dir():
+            raise DeixisError(f"{file}: this is a folder; name a file")
+        if file.exists() and any(source.exists() and file.samefile(source) for source in sources):
+            raise DeixisError(f"{file}: this is what is read; name another file")
+        if file.resolve() in [other.resolve() for other in files[:place]]:
+            raise DeixisError(f"{file}: two things are to be written here; give each a file of its own")
+        try:
+            file.parent.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise DeixisError(f"{file}: its folder cannot be made: {error.strerror}") from error
+
+
+@contextmanager
+def progress_bar(what: str) -> Iterator[Callable[[int, int], None] | None]:
+    """A progress bar on standard error, on a terminal only, and only for what takes long."""
+    if not sys.stderr.isatty():
+        yield None
+        return
+    import time
+
+    from rich.console import Console
+    from rich.progress import Progress as Bar
+
+    started = time.monotonic()
+    with Bar(console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task(what, total=None, visible=False)
+
+        def progress(done: int, total: int) -> None:
+            bar.update(task, completed=done, total=total, visible=time.monotonic() - started > PATIENCE)
+
+        yield progress
+
+
+@contextmanager
+def working(what: str) -> Iterator[None]:
+    """Says on a terminal's standard error what goes on, while nobody knows how long it takes."""
+    if not sys.stderr.isatty():
+        yield
+        return
+    from rich.console import Console
+
+    with Console(stderr=True).status(what):
+        yield

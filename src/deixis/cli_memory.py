@@ -19,6 +19,7 @@ from deixis.cli_common import (
     TimeLimit,
     print_json,
     print_lines,
+    progress_bar,
 )
 
 memory_app = typer.Typer(help="Export, import, count, or forget what was learned.", no_args_is_help=True)
@@ -202,8 +203,11 @@ def import_(
     """Take in what was exported; what is there stays."""
     from deixis.memory.perceptual.whole import import_all, is_archive
     from deixis.memory_session import default_memory
+    from deixis.ontology.errors import DeixisError
     from deixis.session import Session
 
+    if not dump.exists():
+        raise DeixisError(f"{dump}: there is no such file")
     if is_archive(dump):
         where = memory or default_memory()
         done = import_all(dump, where)
@@ -244,7 +248,8 @@ def verify(memory: MemoryDir = None, as_json: AsJson = False) -> None:
     from deixis.memory.perceptual.whole import verify_views
     from deixis.memory_session import default_memory
 
-    found = verify_views(memory or default_memory())
+    with progress_bar("verifying") as progress:
+        found = verify_views(memory or default_memory(), progress)
     if as_json:
         print_json({"findings": [{"where": entry.where, "what": entry.what} for entry in found]})
     else:

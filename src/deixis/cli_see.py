@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from deixis.cli_common import NO, AsJson, MemoryDir, print_json, print_lines
+from deixis.cli_common import NO, AsJson, MemoryDir, print_json, print_lines, progress_bar, require_writable, working
 
 if TYPE_CHECKING:
     from deixis.perception.recognition.recognition import Recognition
@@ -44,6 +44,7 @@ def perceive(
     as_json: AsJson = False,
 ) -> None:
     """Find the table in a point cloud, and the things on it."""
+    from deixis.ontology.errors import DeixisError
     from deixis.perceiving import perceive as run
     from deixis.perceiving import write_perceived
     from deixis.perception.scene_file import scene_to_dict
@@ -52,7 +53,11 @@ def perceive(
         from deixis.plot import require_picture
 
         require_picture(plot)
-    found = run(cloud, intrinsics, viewpoint)
+    if labels is not None and labels.suffix != ".npy":
+        raise DeixisError(f"{labels}: the labels are a numpy array; name a file that ends in .npy")
+    require_writable([out, labels, plot], [cloud, intrinsics])
+    with working("looking for the table"):
+        found = run(cloud, intrinsics, viewpoint)
     scene = write_perceived(found, out) if out is not None else found.scene
     if labels is not None:
         _write_labels(labels, found.detection.labels)
@@ -82,10 +87,7 @@ def _write_labels(file: Path, labels: Any) -> None:
 
     from deixis.ontology.errors import DeixisError
 
-    if file.suffix != ".npy":
-        raise DeixisError(f"{file}: the labels are a numpy array; name a file that ends in .npy")
     try:
-        file.parent.mkdir(parents=True, exist_ok=True)
         np.save(file, labels)
     except OSError as error:
         raise DeixisError(f"{file}: the labels cannot be written: {error.strerror}") from error
@@ -139,8 +141,10 @@ def recognise(
         from deixis.plot import require_picture
 
         require_picture(plot)
-    with Session(memory) as session:
-        found = session.recognise(load_scene(scene))
+    seen = load_scene(scene)
+    require_writable([out, plot], [thing.cloud and Path(seen.file).parent / thing.cloud for thing in seen.objects])
+    with Session(memory) as session, progress_bar("calibrating") as progress:
+        found = session.recognise(seen, progress)
     if out is not None:
         _write_scene(found.scene, out)
     if plot is not None:
@@ -169,7 +173,6 @@ def _write_scene(scene: Scene, out: Path) -> None:
         thing if thing.cloud is None else replace(thing, cloud=os.path.relpath(base / thing.cloud, out.parent))
         for thing in scene.objects
     )
-    out.parent.mkdir(parents=True, exist_ok=True)
     write_scene(replace(scene, objects=things), out)
 
 
@@ -228,16 +231,18 @@ def ask(
     name, seen = category_name(word), load_scene(scene)
     with Session(memory) as session:
         if name in session.categories() and points_at is None:
-            answers = session.recognise(seen.without_labels()).answers
+            with progress_bar("calibrating") as progress:
+                answers = session.recognise(seen.without_labels(), progress).answers
             ones = [f"{id} ({answer.probability:.2f})" for id, answer in answers.items() if answer.label == name]
             print(
                 f"I know '{name}'. Here it is: {', '.join(ones)}." if ones else f"I know '{name}', and see none here."
             )
             raise typer.Exit(0 if ones else NO)
-        pointed = points_at or _pointed_at(name, seen)
-        if pointed is None:
-            print(f"I still do not know what '{name}' is.")
-            raise typer.Exit(NO)
+    pointed = points_at or _pointed_at(name, seen)  # with the memory closed: whoever is asked may take their time
+    if pointed is None:
+        print(f"I still do not know what '{name}' is.")
+        raise typer.Exit(NO)
+    with Session(memory) as session:
         print(_taught_line(session.teach(seen, pointed, name, teacher), pointed))
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from deixis.cli_common import NO, AsJson, print_json, print_lines
+from deixis.cli_common import NO, AsJson, print_json, print_lines, require_writable, working
 
 if TYPE_CHECKING:
     from deixis.laying import LaidScript
@@ -50,19 +50,23 @@ def simulate(
 ) -> None:
     """Lay a table as a layout says, or at random, and look at it with a simulated depth camera."""
     from deixis.laying import NoTableError
+    from deixis.ontology.errors import DeixisError
     from deixis.perception.clouds.intrinsics import read_intrinsics
     from deixis.perception.simulator.camera import KINECT
     from deixis.perception.simulator.depth import DepthSensor, in_table_frame
     from deixis.simulation import View
     from deixis.simulation import simulate as run
 
-    require_writable(out, truth, layout)
+    require_writable([out, truth], [layout, intrinsics, *(entry.partition("=")[2] for entry in mesh or [])])
+    if out is not None and out.suffix.lower() not in (".pcd", ".ply"):
+        raise DeixisError(f"{out}: a cloud's name ends in .pcd or .ply")
     meshes = _meshes(mesh or [], mesh_unit)
     sensor = DepthSensor(noise=noise, missing=missing, quantised=quantised)
     lens = KINECT if intrinsics is None else read_intrinsics(intrinsics)
     view = View(camera_height, camera_back, math.radians(azimuth), lens, sensor)
     try:
-        found = run(_laid(layout, random, seed, meshes, cloth), view, seed)
+        with working("laying the table"):
+            found = run(_laid(layout, random, seed, meshes, cloth), view, seed)
     except NoTableError as error:
         print_json({"simulated": False, "reason": str(error)}) if as_json else print_lines([str(error)])
         raise typer.Exit(NO) from error
@@ -111,24 +115,6 @@ def _meshes(given: list[str], unit: str) -> dict[str, Mesh]:
         read = read_mesh(file)
         meshes[name] = replace(read, vertices=read.vertices * UNITS[unit])
     return meshes
-
-
-def require_writable(out: Path | None, truth: Path | None, layout: str | None) -> None:
-    """Raises DeixisError, before any work, where a file cannot be what it is to be."""
-    from deixis.ontology.errors import DeixisError
-
-    for file in (out, truth):
-        if file is None:
-            continue
-        if file.is_dir():
-            raise DeixisError(f"{file}: this is a folder; name a file")
-        if layout is not None and file.exists() and Path(layout).exists() and file.samefile(layout):
-            raise DeixisError(f"{file}: this is the layout; name another file")
-        file.parent.mkdir(parents=True, exist_ok=True)
-    if out is not None and out.suffix.lower() not in (".pcd", ".ply"):
-        raise DeixisError(f"{out}: a cloud's name ends in .pcd or .ply")
-    if out is not None and out == truth:
-        raise DeixisError(f"{out}: the cloud and the truth need a file each")
 
 
 def _lines(found: Simulation, written: list[Path]) -> Iterator[str]:

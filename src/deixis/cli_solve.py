@@ -2,21 +2,15 @@
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from deixis.cli_common import NO, UNDECIDED, AsJson, TimeLimit, print_json
+from deixis.cli_common import NO, UNDECIDED, AsJson, TimeLimit, print_json, progress_bar
 
 if TYPE_CHECKING:
-    from deixis.reasoning.networks.state import Progress
     from deixis.solving import Solved
-
-PATIENCE = 2.0  # seconds without a progress bar
 
 
 def solve(
@@ -42,7 +36,7 @@ def solve(
         raise DeixisError("-o writes the network that --closure or --scenario prints; give one of them")
     wish = Wish(closure, scenario, explain, time_limit)
     texts = read_networks(network, calculi_named(calculus))
-    with _bar() as progress:
+    with progress_bar("closing") as progress:
         solved = [solve_text(text, wish, progress) for text in texts]
     _report(network, solved, out, as_json)
     raise typer.Exit(_code(solved))
@@ -71,24 +65,3 @@ def _code(solved: list[Solved]) -> int:
     if Verdict.INCONSISTENT in verdicts:
         return NO
     return UNDECIDED if Verdict.UNDECIDED in verdicts else 0
-
-
-@contextmanager
-def _bar() -> Iterator[Progress | None]:
-    """A progress bar on standard error, on a terminal only, and only for what takes long."""
-    if not sys.stderr.isatty():
-        yield None
-        return
-    import time
-
-    from rich.console import Console
-    from rich.progress import Progress as Bar
-
-    started = time.monotonic()
-    with Bar(console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task("closing", total=None, visible=False)
-
-        def progress(done: int, total: int) -> None:
-            bar.update(task, completed=done, total=total, visible=time.monotonic() - started > PATIENCE)
-
-        yield progress

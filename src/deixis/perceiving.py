@@ -14,7 +14,7 @@ from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.clouds.cloud_file import read_cloud, write_cloud
 from deixis.perception.detection.detect import Detection, detect
 from deixis.perception.detection.frame import moved
-from deixis.perception.errors import SceneError
+from deixis.perception.errors import CloudError, SceneError
 from deixis.perception.scene import PerceivedObject, Scene
 from deixis.perception.scene_file import write_scene
 
@@ -37,7 +37,10 @@ def perceive(
 ) -> Perceived:
     """Finds the table and the things on it; raises CloudError for a file that is no cloud, or one without a point."""
     seen = cloud if isinstance(cloud, PointCloud) else read_cloud(cloud, intrinsics)
-    found = detect(seen)
+    try:
+        found = detect(seen)
+    except CloudError as error:
+        raise error if isinstance(cloud, PointCloud) else CloudError(f"{cloud}: {error}") from error
     return Perceived(seen, found, found.scene(viewpoint))
 
 
@@ -77,10 +80,13 @@ def clouds_folder(scene: Path) -> Path:
 
 
 def cloud_of(scene: Scene, thing: PerceivedObject) -> PointCloud:
-    """The points of a thing of a scene; raises SceneError where the scene names no cloud of it."""
+    """The points of a thing of a scene; raises SceneError where the scene names no cloud of it, or one that is none."""
     if thing.cloud is None:
         raise SceneError(
             f"{scene.file}: the object '{thing.id}' has no cloud, so that what it looks like is not known; "
             "deixis perceive -o writes scenes with clouds"
         )
-    return read_cloud(Path(scene.file).parent / thing.cloud)
+    try:
+        return read_cloud(Path(scene.file).parent / thing.cloud)
+    except CloudError as error:
+        raise SceneError(f"{scene.file}: the cloud of '{thing.id}': {error}") from error

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import os
+import re
+from collections.abc import Iterable, Mapping
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -13,6 +15,9 @@ from deixis.perception.scene_file import read_scene
 
 if TYPE_CHECKING:
     from deixis.memory.perceptual.level import LevelMemory
+    from deixis.memory.perceptual.protocol import Progress
+    from deixis.memory.perceptual.records import View
+    from deixis.reasoning.answer import Match
     from deixis.recognising import Recognised, Taught
 
 
@@ -50,24 +55,24 @@ class PerceptualSession(MemorySession):
         Taught again under another word, the view is corrected. Raises SceneError where the scene has no such thing, or
         no cloud of it; SettingError for a name that is none.
         """
-        from deixis.perceiving import cloud_of
-        from deixis.recognising import teach
+        from deixis.recognising import keep_views
 
         scene = scene if isinstance(scene, Scene) else read_scene(scene)
-        name = category_name(category)
-        cloud = cloud_of(scene, _thing(scene, object))
-        metadata = {"scene": scene.file, "object": object, "teacher": teacher}
-        return teach(self.views(create=True), cloud, name, datetime.now(UTC), metadata)
+        (taught,) = keep_views(self.views(create=True), [_view(scene, object, category_name(category), teacher)])
+        return taught
 
-    def recognise(self, scene: Scene | str | Path | Mapping[str, Any]) -> Recognised:
-        """Names what is known among the things of a scene; without a memory nothing is."""
+    def recognise(self, scene: Scene | str | Path | Mapping[str, Any], progress: Progress | None = None) -> Recognised:
+        """Names what is known among the things of a scene; without a memory nothing is.
+
+        ``progress`` is told of the calibration, which takes seconds after many views were taught.
+        """
         from deixis.perceiving import cloud_of
         from deixis.perception.recognition.recogniser import Recogniser
         from deixis.recognising import recognise, recogniser_of
 
         scene = scene if isinstance(scene, Scene) else read_scene(scene)
-        known = recogniser_of(self.views()) if self.has_views() else Recogniser.of([])
         clouds = [cloud_of(scene, thing) if thing.cloud is not None else None for thing in scene.objects]
+        known = recogniser_of(self.views(), progress) if self.has_views() else Recogniser.of([])
         return recognise(known, scene, clouds)
 
     def categories(self) -> dict[str, int]:
@@ -76,6 +81,23 @@ class PerceptualSession(MemorySession):
             return {}
         memory = self.views()
         return {name: sum(1 for _ in memory.listing(name)) for name in memory.categories()}
+
+
+def views_of_matches(scene: Scene, matches: Iterable[Match]) -> list[View]:
+    """What each decided thing looks like, where the scene has its cloud, under the name of its object."""
+    return [
+        _view(scene, match.perceived, re.sub(r"_\d+$", "", match.object), "grounding")
+        for match in matches
+        if match.decided and scene[match.perceived].cloud is not None
+    ]
+
+
+def _view(scene: Scene, object: str, category: str, teacher: str) -> View:
+    from deixis.perceiving import cloud_of
+    from deixis.recognising import view_of
+
+    metadata = {"scene": os.path.abspath(scene.file), "object": object, "teacher": teacher}
+    return view_of(cloud_of(scene, _thing(scene, object)), category, datetime.now(UTC), metadata)
 
 
 def category_name(text: str) -> str:

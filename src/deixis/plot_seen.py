@@ -52,8 +52,8 @@ def plot_recognised(found: Recognised, path: str | Path) -> None:
             points = cloud_of(found.scene, thing).points
             _points(axes, points, np.full(len(points), number))
         answer = found.answers.get(thing.id)
-        said = "" if answer is None else f" {answer.probability:.2f}"
-        named.append(replace(thing, label=f"{thing.label or 'unknown'}{said}"))
+        said = thing.label if answer is None else f"{answer.label or 'unknown'} {answer.probability:.2f}"
+        named.append(replace(thing, label=said or "unknown"))
     _boxes(axes, found.scene)
     axes.set_aspect("equal")
     dress_table(axes, found.scene, "What was recognised")

@@ -3,25 +3,30 @@
 from __future__ import annotations
 
 import hashlib
+import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from datetime import datetime
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from deixis.memory.perceptual.protocol import PerceptualMemory, PerceptualReading
+from deixis.memory.perceptual.calibrated import keep_calibration, kept_calibration
+from deixis.memory.perceptual.level import LevelMemory
+from deixis.memory.perceptual.protocol import PerceptualMemory, PerceptualReading, Progress
 from deixis.memory.perceptual.records import Batch, CategoryRecord, View
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.errors import CloudError
-from deixis.perception.features.registry import describer_named
+from deixis.perception.features.spin_describer import SpinImageDescriber
 from deixis.perception.recognition.instances import InstanceCategory
+from deixis.perception.recognition.learners.view_features import roots
 from deixis.perception.recognition.recogniser import Recogniser
 from deixis.perception.recognition.recognition import Recognition
 from deixis.perception.recognition.views import PackedViews
 from deixis.perception.scene import Scene
 
-DESCRIBER = "spin_images"
+DESCRIBER = "spin_image_roots"
 """What views are compared by."""
 
 DISTANCES, IDS = "distances", "views"
@@ -50,31 +55,49 @@ class Recognised:
     answers: Mapping[str, Recognition]
 
 
-def teach(
-    memory: PerceptualMemory, cloud: PointCloud, category: str, time: datetime, metadata: Mapping[str, Any]
-) -> Taught:
-    """Keeps one view of a thing of a category, all or nothing; the same points taught again correct the word.
+def describe(cloud: PointCloud) -> NDArray[np.float32]:
+    """What a thing's points are compared by: square roots of spin images, (k, 153); none of too few points.
 
-    Raises CloudError where nothing on the thing can be described.
+    With roots the distance of equation 1 is Hellinger's. A support of 20 cm takes in most of a thing on a table.
     """
-    descriptors = describer_named(DESCRIBER).describe(cloud)
+    return roots(SpinImageDescriber(support=0.2, voxel=0.025).describe(cloud))
+
+
+def view_of(cloud: PointCloud, category: str, time: datetime, metadata: Mapping[str, Any]) -> View:
+    """A view of a thing of a category, ready to be kept; raises CloudError where nothing on it can be described."""
+    descriptors = describe(cloud)
     if not len(descriptors):
         raise CloudError("the thing has too few points to say what it looks like; perceive it from nearer")
     points = np.ascontiguousarray(cloud.points[cloud.finite], dtype=np.float32)
     id = hashlib.sha256(points.tobytes()).hexdigest()[:16]
-    view = View(id, category, time, {DESCRIBER: descriptors}, points, dict(metadata))
+    return View(id, category, time, {DESCRIBER: descriptors}, points, dict(metadata))
+
+
+def keep_views(memory: PerceptualMemory, views: Sequence[View]) -> tuple[Taught, ...]:
+    """Keeps views, all or none; the same points kept again under another word correct it."""
     with memory.exclusive():
-        before = next((key.category for key in memory.listing() if key.id == id), None)
-        involved = [name for name in memory.categories() if name in (category, before)]
-        known = {name: instances_of(memory, name) for name in involved}
-        if before is not None:
-            known[before] = known[before].without_view(id)
-        grown = known.get(category, InstanceCategory(category)).with_view(id, descriptors)
-        left = [known[before]] if before is not None and before != category and len(known[before]) else []
-        memory.write(Batch([view], [record_of(grown), *map(record_of, left)]))
-        if before is not None and before != category and not left:
-            memory.forget(before)  # nothing is left of it
-    return Taught(id, category, len(grown), before if before != category else None)
+        place = {key.id: key.category for key in memory.listing()}
+        known, taught = {name: instances_of(memory, name) for name in _involved(memory, views, place)}, []
+        for view in views:
+            before = place.get(view.id)
+            if before is not None:
+                known[before] = known[before].without_view(view.id)
+            grown = known.get(view.category, InstanceCategory(view.category))
+            known[view.category] = grown.with_view(view.id, view.descriptors[DESCRIBER])
+            place[view.id] = view.category
+            corrected = before if before != view.category else None
+            taught.append(Taught(view.id, view.category, len(known[view.category]), corrected))
+        memory.write(Batch(views, [record_of(category) for category in known.values() if len(category)]))
+        for name, category in known.items():
+            if not len(category):
+                memory.forget(name)  # nothing is left of it
+    return tuple(taught)
+
+
+def _involved(memory: PerceptualReading, views: Sequence[View], place: Mapping[str, str]) -> list[str]:
+    """The categories that there are and that the views are of, or were of."""
+    named = {view.category for view in views} | {place[view.id] for view in views if view.id in place}
+    return [name for name in memory.categories() if name in named]
 
 
 def instances_of(memory: PerceptualReading, category: str) -> InstanceCategory:
@@ -96,19 +119,34 @@ def record_of(category: InstanceCategory) -> CategoryRecord:
     )
 
 
-def recogniser_of(memory: PerceptualReading) -> Recogniser:
-    """The recogniser of everything that was taught, with its threshold from its own views."""
-    categories = [instances_of(memory, name) for name in memory.categories()]
-    return Recogniser.of(categories).calibrated()
+def recogniser_of(memory: LevelMemory, progress: Progress | None = None) -> Recogniser:
+    """The recogniser of everything that was taught, with its threshold from its own views.
+
+    That is worked out anew when a tenth of the views are others than the last time, and kept in the memory.
+    """
+    with memory.exclusive():
+        known = Recogniser.of([instances_of(memory, name) for name in memory.categories()])
+        views = {(key.category, key.id) for key in memory.listing()}
+        kept = kept_calibration(memory.path, views)
+        if kept is not None:
+            return replace(known, calibration=kept)
+        known = known.calibrated(_objects(memory), progress)
+        keep_calibration(memory.path, known.calibration, views)
+    return known
+
+
+def _objects(memory: PerceptualReading) -> dict[str, str]:
+    """The thing that each view shows, by the view's id: the object of the scene that it was taught from."""
+    seen = ((view.id, view.metadata.get("scene"), view.metadata.get("object")) for view in memory.views())
+    return {id: json.dumps([scene, object]) for id, scene, object in seen if scene and object}
 
 
 def recognise(recogniser: Recogniser, scene: Scene, clouds: Sequence[PointCloud | None]) -> Recognised:
     """Names the things of a scene that have a cloud; what a scene says already stays."""
-    describer = describer_named(DESCRIBER)
     answers, things = {}, []
     for thing, cloud in zip(scene.objects, clouds, strict=True):
         if cloud is not None:
-            answer = recogniser.recognise(describer.describe(cloud))
+            answer = recogniser.recognise(describe(cloud))
             answers[thing.id] = answer
             if answer.label is not None and thing.label is None:
                 sure = float(np.clip(answer.probability, LEAST_CONFIDENCE, MOST_CONFIDENCE))

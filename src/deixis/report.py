@@ -99,7 +99,7 @@ def _pivotal_to_dict(pivotal: Pivotal) -> dict[str, Any]:
 
 def grounding_to_dict(found: Grounding) -> dict[str, Any]:
     """Who is who, and everything that qualifies it."""
-    from deixis.reasoning.answer import Outcome
+    from deixis.reasoning.answer import Outcome, Standing
 
     return {
         "engine": found.engine,
@@ -131,7 +131,10 @@ def grounding_to_dict(found: Grounding) -> dict[str, Any]:
             "open": [outcome_to_dict(entry) for entry in found.of(Outcome.OPEN)],
         },
         "pivotal": None if found.pivotal is None else [_pivotal_to_dict(entry) for entry in found.pivotal],
-        "probabilities": {"standing": found.probabilities.value, "error": _rounded(found.probability_error)},
+        "probabilities": {
+            "standing": found.probabilities.value,
+            "error": None if found.probabilities is Standing.NONE else _rounded(found.probability_error),
+        },
         "proved_best": found.proved_best,
         "converged": found.converged,
         "notes": list(found.notes),

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
@@ -18,7 +17,7 @@ from deixis.ontology.graph import RelationGraph
 from deixis.ontology.tbox import Ontology
 from deixis.perception.scene import Scene
 from deixis.perception.scene_file import read_scene
-from deixis.perceptual_session import PerceptualSession
+from deixis.perceptual_session import PerceptualSession, views_of_matches
 from deixis.reasoning.answer import Grounding
 from deixis.reasoning.conflict import find_conflict
 from deixis.reasoning.engines import Select, engine_named
@@ -173,6 +172,7 @@ class Session(PerceptualSession):
         from deixis.keeping import keep
         from deixis.learning import Occasion, layout_name, lesson_of
         from deixis.ontology.concepts import next_lesson_id
+        from deixis.recognising import keep_views
 
         script = self._script(script)
         scene = scene if isinstance(scene, Scene) else read_scene(scene)
@@ -187,18 +187,10 @@ class Session(PerceptualSession):
         memory = self.memory(create=True)
         id = next_lesson_id(layout_name(script), memory.lessons())
         lesson = lesson_of(script, scene, found, id, Occasion(started, datetime.now(UTC), VERSION))
-        seen = self._show(scene, found)
+        views = views_of_matches(scene, found.matches.values())
         keep(memory, self.ontology, lesson)
         self._meaning = None
-        return Learned(lesson, found, seen)
-
-    def _show(self, scene: Scene, found: Grounding) -> tuple[Taught, ...]:
-        """Teaches what each decided thing looks like, where the scene has its cloud."""
-        return tuple(
-            self.teach(scene, match.perceived, re.sub(r"_\d+$", "", match.object), teacher="grounding")
-            for match in found.matches.values()
-            if match.decided and scene[match.perceived].cloud is not None
-        )
+        return Learned(lesson, found, keep_views(self.views(create=True), views) if views else ())
 
     def check(
         self,

@@ -143,6 +143,8 @@ def _match_line(match: Match) -> str:
     equal = [_thing(other) for other in match.alternatives if other.cost <= 1e-9]
     if match.decided or not match.alternatives:
         return line.rstrip()
+    if len(equal) > MANY:
+        equal = [*equal[:MANY], f"{len(equal) - MANY} more"]
     return f"{line} or {', '.join(equal)}" if equal else f"{line} or, less likely, {_thing(match.alternatives[0])}"
 
 

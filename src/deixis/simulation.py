@@ -11,20 +11,26 @@ from deixis.laying import LaidScript
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.clouds.intrinsics import Intrinsics
 from deixis.perception.scene import Scene
-from deixis.perception.simulator.camera import HEIGHT, KINECT, Camera, chair_camera
+from deixis.perception.simulator.camera import HEIGHT, KINECT, Camera, chair_camera, check_place
 from deixis.perception.simulator.depth import FIRST_THING, DepthSensor, see
 from deixis.perception.simulator.truth import truth_scene
 
 
 @dataclass(frozen=True, slots=True)
 class View:
-    """From where a table is looked at, and how well; lengths in metres, the azimuth in radians."""
+    """From where a table is looked at, and how well; lengths in metres, the azimuth in radians.
+
+    Raises SimulationError for a place where no camera can be, before a table is laid in vain.
+    """
 
     height: float = HEIGHT
     back: float = 0.0
     azimuth: float = 0.0
     lens: Intrinsics = KINECT
     sensor: DepthSensor = field(default_factory=DepthSensor)
+
+    def __post_init__(self) -> None:
+        check_place(self.height, self.back, self.azimuth)
 
 
 @dataclass(frozen=True, eq=False)

@@ -75,3 +75,14 @@ def test_a_turned_table_is_grounded_as_if_it_were_not(quarters: int, option: str
     assert matches(out) == matches(straight) == TRUTH
     notes = json.loads(out)["notes"]
     assert any(note.startswith("the scene was taken turned by ") for note in notes)
+
+
+@pytest.mark.parametrize("viewpoint", ["quarter", "unknown"])
+def test_no_side_is_recovered_where_nothing_tells_one(viewpoint: str, tmp_path: Path) -> None:
+    script = tmp_path / "alone.layout"
+    script.write_text("layout alone seen from chair\nplate is a Plate\nfork is a Fork\n", encoding="utf-8")
+    code, out, _ = deixis("ground", script, SCENE, "--viewpoint", viewpoint, "--json")
+    _, stated, _ = deixis("ground", script, SCENE, "--json")
+    assert code == 0
+    assert matches(out) == matches(stated)
+    assert any("nothing tells from which side" in note for note in json.loads(out)["notes"])

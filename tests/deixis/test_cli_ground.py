@@ -160,3 +160,14 @@ def test_a_contradictory_script_is_grounded_with_a_note() -> None:
     assert code == 0
     assert "Note: the script contradicts itself" in out
     assert "violated" in out
+
+
+def test_of_very_many_equal_things_a_line_names_the_first_and_counts_the_rest(tmp_path: Path) -> None:
+    things = [{"id": f"o{i}", "min": [0.0, 0.0], "max": [0.1, 0.1]} for i in range(30)]
+    scene = {"frame": "table", "viewpoint": "chair", "unit": "m", "objects": things}
+    (tmp_path / "t.scene.json").write_text(json.dumps(scene), encoding="utf-8")
+    facts = "".join(f"f_{i} is a Fork\n" for i in range(30))
+    (tmp_path / "t.layout").write_text(f"layout alike seen from chair\n{facts}", encoding="utf-8")
+    _, out, _ = deixis("ground", tmp_path / "t.layout", tmp_path / "t.scene.json", "--engine", "similarity")
+    line = next(line for line in out.splitlines() if line.startswith("f_0 "))
+    assert line.endswith(", 17 more")

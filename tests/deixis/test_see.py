@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import json
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -153,6 +154,89 @@ def test_bad_input_has_one_line(tables: Path, tmp_path: Path) -> None:
         code, out, err = deixis(*arguments)
         assert (code, out) == (2, ""), arguments
         assert len(err.splitlines()) == 1, arguments
+
+
+def test_the_memory_is_free_while_someone_is_asked(
+    tables: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    seal = tmp_path / "memory" / "perceptual" / "seal.json"  # there is one while nobody has the memory open
+    with Session(tmp_path / "memory") as session:
+        session.teach(tables / "7.scene.json", "o1", "plate")
+    sealed: list[bool] = []
+
+    def answer() -> str:
+        sealed.append(seal.exists())
+        return "o3\n"
+
+    monkeypatch.setattr("sys.stdin", SimpleNamespace(readline=answer))
+    assert deixis("ask", "fork", tables / "7.scene.json", "--memory", tmp_path / "memory")[0] == 0
+    assert sealed == [True]
+
+
+def test_what_is_read_is_never_written_over(tables: Path, tmp_path: Path) -> None:
+    cloud = tmp_path / "table.pcd"
+    cloud.write_bytes((tables / "7.pcd").read_bytes())
+    before = cloud.read_bytes()
+    thing = tables / str(read_scene(tables / "7.scene.json")["o1"].cloud)
+    mesh = tmp_path / "cup.ply"
+    mesh.write_text("ply\n")
+    for arguments, file in (
+        (("perceive", cloud, "-o", cloud), cloud),
+        (("perceive", cloud, "-o", tmp_path / "a.json", "--plot", tmp_path), tmp_path),
+        (("perceive", cloud, "-o", tmp_path / "a.npy", "--labels", tmp_path / "a.npy"), tmp_path / "a.npy"),
+        (("perceive", cloud, "-o", cloud / "a.json"), cloud / "a.json"),
+        (("recognise", tables / "7.scene.json", "-o", thing), thing),
+        (("simulate", FULL, "--mesh", f"water_glass={mesh}", "-o", mesh), mesh),
+    ):
+        code, out, err = deixis(*arguments)
+        assert (code, out) == (2, ""), arguments
+        assert str(file) in err
+        assert len(err.splitlines()) == 1
+    assert cloud.read_bytes() == before
+
+
+def test_a_cloud_without_a_point_is_named(tmp_path: Path) -> None:
+    write_cloud(tmp_path / "nothing.pcd", PointCloud(np.full((4, 3), np.nan, np.float32)))
+    assert str(tmp_path / "nothing.pcd") in deixis("perceive", tmp_path / "nothing.pcd")[2]
+
+
+def test_a_camera_that_cannot_be_is_refused_before_a_table_is_laid(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("deixis.laying.lay_script", None)
+    for option, value, word in (("--camera-height", "0", "above"), ("--camera-back", "50", "edge"),
+                                ("--azimuth", "nan", "azimuth")):  # fmt: skip
+        code, _, err = deixis("simulate", FULL, option, value)
+        assert code == 2
+        assert word in err
+
+
+def test_a_calibration_is_kept_while_a_tenth_of_the_views_stays(
+    tables: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from deixis.perception.recognition.recogniser import Recogniser
+    from deixis.recognising import recogniser_of
+
+    scene, file = tables / "7.scene.json", tmp_path / "memory" / "perceptual" / "calibration.json"
+    calls: list[dict[str, str]] = []
+    work = Recogniser.calibrated
+
+    def calibrated(self: Recogniser, objects: dict[str, str], progress: None) -> Recogniser:
+        calls.append(objects)
+        return work(self, objects, progress)
+
+    monkeypatch.setattr(Recogniser, "calibrated", calibrated)
+    with Session(tmp_path / "memory") as session:
+        for object, word in (("o1", "plate"), ("o5", "plate"), ("o3", "fork"), ("o4", "fork")):
+            session.teach(scene, object, word)
+        first = recogniser_of(session.views()).calibration
+        assert recogniser_of(session.views()).calibration == first
+        assert len(calls) == 1
+        assert len(set(calls[0].values())) == 4
+        file.write_text(file.read_text().replace(str(first.threshold), str(first.threshold + 1)))
+        assert recogniser_of(session.views()).calibration == first  # a changed number is not believed
+        session.teach(scene, "o7", "spoon")
+        recogniser_of(session.views())
+        assert len(calls) == 3
+    assert deixis("memory", "verify", "--memory", tmp_path / "memory")[0] == 0
 
 
 def test_a_table_with_nothing_on_it_is_an_answer(tmp_path: Path) -> None:

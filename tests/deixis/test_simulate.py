@@ -205,7 +205,7 @@ def test_a_layout_without_a_table_is_an_answer_of_no(tmp_path: Path) -> None:
         (("--random", 1, "--noise", "nan"), "noise is 0 or more"),
         (("--random", 1, "--missing", "2"), "share of missing points"),
         (("--random", 1, "--camera-height", "-1"), "above the table"),
-        (("--random", 1, "--azimuth", "inf"), "above the table"),
+        (("--random", 1, "--azimuth", "inf"), "azimuth"),
         (("--random", 1, "-o", "cloud.txt"), "ends in .pcd or .ply"),
         (("--random", 1, "-o", "."), "folder"),
         (("--random", 1, "--mesh", "toaster"), "NAME=FILE"),

@@ -84,6 +84,7 @@ def test_a_record_read_back_holds_the_texts_and_how_sure_every_match_is(
 
 def test_a_match_without_a_probability_is_sure_where_it_is_decided_and_else_shares() -> None:
     assert MatchRecord("fork", "o1", True, 1.0).sureness == 1
+    assert MatchRecord("fork", None, False, 1.0, ("o1",), likeliest="o1").sureness == 0
     assert MatchRecord("fork", None, False, 1.0, ("o1", "o2"), likeliest="o2").sureness == 0.5
     assert MatchRecord("fork", None, False, 1.0, ("o1", "o2"), 0.3, "o2").sureness == 0.3
 

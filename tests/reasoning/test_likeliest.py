@@ -225,3 +225,25 @@ def test_meaning_says_whether_probabilities_are_exact(graph_of: MakeGraph, boxes
     similarity = ground(no_unary_evidence(graph_of("left(a, b)"), seen), engine_named("similarity"))
     assert similarity.probabilities is Standing.NONE
     assert similarity.matches["a"].probability is None
+
+
+def test_without_time_for_probabilities_none_is_told_and_nothing_is_decided() -> None:
+    boxes = np.random.default_rng(3).uniform(size=(60, 1, 2)) + np.array([[0.0, 0.0], [0.05, 0.05]])
+    seen, words = scene(boxes), ("left", "right", "top")
+    facts = [Fact(f"a{i}", (R[words[i % 3]],), f"a{(7 * i + 1) % 60}") for i in range(60) if i != (7 * i + 1) % 60]
+    described = RelationGraph.from_facts(R, [f"a{i}" for i in range(60)], facts)
+    found = ground(no_unary_evidence(described, seen), engine_named("scalable"), time_limit=0.0)
+    assert found.probabilities is Standing.NONE
+    assert all(match.probability is None and not match.decided for match in found.matches.values())
+    assert any("how probable" in note for note in found.notes)
+
+
+def test_a_thousand_alike_do_not_list_each_other() -> None:
+    from deixis.reasoning.grounding import MANY_FELLOWS
+
+    boxes = np.tile(np.array([[0.0, 0.0], [0.1, 0.1]]), (MANY_FELLOWS + 2, 1, 1))
+    names = [f"a{i}" for i in range(MANY_FELLOWS + 2)]
+    evidence = no_unary_evidence(RelationGraph.from_facts(R, names, []), scene(boxes))
+    found = ground(evidence, engine_named("similarity"))
+    assert len(found.interchangeable[0]) == MANY_FELLOWS + 2
+    assert all(len(match.alternatives) <= 1 for match in found.matches.values())

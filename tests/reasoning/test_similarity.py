@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import time
 from collections.abc import Callable
 
 import numpy as np
@@ -209,3 +210,21 @@ def test_a_prior_of_zero_forbids_a_pair(graph_of: MakeGraph, figure_7: list[str]
     prior[1, 1] = 0
     assert node_similarity(graph, graph).matrices[0, 1, 1] > 0
     assert node_similarity(graph, graph, prior=prior).matrices[0, 1, 1] == 0
+
+
+def test_at_the_deadline_it_stops_and_says_that_it_did_not_converge() -> None:
+    graph = paper_graph(3, [(0, 1, 0), (1, 2, 1), (2, 0, 0)])
+    found = node_similarity(graph, graph, deadline=time.perf_counter())
+    assert found.iterations == 0
+    assert not found.converged.any()
+    assert found.matrices.any()
+
+
+def test_many_edges_cost_no_more_than_a_matrix_for_each_label() -> None:
+    rng = np.random.default_rng(1)
+    n, count = 400, 12_000
+    ends = rng.integers(n, size=(count, 2)).tolist()
+    graph = paper_graph(n, [(a, b, (a + b) % 2) for a, b in ends])
+    started = time.process_time()
+    node_similarity(graph, graph, iterations=2)
+    assert time.process_time() - started < 2.0

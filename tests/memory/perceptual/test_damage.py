@@ -7,6 +7,7 @@ import random
 import shutil
 from collections import Counter
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -145,6 +146,24 @@ def test_values_that_changed_places_are_told(kept: Path) -> None:
         with pytest.raises(DamagedMemoryError, match="view 'fork-1-0' of 'fork': its arrays are not what was written"):
             memory.view("fork-1-0")
         assert memory.view("plate-0-0").id == "plate-0-0"
+
+
+def test_older_arrays_under_the_same_key_are_told(kept: Path) -> None:
+    """As where the newer ones' key is damaged in its table, and LevelDB finds the older ones in another."""
+    with LevelMemory.open(kept) as memory:
+        view = memory.view("fork-1-0")
+        with memory.handle as db:
+            older = dict(db.iterator(prefix=keys.ARRAYS))
+        memory.write(Batch([replace(view, descriptors={name: array + 1 for name, array in view.descriptors.items()})]))
+    with plyvel.DB(str(kept / "store-1")) as db:
+        for key, sealed in older.items():
+            db.put(key, sealed)
+    (kept / "seal.json").unlink()
+    with LevelMemory.open(kept) as memory:
+        for read in (lambda: memory.view("fork-1-0"), lambda: list(memory.views("fork"))):
+            with pytest.raises(DamagedMemoryError, match="'fork-1-0' of 'fork': its arrays are not what was written"):
+                read()
+        assert [finding.where for finding in memory.verify()] == ["view 'fork-1-0' of 'fork'"]
 
 
 def test_other_views_stay_readable_beside_a_damaged_one(kept: Path, make_view: Callable[..., View]) -> None:

@@ -46,9 +46,9 @@ for line in sys.stdin:
     folder, seed = line.split()
     child = os.fork()
     if child == 0:
+        os.write(1, b"child %d\\n" % os.getpid())
         write(folder, seed)
         os._exit(0)
-    os.write(1, b"child %d\\n" % child)
     os.waitpid(child, 0)
     os.write(1, b"gone\\n")
 """

@@ -114,3 +114,13 @@ def test_the_order_of_views_and_of_descriptors_does_not_matter(views: list[Descr
 def test_what_cannot_be_compared_is_refused(target: Descriptors, view: Descriptors, said: str) -> None:
     with pytest.raises(RecognitionError, match=said):
         view_distance(target, view)
+
+
+def test_products_in_pieces_are_those_in_one() -> None:
+    from deixis.perception.recognition.kernels import ONE_THREAD, _products
+
+    rng = np.random.default_rng(0)
+    for rows, columns, size in ((120, 100, 153), (7, 3, 5), (3, 2, ONE_THREAD)):
+        view = rng.normal(size=(rows, size)).astype(np.float32)
+        target = rng.normal(size=(size, columns)).astype(np.float32)
+        np.testing.assert_allclose(_products(view, target), view @ target, rtol=1e-4, atol=1e-2)
