@@ -98,7 +98,9 @@ def best_threshold(known: NDArray[np.float64], unknown: NDArray[np.float64], pri
     scores = scores[np.isfinite(scores) & (scores > 0)]
     if not len(scores):
         return SHIPPED.threshold
-    cuts = np.concatenate([scores[:1] / 2, (scores[1:] + scores[:-1]) / 2, scores[-1:] * 2])
+    halfway = (scores[1:] + scores[:-1]) / 2
+    halfway = np.where(halfway < scores[1:], halfway, scores[:-1])  # between neighbours there is no number
+    cuts = np.concatenate([scores[:1] / 2, halfway, scores[-1:] * 2])
     missed = 1 - np.searchsorted(np.sort(known), cuts, side="right") / len(known)
     taken = np.searchsorted(np.sort(unknown), cuts, side="right") / len(unknown)
     errors = (1 - prior_unknown) * missed + prior_unknown * taken

@@ -58,8 +58,8 @@ class PerceptualSession(MemorySession):
         from deixis.recognising import keep_views
 
         scene = scene if isinstance(scene, Scene) else read_scene(scene)
-        (taught,) = keep_views(self.views(create=True), [_view(scene, object, category_name(category), teacher)])
-        return taught
+        view = _view(scene, object, category_name(category), teacher)
+        return keep_views(self.views(create=True), [view])[0]
 
     def recognise(self, scene: Scene | str | Path | Mapping[str, Any], progress: Progress | None = None) -> Recognised:
         """Names what is known among the things of a scene; without a memory nothing is.

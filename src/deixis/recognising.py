@@ -21,13 +21,16 @@ from deixis.perception.errors import CloudError
 from deixis.perception.features.spin_describer import SpinImageDescriber
 from deixis.perception.recognition.instances import InstanceCategory
 from deixis.perception.recognition.learners.view_features import roots
-from deixis.perception.recognition.recogniser import Recogniser
+from deixis.perception.recognition.recogniser import Recogniser, RecognitionSettings
 from deixis.perception.recognition.recognition import Recognition
+from deixis.perception.recognition.spread import PRIOR_SPREADS
 from deixis.perception.recognition.views import PackedViews
 from deixis.perception.scene import Scene
 
 DESCRIBER = "spin_image_roots"
 """What views are compared by."""
+
+SETTINGS = RecognitionSettings(prior_spread=PRIOR_SPREADS[DESCRIBER])
 
 DISTANCES, IDS = "distances", "views"
 """The names of a category's state: D_V between its views, and the ids of the views, in the same order."""
@@ -125,7 +128,7 @@ def recogniser_of(memory: LevelMemory, progress: Progress | None = None) -> Reco
     That is worked out anew when a tenth of the views are others than the last time, and kept in the memory.
     """
     with memory.exclusive():
-        known = Recogniser.of([instances_of(memory, name) for name in memory.categories()])
+        known = Recogniser.of([instances_of(memory, name) for name in memory.categories()], SETTINGS)
         views = {(key.category, key.id) for key in memory.listing()}
         kept = kept_calibration(memory.path, views)
         if kept is not None:

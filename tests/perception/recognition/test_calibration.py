@@ -35,6 +35,11 @@ def test_a_rare_unknown_moves_the_threshold_up() -> None:
     assert best_threshold(known, unknown, 0.1) == pytest.approx(1.5)
 
 
+def test_a_cut_between_two_neighbouring_numbers_is_the_lower_one() -> None:
+    lower = float(np.nextafter(10.0, 0.0))
+    assert best_threshold(np.array([lower]), np.array([10.0])) == lower
+
+
 @settings(deadline=None)
 @given(scores, scores, st.floats(0.05, 0.95))
 def test_no_other_threshold_makes_fewer_errors(
