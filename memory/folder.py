@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import json
 import os
-import shutil
 from collections.abc import Callable
 from enum import Enum, auto
 from pathlib import Path
@@ -16,6 +15,7 @@ from typing import Any
 
 import pyoxigraph as ox
 
+from deixis.memory import disk
 from deixis.memory.errors import MemoryFormatError
 from deixis.memory.lock import LOCK_FILE
 from deixis.memory.migration import MIGRATIONS, VERSION
@@ -120,7 +120,7 @@ def check_store_opens(folder: Path) -> None:
 
 def create(folder: Path, fill: Callable[[ox.Store], None], digest: str) -> None:
     """Makes a memory in an empty folder: a store that ``fill`` fills, then the mark."""
-    _remove(folder / NEW)
+    disk.remove(folder / NEW)
     (folder / NEW_MARK).unlink(missing_ok=True)
     try:
         store = ox.Store(folder / NEW)
@@ -128,34 +128,34 @@ def create(folder: Path, fill: Callable[[ox.Store], None], digest: str) -> None:
         store.flush()
         del store
     except BaseException:
-        _remove(folder / NEW)
+        disk.remove(folder / NEW)
         raise
     _write(folder / NEW_MARK, {"format": FORMAT, "version": VERSION, "package": digest})
-    _rename(folder / NEW, folder / STORE)
-    _rename(folder / NEW_MARK, folder / MARK)
+    disk.rename(folder / NEW, folder / STORE)
+    disk.rename(folder / NEW_MARK, folder / MARK)
 
 
 def finish(folder: Path) -> None:
     """Ends or undoes what a crash cut short."""
     if not (folder / MARK).exists():
-        _rename(folder / NEW_MARK, folder / MARK)
+        disk.rename(folder / NEW_MARK, folder / MARK)
     if (folder / OLD).is_dir():
         if (folder / STORE).is_dir() and not (folder / NEW_MARK).exists():
-            _remove(folder / OLD)  # the swap was done
+            disk.remove(folder / OLD)  # the swap was done
         else:
-            _remove(folder / STORE)
-            _rename(folder / OLD, folder / STORE)
-    _remove(folder / NEW)
+            disk.remove(folder / STORE)
+            disk.rename(folder / OLD, folder / STORE)
+    disk.remove(folder / NEW)
     (folder / NEW_MARK).unlink(missing_ok=True)
 
 
 def swap(folder: Path, mark: dict[str, Any]) -> None:
     """Puts ``semantic.new`` in the place of ``semantic``, with the mark that goes with it; nobody has either open."""
     _write(folder / NEW_MARK, mark)
-    _rename(folder / STORE, folder / OLD)
-    _rename(folder / NEW, folder / STORE)
-    _rename(folder / NEW_MARK, folder / MARK)
-    _remove(folder / OLD)
+    disk.rename(folder / STORE, folder / OLD)
+    disk.rename(folder / NEW, folder / STORE)
+    disk.rename(folder / NEW_MARK, folder / MARK)
+    disk.remove(folder / OLD)
 
 
 def migrate(folder: Path) -> None:
@@ -163,7 +163,7 @@ def migrate(folder: Path) -> None:
     mark = read_mark(folder)
     while mark["version"] != VERSION:
         step = MIGRATIONS[mark["version"]]
-        _remove(folder / NEW)
+        disk.remove(folder / NEW)
         old, new = ox.Store.read_only(str(folder / STORE)), ox.Store(folder / NEW)
         step(old, new)
         new.flush()
@@ -175,7 +175,7 @@ def migrate(folder: Path) -> None:
 def write_mark(folder: Path, mark: dict[str, Any]) -> None:
     """Replaces ``memory.json`` in one step."""
     _write(folder / NEW_MARK, mark)
-    _rename(folder / NEW_MARK, folder / MARK)
+    disk.rename(folder / NEW_MARK, folder / MARK)
 
 
 def size(folder: Path) -> int:
@@ -193,17 +193,3 @@ def _write(file: Path, mark: dict[str, Any]) -> None:
         out.write(json.dumps(mark, indent=2, sort_keys=True) + "\n")
         out.flush()
         os.fsync(out.fileno())
-
-
-def _rename(old: Path, new: Path) -> None:
-    os.replace(old, new)
-    descriptor = os.open(new.parent, os.O_RDONLY)
-    try:
-        os.fsync(descriptor)
-    finally:
-        os.close(descriptor)
-
-
-def _remove(path: Path) -> None:
-    if path.is_dir():
-        shutil.rmtree(path)

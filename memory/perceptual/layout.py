@@ -14,12 +14,12 @@ from __future__ import annotations
 
 import os
 import re
-import shutil
 from collections.abc import Callable
 from pathlib import Path
 
 import plyvel
 
+from deixis.memory import disk
 from deixis.memory.errors import MemoryFormatError
 from deixis.memory.lock import LOCK_FILE
 
@@ -87,32 +87,17 @@ def prepare(folder: Path, check: Callable[[Path, Path], None]) -> None:
                 old.close()
     for other in folder.glob("store-*"):
         if other != store(folder):
-            _remove(other)
+            disk.remove(other)
 
 
 def _make(folder: Path, version: int, fill: Callable[[plyvel.DB], None]) -> None:
     """Makes a store beside what is there, and gives it its name when it is whole."""
     new = folder / f"store-{version}.new"
-    _remove(new)
+    disk.remove(new)
     db = plyvel.DB(str(new), create_if_missing=True, error_if_exists=True, compression=None, paranoid_checks=True)
     try:
         fill(db)
         db.write_batch(sync=True).write()
     finally:
         db.close()
-    rename(new, store(folder, version))
-
-
-def rename(old: Path, new: Path) -> None:
-    """Gives a file or folder another name, safely on the disk."""
-    os.replace(old, new)
-    descriptor = os.open(new.parent, os.O_RDONLY)
-    try:
-        os.fsync(descriptor)
-    finally:
-        os.close(descriptor)
-
-
-def _remove(path: Path) -> None:
-    if path.is_dir():
-        shutil.rmtree(path)
+    disk.rename(new, store(folder, version))

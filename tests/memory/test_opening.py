@@ -14,8 +14,8 @@ from pathlib import Path
 import pyoxigraph as ox
 import pytest
 
+from deixis.memory import disk, opening
 from deixis.memory import folder as files
-from deixis.memory import opening
 from deixis.memory.errors import MemoryBusyError, MemoryFormatError, MemoryWriteError
 from deixis.memory.exchange import export_memory
 from deixis.memory.graphs import GRAPHS, GraphName
@@ -143,7 +143,7 @@ def make_old(folder: Path) -> None:
         old.add(ox.Quad(quad.subject, quad.predicate, quad.object, ox.NamedNode(name)))
     old.flush()
     del new, old
-    files._remove(folder / "semantic")
+    disk.remove(folder / "semantic")
     (folder / "older").rename(folder / "semantic")
     (folder / "memory.json").write_text('{"format": "deixis-memory", "version": 0}')
 
@@ -178,8 +178,8 @@ def test_a_crash_while_migrating_loses_nothing(kept: Path, steps: int, monkeypat
         return step
 
     with monkeypatch.context() as patched:
-        patched.setattr(files, "_rename", crashing(files._rename))
-        patched.setattr(files, "_remove", crashing(files._remove))
+        patched.setattr(disk, "rename", crashing(disk.rename))
+        patched.setattr(disk, "remove", crashing(disk.remove))
         with pytest.raises(KeyboardInterrupt):
             SemanticMemory.open(kept)
     assert _exported(kept) == before
@@ -188,7 +188,7 @@ def test_a_crash_while_migrating_loses_nothing(kept: Path, steps: int, monkeypat
 @pytest.mark.parametrize("steps", range(3))
 def test_a_crash_while_creating_is_mended(tmp_path: Path, steps: int, monkeypatch: pytest.MonkeyPatch) -> None:
     left = [steps]
-    real = files._rename
+    real = disk.rename
 
     def crashing(old: Path, new: Path) -> None:
         if left[0] == 0:
@@ -197,7 +197,7 @@ def test_a_crash_while_creating_is_mended(tmp_path: Path, steps: int, monkeypatc
         real(old, new)
 
     with monkeypatch.context() as patched:
-        patched.setattr(files, "_rename", crashing)
+        patched.setattr(disk, "rename", crashing)
         if steps < 2:
             with pytest.raises(MemoryWriteError):
                 SemanticMemory.open(tmp_path / "m", create=True)

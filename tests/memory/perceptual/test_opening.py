@@ -14,6 +14,7 @@ from typing import Any
 import plyvel
 import pytest
 
+from deixis.memory import disk
 from deixis.memory.errors import MemoryBusyError, MemoryFormatError
 from deixis.memory.perceptual import keys, layout
 from deixis.memory.perceptual.errors import DamagedMemoryError
@@ -82,7 +83,7 @@ def make_old(folder: Path) -> None:
     with plyvel.DB(str(folder / "store-1")) as new, plyvel.DB(str(folder / "store-0"), create_if_missing=True) as old:
         for key, value in new.iterator():
             old.put(_prefixed(key), value)
-    layout._remove(folder / "store-1")
+    disk.remove(folder / "store-1")
     (folder / "seal.json").unlink()
 
 
@@ -121,8 +122,8 @@ def test_a_crash_while_migrating_loses_nothing(
         return step
 
     with monkeypatch.context() as patched:
-        patched.setattr(layout, "rename", crashing(layout.rename))
-        patched.setattr(layout, "_remove", crashing(layout._remove))
+        patched.setattr(disk, "rename", crashing(disk.rename))
+        patched.setattr(disk, "remove", crashing(disk.remove))
         patched.setitem(layout.MIGRATIONS, 0, crashing(from_0))
         with pytest.raises(KeyboardInterrupt):
             LevelMemory.open(kept)
