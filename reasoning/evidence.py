@@ -26,6 +26,7 @@ from deixis.ontology.sizes import Sizes
 from deixis.reasoning.graded.colours import colour_evidence
 from deixis.reasoning.graded.degrees import log_likelihood_ratio
 from deixis.reasoning.graded.facts import OPTIONAL_WEIGHT, fact_tables, hedged
+from deixis.reasoning.graded.shipped import OUTLIERS
 from deixis.reasoning.graded.unary import label_ratios, size_evidence
 from deixis.reasoning.labels import Label
 from deixis.reasoning.matching.problem import UNMATCHED, Problem
@@ -33,9 +34,6 @@ from deixis.reasoning.meaning import SHIPPED, Meaning
 
 PRESENT = -30.0
 """What leaving an object out costs where a certain label says that it is there."""
-
-OUTLIERS = 0.01
-"""Share of facts that are said of anything, where words are taken literally."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -18,7 +18,7 @@ from deixis.memory.perceptual.layout import FOLDER, version_in
 from deixis.memory.perceptual.level import LevelMemory
 from deixis.memory.perceptual.protocol import Finding, PerceptualStats, Progress
 
-__all__ = ["export_all", "import_all", "is_archive", "open_in", "stats_of", "verify_views"]
+__all__ = ["export_all", "has_views", "import_all", "is_archive", "open_in", "stats_of", "verify_views"]
 
 
 def open_in(memory: Path, create: bool = False) -> LevelMemory:
@@ -26,9 +26,14 @@ def open_in(memory: Path, create: bool = False) -> LevelMemory:
     return LevelMemory.open(memory / FOLDER, create)
 
 
+def has_views(memory: Path) -> bool:
+    """Whether anything was ever taught, by looking only."""
+    return version_in(memory / FOLDER) is not None
+
+
 def stats_of(memory: Path) -> PerceptualStats | None:
     """Counts, or None where nothing was taught."""
-    if version_in(memory / FOLDER) is None:
+    if not has_views(memory):
         return None
     with open_in(memory) as views:
         return views.stats()
@@ -36,7 +41,7 @@ def stats_of(memory: Path) -> PerceptualStats | None:
 
 def verify_views(memory: Path, progress: Progress | None = None) -> tuple[Finding, ...]:
     """What is not as it was written; what keeps the memory from being opened is raised as DamagedMemoryError."""
-    if version_in(memory / FOLDER) is None:
+    if not has_views(memory):
         return ()
     with open_in(memory) as views:
         return views.verify(progress)

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.reasoning.graded.colours import lab_of_srgb
+
 SMALLEST, LARGEST = 0.005, 0.018
 """Metres around a point from which its plane is estimated: six times the noise, within these bounds."""
 
@@ -16,12 +18,6 @@ FEWEST = 2.5
 LEAST_JUMP, JUMP, STRIDES = 0.006, 7.0, 3.5
 """Neighbours farther apart than the first (metres), so many times the noise, and so many times the usual distance
 between neighbours are on no common surface."""
-
-
-TO_XYZ = np.array(
-    [[0.4124564, 0.3575761, 0.1804375], [0.2126729, 0.7151522, 0.0721750], [0.0193339, 0.1191920, 0.9503041]]
-)
-"""Linear sRGB to CIE XYZ."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,24 +77,8 @@ def _spacing(
 def _smooth_lab(colours: NDArray[np.uint8] | None, neighbours: NDArray[np.int32]) -> NDArray[np.float64]:
     if colours is None:
         return np.zeros((len(neighbours), 3))
-    lab = lab_of(colours)
+    lab = lab_of_srgb(colours.astype(np.float64))
     there = neighbours >= 0
     total = lab + np.where(there[:, :, None], lab[neighbours], 0.0).sum(axis=1)
     mean: NDArray[np.float64] = total / (1 + there.sum(axis=1))[:, None]
     return mean
-
-
-def lab_of(colours: NDArray[np.uint8]) -> NDArray[np.float64]:
-    """sRGB (n, 3) as CIE L*a*b* of the white point D65 (IEC 61966-2-1, CIE 15): a distance of 2 is just seen.
-
-    >>> lab_of(np.array([[255, 255, 255], [255, 0, 0]], np.uint8)).round(1).tolist()
-    [[100.0, 0.0, 0.0], [53.2, 80.1, 67.2]]
-    """
-    share = np.arange(256) / 255
-    linear = np.where(share <= 0.04045, share / 12.92, ((share + 0.055) / 1.055) ** 2.4)
-    to_xyz = np.array(
-        [[0.4124564, 0.3575761, 0.1804375], [0.2126729, 0.7151522, 0.0721750], [0.0193339, 0.1191920, 0.9503041]]
-    )
-    xyz = linear[colours] @ (to_xyz / to_xyz.sum(axis=1, keepdims=True)).T
-    f = np.where(xyz > (6 / 29) ** 3, np.cbrt(xyz), xyz / (3 * (6 / 29) ** 2) + 4 / 29)
-    return np.stack([116 * f[:, 1] - 16, 500 * (f[:, 0] - f[:, 1]), 200 * (f[:, 1] - f[:, 2])], axis=1)

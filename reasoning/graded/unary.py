@@ -176,23 +176,3 @@ def label_ratios(description: RelationGraph, labels: Sequence[Label | None], kin
     with np.errstate(divide="ignore"):
         logs: Array = np.log(ratios)
     return logs
-
-
-def unary_evidence(
-    description: RelationGraph,
-    boxes: NDArray[np.float64],
-    labels: Sequence[Label | None],
-    kinds: Kinds,
-    sizes: Sizes,
-    *,
-    learned: Mapping[str, SizeModel] | None = None,
-    metric: bool = True,
-    weights: UnaryWeights | None = None,
-) -> Array:
-    """Labels and sizes together, shape (n1, n2), as :class:`deixis.reasoning.matching.problem.Problem` takes them."""
-    by = weights or UnaryWeights()
-    of_kinds = description.kinds or (None,) * len(description.nodes)
-    total = by.sizes * size_evidence(of_kinds, boxes, sizes, learned, metric)
-    if by.labels > 0:
-        total = total + by.labels * label_ratios(description, labels, kinds)
-    return total

@@ -1,9 +1,9 @@
-"""Two node similarities from the literature as engines: Blondel et al. (2004), and Heymans and Singh (2003).
+"""Two node similarities from the literature: Blondel et al. (2004), and Heymans and Singh (2003).
 
 Both see graphs with weights: the description has an edge for every fact, the scene one for every pair that a fact's
 table says something for (the table over its largest entry; what speaks against a pair counts as nothing). Facts of
-several kinds are several such pairs of graphs, whose updates are added. The similarity is turned into a map by the
-Hungarian method. Neither knows of unary terms but those that rule a match out, nor leaves out what it need not.
+several kinds are several such pairs of graphs, whose updates are added. Neither knows of unary terms but those that rule
+a match out. As engines, with the Hungarian method: :class:`deixis.reasoning.likeliest.BaselineEngine`.
 """
 
 from __future__ import annotations
@@ -13,23 +13,12 @@ from collections.abc import Callable, Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.reasoning.assignment import assign
 from deixis.reasoning.matching.problem import Problem
 
 Matrix = NDArray[np.float64]
 
 ITERATIONS = 100
 TOLERANCE = 1e-8
-
-
-def blondel(problem: Problem) -> NDArray[np.int64]:
-    """The map of largest similarity under :func:`blondel_similarity`."""
-    return assign(blondel_similarity(problem), _allowed(problem))
-
-
-def heymans_singh(problem: Problem) -> NDArray[np.int64]:
-    """The map of largest similarity under :func:`heymans_singh_similarity`."""
-    return assign(heymans_singh_similarity(problem), _allowed(problem))
 
 
 def blondel_similarity(problem: Problem) -> Matrix:

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from deixis.cli_category import register as register_category
 from deixis.cli_common import (
     BAD_INPUT,
     NO,
@@ -140,6 +141,7 @@ register_experiment(app)
 register_imagine(app)
 register_relation(app)
 register_see(app)
+register_category(app)
 register_simulate(app)
 
 

@@ -1,4 +1,4 @@
-"""The commands that begin with a point cloud: perceive, teach, recognise, ask; and the categories that were taught."""
+"""The commands that begin with a point cloud: perceive, teach, recognise, ask."""
 
 from __future__ import annotations
 
@@ -18,14 +18,11 @@ if TYPE_CHECKING:
 PerceivedScene = Annotated[str, typer.Argument(metavar="SCENE", help="A scene that perceive wrote, with clouds.")]
 Picture = Annotated[Path | None, typer.Option("--plot", metavar="FILE", help="Draw it (.png, .svg, .pdf).")]
 
-category_app = typer.Typer(help="List, rename, merge or forget what was taught.", no_args_is_help=True)
-
 
 def register(app: typer.Typer) -> None:
     """Adds these commands to the command line."""
     for command in (perceive, teach, recognise, ask):
         app.command()(command)
-    app.add_typer(category_app, name="category")
 
 
 def perceive(
@@ -260,60 +257,3 @@ def _pointed_at(name: str, scene: Scene) -> str | None:
         if answer in scene.ids:
             return answer
         print(f"There is no '{answer}' here.")
-
-
-@category_app.command("list")
-def list_categories(memory: MemoryDir = None, as_json: AsJson = False) -> None:
-    """What was taught, with the number of views."""
-    from deixis.session import Session
-
-    with Session(memory) as session:
-        known = session.categories()
-    if as_json:
-        print_json(known)
-    else:
-        print_lines([f"{name:<24} {count}" for name, count in known.items()] or ["Nothing was taught."])
-
-
-@category_app.command("rename")
-def rename(
-    old: Annotated[str, typer.Argument(metavar="OLD")],
-    new: Annotated[str, typer.Argument(metavar="NEW")],
-    memory: MemoryDir = None,
-) -> None:
-    """Give a category another name; its views stay."""
-    from deixis.perceptual_session import category_name
-    from deixis.session import Session
-
-    with Session(memory) as session:
-        session.views().rename(category_name(old), category_name(new))
-    print(f"'{category_name(old)}' is '{category_name(new)}' now.")
-
-
-@category_app.command("merge")
-def merge(
-    source: Annotated[str, typer.Argument(metavar="SOURCE")],
-    into: Annotated[str, typer.Argument(metavar="INTO")],
-    memory: MemoryDir = None,
-) -> None:
-    """Make the views of one category views of another: two words for one thing."""
-    from deixis.perceptual_session import category_name
-    from deixis.session import Session
-
-    with Session(memory) as session:
-        session.views().merge(category_name(source), category_name(into))
-    print(f"What was '{category_name(source)}' is '{category_name(into)}' now.")
-
-
-@category_app.command("forget")
-def forget_category(
-    name: Annotated[str, typer.Argument(metavar="CATEGORY")],
-    memory: MemoryDir = None,
-) -> None:
-    """Forget a category with all its views."""
-    from deixis.perceptual_session import category_name
-    from deixis.session import Session
-
-    with Session(memory) as session:
-        session.views().forget(category_name(name))
-    print(f"Forgotten: {category_name(name)}.")

@@ -35,9 +35,9 @@ class PerceptualSession(MemorySession):
 
     def has_views(self) -> bool:
         """Whether anything was ever taught."""
-        from deixis.memory.perceptual.whole import stats_of
+        from deixis.memory.perceptual.whole import has_views
 
-        return self._views is not None or stats_of(self.path) is not None
+        return self._views is not None or has_views(self.path)
 
     def views(self, create: bool = False) -> LevelMemory:
         """The open perceptual memory; raises DeixisError where there is none and ``create`` is not set."""

@@ -106,12 +106,12 @@ def _involved(memory: PerceptualReading, views: Sequence[View], place: Mapping[s
 def instances_of(memory: PerceptualReading, category: str) -> InstanceCategory:
     """A category with its views' descriptors; distances that a record has are not worked out again."""
     views = [(view.id, view.descriptors[DESCRIBER]) for view in memory.views(category) if DESCRIBER in view.descriptors]
-    state = memory.category(category).state
+    record = memory.category(category)
     ids = tuple(view for view, _ in views)
-    if DISTANCES not in state or memory.category(category).metadata.get(IDS) != sorted(ids):
+    if DISTANCES not in record.state or record.metadata.get(IDS) != sorted(ids):
         return InstanceCategory.of(category, views)
     order = np.argsort(np.argsort(np.array(ids, dtype=str)))
-    return InstanceCategory(category, PackedViews.of(views), np.asarray(state[DISTANCES])[np.ix_(order, order)])
+    return InstanceCategory(category, PackedViews.of(views), np.asarray(record.state[DISTANCES])[np.ix_(order, order)])
 
 
 def record_of(category: InstanceCategory) -> CategoryRecord:

@@ -10,15 +10,17 @@ from deixis.ontology.size_model import SizeModel
 from deixis.ontology.tbox import default_ontology
 from deixis.ontology.vocabulary import DX
 from deixis.reasoning.errors import SettingError
+from deixis.reasoning.evidence import evidence_from
 from deixis.reasoning.graded.unary import (
     UnaryWeights,
     label_ratios,
     learn_size,
     size_evidence,
     size_model,
-    unary_evidence,
 )
 from deixis.reasoning.labels import Label
+from deixis.reasoning.meaning import Meaning
+from deixis.reasoning.rectangle import perceived_graph
 
 ONTOLOGY = default_ontology()
 R, KINDS, SIZES = ONTOLOGY.relations, ONTOLOGY.kinds, ONTOLOGY.sizes
@@ -118,12 +120,15 @@ def test_a_label_of_no_confidence_says_nothing() -> None:
 
 def test_all_evidence_adds_up_with_its_weights() -> None:
     labels = [Label("soup spoon", 0.8), None, None]
-    both = unary_evidence(TWO, TABLE, labels, KINDS, SIZES)
+    seen = perceived_graph(["a", "b", "c"], TABLE, R)
+    both = evidence_from(TWO, seen, labels, KINDS, SIZES).unary
     sizes = size_evidence([SPOON, PLATE], TABLE, SIZES)
     assert both == pytest.approx(label_ratios(TWO, labels, KINDS) + sizes)
     half = UnaryWeights(labels=0.0, sizes=0.5)
     certain = [Label("dinner plate", 1.0), None, None]
-    assert unary_evidence(TWO, TABLE, certain, KINDS, SIZES, weights=half) == pytest.approx(sizes / 2)
+    assert evidence_from(TWO, seen, certain, KINDS, SIZES, meaning=Meaning(weights=half)).unary == pytest.approx(
+        sizes / 2
+    )
 
 
 def test_what_cannot_be_is_refused() -> None:

@@ -6,9 +6,19 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from matching_problems import problems
+from numpy.typing import NDArray
 
-from deixis.reasoning.matching.baselines import blondel, blondel_similarity, heymans_singh, heymans_singh_similarity
+from deixis.reasoning.assignment import assign
+from deixis.reasoning.matching.baselines import blondel_similarity, heymans_singh_similarity
 from deixis.reasoning.matching.problem import Problem
+
+
+def blondel(problem: Problem) -> NDArray[np.int64]:
+    return assign(blondel_similarity(problem), ~np.isneginf(problem.unary))
+
+
+def heymans_singh(problem: Problem) -> NDArray[np.int64]:
+    return assign(heymans_singh_similarity(problem), ~np.isneginf(problem.unary))
 
 
 def path(n1: int, n2: int) -> Problem:
