@@ -2,8 +2,8 @@
 
 Both see graphs with weights: the description has an edge for every fact, the scene one for every pair that a fact's
 table says something for (the table over its largest entry; what speaks against a pair counts as nothing). Facts of
-several kinds are several such pairs of graphs, whose updates are added. Neither knows of unary terms but those that rule
-a match out. As engines, with the Hungarian method: :class:`deixis.reasoning.likeliest.BaselineEngine`.
+several kinds are several such pairs of graphs, whose updates are added. Neither knows of unary terms but those that
+rule a match out. As engines, with the Hungarian method: :class:`deixis.reasoning.likeliest.BaselineEngine`.
 """
 
 from __future__ import annotations
