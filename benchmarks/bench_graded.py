@@ -2,9 +2,10 @@
 
 Every image's facts become log-likelihood ratios (:mod:`deixis.reasoning.graded.facts`); the one-to-one map with the
 largest sum is found exactly. Share of objects named right, mean over images, each a mean over random node orders.
-``shipped`` models know nothing of these images. ``learned`` ones are fitted by cross-validation over images: the test
-fold is never seen. ``--halves`` adds the shares of two fixed halves of the images, development and confirmation; the
-last choices of form, and the default strength of the prior, were made by looking at the first alone.
+``shipped`` models know nothing of these images. ``learned`` words, and sizes of what people call things, are fitted by
+cross-validation over images: the test fold is never seen. ``--halves`` adds the shares of two fixed halves of the
+images, development and confirmation; the last choices of form, and the strengths of the priors, were made by looking
+at the first alone.
 
 ``--tables N`` grounds N generated tables of 12 objects a setting instead: the share right of the best map, beside
 the exact Bayes limit of who knows the words only and of who knows as well how pairs are drawn; the expected calibration
@@ -21,75 +22,65 @@ import numpy as np
 from common import data_folder
 from numpy.typing import NDArray
 
+from deixis.experiments.cross_validation import learned_meanings
 from deixis.experiments.generated_tables import generate
-from deixis.experiments.photographs import photographs
+from deixis.experiments.photographs import Photograph, photographs
 from deixis.experiments.scoreboard.bayes_limit import bayes_limit
-from deixis.ontology.graph import RelationGraph
-from deixis.ontology.relation_models import RelationModels
 from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.evidence import exact_names
 from deixis.reasoning.graded.facts import FactTables, crisp_tables, fact_tables
-from deixis.reasoning.graded.fitting import FitSettings, learn_relations
-from deixis.reasoning.graded.lessons import SaidPairs, said_pairs
-from deixis.reasoning.graded.shipped import shipped_models
+from deixis.reasoning.graded.fitting import FitSettings
+from deixis.reasoning.graded.unary import size_evidence
+from deixis.reasoning.labels import classes
 from deixis.reasoning.matching.exact import exact
 from deixis.reasoning.matching.posterior import posterior
 from deixis.reasoning.matching.problem import Problem
+from deixis.reasoning.meaning import SHIPPED, Meaning
 from deixis.reasoning.rectangle import perceived_graph
 
-Case = tuple[RelationGraph, NDArray[np.float64]]
 HALVES_SEED = 2016
 SETTINGS = ((1.0, 0.0), (1.5, 0.0), (2.5, 0.0), (1.0, 0.1), (2.5, 0.1), (2.5, 0.2))  # facts an object, share off
 
 
-def share_right(facts: FactTables, count: int, rng: np.random.Generator, orders: int) -> float:
+def share_right(
+    facts: FactTables, alone: NDArray[np.float64], count: int, rng: np.random.Generator, orders: int
+) -> float:
     """The share named right over random orders of both sides; the i-th object is the i-th box."""
     shares = []
     for _ in range(orders):
         rows, columns = rng.permutation(count), rng.permutation(count)
         tables = np.ascontiguousarray(facts.tables[:, columns][:, :, columns])
-        ends = np.argsort(rows)[facts.ends]
-        problem = Problem(ends, facts.kinds, tables, np.zeros((count, count)), np.full(count, -1e3))
+        ends, unary = np.argsort(rows)[facts.ends], np.ascontiguousarray(alone[rows][:, columns])
+        problem = Problem(ends, facts.kinds, tables, unary, np.full(count, -1e3))
         shares.append(np.mean(columns[exact(problem).assignment] == rows))
     return float(np.mean(shares))
 
 
 def graded_shares(
-    images: Sequence[Case], models: RelationModels, orders: int, saying: bool = True, literal: float | None = None
+    images: Sequence[Photograph],
+    meanings: Sequence[Meaning],
+    orders: int,
+    saying: bool = True,
+    literal: float | None = None,
 ) -> NDArray[np.float64]:
-    rng = np.random.default_rng(1)
-    return np.array(
-        [
-            share_right(fact_tables(said, boxes, models, saying=saying, literal=literal), len(boxes), rng, orders)
-            for said, boxes in images
-        ]
-    )
+    """The share named right of each image, by a meaning of its own."""
+    rng, sizes, shares = np.random.default_rng(1), default_ontology().sizes, []
+    for (said, boxes), meaning in zip(images, meanings, strict=True):
+        alone = size_evidence(classes(said), boxes, sizes, meaning.sizes, metric=False)
+        away = np.full(len(boxes), -1e3)
+        facts = fact_tables(said, boxes, meaning.models, saying=saying, literal=literal, unary=alone, absent=away)
+        shares.append(share_right(facts, alone, len(boxes), rng, orders))
+    return np.array(shares)
 
 
-def crisp_shares(images: Sequence[Case], orders: int) -> NDArray[np.float64]:
+def crisp_shares(images: Sequence[Photograph], orders: int) -> NDArray[np.float64]:
     """Degrees 1, 0.5 and 0: the special case."""
     rng, shares = np.random.default_rng(1), []
     for said, boxes in images:
         names = exact_names(perceived_graph([f"o{i:03}" for i in range(len(boxes))], boxes, said.vocabulary))
-        shares.append(share_right(crisp_tables(said, names), len(boxes), rng, orders))
+        nothing = np.zeros((len(boxes), len(boxes)))
+        shares.append(share_right(crisp_tables(said, names), nothing, len(boxes), rng, orders))
     return np.array(shares)
-
-
-def folds(count: int, number: int, seed: int) -> list[NDArray[np.int64]]:
-    order = np.random.default_rng(seed).permutation(count)
-    return [order[start::number] for start in range(number)]
-
-
-def learned_shares(
-    images: Sequence[Case], lessons: Sequence[SaidPairs], number: int, seed: int, orders: int, settings: FitSettings
-) -> NDArray[np.float64]:
-    """Cross-validated shares of the default reading, models fitted to the other folds in place of the shipped ones."""
-    shares = np.zeros(len(images))
-    for test in folds(len(images), number, seed):
-        taught = [lessons[i] for i in np.setdiff1d(np.arange(len(images)), test)]
-        models = learn_relations(taught, shipped_models(), settings)
-        shares[test] = graded_shares([images[i] for i in test], models, orders)
-    return shares
 
 
 def report(name: str, shares: NDArray[np.float64], started: float, halves: bool) -> None:
@@ -140,7 +131,6 @@ def on_photographs(options: argparse.Namespace) -> None:
     if folder is None:
         return
     images = list(photographs(folder, default_ontology().relations))
-    lessons = [said_pairs(said, boxes, range(len(boxes))) for said, boxes in images]
     print(f"{len(images)} images, {options.orders} node orders, seed 1")
     started = time.perf_counter()
     report("crisp degrees", crisp_shares(images, options.orders), started, options.halves)
@@ -151,13 +141,19 @@ def on_photographs(options: argparse.Namespace) -> None:
         ("shipped, 0.9 literal", True, 0.9),
     ):
         started = time.perf_counter()
-        shares = graded_shares(images, shipped_models(), options.orders, saying, literal)
+        shares = graded_shares(images, [SHIPPED] * len(images), options.orders, saying, literal)
         report(name, shares, started, options.halves)
     for seed in map(int, filter(None, options.seeds.split(","))):
         started = time.perf_counter()
         settings = FitSettings(options.strength, options.word_contrast, iterations=60)
-        shares = learned_shares(images, lessons, options.folds, seed, options.orders, settings)
-        report(f"learned, {options.folds} folds, seed {seed}", shares, started, options.halves)
+        learned = learned_meanings(images, seed, options.folds, settings)
+        for name, meanings in (
+            ("words", [Meaning(one.models) for one in learned]),
+            ("sizes", [Meaning(sizes=one.sizes) for one in learned]),
+            ("words and sizes", learned),
+        ):
+            shares = graded_shares(images, meanings, options.orders)
+            report(f"learned {name}, split {seed}", shares, started, options.halves)
 
 
 def main() -> None:

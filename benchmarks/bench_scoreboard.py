@@ -91,11 +91,13 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("--cases", type=int, default=10, help="tables of each setting; of large ones fewer")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--time-limit", type=float, default=5.0, help="seconds of an engine for a case")
+    parser.add_argument("--size", type=int, action="append", help="only tables of so many objects")
     parser.add_argument("--plot", type=Path, help="draw it (.png, .svg, .pdf)")
     parser.add_argument("--json", action="store_true")
     options = parser.parse_args(arguments)
     plan = Plan(cases=options.cases, seed=options.seed, time_limit=options.time_limit, photographs=photographs_folder())
     plan = plan.quick() if options.quick else plan
+    plan = plan.only(options.size) if options.size else plan
     with progress(steps(plan)) as tick:
         found = run(plan, [*engines(), *peers()], tick)
     if options.plot:

@@ -17,6 +17,11 @@ def learned_iri(*parts: str | int) -> str:
     return LEARNED + "/".join(quote(str(part), safe="") for part in parts)
 
 
+def category_iri(name: str) -> str:
+    """The class of things that go by a name, as it was learned."""
+    return learned_iri("category", name)
+
+
 def content_key(content: str) -> str:
     """A short name for a text, in the letters that a blank node's label may have."""
     return hashlib.sha256(content.encode("utf-8")).hexdigest()[:16]

@@ -2,9 +2,19 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
+
+
+def plain_name(name: str) -> str:
+    """The name of one of several things without its number.
+
+    >>> plain_name("wine_glass_2"), plain_name("fork")
+    ('wine_glass', 'fork')
+    """
+    return re.sub(r"_\d+$", "", name)
 
 
 @dataclass(frozen=True, slots=True)

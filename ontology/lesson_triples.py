@@ -9,7 +9,7 @@ import pyoxigraph as ox
 from deixis.ontology.colours import hex_of_rgb
 from deixis.ontology.concepts import LayoutConcept, Lesson, MatchRecord, Role, SeenObject, WordLesson
 from deixis.ontology.graph import Fact
-from deixis.ontology.iris import content_key, learned_iri
+from deixis.ontology.iris import category_iri, content_key, learned_iri
 from deixis.ontology.rdf import Description, decimal, iri, text, typed
 from deixis.ontology.relation import Relations
 from deixis.ontology.skolem import skolem
@@ -48,7 +48,7 @@ def asserted_triples(lesson: Lesson | WordLesson) -> Iterator[ox.Triple]:
     for subject, relation, object in record.relations:
         yield ox.Triple(iri(thing_iri(lesson, subject)), iri(relation.iri), iri(thing_iri(lesson, object)))
     for match in lesson.categories() if isinstance(lesson, Lesson) else ():
-        category = learned_iri("category", match.role)
+        category = category_iri(match.role)
         yield ox.Triple(iri(thing_iri(lesson, match.perceived or "")), iri(W3C.RDF_TYPE), iri(category))
 
 
@@ -200,12 +200,12 @@ def _match(lesson: Lesson, match: MatchRecord) -> Iterator[ox.Triple]:
     if match.likeliest is not None:
         about.say(DX.LIKELIEST, iri(thing_iri(lesson, match.likeliest)))
     if match.decided and match.perceived is not None:
-        about.say(DX.CATEGORY, iri(learned_iri("category", match.role)))
+        about.say(DX.CATEGORY, iri(category_iri(match.role)))
     return iter(about)
 
 
 def _category(name: str, kind: str | None, lesson: Lesson) -> Iterator[ox.Triple]:
-    about = Description(learned_iri("category", name))
+    about = Description(category_iri(name))
     about.say(W3C.RDF_TYPE, iri(W3C.OWL_CLASS))
     about.say(W3C.RDFS_LABEL, text(name.replace("_", " ")))
     about.say(W3C.RDFS_SUB_CLASS_OF, iri(kind or DX.THING))

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator
 import pyoxigraph as ox
 
 from deixis.ontology.errors import OntologyError
-from deixis.ontology.iris import learned_iri
+from deixis.ontology.iris import LEARNED, learned_iri
 from deixis.ontology.rdf import Description, TripleIndex, iri, typed
 from deixis.ontology.size_model import SizeModel
 from deixis.ontology.vocabulary import BASE, DX, PROV, W3C
@@ -19,7 +19,7 @@ from deixis.ontology.vocabulary import BASE, DX, PROV, W3C
 
 def size_triples(kind: str, model: SizeModel, scenes: Iterable[str]) -> Iterator[ox.Triple]:
     """The size of a kind (its class IRI), learned from the scenes of those IRIs."""
-    about = Description(learned_iri("size-model", kind.removeprefix(BASE)))
+    about = Description(learned_iri("size-model", kind.removeprefix(BASE).removeprefix(LEARNED)))
     about.say(W3C.RDF_TYPE, iri(DX.SIZE_MODEL))
     about.say(DX.OF_KIND, iri(kind))
     about.say(DX.MEDIAN_LENGTH, typed(_median(model.length[0])))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections import defaultdict
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -11,7 +10,7 @@ from pathlib import Path
 
 from deixis.ontology.colours import Colour, Colours, colours_from_triples
 from deixis.ontology.errors import OntologyError
-from deixis.ontology.kinds import Kind, Kinds
+from deixis.ontology.kinds import Kind, Kinds, plain_name
 from deixis.ontology.relation import Relation, Relations, relation_from_triples
 from deixis.ontology.sizes import Sizes, sizes_from_triples
 from deixis.ontology.vocabulary import DX, W3C
@@ -88,7 +87,7 @@ class Ontology:
 
         A name that is a colour's word and no more says none: an orange may be a fruit.
         """
-        plain = re.sub(r"_\d+$", "", name)
+        plain = plain_name(name)
         kind, colour = self.quality(plain)
         return (kind, None) if self.colours.of_word(plain) else (kind, colour)
 

@@ -28,7 +28,7 @@ from deixis.reasoning.graded.degrees import log_likelihood_ratio
 from deixis.reasoning.graded.facts import OPTIONAL_WEIGHT, fact_tables, hedged
 from deixis.reasoning.graded.shipped import OUTLIERS
 from deixis.reasoning.graded.unary import label_ratios, size_evidence
-from deixis.reasoning.labels import Label
+from deixis.reasoning.labels import Label, classes
 from deixis.reasoning.matching.problem import UNMATCHED, Problem
 from deixis.reasoning.meaning import SHIPPED, Meaning
 
@@ -212,8 +212,7 @@ def evidence_from(
     if weights.labels > 0:
         said = weights.labels * label_ratios(description, labels, kinds)
     if weights.sizes > 0 and scene.boxes is not None:
-        known = description.kinds or (None,) * len(description.nodes)
-        measured = weights.sizes * size_evidence(known, scene.boxes, sizes, meaning.sizes, metric)
+        measured = weights.sizes * size_evidence(classes(description), scene.boxes, sizes, meaning.sizes, metric)
     shades = None
     if weights.colours > 0 and seen is not None and colours is not None and description.colours:
         shades = weights.colours * colour_evidence(description.colours, seen, colours)

@@ -6,7 +6,6 @@ that the label stands for. What that weighs: :func:`deixis.reasoning.graded.unar
 
 from __future__ import annotations
 
-import re
 import unicodedata
 from dataclasses import dataclass
 
@@ -14,7 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.ontology.graph import RelationGraph
-from deixis.ontology.kinds import Kind, Kinds
+from deixis.ontology.iris import category_iri
+from deixis.ontology.kinds import Kind, Kinds, plain_name
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,7 +40,22 @@ def objects_called(description: RelationGraph, name: str) -> NDArray[np.bool_]:
     same = np.array([_plain(node) == plain for node in description.nodes], dtype=bool)
     if same.any():
         return same
-    return np.array([_plain(re.sub(r"_\d+$", "", node)) == plain for node in description.nodes], dtype=bool)
+    return np.array([_plain(plain_name(node)) == plain for node in description.nodes], dtype=bool)
+
+
+def category_of(name: str) -> str:
+    """The class of things that bear a name, with whatever number: the category that is learned where it is no kind's.
+
+    >>> category_of("fish_knife_2") == category_of("Fish knife")
+    True
+    """
+    return category_iri(_plain(plain_name(name)).replace(" ", "_"))
+
+
+def classes(description: RelationGraph) -> tuple[str, ...]:
+    """The class of each object of a description, an IRI: its kind, else the category of its name."""
+    kinds = description.kinds or (None,) * len(description.nodes)
+    return tuple(kind or category_of(node) for kind, node in zip(kinds, description.nodes, strict=True))
 
 
 def _is_a(iri: str | None, kind: Kind, kinds: Kinds) -> bool:

@@ -66,21 +66,6 @@ def size_model(usual: SizeRange) -> SizeModel:
     return SizeModel((float(np.log(length.typical)), spread), (aspect, LEAST_SPREAD if square else across))
 
 
-def learn_size(views: Sequence[tuple[NDArray[np.float64], int]], relative: bool = False) -> SizeModel:
-    """The size of a kind from labelled views: each a scene's boxes (n, 2, d) and which of them is of the kind.
-
-    Median and 1.4826 times the median absolute deviation of the logarithms, robust to a view that is wrong (Rousseeuw
-    and Croux 1993). ``relative`` measures against the median length of each scene. Raises SettingError without a view.
-    """
-    if not views:
-        raise SettingError("a size is learned from one view at least")
-    measured = np.array([log_sizes(boxes, relative)[index] for boxes, index in views])
-    centre = np.median(measured, axis=0)
-    spread = np.maximum(1.4826 * np.median(np.abs(measured - centre), axis=0), LEAST_SPREAD * (1 + 4 / len(views)))
-    length, aspect = zip(centre.tolist(), spread.tolist(), strict=True)
-    return SizeModel(length, aspect, relative, float(len(views)))
-
-
 def log_sizes(boxes: NDArray[np.float64], relative: bool) -> Array:
     """Natural logarithms of length and aspect of n boxes, shape (n, 2); of nothing's length, a millionth is taken."""
     extents = np.sort(pair_geometry(boxes).boxes[:, 1, :2] - boxes[:, 0, :2], axis=1)
@@ -92,7 +77,7 @@ def log_sizes(boxes: NDArray[np.float64], relative: bool) -> Array:
 
 
 def size_evidence(
-    kinds: Sequence[str | None],
+    kinds: Sequence[str],
     boxes: NDArray[np.float64],
     sizes: Sizes,
     learned: Mapping[str, SizeModel] | None = None,
@@ -107,7 +92,7 @@ def size_evidence(
     evidence = np.zeros((len(kinds), len(boxes)))
     found: dict[SizeModel, Array] = {}
     for row, kind in enumerate(kinds):
-        model = (learned or {}).get(kind or "") or (_usual(kind, sizes) if metric else None)
+        model = (learned or {}).get(kind) or (usual_size(kind, sizes) if metric else None)
         if model is not None and (model.relative or metric) and len(boxes):
             if model not in found:
                 found[model] = _density_ratio(log_sizes(boxes, model.relative), model)
@@ -115,8 +100,8 @@ def size_evidence(
     return evidence
 
 
-def _usual(kind: str | None, sizes: Sizes) -> SizeModel | None:
-    """The usual size of a kind, None where only that of all things is stated."""
+def usual_size(kind: str, sizes: Sizes) -> SizeModel | None:
+    """The usual size of a kind (class IRI), None where only that of all things is stated."""
     usual = sizes.of(kind)
     return None if usual.stated_of == DX.THING else size_model(usual)
 

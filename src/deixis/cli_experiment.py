@@ -43,6 +43,7 @@ def scoreboard(
     seed: Seed = 1,
     time_limit: Annotated[float, typer.Option(min=0.01, metavar="SECONDS", help="Of an engine for a case.")] = 5.0,
     quick: Annotated[bool, typer.Option("--quick", help="A small part of it, in a minute or two.")] = False,
+    size: Annotated[list[int] | None, typer.Option(min=4, max=1000, help="Only tables of so many objects.")] = None,
     plot: Annotated[Path | None, typer.Option(metavar="FILE", help="Draw it (.png, .svg, .pdf).")] = None,
     as_json: AsJson = False,
 ) -> None:
@@ -57,6 +58,7 @@ def scoreboard(
         require_picture(plot)
     plan = Plan(cases=cases, seed=seed, time_limit=time_limit, photographs=photographs_folder())
     plan = plan.quick() if quick else plan
+    plan = plan.only(size) if size else plan
     with progress(steps(plan)) as tick:
         found = run(plan, tick=tick)
     if plot is not None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 import sys
 import time
 from collections.abc import Iterator, Mapping
@@ -106,12 +105,13 @@ def seen_scene(name: str, scene: Scene, ontology: Ontology) -> Seen:
     """A scene ready to be compared, its kinds those of labels of some confidence."""
     from dataclasses import replace
 
+    from deixis.ontology.kinds import plain_name
     from deixis.reasoning.likeness import seen
 
     kinds: list[str | None] = []
     for thing in scene.objects:
         sure = thing.label is not None and thing.confidence >= SURE
-        kind = ontology.kinds.of_word(re.sub(r"_\d+$", "", thing.label or "")) if sure else None
+        kind = ontology.kinds.of_word(plain_name(thing.label or "")) if sure else None
         kinds.append(kind.iri if kind else None)
     return seen(name, replace(scene.graph(ontology.relations), kinds=tuple(kinds)), metric=scene.unit == "m")
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
@@ -10,7 +9,7 @@ import numpy as np
 
 from deixis.grammar.script import Script
 from deixis.ontology.graph import Fact, RelationGraph
-from deixis.ontology.kinds import Kind, Kinds
+from deixis.ontology.kinds import Kind, Kinds, plain_name
 from deixis.ontology.sizes import SizeRange
 from deixis.perception.scene import PerceivedObject, Scene
 from deixis.reasoning.conflict import find_conflict
@@ -157,7 +156,7 @@ def kind_by_words(name: str, kinds: Kinds) -> Kind | None:
     >>> kind_by_words("grandmother's silver_dessert_fork_2", default_ontology().kinds).name
     'DessertFork'
     """
-    words = re.sub(r"_\d+$", "", name).replace("_", " ").replace("-", " ").split()
+    words = plain_name(name).replace("_", " ").replace("-", " ").split()
     tails = (kinds.of_word(" ".join(words[start:])) for start in range(len(words)))
     return next((kind for kind in tails if kind is not None), None)
 

@@ -130,5 +130,5 @@ def _inferred(graphs: Graphs, ontology: Ontology) -> list[ox.Triple]:
 
 def _models(graphs: Graphs, ontology: Ontology, words: Iterable[RelationModel] | None = None) -> Models:
     """The learned models to write: sizes always, words where they were fitted anew."""
-    sizes = learned_size_triples(_recollected(graphs, ontology), ontology.kinds)
+    sizes = learned_size_triples(_recollected(graphs, ontology), ontology)
     return {ModelSet.SIZES: sizes} if words is None else {ModelSet.SIZES: sizes, ModelSet.WORDS: word_triples(words)}

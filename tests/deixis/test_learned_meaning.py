@@ -61,7 +61,7 @@ def test_learned_words_and_sizes_are_in_force_at_once_and_in_the_next_session(tm
     assert now.models == later.models
     where = later.models["horizontal"].provenance
     assert (where.examples, where.lessons) == (6, ("words_tea-1", "words_tea-2", "words_tea-3"))
-    assert np.exp(later.sizes[PLATE].length[0]) == pytest.approx(0.4)
+    assert 0.36 < np.exp(later.sizes[PLATE].length[0]) < 0.4  # plates are 0.27 across as a rule
     assert later.sizes[PLATE].views == 3
 
 

@@ -31,12 +31,13 @@ def folder(tmp_path: Path) -> Path:
     }
     (tmp_path / "annotations.json").write_text(json.dumps(annotations))
     (tmp_path / "predicates.json").write_text(json.dumps(PREDICATES))
+    (tmp_path / "objects.json").write_text(json.dumps(["dog", "wing chair", "dog", "sky"]))
     return tmp_path
 
 
 def test_images_with_four_related_objects_are_read_and_y_points_up(folder: Path) -> None:
     (found,) = photographs(folder, default_ontology().relations)
-    assert [str(fact) for fact in found.description.facts()] == ["on(thing_0, thing_1)", "top(thing_2, thing_3)"]
+    assert [str(fact) for fact in found.description.facts()] == ["on(dog_0, wing_chair_1)", "top(dog_2, sky_3)"]
     assert found.boxes[1].tolist() == [[0, -15], [8, -10]]
 
 
@@ -56,6 +57,12 @@ def test_every_order_keeps_who_is_who(folder: Path) -> None:
 def test_other_files_are_an_error(folder: Path, name: str, text: str) -> None:
     (folder / name).write_text(text)
     with pytest.raises(PhotographError, match="no annotations of Visual Relationship Detection"):
+        list(photographs(folder, default_ontology().relations))
+
+
+def test_a_missing_file_is_an_error(folder: Path) -> None:
+    (folder / "objects.json").unlink()
+    with pytest.raises(PhotographError, match=r"objects\.json"):
         list(photographs(folder, default_ontology().relations))
 
 

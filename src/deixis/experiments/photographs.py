@@ -1,8 +1,8 @@
 """What people wrote down about photographs (Visual Relationship Detection, Lu et al. 2016), as descriptions and boxes.
 
 Each image with four or more related objects becomes a scene (its boxes, y turned up, nothing named) and a description:
-what people said of them, in the words that the layout language has. The truth is which box was meant. The data is read
-from ``$DEIXIS_DATA/vrd``.
+what people said of them, in the words that the layout language has, of objects that are called what people called
+them, and numbered (``person_1``). The truth is which box was meant. The data is read from ``$DEIXIS_DATA/vrd``.
 """
 
 from __future__ import annotations
@@ -58,25 +58,30 @@ def photographs(folder: Path, relations: Relations) -> Iterator[Photograph]:
     try:
         annotations: dict[str, list[Any]] = json.loads((folder / "annotations.json").read_text(encoding="utf-8"))
         predicates: list[str] = json.loads((folder / "predicates.json").read_text(encoding="utf-8"))
+        words: list[str] = json.loads((folder / "objects.json").read_text(encoding="utf-8"))
         for name in sorted(annotations):
-            found = _photograph(annotations[name], predicates, relations)
+            found = _photograph(annotations[name], predicates, words, relations)
             if len(found.boxes) >= LEAST_OBJECTS:
                 yield found
-    except (KeyError, IndexError, TypeError, AttributeError, json.JSONDecodeError) as error:
+    except (OSError, KeyError, IndexError, TypeError, AttributeError, json.JSONDecodeError) as error:
         raise PhotographError(
             f"{folder}: no annotations of Visual Relationship Detection ({type(error).__name__}: {error})"
         ) from error
 
 
-def _photograph(entries: list[Any], predicates: list[str], relations: Relations) -> Photograph:
+def _photograph(entries: list[Any], predicates: list[str], words: list[str], relations: Relations) -> Photograph:
     boxes: dict[tuple[int, ...], str] = {}
     facts: dict[tuple[str, str, str], None] = {}
     for entry in entries:
         word = WORDS.get(predicates[entry["predicate"]])
         ends = [(entry[end]["category"], *entry[end]["bbox"]) for end in ("subject", "object")]
         if word is not None and ends[0] != ends[1]:
-            subject, object = (boxes.setdefault(end, f"thing_{len(boxes)}") for end in ends)
+            subject, object = (boxes.setdefault(end, _name(words[end[0]], len(boxes))) for end in ends)
             facts[word, subject, object] = None
     stated = [Fact(subject, (relations[word],), object) for word, subject, object in facts]
     corners = [[[x0, -y1], [x1, -y0]] for _, y0, y1, x0, x1 in boxes]
     return Photograph(RelationGraph.from_facts(relations, list(boxes.values()), stated), np.array(corners, dtype=float))
+
+
+def _name(word: str, number: int) -> str:
+    return f"{word.replace(' ', '_')}_{number}"

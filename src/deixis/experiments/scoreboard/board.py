@@ -131,7 +131,7 @@ def play(
     forecasts: list[Forecasts] = []
     warm: set[str] = set()
     for case in cases:
-        entered = [contestant for contestant in able if case.setting.size <= contestant.most]
+        entered = [contestant for contestant in able if contestant.enters(case)]
         for contestant in entered:
             if contestant.name not in warm:  # compiled code is compiled or loaded once, which does not count
                 warm.add(_answered(contestant, case, seconds)[0])
@@ -148,7 +148,7 @@ _Answered = tuple[str, Answer, float]
 def _answered(contestant: Contestant, case: Case, seconds: float) -> _Answered:
     """The answer and the time from evidence to answer; each contestant gets evidence of its own, nothing computed."""
     case.scene  # noqa: B018 - what was perceived is there before anybody is asked
-    evidence = case.evidence(contestant.meaning)
+    evidence = case.evidence(contestant.meaning, contestant.learned)
     started = time.perf_counter()
     answer = contestant.solve(evidence, started + seconds)
     return contestant.name, answer, time.perf_counter() - started

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.experiments.cross_validation import learned_meanings
 from deixis.experiments.generated_tables import GeneratedTable, generate
 from deixis.experiments.photographs import photographs
 from deixis.ontology.graph import RelationGraph
@@ -67,14 +68,20 @@ class Case:
     things: tuple[str, ...]  # (n2,) their names, by which boxes that are alike are told apart in any order
     truth: NDArray[np.int64]  # (n1,): which thing each object is, UNMATCHED where it is missing
     metric: bool = True  # boxes are in metres
+    learned: Meaning | None = None  # from other cases
 
     @cached_property
     def scene(self) -> RelationGraph:
         """What was perceived: the exact name of every ordered pair."""
         return perceived_graph(self.things, self.boxes, self.description.vocabulary)
 
-    def evidence(self, meaning: Meaning) -> Evidence:
-        """What an engine gets to see: facts, and sizes where the description tells kinds; nothing is labelled."""
+    def evidence(self, meaning: Meaning, learned: bool = False) -> Evidence:
+        """What an engine gets to see: facts, and sizes where the description tells kinds; nothing is labelled.
+
+        ``learned``: words and sizes are what was learned from other cases, by the weights of the meaning.
+        """
+        if learned and self.learned is not None:
+            meaning = replace(self.learned, weights=meaning.weights)
         ontology, unlabelled = default_ontology(), [None] * len(self.boxes)
         return evidence_from(
             self.description,
@@ -99,6 +106,7 @@ class Case:
             tuple(self.things[p] for p in columns),
             place[self.truth[rows]],
             self.metric,
+            self.learned,
         )
 
 
@@ -134,12 +142,13 @@ def generated_cases(settings: Sequence[Setting], count: int, seed: int, *, kinds
             yield Case(setting, number, said, drawn.boxes, things, drawn.truth).shuffled(rng)
 
 
-def photograph_cases(folder: Path, orders: int, most: int | None, seed: int) -> Iterator[Case]:
-    """Photographs (at most so many), each in so many random orders."""
+def photograph_cases(folder: Path, orders: int, most: int | None, seed: int, *, learn: bool = False) -> Iterator[Case]:
+    """Photographs (at most so many), each in so many random orders; with ``learn`` each with what the others teach."""
     setting = Setting(PHOTOGRAPHS, 0.0, 0.0, False)
-    for unit, (description, boxes) in enumerate(photographs(folder, default_ontology().relations)):
-        if most is not None and unit >= most:
-            return
-        case = Case(setting, unit, description, boxes, _names(len(boxes)), np.arange(len(boxes)), metric=False)
+    images = list(photographs(folder, default_ontology().relations))
+    learned = learned_meanings(images, seed) if learn else [None] * len(images)
+    for unit, ((said, boxes), taught) in enumerate(zip(images[:most], learned[:most], strict=True)):
+        names, truth = _names(len(boxes)), np.arange(len(boxes))
+        case = Case(setting, unit, said, boxes, names, truth, metric=False, learned=taught)
         for order in range(orders):
             yield case.shuffled(np.random.default_rng([seed, unit, order]))

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.experiments.scoreboard.cases import Case
 from deixis.reasoning.engine_name import EngineName
 from deixis.reasoning.engines import engine_named
 from deixis.reasoning.evidence import Evidence
@@ -38,11 +39,23 @@ class Contestant:
     most: int = 1000  # objects, beyond which it takes too long or too much memory
     meaning: Meaning = SHIPPED
     ablation: bool = False  # the default engine with something taken away
+    learned: bool = False  # words and sizes are learned from other cases; enters only where there are some
     lacking: str = ""  # why it cannot be run at all
+
+    def enters(self, case: Case) -> bool:
+        """Whether the case is one for it."""
+        return case.setting.size <= self.most and (case.learned is not None or not self.learned)
 
 
 def engine(
-    name: str, settings: str, *, called: str = "", most: int = 1000, meaning: Meaning = SHIPPED, ablation: bool = False
+    name: str,
+    settings: str,
+    *,
+    called: str = "",
+    most: int = 1000,
+    meaning: Meaning = SHIPPED,
+    ablation: bool = False,
+    learned: bool = False,
 ) -> Contestant:
     """A shipped engine as a contestant, maybe under another name and meaning."""
 
@@ -51,7 +64,7 @@ def engine(
         marginals = None if found.posterior is None else found.posterior.marginals
         return Answer(found.assignment, found.proved_best, marginals)
 
-    return Contestant(called or name, settings, solve, most, meaning, ablation)
+    return Contestant(called or name, settings, solve, most, meaning, ablation, learned)
 
 
 def peer(
@@ -80,7 +93,7 @@ def engines() -> list[Contestant]:
 
 
 def ablations() -> list[Contestant]:
-    """The default engine with and without graded meaning and sizes."""
+    """The default engine with and without graded meaning and sizes, and, on photographs, with learned ones."""
     no_sizes = UnaryWeights(labels=1.0, sizes=0.0)
     variants = {
         DEFAULT: SHIPPED,
@@ -89,6 +102,10 @@ def ablations() -> list[Contestant]:
         "both off": Meaning(graded=False, weights=no_sizes),
     }
     return [
-        engine(EngineName.EXACT, name, called=name, meaning=meaning, ablation=name != DEFAULT)
-        for name, meaning in variants.items()
+        *(
+            engine(EngineName.EXACT, name, called=name, meaning=meaning, ablation=name != DEFAULT)
+            for name, meaning in variants.items()
+        ),
+        engine(EngineName.EXACT, "", called="learned words", meaning=Meaning(weights=no_sizes), learned=True),
+        engine(EngineName.EXACT, "", called="learned, all", learned=True),
     ]

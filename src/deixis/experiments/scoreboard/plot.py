@@ -25,7 +25,7 @@ MARKERS = "osD^vPX<>*hd"
 LEAST = -0.25
 """Shares of the best likelihood below that are not shown."""
 
-SHADES = ("#1f4e79", "#6d93b8", "#b9cbdc", "#d9d2c3")
+SHADES = ("#1f4e79", "#6d93b8", "#b9cbdc", "#d9d2c3", "#8a7f5c", "#4f7d4c")
 DODGE = 1.008
 """Lines stand that much beside each other, so that their intervals can be told apart."""
 

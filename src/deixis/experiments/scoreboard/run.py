@@ -65,6 +65,12 @@ class Plan:
             orders=1,
         )
 
+    def only(self, sizes: Sequence[int]) -> Plan:
+        """The same with tables of these sizes alone; the photographs stay."""
+        chosen = tuple(sorted(set(sizes)))
+        ablated = tuple(size for size in self.ablated_sizes if size in chosen)
+        return replace(self, sizes=chosen, ablated_sizes=ablated)
+
     def count(self, objects: int) -> int:
         """Tables of each setting of that size."""
         least = min(self.cases, LEAST_CASES)
@@ -82,10 +88,10 @@ class Plan:
             generated_cases(self.settings(size), self.count(size), self.seed, kinds=kinds) for size in sizes
         )
 
-    def photographed(self) -> Iterator[Case]:
+    def photographed(self, *, learn: bool = False) -> Iterator[Case]:
         if self.photographs is None:
             return iter(())
-        return photograph_cases(self.photographs, self.orders, self.most_photographs, self.seed)
+        return photograph_cases(self.photographs, self.orders, self.most_photographs, self.seed, learn=learn)
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,7 +146,10 @@ def run(
     entered = engines() if contestants is None else list(contestants)
     main = play(entered, chain(plan.generated(plan.sizes), plan.photographed()), plan.time_limit, tick)
     ablated = play(
-        ablations(), chain(plan.generated(plan.ablated_sizes, kinds=True), plan.photographed()), plan.time_limit, tick
+        ablations(),
+        chain(plan.generated(plan.ablated_sizes, kinds=True), plan.photographed(learn=True)),
+        plan.time_limit,
+        tick,
     )
     limits = tuple(
         _limited(plan, setting, main, tick)

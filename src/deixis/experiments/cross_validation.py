@@ -1,0 +1,52 @@
+"""What grounding learns from described photographs, none of which is grounded by what it taught itself."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.experiments.photographs import Photograph
+from deixis.ontology.size_model import SizeModel
+from deixis.reasoning.graded.fitting import FitSettings, learn_relations
+from deixis.reasoning.graded.lessons import said_pairs
+from deixis.reasoning.graded.shipped import shipped_models
+from deixis.reasoning.graded.size_learning import learn_size, pooled_prior
+from deixis.reasoning.graded.unary import log_sizes
+from deixis.reasoning.labels import classes
+from deixis.reasoning.meaning import Meaning
+
+FIT = FitSettings(iterations=60)
+
+
+def folds(count: int, number: int, seed: int) -> list[NDArray[np.int64]]:
+    """The numbers from 0 to ``count``, dealt out at random to so many folds."""
+    order = np.random.default_rng(seed).permutation(count)
+    return [order[start::number] for start in range(number)]
+
+
+def learned_meanings(
+    images: Sequence[Photograph], seed: int, number: int = 10, settings: FitSettings = FIT
+) -> list[Meaning]:
+    """For each photograph the words and the sizes, relative to their scenes, that those of the other folds teach."""
+    lessons = [said_pairs(said, boxes, range(len(boxes))) for said, boxes in images]
+    found: dict[int, Meaning] = {}
+    for test in folds(len(images), number, seed):
+        taught = np.setdiff1d(np.arange(len(images)), test).tolist()
+        words = learn_relations([lessons[i] for i in taught], shipped_models(), settings)
+        meaning = Meaning(words, relative_sizes([images[i] for i in taught]))
+        found.update(dict.fromkeys(test.tolist(), meaning))
+    return [found[i] for i in range(len(images))]
+
+
+def relative_sizes(images: Sequence[Photograph]) -> Mapping[str, SizeModel]:
+    """How large things of each name are beside the others of their scene, by class IRI."""
+    views: dict[str, list[NDArray[np.float64]]] = defaultdict(list)
+    for said, boxes in images:
+        for kind, size in zip(classes(said), log_sizes(boxes, relative=True), strict=True):
+            views[kind].append(size)
+    sizes = {kind: np.array(seen) for kind, seen in views.items()}
+    prior = pooled_prior(list(sizes.values()))
+    return {kind: learn_size(seen, prior, relative=True) for kind, seen in sizes.items()}
