@@ -41,6 +41,7 @@ def inspect(folder: Path) -> State:
     if not folder.exists():
         if folder.is_symlink():
             raise MemoryFormatError(f"{folder} is a link that leads nowhere; remove it or mend it")
+        _refuse_within_file(folder)
         return State.ABSENT
     if not folder.is_dir():
         raise MemoryFormatError(f"{folder} is a file: a memory is a folder; name another path")
@@ -60,6 +61,12 @@ def inspect(folder: Path) -> State:
         f"{folder} is no memory: it holds other things ({', '.join(sorted(names)[:3])}) and no {MARK}; "
         "name an empty or a new folder"
     )
+
+
+def _refuse_within_file(folder: Path) -> None:
+    nearest = next(parent for parent in folder.absolute().parents if parent.exists())
+    if not nearest.is_dir():
+        raise MemoryFormatError(f"{folder} cannot be: {nearest} is a file; name another path")
 
 
 def read_mark(folder: Path) -> dict[str, Any]:

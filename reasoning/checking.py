@@ -51,6 +51,7 @@ class RoleCheck:
     verdict: Verdict
     perceived: str | None
     label: str | None
+    confidence: float | None = None  # of the label
     broken: tuple[FactOutcome, ...] = ()
     in_place_of: str | None = None
 
@@ -112,6 +113,7 @@ def check_table(
                 verdict=Verdict.MISPLACED if role in misplaced else verdict,
                 perceived=match.perceived,
                 label=label.text if label else None,
+                confidence=label.confidence if label else None,
                 broken=about,
                 in_place_of=exchanged.get(role),
             )

@@ -18,10 +18,9 @@ from typing import Any
 from numpy.typing import NDArray
 
 from deixis.memory.errors import ImportFormatError, MemoryWriteError
-from deixis.memory.perceptual.codec import arrays_by_use, arrays_of_view
 from deixis.memory.perceptual.errors import RecordError
 from deixis.memory.perceptual.protocol import PerceptualReading
-from deixis.memory.perceptual.records import CategoryRecord, View
+from deixis.memory.perceptual.records import CategoryRecord, View, arrays_by_name, arrays_by_use
 from deixis.memory.perceptual.tensors import pack
 
 FORMAT, VERSION = "deixis-perceptual-memory", 1
@@ -68,7 +67,7 @@ def _add(archive: zipfile.ZipFile, name: str, content: bytes) -> None:
 def view_file(view: View) -> bytes:
     """A view as a safetensors file."""
     said = {"id": view.id, "category": view.category, "time": view.time.isoformat(), "metadata": dict(view.metadata)}
-    return b"".join(pack(arrays_of_view(view), json.dumps(said, sort_keys=True)))
+    return b"".join(pack(arrays_by_name(view.descriptors, view.points), json.dumps(said, sort_keys=True)))
 
 
 def category_file(record: CategoryRecord) -> bytes:

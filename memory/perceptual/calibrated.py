@@ -1,13 +1,16 @@
 """A calibration kept beside the views that it was worked out from, which takes seconds where there are many of them.
 
-It can always be worked out again: a file that is damaged, or of views that are no longer these, is as good as none.
+It can always be worked out again: a file that is damaged, of views that are no longer these, or of views that were
+compared in another way, is as good as none.
 
 >>> import tempfile
 >>> from deixis.perception.recognition.calibration import SHIPPED
 >>> folder, views = Path(tempfile.mkdtemp()), {("mug", "v1"), ("mug", "v2")}
->>> keep_calibration(folder, SHIPPED, views)
->>> kept_calibration(folder, views) == SHIPPED, kept_calibration(folder, {("mug", "v1")}) is None
-(True, True)
+>>> keep_calibration(folder, SHIPPED, views, "spin images")
+>>> kept_calibration(folder, views, "spin images") == SHIPPED
+True
+>>> kept_calibration(folder, {("mug", "v1")}, "spin images"), kept_calibration(folder, views, "colours")
+(None, None)
 """
 
 from __future__ import annotations
@@ -30,20 +33,20 @@ FRESH = 0.1
 """A calibration stays while no larger share of the views has come, gone, or changed its category."""
 
 
-def keep_calibration(folder: Path, calibration: Calibration, views: Set[ViewPlace]) -> None:
-    """Writes it, in one step; where that cannot be, nothing is kept."""
-    content = {"calibration": asdict(calibration), "views": sorted(views)}
+def keep_calibration(folder: Path, calibration: Calibration, views: Set[ViewPlace], compared: str) -> None:
+    """Writes it, in one step, with how views were compared; where that cannot be, nothing is kept."""
+    content = {"calibration": asdict(calibration), "compared": compared, "views": sorted(views)}
     new = folder / (CALIBRATION + ".new")
     with contextlib.suppress(OSError):
         new.write_text(json.dumps({**content, "sum": _sum(content)}), encoding="utf-8")
         new.replace(folder / CALIBRATION)
 
 
-def kept_calibration(folder: Path, views: Set[ViewPlace]) -> Calibration | None:
-    """What was kept, if it was worked out from about these views."""
+def kept_calibration(folder: Path, views: Set[ViewPlace], compared: str) -> Calibration | None:
+    """What was kept, if it was worked out from about these views, compared in this way."""
     try:
         content = json.loads((folder / CALIBRATION).read_text(encoding="utf-8"))
-        if content.pop("sum") != _sum(content):
+        if content.pop("sum") != _sum(content) or content["compared"] != compared:
             return None
         before = {(category, id) for category, id in content["views"]}
         kept = Calibration(**content["calibration"])

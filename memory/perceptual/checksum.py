@@ -18,13 +18,14 @@ from __future__ import annotations
 import zlib
 from collections.abc import Callable
 from functools import cache
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-_SMALL, _WIDE = 4, 8
+_SMALL, WIDE = 4, 8
 _BLOCK = 1024  # words of two numbers: their key fits into the smallest cache
-_ODD = 0x9E3779B97F4A7C15
+_ODD, _ALL = 0x9E3779B97F4A7C15, (1 << 64) - 1
 
 
 def seal_small(key: bytes, value: bytes) -> bytes:
@@ -39,33 +40,48 @@ def open_small(key: bytes, sealed: bytes) -> bytes | None:
     return value if good and len(sealed) >= _SMALL else None
 
 
+class Summed(NamedTuple):
+    """A value with room for its checksum at its end, which is summed up but for the key."""
+
+    data: bytearray
+    sum: int
+
+
+def summed(data: bytearray) -> Summed:
+    """Sums up a value that has :data:`WIDE` spare bytes at its end."""
+    return Summed(data, _sum(data, len(data) - WIDE))
+
+
+def seal_summed(key: bytes, value: Summed) -> bytearray:
+    """The value with its checksum, in place."""
+    value.data[-WIDE:] = _bound(key, value.sum)
+    return value.data
+
+
 def seal_wide(key: bytes, *parts: bytes | memoryview) -> bytearray:
     """The parts of a value in one piece, with its checksum."""
-    sealed = bytearray().join([*parts, bytes(_WIDE)])
-    end = len(sealed) - _WIDE
-    sealed[end:] = _wide(key, sealed, end).to_bytes(_WIDE, "little")
-    return sealed
+    return seal_summed(key, summed(bytearray().join([*parts, bytes(WIDE)])))
 
 
 def open_wide(key: bytes, sealed: bytes | bytearray) -> memoryview | None:
     """The value again, without a copy, or None where it is not what was sealed."""
-    end = len(sealed) - _WIDE
-    if end < 0 or _wide(key, sealed, end) != wide_sum(sealed):
+    end = len(sealed) - WIDE
+    if end < 0 or _bound(key, _sum(sealed, end)) != sealed[end:]:
         return None
     return memoryview(sealed)[:end]
 
 
-def wide_sum(sealed: bytes | bytearray) -> int:
-    """The checksum that a value bears, as a number."""
-    return int.from_bytes(sealed[-_WIDE:], "little")
+def _bound(key: bytes, sum: int) -> bytes:
+    """The checksum of a value under a key."""
+    return (sum ^ zlib.crc32(key) * _ODD & _ALL).to_bytes(WIDE, "little")
 
 
-def _wide(key: bytes, data: bytes | bytearray, length: int) -> int:
-    """The checksum of the first ``length`` bytes."""
+def _sum(data: bytes | bytearray, length: int) -> int:
+    """NH of the first ``length`` bytes."""
     nh, blocks = _compiled()
     whole = length // 8
     rest = int.from_bytes(data[whole * 8 : length], "little") if length % 8 else 0
-    return nh(np.frombuffer(data, "<u8", whole), blocks, zlib.crc32(key), length, rest)
+    return nh(np.frombuffer(data, "<u8", whole), blocks, length, rest)
 
 
 @cache

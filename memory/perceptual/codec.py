@@ -4,20 +4,31 @@ from __future__ import annotations
 
 import json
 import struct
-from json.encoder import encode_basestring_ascii as _quoted
 from types import MappingProxyType
-from typing import Any, NamedTuple
-
-from numpy.typing import NDArray
+from typing import NamedTuple
 
 from deixis.memory.perceptual import keys
-from deixis.memory.perceptual.checksum import open_small, open_wide, seal_small, seal_wide, wide_sum
+from deixis.memory.perceptual.checksum import (
+    WIDE,
+    open_small,
+    open_wide,
+    seal_small,
+    seal_summed,
+    seal_wide,
+    summed,
+)
 from deixis.memory.perceptual.errors import DamagedMemoryError
-from deixis.memory.perceptual.records import CategoryRecord, JsonObject, View, json_text
-from deixis.memory.perceptual.tensors import pack, unpack
+from deixis.memory.perceptual.records import (
+    CategoryRecord,
+    JsonObject,
+    View,
+    arrays_by_name,
+    arrays_by_use,
+    json_text,
+)
+from deixis.memory.perceptual.tensors import lay_out, pack, unpack
 
 _COUNTS = struct.Struct("<3Q")
-_DESCRIPTOR, _POINTS = "descriptor/", "points"
 
 _decode = json.JSONDecoder().raw_decode
 
@@ -25,85 +36,68 @@ _decode = json.JSONDecoder().raw_decode
 class About(NamedTuple):
     """All of a view but its arrays.
 
-    ``place`` is the category under which the arrays were first written. ``sum`` is their checksum, so that arrays which
-    lay under the same key before are not taken for them.
+    ``key`` is its place in the order of all views. The arrays lie under a key of their own, in the category under which
+    they were first written. ``sum`` is their checksum, so that arrays which lay under the same key before are not taken
+    for them.
     """
 
     category: str
     id: str
     time: int
-    place: str
-    sum: int
+    key: bytes
+    arrays_key: bytes
+    sum: bytes
     metadata: str  # JSON
 
-    @property
-    def key(self) -> bytes:
-        """Its own key."""
-        return keys.name_key(keys.ABOUT, self.id)
-
-    @property
-    def order_key(self) -> bytes:
-        """Its place in the order of all views."""
-        return keys.view_key(keys.VIEW, self.category, self.id, self.time)
-
-    @property
-    def arrays_key(self) -> bytes:
-        """Where its arrays are: a category that is renamed leaves them in place."""
-        return keys.view_key(keys.ARRAYS, self.place, self.id, self.time)
+    def moved(self, category: str) -> About:
+        """The same view in another category; its arrays stay where they are."""
+        return self._replace(category=category, key=keys.view_key(keys.VIEW, category, self.id, self.time))
 
 
-def write_view(view: View) -> tuple[About, bytes, bytearray]:
-    """What is said of a new view, and key and value of its arrays."""
-    time = keys.microseconds(view.time)
-    key = keys.view_key(keys.ARRAYS, view.category, view.id, time)
-    sealed = seal_wide(key, *pack(arrays_of_view(view)))
-    return About(view.category, view.id, time, view.category, wide_sum(sealed), json_text(view.metadata)), key, sealed
+def write_view(view: View) -> tuple[tuple[bytes, bytes], tuple[bytes, bytearray]]:
+    """What is said of a new view, and its arrays, each a key and a value."""
+    key = keys.view_key(keys.VIEW, view.category, view.id, keys.microseconds(view.time))
+    arrays_key = keys.ARRAYS + key[1:]
+    packed = view.packed or summed(lay_out(arrays_by_name(view.descriptors, view.points), WIDE)[0])
+    sealed = seal_summed(arrays_key, packed)
+    said = b"%b\0\0%b" % (bytes(sealed[-WIDE:]), json_text(view.metadata).encode())
+    return (key, seal_small(key, said)), (arrays_key, sealed)
 
 
 def write_about(said: About) -> tuple[bytes, bytes]:
-    """Key and value of what is said of a view."""
-    key = keys.name_key(keys.ABOUT, said.id)
-    text = f"[{_quoted(said.category)},{said.time},{_quoted(said.place)},{said.sum}]{said.metadata}"
-    return key, seal_small(key, text.encode())
+    """Key and value of what is said of a view: checksum of its arrays; their category, where it is another; JSON."""
+    place = keys.split_view_key(said.arrays_key)[0]
+    ended = keys.ended("" if place == said.category else place)
+    return said.key, seal_small(said.key, said.sum + ended + said.metadata.encode())
 
 
-def read_about(id: str, key: bytes, sealed: bytes) -> About:
-    """The same again, of its id, key and value."""
+def read_about(key: bytes, sealed: bytes) -> About:
+    """What is said of a view again."""
     value = open_small(key, sealed)
     if value is None:
-        raise DamagedMemoryError(f"view '{id}': what is said of it is not what was written")
-    text = value.decode()
+        raise DamagedMemoryError(f"{named(key)}: what is said of it is not what was written")
     try:
-        (category, time, place, sum), end = _decode(text)
+        category, id, time = keys.split_view_key(key)
+        arrays_key = keys.ARRAYS + key[1:]
+        if value[WIDE : WIDE + 2] == b"\0\0":
+            metadata = value[WIDE + 2 :]
+        else:
+            place, metadata = keys.split_ended(value[WIDE:])
+            arrays_key = keys.view_key(keys.ARRAYS, place, id, time)
+        return About(category, id, time, key, arrays_key, value[:WIDE], metadata.decode())
     except ValueError as error:
         raise DamagedMemoryError(
-            f"view '{id}': what is said of it is written as no version of this program does"
+            f"{named(key)}: what is said of it is written as no version of this program does"
         ) from error
-    return About(category, id, time, place, sum, text[end:])
 
 
-def write_order(said: About) -> tuple[bytes, bytes]:
-    """Key and value of its place in the order of all views: the value is a checksum of the key alone."""
-    key = said.order_key
-    return key, seal_small(key, b"")
-
-
-def read_order(key: bytes, sealed: bytes) -> tuple[str, str, int]:
-    """Category, id and time of a view."""
+def named(key: bytes) -> str:
+    """The view that a key is of, in words, whatever the key is like."""
     try:
-        if open_small(key, sealed) is not None:
-            return keys.split_view_key(key)
+        category, id, _ = keys.split_view_key(key)
     except ValueError:
-        pass
-    raise DamagedMemoryError(f"an entry of the order of views is not what was written: {key[:60]!r}")
-
-
-def arrays_of_view(view: View) -> dict[str, NDArray[Any]]:
-    """A view's arrays by the names under which they are kept."""
-    arrays: dict[str, NDArray[Any]] = {_DESCRIPTOR + name: array for name, array in view.descriptors.items()}
-    if view.points is not None:
-        arrays[_POINTS] = view.points
-    return arrays
+        return f"a view with the key {key[:60]!r}"
+    return f"view '{id}' of '{category}'"
 
 
 def read_view(said: About, key: bytes, sealed: bytes | None) -> View:
@@ -111,7 +105,7 @@ def read_view(said: About, key: bytes, sealed: bytes | None) -> View:
     if sealed is None:
         raise DamagedMemoryError(f"view '{said.id}' of '{said.category}': its arrays are missing")
     value = open_wide(key, sealed)
-    if value is None or wide_sum(sealed) != said.sum:
+    if value is None or sealed[-WIDE:] != said.sum:
         raise DamagedMemoryError(f"view '{said.id}' of '{said.category}': its arrays are not what was written")
     descriptors, points = arrays_by_use(unpack(value)[0])
     return View.stored(
@@ -122,16 +116,6 @@ def read_view(said: About, key: bytes, sealed: bytes | None) -> View:
         points=points,
         metadata=JsonObject(said.metadata),
     )
-
-
-def arrays_by_use(arrays: dict[str, NDArray[Any]]) -> tuple[dict[str, NDArray[Any]], NDArray[Any] | None]:
-    """Descriptors and points, of arrays by the names under which they are kept. Raises ValueError for another name."""
-    points = arrays.pop(_POINTS, None)
-    start = len(_DESCRIPTOR)
-    descriptors = {name[start:]: array for name, array in arrays.items() if name.startswith(_DESCRIPTOR)}
-    if len(descriptors) < len(arrays):
-        raise ValueError(f"a view has {_POINTS} and {_DESCRIPTOR}…, and no other arrays")
-    return descriptors, points
 
 
 def write_category(record: CategoryRecord) -> tuple[bytes, bytearray]:
@@ -167,6 +151,6 @@ def read_counts(sealed: bytes | None) -> Counts:
     if sealed is None:
         return Counts()
     value = open_small(keys.COUNT, sealed)
-    if value is None:
+    if value is None or len(value) != _COUNTS.size:
         raise DamagedMemoryError("the counts are not what was written")
     return Counts(*_COUNTS.unpack(value))

@@ -13,7 +13,7 @@ import threading
 from collections.abc import Iterator
 from pathlib import Path
 from types import TracebackType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import plyvel
 
@@ -23,9 +23,13 @@ from deixis.memory.lock import OwnerLock
 from deixis.memory.perceptual import keys, layout
 from deixis.memory.perceptual.codec import Counts, read_counts, write_counts
 from deixis.memory.perceptual.errors import DamagedMemoryError
+from deixis.memory.perceptual.places import Places, read_places
 from deixis.memory.perceptual.seal import check_seal, write_seal
 from deixis.memory.perceptual.tally import Tally
 from deixis.ontology.errors import DeixisError
+
+if TYPE_CHECKING:
+    from deixis.memory.perceptual.changes import Change
 
 OPTIONS = {
     "paranoid_checks": True,  # indices and logs are checked too, and compaction does not pass on what is broken
@@ -54,6 +58,7 @@ class Handle:
         self._guard, self._calls = threading.RLock(), 0
         self._idle = threading.Condition(self._guard)
         self._failed: str | None = None
+        self._places: Places | None = None
 
     def __enter__(self) -> Any:
         with self._guard:
@@ -72,27 +77,54 @@ class Handle:
         if error is not None:
             raise_told(self.folder, error)
 
-    def write(self, changes: list[tuple[bytes, bytes | bytearray | None]], views: int, sync: bool) -> None:
-        """Writes keys with their values, or without one to delete them, in one step; ``views`` more views are there.
+    def places(self) -> dict[str, bytes]:
+        """The key of each view by its id; to be called with :attr:`writing` held, and not to be changed.
 
-        To be called with :attr:`writing` held. After a failure the log may end in half a batch, behind which nothing
-        would be found again: then nothing more is written until the memory is opened anew.
+        Raises DamagedMemoryError where not all can be read: then nobody knows what a new view would replace.
         """
-        counts = Counts(self.counts.batches + 1, self.counts.views + views, self.counts.lost)
+        found = self._places or self._read_places()
+        if found.damage is not None:
+            raise_told(self.folder, found.damage)
+        return found.by_id
+
+    def place_of(self, id: str) -> bytes | None:
+        """Where a view is by now, as far as that is known."""
+        return (self._places or self._read_places()).by_id.get(id)
+
+    def _read_places(self) -> Places:
+        with self.writing, self as db:
+            if self._places is None:
+                self._places = read_places(db)
+            return self._places
+
+    def write(self, change: Change, sync: bool) -> None:
+        """Writes all of a change in one step; to be called with :attr:`writing` held.
+
+        After a failure the log may end in half a batch, behind which nothing would be found again: then nothing more is
+        written until the memory is opened anew.
+        """
+        there, before = self.places(), self.counts
+        counts = Counts(before.batches + 1, before.views + change.views, before.lost)
+        sealed = write_counts(counts)
         with self as db:
             if self._failed is not None:
                 raise MemoryWriteError(f"{self._failed}; close the memory, mend what is wrong, and open it again")
             try:
                 batch = db.write_batch(sync=sync)
-                batch.put(keys.COUNT, write_counts(counts))  # first: after arrays it would have them copied once more
-                for key, value in changes:
+                batch.put(keys.COUNT, sealed)  # first: after arrays it would have them copied once more
+                for key, value in change.pairs:
                     batch.delete(key) if value is None else batch.put(key, value)
                 batch.write()
-                self._tally.write(counts.batches)
+                self._tally.write(sealed)
             except (plyvel.Error, OSError) as error:
                 self._failed = f"an earlier write to the memory at {self.folder} failed ({one_line(error)})"
                 raise
         self.counts = counts
+        for id, place in change.places.items():
+            if place is None:
+                there.pop(id, None)
+            else:
+                there[id] = place
 
     def disowned(self) -> Any:
         """Takes the database away from here without closing it."""
@@ -202,18 +234,21 @@ def _locked(folder: Path) -> Handle:
         undo.callback(tally.close)
         db = plyvel.DB(str(layout.store(folder)), **OPTIONS)
         undo.callback(db.close)
-        counts = _counted(db, tally)
+        counts = _counted(folder, db, tally)
         undo.pop_all()
     return Handle(folder, lock, tally, db, counts)
 
 
-def _counted(db: Any, tally: Tally) -> Counts:
+def _counted(folder: Path, db: Any, tally: Tally) -> Counts:
     """The counts, with what is missing of the acknowledged batches counted as lost."""
-    counts = read_counts(db.get(keys.COUNT, verify_checksums=True))
-    missing = tally.found - counts.batches
+    try:
+        counts = read_counts(db.get(keys.COUNT, verify_checksums=True))
+    except DamagedMemoryError as error:
+        raise DamagedMemoryError(f"the memory at {folder} is damaged: {error}; restore it from a copy") from error
+    missing = tally.found.batches - counts.batches
     if missing > 0:
         views = sum(1 for _ in db.iterator(prefix=keys.VIEW, include_value=False, verify_checksums=True))
-        counts = Counts(tally.found, views, counts.lost + missing)
+        counts = Counts(tally.found.batches, views, counts.lost + missing)
         db.put(keys.COUNT, write_counts(counts), sync=True)
-    tally.write(counts.batches)
+    tally.write(write_counts(counts))
     return counts

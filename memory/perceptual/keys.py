@@ -13,8 +13,8 @@ from __future__ import annotations
 
 from datetime import UTC, datetime, timedelta
 
-ARRAYS, CATEGORY, ABOUT, COUNT, VIEW = b"a", b"c", b"m", b"n", b"v"
-"""The ranges: a view's arrays; a category's record; what is said of a view, by id; counts; the views in order."""
+ARRAYS, CATEGORY, COUNT, VIEW = b"a", b"c", b"n", b"v"
+"""The ranges: a view's arrays; a category's record; counts; what is said of a view."""
 
 EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
 _MICROSECOND = timedelta(microseconds=1)
@@ -24,21 +24,29 @@ _MIDDLE = 1 << 63
 
 def view_key(kind: bytes, category: str, id: str, time: int) -> bytes:
     """The key of a view; ``time`` in microseconds since 1970."""
-    return b"%b%b%b%b" % (kind, _text(category), _text(id), (time + _MIDDLE).to_bytes(8, "big"))
+    if "\0" in category or "\0" in id:
+        texts = ended(category) + ended(id)
+    else:
+        texts = f"{category}\0\0{id}\0\0".encode()
+    return kind + texts + (time + _MIDDLE).to_bytes(8, "big")
 
 
 def split_view_key(key: bytes) -> tuple[str, str, int]:
     """Category, id and time again. Raises ValueError for a key that :func:`view_key` did not make."""
-    category, rest = _split(key[1:])
-    id, time = _split(rest)
-    if len(time) != 8:
+    try:
+        category, id, end = key[1:-8].decode().split("\0\0")
+    except ValueError:  # a zero in a name comes with a 255, which is in no UTF-8
+        category, rest = split_ended(key[1:-8])
+        id, left = split_ended(rest)
+        end = left.decode()
+    if end:
         raise ValueError("a time has eight bytes")
-    return category, id, int.from_bytes(time, "big") - _MIDDLE
+    return category, id, int.from_bytes(key[-8:], "big") - _MIDDLE
 
 
 def category_prefix(category: str) -> bytes:
     """How the keys of all views of a category begin."""
-    return VIEW + _text(category)
+    return VIEW + ended(category)
 
 
 def name_key(kind: bytes, name: str) -> bytes:
@@ -61,12 +69,14 @@ def moment(time: int) -> datetime:
     return EPOCH + timedelta(microseconds=time)
 
 
-def _text(text: str) -> bytes:
+def ended(text: str) -> bytes:
+    """A text and its end."""
     return text.encode().replace(b"\x00", _ZERO) + _END
 
 
-def _split(key: bytes) -> tuple[str, bytes]:
-    end = key.find(_END)
+def split_ended(data: bytes) -> tuple[str, bytes]:
+    """A text, and what comes after its end. Raises ValueError where it has none."""
+    end = data.find(_END)
     if end < 0:
         raise ValueError("a text without an end")
-    return key[:end].replace(_ZERO, b"\x00").decode(), key[end + 2 :]
+    return data[:end].replace(_ZERO, b"\x00").decode(), data[end + 2 :]

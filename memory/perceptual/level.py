@@ -20,13 +20,11 @@ from pathlib import Path
 from types import TracebackType
 from typing import Self
 
-from deixis.memory.errors import RejectedWriteError
-from deixis.memory.perceptual.changes import Change, of_batch, of_forgetting, of_moving
-from deixis.memory.perceptual.errors import RecordError
+from deixis.memory.perceptual.changes import of_batch, of_forgetting, of_moving
 from deixis.memory.perceptual.handle import Handle, acquire, closed, release
 from deixis.memory.perceptual.protocol import Finding, PerceptualStats, Progress, ViewKey
-from deixis.memory.perceptual.reading import Snapshot, stored_view
-from deixis.memory.perceptual.records import Batch, CategoryRecord, View, check_name
+from deixis.memory.perceptual.reading import Snapshot, glance
+from deixis.memory.perceptual.records import Batch, CategoryRecord, View, check_merging, check_name, name_taken
 
 
 class LevelMemory:
@@ -39,7 +37,7 @@ class LevelMemory:
         self._open: Handle | None = handle
 
     @classmethod
-    def open(cls, path: str | Path, create: bool = False) -> LevelMemory:
+    def open(cls, path: str | Path, create: bool = False) -> Self:
         """Opens a memory, or makes one with ``create``; a folder that this process has open is shared.
 
         Raises MemoryBusyError where another process has it, MemoryFormatError where there is none or it cannot be
@@ -75,8 +73,14 @@ class LevelMemory:
 
     def view(self, id: str) -> View:
         """One view."""
-        with self.handle as db:
-            return stored_view(db.snapshot(), id)
+        place = self.handle.place_of(check_name("a view's id", id))
+        if place is not None:
+            with self.handle as db:
+                found = glance(db, place)
+            if found is not None:
+                return found
+        with self.snapshot() as now:
+            return now.view(id)
 
     def views(self, category: str | None = None) -> Iterator[View]:
         """Views, as they were when this was called."""
@@ -116,8 +120,9 @@ class LevelMemory:
 
     def write(self, batch: Batch, sync: bool = False) -> None:
         """Writes a batch in one step."""
-        with self.exclusive(), self.handle as now:
-            self._do(of_batch(now, batch), sync)
+        handle = self.handle
+        with handle.writing:
+            handle.write(of_batch(handle, batch), sync)
 
     def rename(self, old: str, new: str) -> None:
         """Gives a category another name."""
@@ -125,23 +130,19 @@ class LevelMemory:
         with self.exclusive(), self.snapshot() as now:
             record = now.category(old)
             if now.has(new):
-                raise RejectedWriteError(f"there is a category '{new}' already: merge '{old}' into it")
-            self._do(of_moving(now, old, CategoryRecord(new, record.state, record.metadata)), sync=True)
+                raise name_taken(old, new)
+            self.handle.write(of_moving(now, old, CategoryRecord(new, record.state, record.metadata)), sync=True)
 
     def merge(self, source: str, into: str, record: CategoryRecord | None = None) -> None:
         """Moves the views of one category to another."""
-        if source == into or (record is not None and record.name != into):
-            raise RecordError(f"category '{source}' cannot be merged into '{into}' with that record: names do not fit")
+        check_merging(source, into, record)
         with self.exclusive(), self.snapshot() as now:
             now.require(into)
             now.require(source)
-            self._do(of_moving(now, source, record or CategoryRecord(into)), sync=True)
+            self.handle.write(of_moving(now, source, record or CategoryRecord(into)), sync=True)
 
     def forget(self, category: str) -> None:
         """Forgets a category."""
         with self.exclusive(), self.snapshot() as now:
             now.require(category)
-            self._do(of_forgetting(now, category), sync=True)
-
-    def _do(self, change: Change, sync: bool) -> None:
-        self.handle.write(change.pairs, change.views, sync)
+            self.handle.write(of_forgetting(self.handle, category), sync=True)

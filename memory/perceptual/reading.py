@@ -10,10 +10,11 @@ from typing import Any, Self
 
 from deixis.memory.folder import size
 from deixis.memory.perceptual import keys
-from deixis.memory.perceptual.codec import About, Counts, read_about, read_category, read_counts, read_order, read_view
+from deixis.memory.perceptual.codec import About, Counts, read_about, read_category, read_counts, read_view
 from deixis.memory.perceptual.errors import DamagedMemoryError, UnknownCategoryError, UnknownViewError
 from deixis.memory.perceptual.handle import Handle, closed
 from deixis.memory.perceptual.layout import VERSION
+from deixis.memory.perceptual.places import Places, read_places
 from deixis.memory.perceptual.protocol import Finding, PerceptualStats, Progress, ViewKey
 from deixis.memory.perceptual.records import CategoryRecord, View, check_name
 from deixis.ontology.relation import nearest
@@ -27,6 +28,7 @@ class Snapshot:
 
     def __init__(self, handle: Handle) -> None:
         self._handle = handle
+        self._then: Places | None = None
         with handle as db:
             self._source: Any = db.snapshot()
 
@@ -92,13 +94,38 @@ class Snapshot:
 
     def about(self, id: str) -> About | None:
         """All of a view but its arrays, or None."""
+        place = self._handle.place_of(check_name("a view's id", id))
+        said = None if place is None else self.about_at(place)
+        if said is None:  # at this moment it was elsewhere, or nowhere
+            place = self._places().get(id)
+            said = None if place is None else self.about_at(place)
+        return said
+
+    def about_at(self, key: bytes) -> About | None:
+        """The same of the view with this key."""
+        sealed = self.get(key)
+        return None if sealed is None else read_about(key, sealed)
+
+    def _places(self) -> dict[str, bytes]:
+        """Where each view was at this moment; raises DamagedMemoryError where not all can be read."""
         with self._handle:
-            return stored_about(self._open, check_name("a view's id", id))
+            if self._then is None:
+                self._then = read_places(self._open)
+            if self._then.damage is not None:
+                raise self._then.damage
+            return self._then.by_id
 
     def view(self, id: str) -> View:
         """See :class:`deixis.memory.perceptual.protocol.PerceptualReading`, here and below."""
+        said = self.about(id)
+        if said is None:
+            raise UnknownViewError(f"no view '{id}' in this memory")
+        return self.view_of(said)
+
+    def view_of(self, said: About) -> View:
+        """A view of which all is known but the arrays."""
         with self._handle:
-            return stored_view(self._open, id)
+            return stored_arrays(self._open, said)
 
     def views(self, category: str | None = None) -> Iterator[View]:
         """The views, read one by one."""
@@ -109,10 +136,7 @@ class Snapshot:
 
     def _listed(self, arrays: Any, pair: tuple[bytes, bytes]) -> View:
         """A view by its place in the order, in which its arrays mostly lie as well."""
-        category, id, time = read_order(*pair)
-        said = stored_about(self._open, id)
-        if said is None or said.category != category or said.time != time:
-            raise DamagedMemoryError(f"view '{id}' of '{category}': what is said of it does not fit its place")
+        said = read_about(*pair)
         key = said.arrays_key
         found, sealed = next(arrays, (b"", None))
         if found != key:  # after renaming and merging
@@ -122,11 +146,8 @@ class Snapshot:
 
     def listing(self, category: str | None = None) -> Iterator[ViewKey]:
         """The views without their arrays."""
-        return (ViewKey(name, id, keys.moment(time)) for name, id, time in self.places(category))
-
-    def places(self, category: str | None = None) -> Iterator[tuple[str, str, int]]:
-        """Category, id and time of views; raises UnknownCategoryError at once."""
-        return (read_order(key, sealed) for key, sealed in self.pairs(self._beginning(category)))
+        found = (read_about(*pair) for pair in self.pairs(self._beginning(category)))
+        return (ViewKey(said.category, said.id, keys.moment(said.time)) for said in found)
 
     def _beginning(self, category: str | None) -> bytes:
         if category is None:
@@ -139,7 +160,7 @@ class Snapshot:
         names = {key[1:].decode() for key, _ in self.pairs(keys.CATEGORY)}
         pair = self.first_after(keys.VIEW, keys.VIEW)
         while pair is not None:
-            name = read_order(*pair)[0]
+            name = read_about(*pair).category
             names.add(name)
             pair = self.first_after(keys.after(keys.category_prefix(name)), keys.VIEW)
         return tuple(sorted(names))
@@ -187,32 +208,33 @@ class Snapshot:
         return tuple(findings(self, progress))
 
 
-def _same(item: Any) -> Any:
-    return item
+def glance(db: Any, place: bytes) -> View | None:
+    """A view by the key of what is said of it, without a snapshot.
 
-
-def stored_about(source: Any, id: str) -> About | None:
-    """All of a view but its arrays, from a database or a snapshot of one."""
-    key = keys.name_key(keys.ABOUT, id)
-    sealed = source.get(key, verify_checksums=True)
-    return None if sealed is None else read_about(id, key, sealed)
-
-
-def stored_view(source: Any, id: str) -> View:
-    """A view, from a snapshot. Raises UnknownViewError."""
-    said = stored_about(source, check_name("a view's id", id))
-    if said is None:
-        raise UnknownViewError(f"no view '{id}' in this memory")
-    return stored_arrays(source, said)
+    None where it is not there, or damaged, or another thread has written in between: then the checksum of the arrays is
+    not the one that is known of them.
+    """
+    sealed = db.get(place, verify_checksums=True)
+    if sealed is None:
+        return None
+    try:
+        said = read_about(place, sealed)
+        return stored_arrays(db, said)
+    except DamagedMemoryError:
+        return None
 
 
 def stored_arrays(source: Any, said: About) -> View:
-    """A view of which all is known but the arrays.
+    """A view of which all is known but the arrays, from a database or a snapshot of one.
 
     These alone are read without LevelDB's checksums: ours is stronger, covers the key, and is known beforehand.
     """
     key = said.arrays_key
     return read_view(said, key, source.get(key, fill_cache=False))
+
+
+def _same(item: Any) -> Any:
+    return item
 
 
 def unknown_category(name: str, known: tuple[str, ...]) -> UnknownCategoryError:

@@ -20,8 +20,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.memory.errors import RejectedWriteError
+from deixis.memory.perceptual.checksum import WIDE, Summed, summed
 from deixis.memory.perceptual.errors import RecordError
-from deixis.memory.perceptual.tensors import TYPES
+from deixis.memory.perceptual.tensors import TYPES, lay_out
 
 Json = Mapping[str, Any]
 """An object of JSON: keys are strings; values are None, bools, numbers, strings, lists, and objects again."""
@@ -30,6 +32,7 @@ DTYPES = {dtype.name for dtype in TYPES.values()}
 """What the arrays of a learner's state may hold: bools, integers, floats."""
 
 _LONGEST = 1000  # bytes of a name in UTF-8
+_DESCRIPTOR, _POINTS = "descriptor/", "points"
 
 
 class JsonObject(Mapping[str, Any]):
@@ -71,20 +74,24 @@ class View:
     descriptors: Mapping[str, NDArray[np.float32]]
     points: NDArray[np.float32] | None = None
     metadata: Json = field(default_factory=dict)
+    packed: Summed | None = field(default=None, init=False, repr=False)  # the arrays, as they will be written
 
     def __post_init__(self) -> None:
         check_name("a view's id", self.id)
         check_name("a category's name", self.category)
-        held = {name: _floats(f"descriptor '{name}' of view '{self.id}'", a) for name, a in self.descriptors.items()}
-        for name in held:
+        for name, array in self.descriptors.items():
             check_name("a descriptor's name", name)
-        object.__setattr__(self, "descriptors", MappingProxyType(held))
-        object.__setattr__(self, "time", _utc(self.id, self.time))
+            _check_floats(f"descriptor '{name}' of view '{self.id}'", array)
         if self.points is not None:
-            points = _floats(f"the points of view '{self.id}'", self.points)
-            if points.shape[1] != 3:
-                raise RecordError(f"the points of view '{self.id}' have shape {points.shape}, not (n, 3)")
-            object.__setattr__(self, "points", points)
+            _check_floats(f"the points of view '{self.id}'", self.points)
+            if self.points.shape[1] != 3:
+                raise RecordError(f"the points of view '{self.id}' have shape {self.points.shape}, not (n, 3)")
+        packed, held = lay_out(arrays_by_name(self.descriptors, self.points), WIDE)
+        descriptors, points = arrays_by_use(held)
+        object.__setattr__(self, "descriptors", MappingProxyType(descriptors))
+        object.__setattr__(self, "points", points)
+        object.__setattr__(self, "packed", summed(packed))
+        object.__setattr__(self, "time", _utc(self.id, self.time))
         object.__setattr__(self, "metadata", _json(f"the metadata of view '{self.id}'", self.metadata))
 
     @classmethod
@@ -138,6 +145,24 @@ class Batch:
                 raise RecordError(f"the {what} '{twice}' comes twice in one batch")
 
 
+def arrays_by_name(
+    descriptors: Mapping[str, NDArray[np.float32]], points: NDArray[np.float32] | None
+) -> dict[str, NDArray[np.float32]]:
+    """A view's arrays by the names under which they are kept."""
+    arrays = {_DESCRIPTOR + name: array for name, array in descriptors.items()}
+    return arrays if points is None else {**arrays, _POINTS: points}
+
+
+def arrays_by_use(arrays: dict[str, NDArray[Any]]) -> tuple[dict[str, NDArray[Any]], NDArray[Any] | None]:
+    """Descriptors and points, of arrays by the names under which they are kept. Raises ValueError for another name."""
+    points = arrays.pop(_POINTS, None)
+    start = len(_DESCRIPTOR)
+    descriptors = {name[start:]: array for name, array in arrays.items() if name.startswith(_DESCRIPTOR)}
+    if len(descriptors) < len(arrays):
+        raise ValueError(f"a view has {_POINTS} and {_DESCRIPTOR}…, and no other arrays")
+    return descriptors, points
+
+
 def json_text(metadata: Json) -> str:
     """The metadata of a view or a category as JSON."""
     return metadata.text if isinstance(metadata, JsonObject) else json.dumps(dict(metadata))
@@ -156,6 +181,21 @@ def check_name(what: str, name: object) -> str:
     return name
 
 
+def check_merging(source: str, into: str, record: CategoryRecord | None) -> None:
+    """Raises RecordError for a category and itself, and for a record of another category."""
+    if source == into:
+        raise RecordError(f"'{source}' cannot be merged into itself; name two categories")
+    if record is not None and record.name != into:
+        raise RecordError(f"'{source}' cannot be merged into '{into}' with a record of '{record.name}'")
+
+
+def name_taken(old: str, new: str) -> RejectedWriteError:
+    """The error for a new name that a category has already."""
+    if old == new:
+        return RejectedWriteError(f"'{old}' is the category's name already")
+    return RejectedWriteError(f"there is a category '{new}' already: merge '{old}' into it")
+
+
 def frozen(array: NDArray[Any]) -> NDArray[Any]:
     """The array in one piece, little-endian, and such that nobody writes into it."""
     plain = np.asarray(array, array.dtype.newbyteorder("<"), order="C")
@@ -165,11 +205,10 @@ def frozen(array: NDArray[Any]) -> NDArray[Any]:
     return plain
 
 
-def _floats(what: str, array: object) -> NDArray[np.float32]:
+def _check_floats(what: str, array: object) -> None:
     if not isinstance(array, np.ndarray) or array.dtype.name != "float32" or array.ndim != 2:
         shape = f"{array.dtype} {array.shape}" if isinstance(array, np.ndarray) else type(array).__name__
         raise RecordError(f"{what}: an array of float32 with two dimensions is wanted, not {shape}")
-    return frozen(array)
 
 
 def _utc(view: str, time: object) -> datetime:

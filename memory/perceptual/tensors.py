@@ -37,6 +37,7 @@ class _Part(NamedTuple):
 class _Layout(NamedTuple):
     header: bytes
     parts: tuple[_Part, ...]  # in the order in which they lie
+    end: int
     note: str
 
 
@@ -44,6 +45,20 @@ def pack(arrays: Mapping[str, NDArray[Any]], note: str = "") -> list[bytes | mem
     """The pieces of a safetensors file: joined, they are it. ``note`` is a text kept in its header."""
     layout = _layout_of(tuple([(name, array.dtype, array.shape) for name, array in arrays.items()]), note)
     return [layout.header, *[arrays[part.name].data for part in layout.parts]]
+
+
+def lay_out(arrays: Mapping[str, NDArray[Any]], spare: int) -> tuple[bytearray, dict[str, NDArray[Any]]]:
+    """A safetensors file of copies of arrays, with spare bytes at its end; and the copies, which cannot be written."""
+    layout = _layout_of(tuple([(name, array.dtype, array.shape) for name, array in arrays.items()]), "")
+    data = bytearray(layout.end + spare)
+    data[: len(layout.header)] = layout.header
+    copies = {}
+    for part in layout.parts:
+        copy = np.ndarray(part.shape, part.dtype, data, part.offset)
+        copy[...] = arrays[part.name]
+        copy.flags.writeable = False
+        copies[part.name] = copy
+    return data, copies
 
 
 def unpack(data: memoryview) -> tuple[dict[str, NDArray[Any]], str]:
@@ -69,8 +84,8 @@ def _layout_of(named: tuple[tuple[str, np.dtype[Any], tuple[int, ...]], ...], no
 def _layout_in(header: bytes) -> _Layout:
     said = json.loads(header[8:])
     note = said.pop("__metadata__", {}).get(_NOTE, "")
-    parts = []
+    parts, end = [], len(header)
     for name, entry in sorted(said.items(), key=lambda item: item[1]["data_offsets"]):
-        offset = len(header) + entry["data_offsets"][0]
+        offset, end = (len(header) + place for place in entry["data_offsets"])
         parts.append(_Part(name, TYPES[entry["dtype"]], tuple(entry["shape"]), offset))
-    return _Layout(header, tuple(parts), note)
+    return _Layout(header, tuple(parts), end, note)

@@ -17,13 +17,12 @@ from dataclasses import dataclass, replace
 from types import TracebackType
 from typing import Self
 
-from deixis.memory.errors import RejectedWriteError
-from deixis.memory.perceptual.errors import RecordError, UnknownViewError
+from deixis.memory.perceptual.errors import UnknownViewError
 from deixis.memory.perceptual.handle import closed
 from deixis.memory.perceptual.layout import VERSION
 from deixis.memory.perceptual.protocol import Finding, PerceptualStats, Progress, ViewKey
 from deixis.memory.perceptual.reading import unknown_category
-from deixis.memory.perceptual.records import Batch, CategoryRecord, View, check_name
+from deixis.memory.perceptual.records import Batch, CategoryRecord, View, check_merging, check_name, name_taken
 
 
 @dataclass(frozen=True)
@@ -147,13 +146,12 @@ class TransientMemory(TransientReading):
         with self._writing:
             record = self.category(old)
             if new in self.categories():
-                raise RejectedWriteError(f"there is a category '{new}' already: merge '{old}' into it")
+                raise name_taken(old, new)
             self._move(old, CategoryRecord(new, record.state, record.metadata))
 
     def merge(self, source: str, into: str, record: CategoryRecord | None = None) -> None:
         """Moves the views of one category to another."""
-        if source == into or (record is not None and record.name != into):
-            raise RecordError(f"category '{source}' cannot be merged into '{into}' with that record: names do not fit")
+        check_merging(source, into, record)
         with self._writing:
             self._require(into)
             self._require(source)

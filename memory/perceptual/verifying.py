@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 
 from deixis.memory.errors import MemoryFormatError, MemoryWriteError
 from deixis.memory.perceptual import keys
-from deixis.memory.perceptual.codec import Counts, read_category, read_order
+from deixis.memory.perceptual.codec import Counts, named, read_about, read_category
 from deixis.memory.perceptual.protocol import Finding, Progress
 from deixis.memory.perceptual.reading import Snapshot
 
@@ -33,8 +33,7 @@ def findings(now: Snapshot, progress: Progress | None = None) -> Iterator[Findin
         yield Finding("order of views", f"it cannot be read to its end: {_line(error)}")
     if found != counts.views >= 0:
         yield Finding("counts", f"{counts.views} views were written, and {found} are there")
-    yield from _strays(now, keys.ABOUT, "metadata", _metadata_is_owned)
-    yield from _strays(now, keys.ARRAYS, "arrays", _arrays_are_owned)
+    yield from _strays(now)
 
 
 def _categories(now: Snapshot) -> Iterator[Finding]:
@@ -50,41 +49,30 @@ def _categories(now: Snapshot) -> Iterator[Finding]:
 
 
 def _view(now: Snapshot, key: bytes, sealed: bytes) -> Iterator[Finding]:
-    where = "a view"
+    where = named(key)
     try:
-        category, id, time = read_order(key, sealed)
-        where = f"view '{id}' of '{category}'"
-        said = now.about(id)
-        if said is None or (said.category, said.time) != (category, time):
-            yield Finding(where, "what is said of it does not fit its place in the order")
-        else:
-            now.view(id)
+        said = read_about(key, sealed)
+        found = now.about(said.id)
+        if found is None or found.key != key:
+            yield Finding(where, "there is another view with this id")
+        now.view_of(said)
     except _WRONG as error:
-        yield Finding(where, _line(error))
+        yield Finding(where, _line(error).removeprefix(f"{where}: "))
 
 
-def _strays(now: Snapshot, kind: bytes, what: str, owned: Callable[[Snapshot, bytes], bool]) -> Iterator[Finding]:
-    """Keys that belong to no view."""
+def _strays(now: Snapshot) -> Iterator[Finding]:
+    """Arrays that belong to no view."""
     try:
-        for key in now.bare_keys(kind):
+        for key in now.bare_keys(keys.ARRAYS):
             try:
-                if owned(now, key):
+                said = now.about(keys.split_view_key(key)[1])
+                if said is not None and said.arrays_key == key:
                     continue
             except _WRONG:
                 continue  # told of with its view
-            yield Finding(f"{what} at {key[1:60]!r}", "no view owns it")
+            yield Finding(f"arrays at {key[1:60]!r}", "no view owns them")
     except _WRONG as error:
-        yield Finding(what, f"they cannot be read to their end: {_line(error)}")
-
-
-def _metadata_is_owned(now: Snapshot, key: bytes) -> bool:
-    said = now.about(key[1:].decode())
-    return said is not None and now.get(said.order_key) is not None
-
-
-def _arrays_are_owned(now: Snapshot, key: bytes) -> bool:
-    said = now.about(keys.split_view_key(key)[1])
-    return said is not None and said.arrays_key == key
+        yield Finding("arrays", f"they cannot be read to their end: {_line(error)}")
 
 
 def _line(error: BaseException) -> str:

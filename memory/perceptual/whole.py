@@ -12,23 +12,44 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from deixis.memory.folder import inspect
 from deixis.memory.perceptual.archive import is_archive
 from deixis.memory.perceptual.exchange import Imported, export_views, import_views
 from deixis.memory.perceptual.layout import FOLDER, version_in
 from deixis.memory.perceptual.level import LevelMemory
 from deixis.memory.perceptual.protocol import Finding, PerceptualStats, Progress
+from deixis.memory.perceptual.undamaged import UndamagedMemory
 
-__all__ = ["export_all", "has_views", "import_all", "is_archive", "open_in", "stats_of", "verify_views"]
+__all__ = [
+    "export_all",
+    "has_views",
+    "import_all",
+    "is_archive",
+    "open_in",
+    "open_undamaged",
+    "stats_of",
+    "verify_views",
+]
 
 
 def open_in(memory: Path, create: bool = False) -> LevelMemory:
-    """Opens the perceptual memory in the folder of a memory; raises as ``LevelMemory.open``."""
-    return LevelMemory.open(memory / FOLDER, create)
+    """Opens the perceptual memory in the folder of a memory; raises as ``LevelMemory.open``, and for what is none."""
+    return LevelMemory.open(_place_in(memory), create)
+
+
+def open_undamaged(memory: Path) -> UndamagedMemory:
+    """The same, but for what in it is damaged."""
+    return UndamagedMemory.open(_place_in(memory))
 
 
 def has_views(memory: Path) -> bool:
-    """Whether anything was ever taught, by looking only."""
-    return version_in(memory / FOLDER) is not None
+    """Whether anything was ever taught, by looking only; raises MemoryFormatError for what is no memory at all."""
+    return version_in(_place_in(memory)) is not None
+
+
+def _place_in(memory: Path) -> Path:
+    inspect(memory)
+    return memory / FOLDER
 
 
 def stats_of(memory: Path) -> PerceptualStats | None:

@@ -1,8 +1,8 @@
-"""Views judged by what the others say: as if the view, or its whole category, had never been taught."""
+"""Views judged by what the others say: as if the thing that is seen, or its whole category, had never been taught."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from deixis.perception.recognition.distances import Target
 from deixis.perception.recognition.index import ViewIndex
 from deixis.perception.recognition.instances import InstanceCategory
-from deixis.perception.recognition.spread import spreads
+from deixis.perception.recognition.settings import RecognitionSettings
+from deixis.perception.recognition.spread import Width, spreads
 
 MOST = 400
 """Views that are held out, at most; evenly over the categories."""
@@ -25,8 +26,8 @@ Progress = Callable[[int, int], None]
 class HeldOut:
     """Normalised distances of v held-out views to c categories.
 
-    ``truth`` is each view's own category; its ND there is without the view itself (and without the other views of the
-    same object, where objects are known): inf where nothing remains.
+    ``truth`` is each view's own category; its ND there is without the view itself, and without the other views of the
+    same thing: inf where nothing remains.
     """
 
     normalised: NDArray[np.float64]  # (v, c)
@@ -49,23 +50,22 @@ class HeldOut:
 def hold_out(
     categories: Sequence[InstanceCategory],
     indexes: Sequence[ViewIndex | None],
-    prior_spread: float,
-    objects: Mapping[str, str] | None = None,
+    settings: RecognitionSettings,
     most: int = MOST,
     progress: Progress | None = None,
 ) -> HeldOut:
-    """Holds views out, ``most`` of all categories together, evenly chosen.
+    """Holds views out, ``most`` of all categories together, evenly chosen; views of one thing are held out together.
 
-    ``objects`` leads from a view's id to the thing it shows; views of one thing are held out together. Without it a
-    view is judged by other views of the same thing too, and what follows is about things seen before.
+    So what follows is about things never seen before, where categories know which thing a view shows.
     """
     share = -(-most // max(1, len(categories)))
     chosen = [(number, place) for number, each in enumerate(categories) for place in _evenly(len(each), share)]
+    widths = [category.width(settings.over_things) for category in categories]
     rows = np.empty((len(chosen), len(categories)))
     for done, (number, place) in enumerate(chosen):
         if progress is not None:
             progress(done, len(chosen))
-        rows[done] = _row(number, place, categories, indexes, prior_spread, objects or {})
+        rows[done] = _row(number, place, categories, indexes, widths, settings)
     return HeldOut(rows, np.array([number for number, _ in chosen], np.int64))
 
 
@@ -74,14 +74,14 @@ def _row(
     place: int,
     categories: Sequence[InstanceCategory],
     indexes: Sequence[ViewIndex | None],
-    prior_spread: float,
-    objects: Mapping[str, str],
+    widths: Sequence[Width],
+    settings: RecognitionSettings,
 ) -> NDArray[np.float64]:
     """ND (c,) of a view that is held out."""
     own = categories[number]
-    rest = _others(own, place, objects)
-    measured = [category.intra_category_distance for category in categories]
-    measured[number] = _mean_of_pairs(own.distances[np.ix_(rest, rest)])
+    rest = np.flatnonzero(own.shown != own.shown[place])
+    left = list(widths)
+    left[number] = own.width(settings.over_things, rest)
     target = Target.of(own.views[place])
     distances = np.full(len(categories), np.inf)
     reduced = None
@@ -92,21 +92,7 @@ def _row(
         distances[other] = index.nearest(target, reduced).distance
     if len(rest):
         distances[number] = own.distances[place, rest].min()
-    return distances / [spread.value for spread in spreads(measured, prior_spread)]
-
-
-def _others(category: InstanceCategory, place: int, objects: Mapping[str, str]) -> NDArray[np.intp]:
-    """Places of the views that show something else than the one in that place."""
-    ids = category.views.ids
-    shown = objects.get(ids[place])
-    same = [i == place or (shown is not None and objects.get(key) == shown) for i, key in enumerate(ids)]
-    return np.flatnonzero(~np.array(same))
-
-
-def _mean_of_pairs(distances: NDArray[np.float64]) -> float | None:
-    """Equation 3 from distances (n, n)."""
-    n = len(distances)
-    return float(distances.sum() / (n * (n - 1))) if n > 1 else None
+    return distances / [spread.value for spread in spreads(left, settings.prior_spread, settings.shrinkage)]
 
 
 def _evenly(count: int, most: int) -> list[int]:

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from deixis.perception.recognition.distances import view_distances
 from deixis.perception.recognition.errors import RecognitionError
+from deixis.perception.recognition.spread import Width
 from deixis.perception.recognition.views import PackedViews
 
 
@@ -18,7 +20,8 @@ class InstanceCategory:
     """A name and n views of things that bear it; ``distances[i, j]`` is D_V(view i, view j).
 
     A further view costs its distances to and from the views of this category, and nothing else; forgetting one costs
-    nothing. ``empty`` are the ids of views without a descriptor: they belong to the category and enter no equation.
+    nothing. ``things`` leads from a view's id to the thing that it shows; a view that it does not name shows a thing of
+    its own. ``empty`` are the ids of views without a descriptor: they belong to the category and enter no equation.
 
     >>> category = InstanceCategory("mug").with_view("a", np.array([[0.0]])).with_view("b", np.array([[2.0], [3.0]]))
     >>> category.distances.tolist(), category.intra_category_distance
@@ -29,6 +32,7 @@ class InstanceCategory:
     views: PackedViews = field(default_factory=lambda: PackedViews.of(()))
     distances: NDArray[np.float64] = field(default_factory=lambda: np.zeros((0, 0)))  # (n, n)
     empty: tuple[str, ...] = ()
+    things: Mapping[str, str] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         n = len(self.views)
@@ -38,13 +42,15 @@ class InstanceCategory:
             )
 
     @classmethod
-    def of(cls, name: str, views: Iterable[tuple[str, NDArray[np.float32]]]) -> InstanceCategory:
+    def of(
+        cls, name: str, views: Iterable[tuple[str, NDArray[np.float32]]], things: Mapping[str, str] | None = None
+    ) -> InstanceCategory:
         """A category of views (id, descriptors (k, d)), all distances computed."""
         named = list(views)
         packed = PackedViews.of((key, array) for key, array in named if len(array))
         distances = np.array([view_distances(packed[i], packed) for i in range(len(packed))])
         empty = tuple(key for key, array in named if not len(array))
-        return cls(name, packed, distances.reshape(len(packed), len(packed)), empty)
+        return cls(name, packed, distances.reshape(len(packed), len(packed)), empty, dict(things or {}))
 
     def __len__(self) -> int:
         return len(self.views)
@@ -53,32 +59,44 @@ class InstanceCategory:
     def intra_category_distance(self) -> float | None:
         """ICD (equation 3): the mean of D_V over ordered pairs of different views; None for fewer than two.
 
-        It is 0 where all views are the same. What equation 4 divides by then: :mod:`.spread`.
+        It is 0 where all views are the same. What equation 4 divides by: :mod:`.spread`.
         """
-        n = len(self.views)
-        return float(self.distances.sum() / (n * (n - 1))) if n > 1 else None
+        return self.width(over_things=False).icd
 
-    def with_view(self, key: str, descriptors: NDArray[np.float32]) -> InstanceCategory:
+    @cached_property
+    def shown(self) -> NDArray[np.int64]:
+        """The thing that each view shows, as a number (n,)."""
+        names = [(key in self.things, self.things.get(key, key)) for key in self.views.ids]
+        numbers = {name: number for number, name in enumerate(dict.fromkeys(names))}
+        return np.array([numbers[name] for name in names], np.int64)
+
+    def width(self, over_things: bool, places: NDArray[np.intp] | None = None) -> Width:
+        """The ICD over views of different things, or over all views; of the views in some places only."""
+        at = np.arange(len(self)) if places is None else places
+        return Width.of(self.distances[np.ix_(at, at)], self.shown[at] if over_things else None)
+
+    def with_view(self, key: str, descriptors: NDArray[np.float32], thing: str | None = None) -> InstanceCategory:
         """The category with one view more, the last; raises RecognitionError where it does not fit, or is known."""
         if key in self.views.ids or key in self.empty:
             raise RecognitionError(f"category '{self.name}' has a view '{key}' already")
+        things = self.things if thing is None else {**self.things, key: thing}
         if not len(descriptors):
-            return InstanceCategory(self.name, self.views, self.distances, (*self.empty, key))
+            return replace(self, empty=(*self.empty, key), things=things)
         new = PackedViews.of([(key, descriptors)])
         n = len(self.views)
         distances = np.zeros((n + 1, n + 1))
         distances[:n, :n] = self.distances
         distances[n, :n] = view_distances(new[0], self.views)
         distances[:n, n] = [float(view_distances(self.views[i], new)[0]) for i in range(n)]
-        return InstanceCategory(self.name, self.views.joined(new), distances, self.empty)
+        return replace(self, views=self.views.joined(new), distances=distances, things=things)
 
     def without_view(self, key: str) -> InstanceCategory:
         """The category with one view less; raises RecognitionError where it has no such view."""
+        things = {view: thing for view, thing in self.things.items() if view != key}
         if key in self.empty:
-            rest = tuple(name for name in self.empty if name != key)
-            return InstanceCategory(self.name, self.views, self.distances, rest)
+            return replace(self, empty=tuple(name for name in self.empty if name != key), things=things)
         if key not in self.views.ids:
             raise RecognitionError(f"category '{self.name}' has no view '{key}'")
         place = self.views.ids.index(key)
         distances = np.delete(np.delete(self.distances, place, axis=0), place, axis=1)
-        return InstanceCategory(self.name, self.views.without(place), distances, self.empty)
+        return replace(self, views=self.views.without(place), distances=distances, things=things)

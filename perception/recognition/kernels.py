@@ -28,8 +28,8 @@ _SUMS_IN_ANY_ORDER = {"nnan", "nsz", "reassoc", "contract"}
 
 
 @njit(cache=True, nogil=True, error_model="numpy", fastmath=_SUMS_IN_ANY_ORDER)
-def lower_bounds(columns, squares, reduced, starts, chosen, slack, out):  # type: ignore[no-untyped-def]
-    """Fills ``out`` (c,) with lower bounds of D_V between the target and the views ``chosen`` (c,).
+def lower_bounds(columns, squares, reduced, starts, slack, out):  # type: ignore[no-untyped-def]
+    """Fills ``out`` (m,) with lower bounds of D_V between the target and each of m views.
 
     ``columns`` (AXES, >= q) are the target's reduced descriptors times -2, ``squares`` (q,) their squared lengths;
     whole vectors (:data:`LANES`) of columns are fastest, so there may be more than q. ``reduced`` (n, AXES + 1) are
@@ -37,8 +37,7 @@ def lower_bounds(columns, squares, reduced, starts, chosen, slack, out):  # type
     """
     count = columns.shape[1]
     least = np.empty(count, np.float32)
-    for place in range(len(chosen)):
-        view = chosen[place]
+    for view in range(len(out)):
         least[:] = np.inf
         for k in range(starts[view], starts[view + 1]):
             row = reduced[k]
@@ -51,7 +50,47 @@ def lower_bounds(columns, squares, reduced, starts, chosen, slack, out):  # type
         total = 0.0
         for t in range(len(squares)):
             total += np.sqrt(max(np.float64(least[t]) + squares[t] - slack, 0.0))
-        out[place] = total / len(squares)
+        out[view] = total / len(squares)
+
+
+@njit(cache=True, nogil=True, error_model="numpy", fastmath=_SUMS_IN_ANY_ORDER)
+def estimates(target, squares, count, reduced, starts, views, out):  # type: ignore[no-untyped-def]
+    """Adds to ``out`` (m,) D_V times q, as ``count`` lists of an inverted file have it.
+
+    ``target`` (q, AXES + 1) and ``reduced`` (n, AXES + 1) are reduced descriptors, the latter in lists from
+    ``starts[i]`` to ``starts[i + 1]``, of views in the places ``views`` (n,) of ``out``. ``squares`` (q, l) are squared
+    distances to the lists' centres, less the target's squared lengths. What has nothing in the lists that are looked
+    into is as far as the last of their centres.
+    """
+    best = np.empty(len(out), np.float32)
+    lists, apart = np.empty(count, np.int64), np.empty(count, np.float32)
+    for t in range(len(target)):
+        row = target[t]
+        _least(squares[t], lists, apart)
+        best[:] = apart[count - 1]
+        for place in range(count):
+            for k in range(starts[lists[place]], starts[lists[place] + 1]):
+                squared = reduced[k, AXES]
+                for axis in range(AXES):
+                    squared -= np.float32(2.0) * row[axis] * reduced[k, axis]
+                best[views[k]] = min(best[views[k]], squared)
+        for view in range(len(out)):
+            out[view] += np.sqrt(max(best[view] + row[AXES], np.float32(0.0)))
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _least(values, places, least):  # type: ignore[no-untyped-def]
+    """Fills ``least`` (p,) with the p least of ``values`` (l,), in order, and ``places`` (p,) with where they are."""
+    last = len(least) - 1
+    least[:] = np.inf
+    for place in range(len(values)):
+        value = values[place]
+        if value < least[last]:
+            at = last
+            while at > 0 and least[at - 1] > value:
+                least[at], places[at] = least[at - 1], places[at - 1]
+                at -= 1
+            least[at], places[at] = value, place
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -70,13 +109,12 @@ def _products(view, columns):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, nogil=True, error_model="numpy", fastmath=_NO_NAN)
 def _least_of_columns(products, squares, least):  # type: ignore[no-untyped-def]
-    """Turns dot products (k, q) into |v|^2 - 2 t.v, in place, and fills ``least`` (q,) with each column's least."""
+    """Fills ``least`` (q,) with each column's least |v|^2 - 2 t.v, from dot products (k, q)."""
     least[:] = np.inf
     for k in range(products.shape[0]):
         row = products[k]
         for t in range(products.shape[1]):
-            row[t] = squares[k] - np.float32(2.0) * row[t]
-            least[t] = min(least[t], row[t])
+            least[t] = min(least[t], squares[k] - np.float32(2.0) * row[t])
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -103,7 +141,7 @@ def view_distance(target, columns, lengths, view, squares, limit):  # type: igno
     for k in range(len(view)):
         row = products[k]
         for t in range(len(target)):
-            if row[t] <= within[t]:
+            if squares[k] - np.float32(2.0) * row[t] <= within[t]:
                 nearest[t] = min(nearest[t], _squared(target[t], view[k]))
     return np.sqrt(nearest).mean()
 
@@ -127,16 +165,16 @@ def view_distances(target, columns, lengths, descriptors, starts, squares, out):
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def nearest_view(  # type: ignore[no-untyped-def]
-    target, columns, lengths, descriptors, starts, squares, candidates, bounds, most
+    target, columns, lengths, descriptors, starts, squares, candidates, bounds
 ):
     """Least D_V over ``candidates`` (c,), which are in the order of their lower ``bounds`` (c,); place, and how many
-    were looked at: at most ``most``, and none whose bound is above the best.
+    were looked at: none whose bound is above the best.
 
     Of views equally near the first in memory is taken.
     """
     best, at, seen = np.inf, -1, 0
     for place in range(len(candidates)):
-        if seen == most or bounds[place] > best:
+        if bounds[place] > best:
             break
         seen += 1
         view = candidates[place]

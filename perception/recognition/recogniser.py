@@ -1,4 +1,4 @@
-"""Recognition as the paper has it (equations 1 to 4): nearest category by normalised distance, or unknown.
+"""Recognition by equations 1 to 4 of the paper: nearest category by normalised distance, or unknown.
 
 >>> near, far = np.zeros((3, 4), np.float32), np.full((3, 4), 9, np.float32)
 >>> mug = InstanceCategory.of("mug", [("a", near), ("b", near + 1)])
@@ -9,8 +9,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,33 +20,13 @@ from deixis.perception.recognition.calibration import SHIPPED, Calibration, cali
 from deixis.perception.recognition.distances import Target
 from deixis.perception.recognition.errors import RecognitionError
 from deixis.perception.recognition.held_out import Progress, hold_out
-from deixis.perception.recognition.index import Effort, Nearest, ViewIndex, indexes_of
+from deixis.perception.recognition.index import Nearest, ViewIndex, indexes_of
 from deixis.perception.recognition.instances import InstanceCategory
+from deixis.perception.recognition.inverted import Effort
 from deixis.perception.recognition.recognition import Candidate, Recognition, decided, no_answer
 from deixis.perception.recognition.reduction import Reduction
-from deixis.perception.recognition.spread import PRIOR_SPREADS, Spread, spreads
-
-
-@dataclass(frozen=True)
-class RecognitionSettings:
-    """``exact_up_to``: with more views than that the search is approximate, with ``effort``.
-
-    ``prior_spread`` is what D_C is divided by while no category has two different views; the default is for spin
-    images, and ``PRIOR_SPREADS`` has those of other descriptors. ``prior_unknown`` is the share of things seen that are
-    of no category.
-    """
-
-    exact_up_to: int = 20_000
-    effort: Effort = Effort()  # noqa: RUF009 (frozen)
-    prior_spread: float = PRIOR_SPREADS["spin_images"]
-    prior_unknown: float = 0.5
-
-    def __post_init__(self) -> None:
-        if not (np.isfinite(self.prior_spread) and self.prior_spread > 0):
-            raise RecognitionError(f"the prior spread is a distance above 0, not {self.prior_spread}")
-
-
-DEFAULT = RecognitionSettings()
+from deixis.perception.recognition.settings import DEFAULT, RecognitionSettings
+from deixis.perception.recognition.spread import Spread, spreads
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,11 +78,11 @@ class Recogniser:
         """Whether there are few enough views to compare exactly."""
         return sum(map(len, self.categories)) <= self.settings.exact_up_to
 
-    @property
+    @cached_property
     def spreads(self) -> list[Spread]:
         """What each category's D_C is divided by."""
-        measured = [category.intra_category_distance for category in self.categories]
-        return spreads(measured, self.settings.prior_spread)
+        widths = [category.width(self.settings.over_things) for category in self.categories]
+        return spreads(widths, self.settings.prior_spread, self.settings.shrinkage)
 
     def learned(self, category: InstanceCategory) -> Recogniser:
         """The same with this category in place of the one of its name, or as one more."""
@@ -120,12 +101,9 @@ class Recogniser:
             indexes=tuple(self.indexes[i] for i in places),
         )
 
-    def calibrated(self, objects: Mapping[str, str] | None = None, progress: Progress | None = None) -> Recogniser:
-        """The same with threshold and probabilities from its own views, held out one by one.
-
-        ``objects`` leads from a view's id to the thing it shows, so that a thing is not judged by its other views.
-        """
-        held = hold_out(self.categories, self.indexes, self.settings.prior_spread, objects, progress=progress)
+    def calibrated(self, progress: Progress | None = None) -> Recogniser:
+        """The same with threshold and probabilities from its own views, each held out with all views of its thing."""
+        held = hold_out(self.categories, self.indexes, self.settings, progress=progress)
         return replace(self, calibration=calibrate(held, self.settings.prior_unknown))
 
     def _nearest(self, target: Target, effort: Effort | None) -> list[Nearest]:

@@ -13,9 +13,9 @@ from deixis.perception.recognition.spread import Spread, SpreadSource
 class Candidate:
     """A category beside the target.
 
-    ``distance`` is D_C (equation 2), ``nearest`` the id of the view that has it, ``spread`` the ICD (equation 3) or
-    what stands for it, ``normalised`` ND (equation 4). ``probability`` is that of the category being the right one.
-    A category of empty views only is infinitely far, and ``nearest`` is None.
+    ``distance`` is D_C (equation 2), ``nearest`` the id of the view that has it, ``spread`` what it is divided by, the
+    ICD (equation 3) or what stands for it, ``normalised`` ND (equation 4). ``probability`` is that of the category
+    being the right one. A category of empty views only is infinitely far, and ``nearest`` is None.
     """
 
     category: str
@@ -58,7 +58,7 @@ def decided(ranked: Sequence[Candidate], unknown: float, calibration: Calibratio
     first = ranked[0]
     label = first.category if first.normalised <= calibration.threshold else None
     reasons = [_comparison(first, calibration)]
-    if first.spread.source is not SpreadSource.MEASURED and first.nearest is not None:
+    if first.spread.source in (SpreadSource.POOLED, SpreadSource.PRIOR) and first.nearest is not None:
         reasons.append(_stand_in(first))
     if not exact:
         reasons.append("distances are of the nearest views that an approximate search found")
@@ -72,11 +72,26 @@ def _comparison(first: Candidate, calibration: Calibration) -> str:
     side = "within" if first.normalised <= calibration.threshold else "above"
     return (
         f"'{first.category}' is nearest: ND {first.normalised:.3g} (D_C {first.distance:.3g} to view '{first.nearest}'"
-        f" / {first.spread.value:.3g}), {side} the threshold {calibration.threshold:.3g} ({basis})"
+        f" / {_divisor(first)}), {side} the threshold {calibration.threshold:.3g} ({basis})"
     )
 
 
+def _divisor(first: Candidate) -> str:
+    """The number that D_C is divided by, and what it is where it comes from the category itself."""
+    width = first.spread.width
+    own = f"{first.spread.value:.3g}: its ICD over {width.count} {'things' if width.over_things else 'views'}"
+    match first.spread.source:
+        case SpreadSource.MEASURED:
+            return own
+        case SpreadSource.SHRUNK:
+            return f"{own}, {width.icd:.3g}, drawn to the median one"
+        case _:
+            return f"{first.spread.value:.3g}"
+
+
 def _stand_in(first: Candidate) -> str:
-    what = "has one view" if first.views == 1 else "has no two views that differ"
+    width = first.spread.width
+    unit = "thing" if width.over_things else "view"
+    what = f"has one {unit}" if width.count == 1 else f"has no two {unit}s that differ"
     whence = "the median ICD of others" if first.spread.source is SpreadSource.POOLED else "a constant"
     return f"'{first.category}' {what}, so that D_C is divided by {whence}"

@@ -13,6 +13,7 @@ def warm() -> None:
     from deixis.perception.recognition.distances import Target
     from deixis.perception.recognition.index import ViewIndex
     from deixis.perception.recognition.instances import InstanceCategory
+    from deixis.perception.recognition.inverted import Effort
     from deixis.perception.recognition.view_file import open_views, write_views
 
     views = [(str(i), np.full((2, 3), i, np.float32)) for i in range(3)]
@@ -21,4 +22,6 @@ def warm() -> None:
         write_views(Path(folder) / "views", views)
         for pack in (category.views, open_views(Path(folder) / "views")):
             index = ViewIndex.of(pack)
-            index.nearest(target, index.reduction(target.descriptors))
+            reduced = index.reduction(target.descriptors)
+            for effort in (None, Effort()):
+                index.nearest(target, reduced, effort)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from typing import Annotated
 
 import typer
@@ -22,7 +23,7 @@ def list_categories(memory: MemoryDir = None, as_json: AsJson = False) -> None:
     from deixis.session import Session
 
     with Session(memory) as session:
-        known = session.categories()
+        known = session.categories(lambda note: print(f"deixis: {note}", file=sys.stderr))
     if as_json:
         print_json(known)
     else:

@@ -64,7 +64,8 @@ def perceive(
         plot_perceived(found, plot)
     if as_json or out is None:
         print_json(scene_to_dict(scene))
-        print_notes(found.detection.notes)
+        for note in found.detection.notes:
+            _print_note(note)
     else:
         print_lines(_scene_lines(scene))
         print_lines(f"Note: {note}." for note in found.detection.notes)
@@ -73,10 +74,9 @@ def perceive(
         raise typer.Exit(NO)
 
 
-def print_notes(notes: tuple[str, ...]) -> None:
-    """What is no part of the JSON goes to standard error."""
-    for note in notes:
-        print(f"deixis: {note}", file=sys.stderr)
+def _print_note(note: str) -> None:
+    """What is no part of the answer goes to standard error."""
+    print(f"deixis: {note}", file=sys.stderr)
 
 
 def _write_labels(file: Path, labels: Any) -> None:
@@ -141,7 +141,7 @@ def recognise(
     seen = load_scene(scene)
     require_writable([out, plot], [thing.cloud and Path(seen.file).parent / thing.cloud for thing in seen.objects])
     with Session(memory) as session, progress_bar("calibrating") as progress:
-        found = session.recognise(seen, progress)
+        found = session.recognise(seen, progress, _print_note)
     if out is not None:
         _write_scene(found.scene, out)
     if plot is not None:
@@ -163,14 +163,14 @@ def _write_scene(scene: Scene, out: Path) -> None:
     import os
     from dataclasses import replace
 
-    from deixis.perception.scene_file import write_scene
+    from deixis.perceiving import replace_scene
 
     base = Path(scene.file).parent
     things = tuple(
         thing if thing.cloud is None else replace(thing, cloud=os.path.relpath(base / thing.cloud, out.parent))
         for thing in scene.objects
     )
-    write_scene(replace(scene, objects=things), out)
+    replace_scene(replace(scene, objects=things), out)
 
 
 def _answer_line(id: str, answer: Recognition) -> str:
@@ -203,7 +203,9 @@ def _candidate(candidate: Any) -> dict[str, Any]:
     return {
         "category": candidate.category,
         "D_C": round(candidate.distance, 6) if finite else None,
-        "ICD": round(candidate.spread.value, 6),
+        "ICD": None if candidate.spread.width.icd is None else round(candidate.spread.width.icd, 6),
+        "divisor": round(candidate.spread.value, 6),
+        "divisor_from": candidate.spread.source,
         "ND": round(candidate.normalised, 6) if finite else None,
         "nearest": candidate.nearest,
         "views": candidate.views,
@@ -229,7 +231,7 @@ def ask(
     with Session(memory) as session:
         if name in session.categories() and points_at is None:
             with progress_bar("calibrating") as progress:
-                answers = session.recognise(seen.without_labels(), progress).answers
+                answers = session.recognise(seen.without_labels(), progress, _print_note).answers
             ones = [f"{id} ({answer.probability:.2f})" for id, answer in answers.items() if answer.label == name]
             print(
                 f"I know '{name}'. Here it is: {', '.join(ones)}." if ones else f"I know '{name}', and see none here."

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import contextlib
+import hashlib
 import os
+import re
+from collections.abc import Set
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.memory.disk import rename
 from deixis.ontology.errors import DeixisError
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.clouds.cloud_file import read_cloud, write_cloud
@@ -17,6 +22,8 @@ from deixis.perception.detection.frame import moved
 from deixis.perception.errors import CloudError, SceneError
 from deixis.perception.scene import PerceivedObject, Scene
 from deixis.perception.scene_file import write_scene
+
+_CLOUD = re.compile(r"o\d+(-[0-9a-f]{8}|\.new)\.pcd")
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,7 +42,12 @@ class Perceived:
 def perceive(
     cloud: PointCloud | str | Path, intrinsics: str | Path | None = None, viewpoint: str = "chair"
 ) -> Perceived:
-    """Finds the table and the things on it; raises CloudError for a file that is no cloud, or one without a point."""
+    """Finds the table and the things on it.
+
+    Raises CloudError for a file that is no cloud, or one without a point; SceneError for a viewpoint that is no word.
+    """
+    if not viewpoint.strip() or not viewpoint.isprintable():
+        raise SceneError(f"a viewpoint is a word such as 'chair', not {viewpoint!r}")
     seen = cloud if isinstance(cloud, PointCloud) else read_cloud(cloud, intrinsics)
     try:
         found = detect(seen)
@@ -56,22 +68,58 @@ def in_frame(cloud: PointCloud, frame: NDArray[np.float64]) -> PointCloud:
 def write_perceived(perceived: Perceived, file: Path) -> Scene:
     """Writes the scene, and each thing's points into a folder beside it, which the scene names.
 
-    The clouds are written first, so that no scene names a cloud that is not there. Raises DeixisError where the place
-    cannot be written.
+    The clouds of a scene that is written over stay until the new scene is in its place, in one step, and then go: each
+    cloud bears a name of its content, so that at any moment there is a whole scene, the old one or the new. Raises
+    DeixisError where the place cannot be written.
     """
     folder = clouds_folder(file)
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        things = []
-        for number, thing in enumerate(perceived.scene.objects):
-            cloud = folder / f"{thing.id}.pcd"
-            write_cloud(cloud, perceived.cloud_of(number))
-            things.append(replace(thing, cloud=os.fspath(cloud.relative_to(file.parent))))
-        scene = replace(perceived.scene, objects=tuple(things), file=str(file))
-        write_scene(scene, file)
+        before = set(os.listdir(folder))
     except OSError as error:
         raise DeixisError(f"{file}: the scene cannot be written: {error.strerror}") from error
+    try:
+        things = []
+        for number, thing in enumerate(perceived.scene.objects):
+            cloud = _write_named(folder, thing.id, perceived.cloud_of(number))
+            things.append(replace(thing, cloud=os.fspath(cloud.relative_to(file.parent))))
+        scene = replace(perceived.scene, objects=tuple(things), file=str(file))
+        replace_scene(scene, file)
+    except BaseException:
+        _remove_others(folder, before)
+        raise
+    _remove_others(folder, {Path(thing.cloud or "").name for thing in things})
     return scene
+
+
+def replace_scene(scene: Scene, file: Path) -> None:
+    """Writes a scene, in one step where one is there already. Raises DeixisError where that cannot be."""
+    new = file.with_name(file.name + ".new")
+    try:
+        write_scene(scene, new)
+        rename(new, file)
+    except OSError as error:
+        raise DeixisError(f"{file}: the scene cannot be written: {error.strerror}") from error
+    finally:
+        with contextlib.suppress(OSError):
+            new.unlink(missing_ok=True)
+
+
+def _write_named(folder: Path, id: str, cloud: PointCloud) -> Path:
+    """Writes a cloud under a name that says its content: ``o3-9f86d081.pcd``."""
+    new = folder / f"{id}.new.pcd"
+    write_cloud(new, cloud)
+    named = folder / f"{id}-{hashlib.sha256(new.read_bytes()).hexdigest()[:8]}.pcd"
+    rename(new, named)
+    return named
+
+
+def _remove_others(folder: Path, kept: Set[str]) -> None:
+    """Removes what other scenes, whole or not, left in the folder; what cannot be removed does no harm."""
+    for name in set(os.listdir(folder)) - kept:
+        if _CLOUD.fullmatch(name):
+            with contextlib.suppress(OSError):
+                (folder / name).unlink()
 
 
 def clouds_folder(scene: Path) -> Path:

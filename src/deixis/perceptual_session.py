@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import os
-import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from deixis.memory_session import MemorySession
+from deixis.ontology.kinds import plain_name
 from deixis.perception.scene import PerceivedObject, Scene
 from deixis.perception.scene_file import read_scene
 
@@ -19,6 +20,8 @@ if TYPE_CHECKING:
     from deixis.memory.perceptual.records import View
     from deixis.reasoning.answer import Match
     from deixis.recognising import Recognised, Taught
+
+Done = TypeVar("Done")
 
 
 class PerceptualSession(MemorySession):
@@ -55,16 +58,41 @@ class PerceptualSession(MemorySession):
         Taught again under another word, the view is corrected. Raises SceneError where the scene has no such thing, or
         no cloud of it; SettingError for a name that is none.
         """
+        scene = scene if isinstance(scene, Scene) else read_scene(scene)
+        return self.keep_views([_view(scene, object, category_name(category), teacher)])[0]
+
+    def keep_views(self, views: Sequence[View]) -> tuple[Taught, ...]:
+        """Keeps views, all or none. A damaged one in the way teaches nothing, and is mended where it is kept again."""
         from deixis.recognising import keep_views
 
-        scene = scene if isinstance(scene, Scene) else read_scene(scene)
-        view = _view(scene, object, category_name(category), teacher)
-        return keep_views(self.views(create=True), [view])[0]
+        memory = self.views(create=True)
+        return self._despite_damage(memory, lambda readable: keep_views(readable, views))
 
-    def recognise(self, scene: Scene | str | Path | Mapping[str, Any], progress: Progress | None = None) -> Recognised:
+    @contextmanager
+    def keeping_views(self, views: Sequence[View]) -> Iterator[tuple[Taught, ...]]:
+        """Keeps views for what is done within, and takes them back where that fails.
+
+        Ended by force in between, it leaves the views: what they are called is what the grounding decided, and kept
+        again they are the same views.
+        """
+        from deixis.memory.perceptual.undoing import restored_on_failure
+
+        if not views:
+            yield ()
+            return
+        with restored_on_failure(self.views(create=True), views):
+            yield self.keep_views(views)
+
+    def recognise(
+        self,
+        scene: Scene | str | Path | Mapping[str, Any],
+        progress: Progress | None = None,
+        left_out: Callable[[str], None] | None = None,
+    ) -> Recognised:
         """Names what is known among the things of a scene; without a memory nothing is.
 
-        ``progress`` is told of the calibration, which takes seconds after many views were taught.
+        ``progress`` is told of the calibration, which takes seconds after many views were taught; ``left_out``, in one
+        line, of views that are damaged and teach nothing.
         """
         from deixis.perceiving import cloud_of
         from deixis.perception.recognition.recogniser import Recogniser
@@ -72,21 +100,44 @@ class PerceptualSession(MemorySession):
 
         scene = scene if isinstance(scene, Scene) else read_scene(scene)
         clouds = [cloud_of(scene, thing) if thing.cloud is not None else None for thing in scene.objects]
-        known = recogniser_of(self.views(), progress) if self.has_views() else Recogniser.of([])
+        if self.has_views():
+            known = self._despite_damage(self.views(), lambda memory: recogniser_of(memory, progress), left_out)
+        else:
+            known = Recogniser.of([])
         return recognise(known, scene, clouds)
 
-    def categories(self) -> dict[str, int]:
-        """The names of what was taught, each with its number of views."""
+    def _despite_damage(
+        self, memory: LevelMemory, work: Callable[[LevelMemory], Done], left_out: Callable[[str], None] | None = None
+    ) -> Done:
+        """What is done with all views, or, where some are damaged, with the others."""
+        from deixis.memory.perceptual.errors import DamagedMemoryError
+        from deixis.memory.perceptual.whole import open_undamaged
+
+        try:
+            return work(memory)
+        except DamagedMemoryError:
+            with open_undamaged(self.path) as readable:
+                done = work(readable)
+                if left_out is not None:
+                    damage = "; ".join(readable.left_out)
+                    left_out(f"left out, as damaged: {damage} ('deixis memory verify' says more)")
+            return done
+
+    def categories(self, left_out: Callable[[str], None] | None = None) -> dict[str, int]:
+        """The names of what was taught, each with its number of views; ``left_out`` as in :meth:`recognise`."""
         if not self.has_views():
             return {}
-        memory = self.views()
-        return {name: sum(1 for _ in memory.listing(name)) for name in memory.categories()}
+        return self._despite_damage(self.views(), _counted, left_out)
+
+
+def _counted(memory: LevelMemory) -> dict[str, int]:
+    return {name: sum(1 for _ in memory.listing(name)) for name in memory.categories()}
 
 
 def views_of_matches(scene: Scene, matches: Iterable[Match]) -> list[View]:
     """What each decided thing looks like, where the scene has its cloud, under the name of its object."""
     return [
-        _view(scene, match.perceived, re.sub(r"_\d+$", "", match.object), "grounding")
+        _view(scene, match.perceived, plain_name(match.object), "grounding")
         for match in matches
         if match.decided and scene[match.perceived].cloud is not None
     ]

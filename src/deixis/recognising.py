@@ -21,8 +21,9 @@ from deixis.perception.errors import CloudError
 from deixis.perception.features.spin_describer import SpinImageDescriber
 from deixis.perception.recognition.instances import InstanceCategory
 from deixis.perception.recognition.learners.view_features import roots
-from deixis.perception.recognition.recogniser import Recogniser, RecognitionSettings
+from deixis.perception.recognition.recogniser import Recogniser
 from deixis.perception.recognition.recognition import Recognition
+from deixis.perception.recognition.settings import RecognitionSettings
 from deixis.perception.recognition.spread import PRIOR_SPREADS
 from deixis.perception.recognition.views import PackedViews
 from deixis.perception.scene import Scene
@@ -31,6 +32,12 @@ DESCRIBER = "spin_image_roots"
 """What views are compared by."""
 
 SETTINGS = RecognitionSettings(prior_spread=PRIOR_SPREADS[DESCRIBER])
+
+DESCRIBED = SpinImageDescriber(support=0.2)
+"""A support of 20 cm takes in most of a thing on a table."""
+
+COMPARED = f"{DESCRIBER} {DESCRIBED} {SETTINGS}"
+"""How, in full: what was worked out from views that were compared in another way is worked out anew."""
 
 DISTANCES, IDS = "distances", "views"
 """The names of a category's state: D_V between its views, and the ids of the views, in the same order."""
@@ -61,9 +68,9 @@ class Recognised:
 def describe(cloud: PointCloud) -> NDArray[np.float32]:
     """What a thing's points are compared by: square roots of spin images, (k, 153); none of too few points.
 
-    With roots the distance of equation 1 is Hellinger's. A support of 20 cm takes in most of a thing on a table.
+    With roots the distance of equation 1 is Hellinger's.
     """
-    return roots(SpinImageDescriber(support=0.2, voxel=0.025).describe(cloud))
+    return roots(DESCRIBED.describe(cloud))
 
 
 def view_of(cloud: PointCloud, category: str, time: datetime, metadata: Mapping[str, Any]) -> View:
@@ -76,6 +83,12 @@ def view_of(cloud: PointCloud, category: str, time: datetime, metadata: Mapping[
     return View(id, category, time, {DESCRIBER: descriptors}, points, dict(metadata))
 
 
+def thing_of(view: View) -> str | None:
+    """The thing that a view shows: the object of the scene that it was taught from. None where that is not known."""
+    scene, object = view.metadata.get("scene"), view.metadata.get("object")
+    return json.dumps([scene, object]) if scene and object else None
+
+
 def keep_views(memory: PerceptualMemory, views: Sequence[View]) -> tuple[Taught, ...]:
     """Keeps views, all or none; the same points kept again under another word correct it."""
     with memory.exclusive():
@@ -86,7 +99,7 @@ def keep_views(memory: PerceptualMemory, views: Sequence[View]) -> tuple[Taught,
             if before is not None:
                 known[before] = known[before].without_view(view.id)
             grown = known.get(view.category, InstanceCategory(view.category))
-            known[view.category] = grown.with_view(view.id, view.descriptors[DESCRIBER])
+            known[view.category] = grown.with_view(view.id, view.descriptors[DESCRIBER], thing_of(view))
             place[view.id] = view.category
             corrected = before if before != view.category else None
             taught.append(Taught(view.id, view.category, len(known[view.category]), corrected))
@@ -105,13 +118,16 @@ def _involved(memory: PerceptualReading, views: Sequence[View], place: Mapping[s
 
 def instances_of(memory: PerceptualReading, category: str) -> InstanceCategory:
     """A category with its views' descriptors; distances that a record has are not worked out again."""
-    views = [(view.id, view.descriptors[DESCRIBER]) for view in memory.views(category) if DESCRIBER in view.descriptors]
+    kept = [view for view in memory.views(category) if DESCRIBER in view.descriptors]
+    views = [(view.id, view.descriptors[DESCRIBER]) for view in kept]
+    things = {view.id: thing for view in kept if (thing := thing_of(view)) is not None}
     record = memory.category(category)
     ids = tuple(view for view, _ in views)
     if DISTANCES not in record.state or record.metadata.get(IDS) != sorted(ids):
-        return InstanceCategory.of(category, views)
+        return InstanceCategory.of(category, views, things)
     order = np.argsort(np.argsort(np.array(ids, dtype=str)))
-    return InstanceCategory(category, PackedViews.of(views), np.asarray(record.state[DISTANCES])[np.ix_(order, order)])
+    distances = np.asarray(record.state[DISTANCES])[np.ix_(order, order)]
+    return InstanceCategory(category, PackedViews.of(views), distances, things=things)
 
 
 def record_of(category: InstanceCategory) -> CategoryRecord:
@@ -130,18 +146,12 @@ def recogniser_of(memory: LevelMemory, progress: Progress | None = None) -> Reco
     with memory.exclusive():
         known = Recogniser.of([instances_of(memory, name) for name in memory.categories()], SETTINGS)
         views = {(key.category, key.id) for key in memory.listing()}
-        kept = kept_calibration(memory.path, views)
+        kept = kept_calibration(memory.path, views, COMPARED)
         if kept is not None:
             return replace(known, calibration=kept)
-        known = known.calibrated(_objects(memory), progress)
-        keep_calibration(memory.path, known.calibration, views)
+        known = known.calibrated(progress)
+        keep_calibration(memory.path, known.calibration, views, COMPARED)
     return known
-
-
-def _objects(memory: PerceptualReading) -> dict[str, str]:
-    """The thing that each view shows, by the view's id: the object of the scene that it was taught from."""
-    seen = ((view.id, view.metadata.get("scene"), view.metadata.get("object")) for view in memory.views())
-    return {id: json.dumps([scene, object]) for id, scene, object in seen if scene and object}
 
 
 def recognise(recogniser: Recogniser, scene: Scene, clouds: Sequence[PointCloud | None]) -> Recognised:

@@ -172,7 +172,6 @@ class Session(PerceptualSession):
         from deixis.keeping import keep
         from deixis.learning import Occasion, layout_name, lesson_of
         from deixis.ontology.concepts import next_lesson_id
-        from deixis.recognising import keep_views
 
         script = self._script(script)
         scene = scene if isinstance(scene, Scene) else read_scene(scene)
@@ -187,10 +186,10 @@ class Session(PerceptualSession):
         memory = self.memory(create=True)
         id = next_lesson_id(layout_name(script), memory.lessons())
         lesson = lesson_of(script, scene, found, id, Occasion(started, datetime.now(UTC), VERSION))
-        views = views_of_matches(scene, found.matches.values())
-        keep(memory, self.ontology, lesson)
+        with self.keeping_views(views_of_matches(scene, found.matches.values())) as seen:
+            keep(memory, self.ontology, lesson)
         self._meaning = None
-        return Learned(lesson, found, keep_views(self.views(create=True), views) if views else ())
+        return Learned(lesson, found, seen)
 
     def check(
         self,

@@ -245,7 +245,13 @@ def check_lines(checked: Checked) -> list[str]:
 
 
 def _known_by(entry: RoleCheck) -> str:
-    return f"labelled '{entry.label}', which does not settle it" if entry.label else "by its place alone"
+    from deixis.reasoning.checking import SURE
+
+    if entry.label is None or entry.confidence is None:
+        return "by its place alone"
+    if entry.confidence < SURE:
+        return f"labelled '{entry.label}' with confidence {entry.confidence:.2f}, below {SURE:g}"
+    return f"labelled '{entry.label}', which does not settle it"
 
 
 def _said_of(role: str, checked: Checked) -> str:

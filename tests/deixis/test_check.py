@@ -17,6 +17,7 @@ from deixis.perception.scene_file import read_scene
 from deixis.perception.settings import formal_setting
 from deixis.reasoning.checking import Verdict
 from deixis.session import Checked, Session, read_script
+from deixis.show import check_lines
 
 SH = rdflib.Namespace("http://www.w3.org/ns/shacl#")
 FULL = read_script(example("formal_dinner.layout"))
@@ -175,3 +176,12 @@ def test_a_number_of_things_alike_is_correct_by_its_name() -> None:
         )
     )
     assert len(check(scene, "2 wine_glass above plate").table.of(Verdict.CORRECT)) == 3
+
+
+def test_why_a_place_is_undetermined_is_said() -> None:
+    scene = formal_setting()
+    first, second, *_ = scene.objects
+    doubtful = replace(first, confidence=0.83)
+    shown = check_lines(check(replace(scene, objects=(doubtful, replace(second, label=None), *scene.objects[2:]))))
+    assert any(line.endswith(f"labelled '{first.label}' with confidence 0.83, below 0.9") for line in shown)
+    assert any(line.endswith("by its place alone") for line in shown)

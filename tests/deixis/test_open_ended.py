@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from deixis.experiments.open_ended.comparison import auroc, compared
-from deixis.experiments.open_ended.contestants import NEAREST, PAPER, contestants
+from deixis.experiments.open_ended.contestants import EQUATIONS, NEAREST, contestants
 from deixis.experiments.open_ended.plot import mean_curve, plot_open_ended
 from deixis.experiments.open_ended.report import to_dict
 from deixis.experiments.open_ended.run import OpenEnded, Plan, run
@@ -30,6 +30,7 @@ from deixis.experiments.open_ended.things import (
 from deixis.perception.clouds.mesh import Mesh
 from deixis.perception.recognition.learners.codebook import Codebook
 from deixis.perception.recognition.learners.view_features import ViewFeatures
+from deixis.perception.recognition.settings import DEFAULT, PAPER
 from deixis.perception.simulator.tableware import FORMS, make
 
 TINY = Plan(orders=2, instances=5, views=2, asked=2, kinds=("Plate", "Fork", "Mug"))
@@ -49,7 +50,7 @@ def shown(things: int = 4, views: int = 3) -> Shown:
 @pytest.fixture(scope="module")
 def found(tmp_path_factory: pytest.TempPathFactory) -> OpenEnded:
     folder = tmp_path_factory.mktemp("cache")
-    return run(replace(TINY, cache=folder), entered=[PAPER, NEAREST])
+    return run(replace(TINY, cache=folder), entered=[EQUATIONS, NEAREST])
 
 
 def box(*size: float) -> Mesh:
@@ -92,8 +93,8 @@ def test_the_nearest_taught_view_names_and_a_category_left_out_is_farther() -> N
     data = shown(things=2, views=2)
     same = np.array(data.categories)[:, None] == np.array(data.categories)[None]
     distances = np.where(same, 1.0, 3.0).astype(np.float32)
-    for shrinkage in (None, 0.0, 15.0):
-        scores = compared(data, distances, by_things(data, 1), shrinkage)
+    for settings in (None, PAPER, DEFAULT):
+        scores = compared(data, distances, by_things(data, 1), settings)
         assert (scores.accuracy, scores.auroc) == (1.0, 1.0)
 
 
@@ -103,7 +104,9 @@ def test_a_category_with_a_large_icd_swallows_others_unless_it_is_shrunk() -> No
     distances = np.where(fork[:, None] ^ fork[None], 2.0, 1.0)  # cups are 1 apart, and 2 from forks,
     distances[np.ix_(fork, fork)] = 10.0  # forks 10
     distances[data.instances[:, None] == data.instances[None]] = 0.5  # and views of a thing 0.5
-    found = [compared(data, distances.astype(np.float32), by_views(data, 1), s).accuracy for s in (None, 0.0, 15.0)]
+    found = [
+        compared(data, distances.astype(np.float32), by_views(data, 1), s).accuracy for s in (None, PAPER, DEFAULT)
+    ]
     # by ND a cup is 0.5 / 1 from cups and 2 / 10 from forks
     assert found == [1.0, 0.5, 1.0]
 
@@ -130,6 +133,7 @@ def test_described_views_are_read_back_as_they_were_kept(tmp_path: Path) -> None
         return described("some", simulated(("Plate", "Fork"), 1, 1, 0))
 
     one, again = kept(tmp_path, "key", build), kept(tmp_path, "key", lambda: pytest.fail("it was there"))
+    assert [view.thing for view in one.views] == [view.thing for view in again.views] == ["0", "1"]
     assert one.categories == again.categories and np.array_equal(one.instances, again.instances)
     for a, b in zip(one.views, again.views, strict=True):
         assert all(np.array_equal(a[name], b[name]) for name in a.descriptors)
@@ -185,9 +189,9 @@ def test_every_contestant_bears_its_name() -> None:
 
 
 def test_every_order_is_run_for_every_contestant_and_the_same_plan_gives_the_same_figures(found: OpenEnded) -> None:
-    again = run(found.plan, entered=[PAPER, NEAREST])
+    again = run(found.plan, entered=[EQUATIONS, NEAREST])
     (one,), (other,) = found.findings, again.findings
-    assert [taught.contestant for taught in one.taught] == [PAPER, PAPER, NEAREST, NEAREST]
+    assert [taught.contestant for taught in one.taught] == [EQUATIONS, EQUATIONS, NEAREST, NEAREST]
     assert one.taught == other.taught and one.nearest == other.nearest
     assert one.taught[0].course.order != one.taught[1].course.order
     assert one.taught[0].course.order == one.taught[2].course.order
@@ -204,7 +208,7 @@ def test_what_is_told_fits_the_page_and_gives_seeds_and_what_was_left_out(found:
 
 def test_the_picture_is_drawn(found: OpenEnded, tmp_path: Path) -> None:
     plot_open_ended(found, tmp_path / "open.svg")
-    assert PAPER in (tmp_path / "open.svg").read_text()
+    assert EQUATIONS in (tmp_path / "open.svg").read_text()
 
 
 def test_a_mean_curve_goes_as_far_as_half_of_them() -> None:

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+import contextlib
 import io
 import json
 from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
+import plyvel
 import pytest
 from commands import deixis
 
 from deixis.examples_data import example
+from deixis.memory.disk import rename
+from deixis.perceiving import Perceived, perceive
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.clouds.cloud_file import read_cloud, write_cloud
 from deixis.perception.scene_file import read_scene
@@ -71,7 +75,9 @@ def test_what_was_learned_is_recognised_on_another_table(tables: Path, tmp_path:
     first = {id: entry["candidates"][0]["category"] for id, entry in answers.items()}
     assert sum(first[id] == name for id, name in truth.items()) >= 7  # of twelve, from one view each
     for entry in answers.values():
-        assert entry["candidates"][0].keys() == {"category", "D_C", "ICD", "ND", "nearest", "views", "probability"}
+        assert entry["candidates"][0].keys() == (
+            {"category", "D_C", "ICD", "divisor", "divisor_from", "ND", "nearest", "views", "probability"}
+        )
         assert (entry["label"] is None) == (entry["candidates"][0]["ND"] > entry["threshold"])
     written = read_scene(named)
     assert {thing.id: thing.label for thing in written.objects} == {id: e["label"] for id, e in answers.items()}
@@ -216,12 +222,12 @@ def test_a_calibration_is_kept_while_a_tenth_of_the_views_stays(
     from deixis.recognising import recogniser_of
 
     scene, file = tables / "7.scene.json", tmp_path / "memory" / "perceptual" / "calibration.json"
-    calls: list[dict[str, str]] = []
+    calls: list[dict[str, str]] = []  # the thing that each view shows
     work = Recogniser.calibrated
 
-    def calibrated(self: Recogniser, objects: dict[str, str], progress: None) -> Recogniser:
-        calls.append(objects)
-        return work(self, objects, progress)
+    def calibrated(self: Recogniser, progress: None) -> Recogniser:
+        calls.append({key: thing for known in self.categories for key, thing in known.things.items()})
+        return work(self, progress)
 
     monkeypatch.setattr(Recogniser, "calibrated", calibrated)
     with Session(tmp_path / "memory") as session:
@@ -247,3 +253,130 @@ def test_a_table_with_nothing_on_it_is_an_answer(tmp_path: Path) -> None:
     assert code == 1
     assert json.loads(out)["objects"] == []
     assert "nothing is on the table" in err
+
+
+@pytest.fixture(scope="module")
+def seen(tables: Path) -> tuple[Perceived, Perceived]:
+    """The two tables again, not yet written."""
+    return perceive(tables / "7.pcd"), perceive(tables / "20.pcd")
+
+
+@pytest.mark.parametrize("step", range(6))
+def test_a_scene_is_written_over_in_one_step(seen: tuple[Perceived, Perceived], tmp_path: Path, step: int) -> None:
+    """Ended by force after any step, the old scene is whole with its clouds, or the new one is."""
+    from deixis import perceiving
+
+    (first, other), file = seen, tmp_path / "table.scene.json"
+    perceiving.write_perceived(first, file)
+    old = [(thing, read_cloud(tmp_path / str(thing.cloud)).points.tobytes()) for thing in read_scene(file).objects]
+    left = [3 * step]
+
+    def stopping(old: Path, new: Path) -> None:
+        if left[0] == 0:
+            raise KeyboardInterrupt
+        left[0] -= 1
+        rename(old, new)
+
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(perceiving, "rename", stopping)
+        patched.setattr(perceiving, "_remove_others", lambda *_: None)  # as nothing is cleaned up when killed
+        with contextlib.suppress(KeyboardInterrupt):
+            perceiving.write_perceived(other, file)
+    found = read_scene(file).objects
+    now = [(thing, read_cloud(tmp_path / str(thing.cloud)).points.tobytes()) for thing in found]
+    assert (now == old) == (step < 5)
+    perceiving.write_perceived(other, file)
+    named = {str(thing.cloud) for thing in read_scene(file).objects}
+    assert {f"table.clouds/{cloud.name}" for cloud in (tmp_path / "table.clouds").iterdir()} == named
+
+
+def test_damaged_views_are_left_out_and_told_and_mended_by_teaching_again(tables: Path, tmp_path: Path) -> None:
+    scene, memory = tables / "7.scene.json", ("--memory", tmp_path / "memory")
+    for object, word in (("o1", "plate"), ("o3", "fork"), ("o4", "fork")):
+        deixis("teach", scene, object, word, *memory)
+    store = tmp_path / "memory" / "perceptual" / "store-1"
+    with plyvel.DB(str(store)) as db:
+        key, value = next(db.iterator(prefix=b"aplate"))
+        db.put(key, value[:-1] + bytes([value[-1] ^ 1]))
+    (store.parent / "seal.json").unlink()
+    code, out, err = deixis("recognise", scene, *memory)
+    assert code == 0
+    assert "fork" in out
+    assert "plate" not in out
+    (line,) = err.splitlines()
+    assert "left out" in line and "of 'plate'" in line and "deixis memory verify" in line
+    assert deixis("memory", "verify", *memory)[0] == 1
+    assert deixis("teach", scene, "o2", "plate", *memory)[0] == 0
+    assert deixis("teach", scene, "o1", "plate", *memory)[0] == 0
+    assert deixis("memory", "verify", *memory)[0] == 0
+    assert json.loads(deixis("category", "list", "--json", *memory)[1]) == {"fork": 2, "plate": 2}
+
+
+def test_what_is_no_memory_is_told_by_every_command(tables: Path, tmp_path: Path) -> None:
+    scene, file, folder = tables / "7.scene.json", tmp_path / "file", tmp_path / "folder"
+    file.write_text("dear\n")
+    folder.mkdir()
+    (folder / "letter").write_text("dear\n")
+    for arguments in (
+        ("teach", scene, "o1", "plate"),
+        ("recognise", scene),
+        ("ask", "plate", scene),
+        ("category", "list"),
+        ("category", "forget", "plate"),
+        ("memory", "verify"),
+        ("memory", "stats"),
+        ("memory", "export", "--format", "views", "-o", tmp_path / "v.zip"),
+        ("learn", FULL, scene),
+        ("check", FULL, scene),
+        ("ground", FULL, scene),
+    ):
+        for place, message in ((file, "a memory is a folder"), (folder, "is no memory")):
+            code, out, err = deixis(*arguments, "--memory", place)
+            assert (code, out) == (2, ""), arguments
+            assert message in err, arguments
+    assert [entry.name for entry in folder.iterdir()] == ["letter"]
+
+
+def test_views_are_taken_back_where_the_lesson_cannot_be_kept(tables: Path, tmp_path: Path) -> None:
+    from deixis.ontology.errors import DeixisError
+    from deixis.perceptual_session import views_of_matches
+
+    scene = read_scene(tables / "7.scene.json")
+    views = views_of_matches(scene, ground(FULL, scene).matches.values())
+
+    def keep_and_fail(session: Session) -> None:
+        with session.keeping_views(views) as taught:
+            assert len(taught) == len(views) > 3
+            raise DeixisError("the lesson is refused")
+
+    with Session(tmp_path / "memory") as session:
+        session.teach(scene, "o1", "thing")
+        with pytest.raises(DeixisError, match="the lesson is refused"):
+            keep_and_fail(session)
+        assert session.categories() == {"thing": 1}
+        assert session.views().verify() == ()
+        with session.keeping_views(views):
+            pass
+        assert sum(session.categories().values()) == len(views)
+
+
+@pytest.mark.parametrize("viewpoint", ["", " ", "\udcff", "a\nb"])
+def test_a_viewpoint_that_no_scene_can_have_is_refused(tables: Path, viewpoint: str) -> None:
+    code, out, err = deixis("perceive", tables / "7.pcd", "--viewpoint", viewpoint)
+    assert (code, out) == (2, "")
+    assert "a viewpoint is a word" in err
+
+
+def test_names_that_go_nowhere_are_told(tables: Path, tmp_path: Path) -> None:
+    memory = ("--memory", tmp_path / "memory")
+    deixis("teach", tables / "7.scene.json", "o1", "Gäbel 🍴", *memory)
+    assert json.loads(deixis("category", "list", "--json", *memory)[1]) == {"Gäbel_🍴": 1}
+    for arguments, message in (
+        (("rename", "Gäbel_🍴", "Gäbel 🍴"), "is the category's name already"),
+        (("merge", "Gäbel_🍴", "Gäbel_🍴"), "cannot be merged into itself"),
+        (("rename", "Gäbel_🍴", "x" * 1001), "too long"),
+        (("rename", "\udcff", "fork"), "half a character"),
+    ):
+        code, out, err = deixis("category", *arguments, *memory)
+        assert (code, out) == (2, ""), arguments
+        assert message in err

@@ -195,9 +195,9 @@ def test_a_folder_without_permission_is_told(tmp_path: Path) -> None:
 
 
 def test_a_place_where_no_folder_can_be_made(tmp_path: Path) -> None:
-    (tmp_path / "file").write_text("x")
+    (tmp_path / "link").symlink_to(tmp_path / "nowhere")
     with pytest.raises(MemoryWriteError, match="cannot be made"):
-        SemanticMemory.open(tmp_path / "file" / "m", create=True)
+        SemanticMemory.open(tmp_path / "link" / "m", create=True)
 
 
 def test_a_rejected_update_rolls_everything_back(memory: SemanticMemory) -> None:

@@ -71,8 +71,9 @@ def test_a_foreign_folder_is_left_alone(tmp_path: Path, create: bool) -> None:
 
 def test_a_file_is_no_folder(tmp_path: Path) -> None:
     (tmp_path / "f").write_text("x")
-    with pytest.raises(MemoryFormatError, match="is a file"):
-        SemanticMemory.open(tmp_path / "f", create=True)
+    for path in (tmp_path / "f", tmp_path / "f" / "below" / "it"):
+        with pytest.raises(MemoryFormatError, match="is a file"):
+            SemanticMemory.open(path, create=True)
 
 
 def _store_file(folder: Path, start: str) -> Path:

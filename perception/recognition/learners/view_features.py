@@ -18,12 +18,16 @@ from deixis.perception.recognition.errors import RecognitionError
 class ViewFeatures:
     """Descriptors (k, d) of one view by name, k = 1 for global ones and k = 0 where nothing could be described.
 
+    ``thing`` tells things apart where it is known which one a view shows, as a robot knows that follows a thing with
+    its eyes; views of None show things of their own.
+
     >>> view = ViewFeatures({"good": np.ones((1, 675), np.float32)})
     >>> view["good"].shape, view.has("good"), view.has("spin_images")
     ((1, 675), True, False)
     """
 
     descriptors: Mapping[str, NDArray[np.float32]]
+    thing: str | None = None
 
     def __post_init__(self) -> None:
         wrong = [name for name, array in self.descriptors.items() if array.ndim != 2 or not array.shape[1]]
@@ -43,9 +47,9 @@ class ViewFeatures:
         return name in self.descriptors and len(self.descriptors[name]) > 0
 
 
-def features_of(cloud: PointCloud, describers: Iterable[Describer]) -> ViewFeatures:
+def features_of(cloud: PointCloud, describers: Iterable[Describer], thing: str | None = None) -> ViewFeatures:
     """A view of one thing as every describer describes it."""
-    return ViewFeatures({describer.name: describer.describe(cloud) for describer in describers})
+    return ViewFeatures({describer.name: describer.describe(cloud) for describer in describers}, thing)
 
 
 def roots(descriptors: NDArray[np.float32]) -> NDArray[np.float32]:

@@ -40,7 +40,8 @@ def _record(name: str, threshold: float = 0.5) -> CategoryRecord:
 
 
 def _said(record: View | CategoryRecord) -> dict[str, Any]:
-    named = {name: value for name, value in vars(record).items() if name not in ("descriptors", "state", "points")}
+    arrays_aside = ("descriptors", "state", "points", "packed")
+    named = {name: value for name, value in vars(record).items() if name not in arrays_aside}
     arrays: dict[str, Any] = dict(record.descriptors if isinstance(record, View) else record.state)
     if isinstance(record, View) and record.points is not None:
         arrays["points"] = record.points

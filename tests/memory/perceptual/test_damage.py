@@ -98,8 +98,7 @@ def tampered(folder: Path, kind: bytes, change: Callable[[bytes], bytes | None])
 
 
 KINDS = {
-    keys.VIEW: "order",
-    keys.ABOUT: "what is said",
+    keys.VIEW: "what is said",
     keys.ARRAYS: "arrays",
     keys.CATEGORY: "category",
     keys.COUNT: "counts",
@@ -126,7 +125,7 @@ def test_a_value_that_was_changed_behind_leveldbs_checksums_is_told(kept: Path, 
             [list(memory.views()), [memory.category(name) for name in memory.categories()]]
 
 
-@pytest.mark.parametrize("kind", [keys.VIEW, keys.ABOUT, keys.ARRAYS])
+@pytest.mark.parametrize("kind", [keys.VIEW, keys.ARRAYS])
 def test_a_value_that_is_gone_is_told(kept: Path, kind: bytes) -> None:
     tampered(kept, kind, lambda value: None)
     with LevelMemory.open(kept) as memory:

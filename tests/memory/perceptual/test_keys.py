@@ -45,7 +45,9 @@ def test_a_key_by_hand() -> None:
     )
 
 
-@pytest.mark.parametrize("key", [b"v", b"vabc", b"va\0\0b\0\0short", b"v\xff\0\0b\0\x0012345678"])
+@pytest.mark.parametrize(
+    "key", [b"v", b"vabc", b"va\0\0b\0\0short", b"va\0\0b\0\0longer than 8", b"v\xff\0\0b\0\x0012345678"]
+)
 def test_what_is_no_key_is_refused(key: bytes) -> None:
     with pytest.raises(ValueError, match=r"end|eight|utf-8"):
         keys.split_view_key(key)

@@ -161,9 +161,9 @@ def test_merge_wants_two_categories_and_a_fitting_record(
     memory: PerceptualMemory, make_view: MakeView, make_record: MakeRecord
 ) -> None:
     memory.write(Batch([make_view("v1", "mug"), make_view("v2", "cup")]))
-    with pytest.raises(RecordError, match="names do not fit"):
+    with pytest.raises(RecordError, match="cannot be merged"):
         memory.merge("mug", "mug")
-    with pytest.raises(RecordError, match="names do not fit"):
+    with pytest.raises(RecordError, match="cannot be merged"):
         memory.merge("mug", "cup", make_record("mug"))
 
 

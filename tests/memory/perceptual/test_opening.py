@@ -145,7 +145,7 @@ def test_a_second_opening_in_one_process_shares_the_handle(
         with pytest.raises(plyvel.Error, match="lock"):
             plyvel.DB(str(kept / "store-1"))
     with plyvel.DB(str(kept / "store-1")) as free:
-        assert free.get(keys.name_key(keys.ABOUT, "new"))
+        assert list(free.iterator(prefix=keys.category_prefix("mug") + b"new"))
 
 
 HOLDER = """

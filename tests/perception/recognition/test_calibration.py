@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -21,6 +23,7 @@ from deixis.perception.recognition.errors import RecognitionError
 from deixis.perception.recognition.held_out import HeldOut, hold_out
 from deixis.perception.recognition.instances import InstanceCategory
 from deixis.perception.recognition.recogniser import Recogniser
+from deixis.perception.recognition.settings import DEFAULT, RecognitionSettings
 
 scores = st.lists(st.floats(0.01, 10), min_size=1, max_size=20).map(np.array)
 
@@ -122,7 +125,7 @@ def categories_of(seed: int, count: int = 3, views: int = 6) -> list[InstanceCat
 @given(st.integers(0, 1000))
 def test_holding_out_equals_recognising_without_the_view(seed: int) -> None:
     categories = categories_of(seed)
-    held = hold_out(categories, Recogniser.of(categories).indexes, prior_spread=1.0)
+    held = hold_out(categories, Recogniser.of(categories).indexes, DEFAULT)
     assert held.normalised.shape == (18, 3)
     row = seed % 18
     own = categories[held.truth[row]]
@@ -133,9 +136,11 @@ def test_holding_out_equals_recognising_without_the_view(seed: int) -> None:
 
 
 def test_views_of_one_thing_are_held_out_together() -> None:
-    categories = categories_of(0)
-    objects = {key: f"{key[:2]} thing {i // 3}" for known in categories for i, key in enumerate(known.views.ids)}
-    held = hold_out(categories, Recogniser.of(categories).indexes, 1.0, objects)
+    categories = [
+        replace(known, things={key: f"thing {i // 3}" for i, key in enumerate(known.views.ids)})
+        for known in categories_of(0)
+    ]
+    held = hold_out(categories, Recogniser.of(categories).indexes, RecognitionSettings(over_things=False, shrinkage=0))
     first = categories[0]
     far = [first.views[i] for i in (3, 4, 5)]
     rest = InstanceCategory.of("rest", [(str(i), view) for i, view in enumerate(far)])
@@ -145,7 +150,7 @@ def test_views_of_one_thing_are_held_out_together() -> None:
 
 def test_a_category_of_one_view_gives_an_unknown_answer_and_no_known_one() -> None:
     categories = [*categories_of(1, count=2), categories_of(2, count=3, views=1)[2]]
-    held = hold_out(categories, Recogniser.of(categories).indexes, 1.0)
+    held = hold_out(categories, Recogniser.of(categories).indexes, DEFAULT)
     assert (len(held.as_known[0]), len(held.as_unknown)) == (12, 13)
 
 

@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 
 from deixis.perception.recognition.distances import Target, category_distance, view_distances
 from deixis.perception.recognition.errors import RecognitionError
-from deixis.perception.recognition.index import Effort, ViewIndex
+from deixis.perception.recognition.index import ViewIndex
+from deixis.perception.recognition.inverted import Effort, InvertedFile
 from deixis.perception.recognition.kernels import AXES
 from deixis.perception.recognition.view_file import open_views, write_views
 from deixis.perception.recognition.views import PackedViews
@@ -49,7 +50,7 @@ def test_pruned_search_equals_comparing_all(seed: int, count: int, size: int, po
 def test_bounds_never_exceed_distances(seed: int, size: int, offset: float) -> None:
     target, *views = (view + np.float32(offset) for view in clustered(seed, 12, size))
     index = ViewIndex.of(packed(views))
-    bounds = index._bounds(index.reduction(target), np.arange(len(views)))
+    bounds = index._bounds(index.reduction(target))
     assert (bounds <= view_distances(target, index.views)).all()
 
 
@@ -68,6 +69,7 @@ def test_of_equally_near_views_the_first_is_named() -> None:
 def test_approximate_search_finds_nearly_always_the_nearest_and_its_exact_distance() -> None:
     views = clustered(5, 460)
     index = ViewIndex.of(packed(views[:400]))
+    assert len(index.filed.centres) > 100
     hits = 0
     for target in views[400:]:
         seen, reduced = Target.of(target), index.reduction(target)
@@ -76,6 +78,44 @@ def test_approximate_search_finds_nearly_always_the_nearest_and_its_exact_distan
         assert found.compared <= Effort().few
         hits += found.distance == exact.distance
     assert hits >= 58
+
+
+@settings(deadline=None)
+@given(st.integers(0, 2**32 - 1), st.integers(1, 30))
+def test_an_approximate_search_that_looks_everywhere_is_exact(seed: int, count: int) -> None:
+    target, *views = clustered(seed, count + 1)
+    index = ViewIndex.of(packed(views))
+    found = index.nearest(Target.of(target), index.reduction(target), Effort(lists=512, few=count))
+    assert found.distance == category_distance(target, index.views)[0]
+
+
+def test_estimates_from_all_lists_are_the_bounds() -> None:
+    target, *views = clustered(4, 200)
+    index = ViewIndex.of(packed(views))
+    reduced = index.reduction(target)
+    np.testing.assert_allclose(index.filed.estimates(reduced, 512), index._bounds(reduced), rtol=1e-3)
+
+
+def test_every_descriptor_is_filed_once_under_its_nearest_centre() -> None:
+    views = packed(clustered(6, 60))
+    reduced = ViewIndex.of(views).reduced
+    filed = InvertedFile.of(reduced, views.starts)
+    assert filed.starts[0] == 0 and filed.starts[-1] == len(reduced) and filed.count == 60
+    np.testing.assert_array_equal(np.bincount(filed.views), np.diff(views.starts))
+    np.testing.assert_array_equal(np.sort(filed.reduced, axis=0), np.sort(reduced, axis=0))
+    apart = np.linalg.norm(filed.reduced[:, None, :-1] - filed.centres, axis=2)
+    own = apart[np.arange(len(apart)), np.repeat(np.arange(len(filed.centres)), np.diff(filed.starts))]
+    np.testing.assert_allclose(own, apart.min(axis=1), rtol=1e-4, atol=1e-4)
+
+
+def test_approximate_search_among_mapped_views_gives_the_same_answers(tmp_path: Path) -> None:
+    target, *views = clustered(2, 90)
+    write_views(tmp_path / "views", ((str(i), view) for i, view in enumerate(views)))
+    found = [
+        index.nearest(Target.of(target), index.reduction(target), Effort())
+        for index in (ViewIndex.of(packed(views)), ViewIndex.of(open_views(tmp_path / "views")))
+    ]
+    assert found[0] == found[1] and found[0].compared == Effort().few
 
 
 def test_a_reduction_made_for_other_views_gives_the_same_answer() -> None:
@@ -89,7 +129,7 @@ def test_a_reduction_made_for_other_views_gives_the_same_answer() -> None:
 def test_reduced_descriptors_keep_distances_where_axes_suffice() -> None:
     views = [np.random.default_rng(i).normal(size=(9, AXES - 1)).astype(np.float32) for i in range(5)]
     index = ViewIndex.of(packed(views))
-    bounds = index._bounds(index.reduction(views[0] + 1), np.arange(5))
+    bounds = index._bounds(index.reduction(views[0] + 1))
     np.testing.assert_allclose(bounds, view_distances(views[0] + 1, index.views), rtol=1e-4)
 
 

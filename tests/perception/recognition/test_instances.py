@@ -99,3 +99,24 @@ def test_what_does_not_fit_is_refused() -> None:
         category.with_view("b", np.zeros((1, 2), np.float32))
     with pytest.raises(RecognitionError, match="1 views, and its distances have shape"):
         InstanceCategory("mug", category.views, np.zeros((2, 2)))
+
+
+def test_which_thing_a_view_shows_goes_and_comes_with_the_view() -> None:
+    category = InstanceCategory.of("mug", [view("a", 0), view("b", 2)], {"a": "red", "b": "red"})
+    assert category.width(over_things=True).icd is None and category.intra_category_distance == 2.0
+    grown = category.with_view(*view("c", 5), thing="blue").with_view(*view("d", 5))
+    assert grown.shown.tolist() == [0, 0, 1, 2]
+    assert grown.width(over_things=True).icd == pytest.approx((5 + 5 + 3 + 3 + 0) / 5) and len(grown.things) == 3
+    assert grown.without_view("a").shown.tolist() == [0, 1, 2] and "a" not in grown.without_view("a").things
+
+
+def test_a_view_of_no_known_thing_shows_one_of_its_own_even_if_a_thing_bears_its_name() -> None:
+    category = InstanceCategory.of("mug", [view("a", 0), view("b", 2)], {"a": "b"})
+    assert category.width(over_things=True).icd == 2.0
+
+
+@settings(deadline=None)
+@given(named_views())
+def test_where_every_view_shows_another_thing_the_icd_is_equation_3(views: list[View]) -> None:
+    category = InstanceCategory.of("mug", views, {name: f"thing {name}" for name, _ in views})
+    assert category.width(over_things=True).icd == category.intra_category_distance

@@ -14,7 +14,8 @@ from deixis.perception.recognition.calibration import Calibration
 from deixis.perception.recognition.distances import view_distance
 from deixis.perception.recognition.errors import RecognitionError
 from deixis.perception.recognition.instances import InstanceCategory
-from deixis.perception.recognition.recogniser import Recogniser, RecognitionSettings, recognise
+from deixis.perception.recognition.recogniser import Recogniser, recognise
+from deixis.perception.recognition.settings import PAPER, RecognitionSettings
 from deixis.perception.recognition.spread import SpreadSource
 
 STRICT = Calibration(threshold=1.5, even=1.5, doubt=3.0, choice=4.0)
@@ -34,7 +35,7 @@ NARROW = category("narrow", seen(20), seen(22))  # ICD 2
 
 
 def test_the_smallest_normalised_distance_wins_not_the_smallest_distance() -> None:
-    found = recognise(seen(15), [WIDE, NARROW], calibration=STRICT)
+    found = recognise(seen(15), [WIDE, NARROW], PAPER, STRICT)
     by_name = {candidate.category: candidate for candidate in found.candidates}
     assert (by_name["wide"].distance, by_name["wide"].spread.value, by_name["wide"].normalised) == (7, 8, 7 / 8)
     assert (by_name["narrow"].distance, by_name["narrow"].normalised) == (5, 2.5)
@@ -43,7 +44,7 @@ def test_the_smallest_normalised_distance_wins_not_the_smallest_distance() -> No
 
 
 def test_above_the_threshold_for_all_categories_is_unknown() -> None:
-    found = recognise(seen(40), [WIDE, NARROW], calibration=STRICT)
+    found = recognise(seen(40), [WIDE, NARROW], PAPER, STRICT)
     assert found.label is None and found.candidates[0].normalised == 4.0
     assert found.probability == found.unknown > 0.9
     assert "above the threshold 1.5" in found.reasons[0]
@@ -55,14 +56,44 @@ def test_at_the_threshold_is_known() -> None:
 
 def test_one_view_is_measured_by_the_median_of_the_others_and_says_so() -> None:
     single = category("single", seen(100))
-    found = recognise(seen(101), [WIDE, NARROW, single], calibration=STRICT)
+    found = recognise(seen(101), [WIDE, NARROW, single], PAPER, STRICT)
     assert found.label == "single"
     assert found.candidates[0].spread.value == 5.0 and found.candidates[0].spread.source is SpreadSource.POOLED
     assert any("'single' has one view" in reason for reason in found.reasons)
 
 
+def test_views_of_one_thing_are_one_thing_and_the_reasons_say_so() -> None:
+    near = [("a", seen(20)), ("b", seen(20.5)), ("c", seen(26))]
+    two = InstanceCategory.of("two", near, {"a": "x", "b": "x", "c": "y"})  # over things: 6 and 5.5, to and fro
+    one = InstanceCategory.of("one", [("d", seen(100)), ("e", seen(101))], {"d": "z", "e": "z"})
+    spreads = Recogniser.of([two, one], RecognitionSettings(shrinkage=0.0)).spreads
+    assert [(spread.value, spread.source) for spread in spreads] == [
+        (5.75, SpreadSource.MEASURED),
+        (5.75, SpreadSource.POOLED),
+    ]
+    assert "'one' has one thing" in recognise(seen(102), [two, one], calibration=STRICT).reasons[1]
+    assert recognise(seen(102), [two, one], PAPER, STRICT).candidates[0].spread.value == 1.0
+
+
+def test_an_icd_is_drawn_to_the_median_one_the_more_the_fewer_things_it_is_from() -> None:
+    found = recognise(seen(23), [WIDE, NARROW], RecognitionSettings(shrinkage=2.0), STRICT).candidates[0]
+    assert found.spread.value == (2 * 2 + 2 * 5) / 4 and found.spread.source is SpreadSource.SHRUNK
+    many = category("narrow", *(seen(20 + 2 * (i % 2)) for i in range(200)))
+    spread = Recogniser.of([WIDE, many], RecognitionSettings(shrinkage=2.0)).spreads[1]
+    assert abs(spread.value - (many.intra_category_distance or 0.0)) < 0.1
+
+
+def test_the_reason_says_what_d_c_was_divided_by() -> None:
+    (plain, *_), (drawn, *_) = (
+        recognise(seen(23), [WIDE, NARROW], settings, STRICT).reasons
+        for settings in (PAPER, RecognitionSettings(shrinkage=2.0))
+    )
+    assert "ND 0.5 (D_C 1 to view 'narrow1' / 2: its ICD over 2 views), within" in plain
+    assert "(D_C 1 to view 'narrow1' / 3.5: its ICD over 2 things, 2, drawn to the median one), within" in drawn
+
+
 def test_identical_views_are_measured_likewise() -> None:
-    found = recognise(seen(101), [WIDE, category("copies", seen(100), seen(100))], calibration=STRICT)
+    found = recognise(seen(101), [WIDE, category("copies", seen(100), seen(100))], PAPER, STRICT)
     assert found.candidates[0].category == "copies" and found.candidates[0].normalised == 1 / 8
     assert any("no two views that differ" in reason for reason in found.reasons)
 
@@ -160,3 +191,5 @@ def test_what_does_not_fit_is_refused() -> None:
         recognise(np.zeros((1, 2), np.float32), [WIDE])
     with pytest.raises(RecognitionError, match="the prior spread"):
         RecognitionSettings(prior_spread=0.0)
+    with pytest.raises(RecognitionError, match="shrunk by 0 things or more"):
+        RecognitionSettings(shrinkage=-1.0)

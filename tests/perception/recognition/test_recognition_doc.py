@@ -7,7 +7,7 @@ from pathlib import Path
 
 from deixis.perception.recognition.calibration import LEAST, SHIPPED
 from deixis.perception.recognition.held_out import MOST
-from deixis.perception.recognition.recogniser import DEFAULT
+from deixis.perception.recognition.settings import DEFAULT
 from deixis.perception.recognition.spread import FLOOR
 
 PAGE = (Path(__file__).parents[3] / "docs" / "recognition.md").read_text(encoding="utf-8")
@@ -25,4 +25,4 @@ def test_the_constants_on_the_page_are_those_of_the_code() -> None:
     assert f"fewer than {LEAST} known or {LEAST} unknown" in PAGE
     assert f"({MOST} at most" in PAGE and f"({DEFAULT.exact_up_to:,})" in PAGE
     assert f"below {100 * FLOOR:.0f} % of that median" in PAGE
-    assert (DEFAULT.effort.stride, DEFAULT.effort.share, DEFAULT.effort.few) == (6, 0.1, 12)
+    assert (DEFAULT.effort.lists, DEFAULT.effort.few) == (6, 10)

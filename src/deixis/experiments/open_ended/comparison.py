@@ -12,8 +12,9 @@ from deixis.experiments.open_ended.contestants import D2
 from deixis.experiments.open_ended.shown import Shown
 from deixis.experiments.open_ended.splits import Split
 from deixis.perception.recognition.distances import Target, view_distances
-from deixis.perception.recognition.learners.instance_based import shrunk
 from deixis.perception.recognition.learners.view_features import roots
+from deixis.perception.recognition.settings import RecognitionSettings
+from deixis.perception.recognition.spread import Width, spreads
 from deixis.perception.recognition.views import PackedViews
 
 Matrix = NDArray[np.float32]
@@ -21,11 +22,11 @@ Matrix = NDArray[np.float32]
 
 @dataclass(frozen=True)
 class Nearest:
-    """A way to name a view: by D_C (``shrinkage`` None) or by ND; over spin images, or D2 and extents."""
+    """A way to name a view: by D_C (``settings`` None) or by ND; over spin images, or D2 and extents."""
 
     name: str
     spin_images: bool
-    shrinkage: float | None
+    settings: RecognitionSettings | None
 
 
 @dataclass(frozen=True)
@@ -54,15 +55,16 @@ def d2_distances(shown: Shown) -> Matrix:
     return np.stack([np.linalg.norm(rows - row, axis=1) for row in rows])
 
 
-def compared(shown: Shown, distances: Matrix, split: Split, shrinkage: float | None) -> Scores:
+def compared(shown: Shown, distances: Matrix, split: Split, settings: RecognitionSettings | None) -> Scores:
     """One way of naming on one split."""
     kinds = np.array(shown.kinds)
     category = np.searchsorted(kinds, shown.categories)
     places = [split.taught[category[split.taught] == number] for number in range(len(kinds))]
     nearest = np.stack([distances[np.ix_(split.asked, views)].min(axis=1) for views in places], axis=1)
-    if shrinkage is not None:
-        widths = [_intra(distances, views) for views in places]
-        nearest = nearest / shrunk(widths, [len(views) for views in places], shrinkage)
+    if settings is not None:
+        things = [shown.instances[views] if settings.over_things else None for views in places]
+        widths = [Width.of(distances[np.ix_(views, views)], each) for views, each in zip(places, things, strict=True)]
+        nearest = nearest / [one.value for one in spreads(widths, settings.prior_spread, settings.shrinkage)]
     right = category[split.asked]
     left_out = nearest.copy()
     left_out[np.arange(len(right)), right] = np.inf
@@ -79,9 +81,3 @@ def auroc(known: NDArray[np.floating], unknown: NDArray[np.floating]) -> float:
     order = np.sort(known)
     below, upto = np.searchsorted(order, unknown, "left"), np.searchsorted(order, unknown, "right")
     return float((below + upto).mean() / (2 * len(known)))
-
-
-def _intra(distances: Matrix, views: NDArray[np.int64]) -> float:
-    """ICD (equation 3) of two views or more."""
-    some = distances[np.ix_(views, views)].astype(np.float64)
-    return float((some.sum() - np.trace(some)) / (len(views) * (len(views) - 1)))

@@ -11,9 +11,10 @@ from deixis.perception.recognition.learners.learner import Learner
 from deixis.perception.recognition.learners.naive_bayes import NaiveBayes
 from deixis.perception.recognition.learners.one_class import SupportVectorDescription
 from deixis.perception.recognition.learners.vector_quantisation import VectorQuantisation
+from deixis.perception.recognition.settings import PAPER
 
-PAPER = "equations 1-4"
-SHRUNK = "eqs. 1-4, ICD shrunk"
+EQUATIONS = "equations 1-4"
+THINGS = "ICD of things"
 NEAREST = "equations 1-2"
 D2 = "d2_extents"
 
@@ -21,10 +22,10 @@ Contestants = Mapping[str, Callable[[], Learner]]
 
 
 def contestants(codebook: Codebook) -> Contestants:
-    """Every learner by name, the paper's first."""
+    """Every learner by name, the paper's as it stands first, and then as it is by default."""
     return {
-        PAPER: lambda: InstanceBased(shrinkage=0.0, name=PAPER),
-        SHRUNK: lambda: InstanceBased(name=SHRUNK),
+        EQUATIONS: lambda: InstanceBased(settings=PAPER, name=EQUATIONS),
+        THINGS: lambda: InstanceBased(name=THINGS),
         NEAREST: lambda: InstanceBased(by_distance=True, name=NEAREST),
         "D2 and extents": lambda: InstanceBased(D2, root=False, by_distance=True, name="D2 and extents"),
         "SVDD": SupportVectorDescription,
@@ -35,5 +36,5 @@ def contestants(codebook: Codebook) -> Contestants:
 
 
 def _committee(codebook: Codebook) -> Committee:
-    members: list[Learner] = [InstanceBased(name=SHRUNK), InstanceBased("good", name="good")]
+    members: list[Learner] = [InstanceBased(name=THINGS), InstanceBased("good", name="good")]
     return Committee([*members, InstanceBased(D2, name=D2), NaiveBayes(codebook)])

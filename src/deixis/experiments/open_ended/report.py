@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import asdict
 from typing import Any
 
-from deixis.experiments.open_ended.run import Findings, OpenEnded, Taught
+from deixis.experiments.open_ended.run import Findings, OpenEnded, Taught, Ways
 from deixis.experiments.open_ended.shown import DESCRIBERS
 from deixis.experiments.open_ended.text import MEASURES
 
@@ -29,11 +29,16 @@ def _set(one: Findings) -> dict[str, Any]:
         "things": one.things,
         "views": one.views,
         "courses": [_course(taught) for taught in one.taught],
-        "single_views": [
-            {"split": title, "by": way, "accuracy": [s.accuracy for s in scores], "auroc": [s.auroc for s in scores]}
-            for (title, way), scores in one.nearest.items()
-        ],
+        "single_views": _single_views(one.nearest),
+        "single_views_kept_back": _single_views(one.kept_back),
     }
+
+
+def _single_views(found: Ways) -> list[dict[str, Any]]:
+    return [
+        {"split": title, "by": way, "accuracy": [s.accuracy for s in scores], "auroc": [s.auroc for s in scores]}
+        for (title, way), scores in found.items()
+    ]
 
 
 def _course(taught: Taught) -> dict[str, Any]:

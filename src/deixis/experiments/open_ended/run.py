@@ -9,15 +9,15 @@ from pathlib import Path
 
 import numpy as np
 
-from deixis.experiments.open_ended.comparison import Nearest, Scores, compared, d2_distances, spin_distances
-from deixis.experiments.open_ended.contestants import NEAREST, PAPER, SHRUNK, Contestants, contestants
+from deixis.experiments.open_ended.comparison import Matrix, Nearest, Scores, compared, d2_distances, spin_distances
+from deixis.experiments.open_ended.contestants import EQUATIONS, NEAREST, THINGS, Contestants, contestants
 from deixis.experiments.open_ended.shown import Shown, described, kept
 from deixis.experiments.open_ended.splits import Split, by_things, by_views
 from deixis.experiments.open_ended.things import FOLDER, from_meshes, rows_of, simulated
 from deixis.perception.recognition.learners.codebook import Codebook
-from deixis.perception.recognition.learners.instance_based import SHRINKAGE
 from deixis.perception.recognition.learners.learner import Learner
 from deixis.perception.recognition.learners.view_features import ViewFeatures
+from deixis.perception.recognition.settings import DEFAULT, PAPER
 from deixis.perception.recognition.teaching import Course, Teaching, teach
 from deixis.perception.simulator.tableware import FORMS
 
@@ -27,11 +27,14 @@ Stage = Callable[[int], AbstractContextManager[Tick]]
 
 WAYS = (
     Nearest(NEAREST, True, None),
-    Nearest(PAPER, True, 0.0),
-    Nearest(SHRUNK, True, SHRINKAGE),
+    Nearest(EQUATIONS, True, PAPER),
+    Nearest(THINGS, True, DEFAULT),
     Nearest("D2 and extents", False, None),
 )
 SPLITS = {"new things": by_things, "new views of things taught": by_views}
+
+Ways = dict[tuple[str, str], tuple[Scores, ...]]
+"""By (split, way): one for each order."""
 
 FEW = ("Plate", "Bowl", "Mug", "WineGlass", "Fork", "Knife", "Spoon", "Napkin", "Bottle")
 """The kinds of a quick run."""
@@ -73,14 +76,18 @@ class Taught:
 
 @dataclass(frozen=True, eq=False)
 class Findings:
-    """What was found over one set of things: courses, one for each contestant and order, and single views."""
+    """What was found over one set of things: courses, one for each contestant and order, and single views.
+
+    ``kept_back`` are single views among those categories that nothing was chosen on, where others were chosen on.
+    """
 
     name: str
     kinds: tuple[str, ...]
     things: int
     views: int
     taught: tuple[Taught, ...]
-    nearest: dict[tuple[str, str], tuple[Scores, ...]]  # (split, way): one for each order
+    nearest: Ways
+    kept_back: Ways
 
     def of(self, contestant: str) -> list[Taught]:
         """The courses of one contestant."""
@@ -106,13 +113,13 @@ def run(plan: Plan, stage: Stage = silent, entered: Sequence[str] | None = None)
     """Runs everything; ``entered`` are the contestants, all if None."""
     codebook = Codebook.of(_simulated(plan, 2, plan.seed + 1000, stage).views, seed=plan.seed)
     able = {name: make for name, make in contestants(codebook).items() if entered is None or name in entered}
-    sets = [_simulated(plan, plan.instances, plan.seed, stage)]
+    findings = [_found(plan, _simulated(plan, plan.instances, plan.seed, stage), able, stage)]
     skipped = []
     if plan.meshes is None:
         skipped.append(f"meshes: a quick run has none, another those that DEIXIS_DATA leads to ({FOLDER}/)")
     else:
-        sets.append(_meshes(plan, plan.meshes, stage))
-    return OpenEnded(plan, tuple(_found(plan, shown, able, stage) for shown in sets), tuple(skipped))
+        findings.append(_found(plan, _meshes(plan, plan.meshes, stage), able, stage, keep_back=True))
+    return OpenEnded(plan, tuple(findings), tuple(skipped))
 
 
 def _simulated(plan: Plan, instances: int, seed: int, stage: Stage) -> Shown:
@@ -131,13 +138,19 @@ def _meshes(plan: Plan, folder: Path, stage: Stage) -> Shown:
     return kept(plan.cache, f"meshes {folder.resolve()} {plan.mesh_views} {plan.seed}", make)
 
 
-def _found(plan: Plan, shown: Shown, able: Contestants, stage: Stage) -> Findings:
+def _found(plan: Plan, shown: Shown, able: Contestants, stage: Stage, keep_back: bool = False) -> Findings:
     with stage(len(able) * plan.orders) as tick:
         taught = tuple(
             _taught(plan, shown, name, make, seed, tick) for name, make in able.items() for seed in plan.seeds()
         )
+    with stage(len(shown.views)) as tick:
+        matrices = {True: spin_distances(shown, tick), False: d2_distances(shown)}
+    nearest = _nearest(plan, shown, matrices)
+    places = np.concatenate([shown.of(kind) for kind in shown.kinds[1::2]])
+    part = {key: matrix[np.ix_(places, places)] for key, matrix in matrices.items()}
+    rest = _nearest(plan, shown.at(places), part) if keep_back else {}
     things = len(np.unique(shown.instances))
-    return Findings(shown.name, shown.kinds, things, len(shown.views), taught, _nearest(plan, shown, stage))
+    return Findings(shown.name, shown.kinds, things, len(shown.views), taught, nearest, rest)
 
 
 def _taught(plan: Plan, shown: Shown, name: str, make: Callable[[], Learner], seed: int, tick: Tick) -> Taught:
@@ -160,12 +173,10 @@ def _views(shown: Shown, split: Split, asked: int | None) -> dict[str, list[View
     return {kind: views[:asked] for kind, views in found.items()}
 
 
-def _nearest(plan: Plan, shown: Shown, stage: Stage) -> dict[tuple[str, str], tuple[Scores, ...]]:
-    with stage(len(shown.views)) as tick:
-        matrices = {True: spin_distances(shown, tick), False: d2_distances(shown)}
+def _nearest(plan: Plan, shown: Shown, matrices: dict[bool, Matrix]) -> Ways:
     return {
         (title, way.name): tuple(
-            compared(shown, matrices[way.spin_images], cut(shown, seed), way.shrinkage) for seed in plan.seeds()
+            compared(shown, matrices[way.spin_images], cut(shown, seed), way.settings) for seed in plan.seeds()
         )
         for title, cut in SPLITS.items()
         for way in WAYS

@@ -21,11 +21,11 @@ from deixis.perception.features.spin_describer import SpinImageDescriber
 from deixis.perception.recognition.learners.view_features import ViewFeatures, features_of
 
 DESCRIBERS: tuple[Describer, ...] = (
-    SpinImageDescriber(support=0.2, voxel=0.025),
+    SpinImageDescriber(support=0.2),
     GoodDescriber(),
     D2ExtentsDescriber(),
 )
-"""Settings are the same for all data. The support was chosen on the simulator's views (docs/open_ended.md)."""
+"""Settings are the same for all data. Those of spin images were chosen beforehand (docs/open_ended.md)."""
 
 
 class Seen(NamedTuple):
@@ -57,6 +57,11 @@ class Shown:
             chosen &= np.isin(self.instances, list(instances))
         return np.flatnonzero(chosen)
 
+    def at(self, places: NDArray[np.int64]) -> Shown:
+        """The views in these places only."""
+        categories, views = (tuple(each[place] for place in places) for each in (self.categories, self.views))
+        return Shown(self.name, categories, self.instances[places], views)
+
     def instances_of(self, category: str) -> NDArray[np.int64]:
         """The numbers of a category's instances."""
         return np.unique(self.instances[self.of(category)])
@@ -68,7 +73,7 @@ def described(name: str, things: Iterable[Seen], tick: Callable[[str], None] = l
     instances: list[int] = []
     views: list[ViewFeatures] = []
     for number, thing in enumerate(things):
-        found = [features_of(cloud, DESCRIBERS) for cloud in thing.clouds]
+        found = [features_of(cloud, DESCRIBERS, str(number)) for cloud in thing.clouds]
         usable = [view for view in found if all(view.has(describer.name) for describer in DESCRIBERS)]
         views += usable
         categories += [thing.category] * len(usable)
@@ -123,5 +128,9 @@ def _read(file: Path) -> Shown:
             describer.name: np.split(stored[describer.name], np.cumsum(stored[f"{describer.name} lengths"])[:-1])
             for describer in DESCRIBERS
         }
-        views = [ViewFeatures(dict(zip(split, parts, strict=True))) for parts in zip(*split.values(), strict=True)]
-        return Shown(str(stored["name"]), tuple(map(str, stored["categories"])), stored["instances"], tuple(views))
+        rows, things = zip(*split.values(), strict=True), stored["instances"]
+        views = [
+            ViewFeatures(dict(zip(split, row, strict=True)), str(thing))
+            for row, thing in zip(rows, things, strict=True)
+        ]
+        return Shown(str(stored["name"]), tuple(map(str, stored["categories"])), things, tuple(views))

@@ -7,7 +7,7 @@ from textwrap import wrap
 
 import numpy as np
 
-from deixis.experiments.open_ended.run import SPLITS, WAYS, Findings, OpenEnded, Taught
+from deixis.experiments.open_ended.run import SPLITS, WAYS, Findings, OpenEnded, Taught, Ways
 from deixis.experiments.open_ended.shown import DESCRIBERS
 from deixis.perception.recognition.teaching import End
 
@@ -51,12 +51,20 @@ def _set(found: OpenEnded, one: Findings) -> Iterator[str]:
     yield f"{'':<{NAME}}" + "".join(f" {measure:>12}" for measure in MEASURES) + " least GCA  all"
     for name in dict.fromkeys(taught.contestant for taught in one.taught):
         yield _row(name, one.of(name))
+    yield from _single_views(f"Single views of the {one.name}", one.nearest)
+    if one.kept_back:
+        half = f"Single views of every second category of the {one.name}, on which nothing was chosen"
+        yield from _single_views(half, one.kept_back)
+
+
+def _single_views(title: str, found: Ways) -> Iterator[str]:
     yield ""
-    yield f"Single views of the {one.name}: accuracy and, with categories left out, AUROC of unknown"
+    yield f"{title}:"
+    yield "accuracy and, with categories left out, AUROC of unknown"
     yield f"{'':<{NAME}}" + "".join(f" {title:>27}" for title in SPLITS)
     yield f"{'':<{NAME}}" + f" {'accuracy':>13} {'AUROC':>13}" * len(SPLITS)
     for way in WAYS:
-        cells = [one.nearest[title, way.name] for title in SPLITS]
+        cells = [found[title, way.name] for title in SPLITS]
         texts = [f"{spread([s.accuracy for s in cell]):>13} {spread([s.auroc for s in cell]):>13}" for cell in cells]
         yield f"{way.name:<{NAME}} " + " ".join(texts)
 

@@ -16,6 +16,7 @@ from deixis.perception.recognition.learners.naive_bayes import NaiveBayes
 from deixis.perception.recognition.learners.one_class import SupportVectorDescription
 from deixis.perception.recognition.learners.vector_quantisation import VectorQuantisation
 from deixis.perception.recognition.learners.view_features import ViewFeatures
+from deixis.perception.recognition.settings import PAPER
 
 BINS = 12
 PLACES = {"cup": 1, "fork": 5, "plate": 9}
@@ -42,8 +43,8 @@ def codebook() -> Codebook:
 
 
 LEARNERS: dict[str, Callable[[], Learner]] = {
-    "paper": lambda: InstanceBased(shrinkage=0.0),
-    "shrunk": InstanceBased,
+    "paper": lambda: InstanceBased(settings=PAPER),
+    "things": InstanceBased,
     "distance": lambda: InstanceBased(by_distance=True),
     "svdd": SupportVectorDescription,
     "committee": lambda: Committee([InstanceBased(), InstanceBased("good", name="good"), NaiveBayes(codebook())]),

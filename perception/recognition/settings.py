@@ -1,0 +1,46 @@
+"""How recognition is set up; by default not quite as in the paper, which :data:`PAPER` is."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from deixis.perception.recognition.errors import RecognitionError
+from deixis.perception.recognition.inverted import Effort
+from deixis.perception.recognition.spread import PRIOR_SPREADS
+
+SHRINKAGE = 5.0
+"""Things that the median ICD counts for; chosen on simulated tableware and half of the meshes (docs/open_ended.md)."""
+
+
+@dataclass(frozen=True)
+class RecognitionSettings:
+    """``exact_up_to``: with more views than that the search is approximate, with ``effort``.
+
+    What equation 4 divides by (:mod:`deixis.perception.recognition.spread`): with ``over_things`` equation 3 is a mean
+    over pairs of views of different things, else over all pairs; it is drawn to the median one of all categories as if
+    that came from ``shrinkage`` things (0: it stays as it is). ``prior_spread`` stands in while no category has an ICD;
+    the default is for spin images, and ``PRIOR_SPREADS`` has those of other descriptors.
+
+    ``prior_unknown`` is the share of things seen that are of no category.
+    """
+
+    exact_up_to: int = 20_000
+    effort: Effort = Effort()  # noqa: RUF009 (frozen)
+    over_things: bool = True
+    shrinkage: float = SHRINKAGE
+    prior_spread: float = PRIOR_SPREADS["spin_images"]
+    prior_unknown: float = 0.5
+
+    def __post_init__(self) -> None:
+        if not (np.isfinite(self.prior_spread) and self.prior_spread > 0):
+            raise RecognitionError(f"the prior spread is a distance above 0, not {self.prior_spread}")
+        if not 0.0 <= self.shrinkage < np.inf:
+            raise RecognitionError(f"an ICD is shrunk by 0 things or more, not {self.shrinkage:g}")
+
+
+DEFAULT = RecognitionSettings()
+
+PAPER = RecognitionSettings(over_things=False, shrinkage=0.0)
+"""Equations 3 and 4 as they stand, wherever they are defined."""
