@@ -74,7 +74,7 @@ def _answer(
     """The map with its probability, where the time sufficed for one, and the paper's similarity for comparison."""
     now = time.perf_counter()
     similarity = paper_similarity(evidence, deadline=now + COMPARISON * (deadline - now))
-    probable = posterior(evidence.problem, deadline)
+    probable = posterior(evidence.problem, deadline, start=assignment)
     known = math.isfinite(probable.error)
     notes += () if known else ("there was no time to find out how probable the matches are",)
     return Alignment(

@@ -27,7 +27,7 @@ def degree_of_view(model: RelationModel, features: View) -> Array:
     logs = [
         np.interp(features[term.feature], term.knots, term.values) for term in model.terms if term.feature in features
     ]
-    result: Array = np.exp(np.sum(logs, axis=0)) if logs else np.ones_like(next(iter(features.values())))
+    result: Array = np.exp(sum(logs)) if logs else np.ones_like(next(iter(features.values())))
     return result
 
 

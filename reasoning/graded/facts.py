@@ -16,6 +16,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import prod
 
 import numpy as np
 from numpy.typing import NDArray
@@ -84,16 +85,19 @@ def fact_tables(
     distinct = sorted(set(keys))
     kinds = np.array([distinct.index(key) for key in keys], dtype=np.int64)
     ends = _ends(description, edges)
-    pairs = pair_geometry(boxes)
-    said = _Said(pairs, models or shipped_models(), description.vocabulary, saying, distinct)
+    order = _by_place(boxes)
+    names = box_relations(np.asarray(boxes, dtype=np.float64), description.vocabulary).names[np.ix_(order, order)]
+    pairs = pair_geometry(boxes[order])
+    said = _Said(pairs, names, models or shipped_models(), description.vocabulary, saying, distinct)
     if literal is None:
-        usual = _Said(pairs, shipped_models(), description.vocabulary, saying, distinct) if models else said
+        usual = _Said(pairs, names, shipped_models(), description.vocabulary, saying, distinct) if models else said
         shape = len(description.nodes), len(boxes)
-        alone = np.zeros(shape) if unary is None else unary
+        alone = np.zeros(shape) if unary is None else np.ascontiguousarray(unary[:, order])
         away = np.full(shape[0], AWAY) if absent is None else absent
         graded, exact = (Problem(ends, kinds, usual.tables(share), alone, away) for share in (0.0, LITERAL))
-        literal = literal_share(graded, exact, np.argsort(np.array(description.nodes, dtype=str)), _by_place(boxes))
-    return FactTables(edges, ends, kinds, said.tables(literal))
+        literal = literal_share(graded, exact, np.argsort(np.array(description.nodes, dtype=str)))
+    back = np.argsort(order)
+    return FactTables(edges, ends, kinds, said.tables(literal)[:, back[:, None], back])
 
 
 def _key(description: RelationGraph, edge: int) -> tuple[int, bool, float]:
@@ -108,54 +112,57 @@ def _by_place(boxes: NDArray[np.float64]) -> NDArray[np.int64]:
 
 
 class _Said:
-    """What k different facts (relations, sign, weight) say of the pairs of one scene, to either speaker."""
+    """What k different facts (relations, sign, weight) say of the pairs of one scene, to either speaker.
+
+    Kept as likelihood ratios, not as their logarithms: speakers mix and hedges weaken by sums of them.
+    """
 
     def __init__(
         self,
         pairs: PairGeometry,
+        names: NDArray[np.integer],
         models: RelationModels,
         vocabulary: Relations,
         saying: bool,
         distinct: Sequence[tuple[int, bool, float]],
     ) -> None:
-        self.models, self.vocabulary, self.distinct = models, vocabulary, distinct
+        self.names, self.models, self.vocabulary = names, models, vocabulary
         self.degrees = WordDegrees(pairs, models)
         self.spoken = saying_degree(pairs, models) if saying else np.ones((len(pairs), len(pairs)))
         self.spoken_by_chance = models[SAYING].chance if saying else 1.0
-        self.names = box_relations(pairs.boxes, vocabulary).names
-        self.graded, self.literal = (np.zeros((len(distinct), *self.spoken.shape)) for _ in range(2))
-        for row, (mask, positive, _) in enumerate(distinct):
-            relations = vocabulary.members(mask)
-            outliers = float(np.mean([models.of(relation).outliers for relation in relations]))
-            self.graded[row] = self._graded(relations, positive, outliers)
-            self.literal[row] = self._literal(relations, positive)
+        self.said = [(vocabulary.members(mask), positive, weight) for mask, positive, weight in distinct]
+        self.graded = [self._graded(relations, positive) for relations, positive, _ in self.said]
+        self.literal = [self._literal(relations, positive) for relations, positive, _ in self.said]
 
     def tables(self, share: float) -> NDArray[np.float32]:
         """The evidence where ``share`` of facts is meant literally, shape (k, n2, n2), 0 on the diagonals."""
-        tables = np.zeros(self.graded.shape, dtype=np.float32)
-        for row, (_, _, weight) in enumerate(self.distinct):
-            tables[row] = hedged(_mixed(self.graded[row], self.literal[row], share), weight)
-            np.fill_diagonal(tables[row], 0.0)
+        tables = np.empty((len(self.said), *self.names.shape), dtype=np.float32)
+        for table, (_, _, weight), graded, literal in zip(tables, self.said, self.graded, self.literal, strict=True):
+            kept = np.float32(weight * (1 - share))
+            offset = (weight * share * literal + (1 - weight)).astype(np.float32)
+            np.multiply(graded, kept, out=table)
+            table += offset[self.names]
+            np.log(table, out=table)
+            np.fill_diagonal(table, 0.0)
         return tables
 
-    def _graded(self, relations: tuple[Relation, ...], positive: bool, outliers: float) -> Array:
-        degrees = np.stack([self.degrees.of(relation) for relation in relations])
+    def _graded(self, relations: tuple[Relation, ...], positive: bool) -> NDArray[np.float32]:
+        """By pair, shape (n2, n2)."""
+        outliers = float(np.mean([self.models.of(relation).outliers for relation in relations]))
         chances = np.array([self.models.of(relation).chance for relation in relations])
         chance = float(combined(chances, positive)) * self.spoken_by_chance
-        return log_likelihood_ratio(combined(degrees, positive) * self.spoken, outliers, chance)
+        degree = combined([self.degrees.of(relation) for relation in relations], positive) * self.spoken
+        degree *= (1 - outliers) / (outliers + (1 - outliers) * chance)
+        degree += outliers / (outliers + (1 - outliers) * chance)
+        ratio: NDArray[np.float32] = degree.astype(np.float32)
+        return ratio
 
     def _literal(self, relations: tuple[Relation, ...], positive: bool) -> Array:
-        degree = literal_degree(relations, positive, self.names, self.vocabulary, IMPLIED)
+        """By the exact name of the pair, shape (relations + 1,): the last one of no name, -1."""
+        names = np.append(np.arange(len(self.vocabulary)), -1)
+        degree = literal_degree(relations, positive, names, self.vocabulary, IMPLIED)
         chance = min(LITERAL_CHANCE * len(relations), 1.0)
-        return log_likelihood_ratio(degree, OUTLIERS, chance if positive else 1 - chance)
-
-
-def _mixed(graded: Array, literal: Array, share: float) -> Array:
-    """The logarithm of a mixture of two likelihood ratios."""
-    if share in (0.0, 1.0):
-        return literal if share else graded
-    result: Array = np.logaddexp(np.log1p(-share) + graded, np.log(share) + literal)
-    return result
+        return np.exp(log_likelihood_ratio(degree, OUTLIERS, chance if positive else 1 - chance))
 
 
 def literal_degree(
@@ -172,14 +179,15 @@ def literal_degree(
     return result
 
 
-def combined(degrees: Array, positive: bool) -> Array:
+def combined(degrees: Sequence[Array] | Array, positive: bool) -> Array:
     """The degree of a choice between words (axis 0), or of the denial of all of them.
 
     >>> combined(np.array([0.8, 0.2]), True).item(), round(combined(np.array([0.8, 0.5]), False).item(), 3)
     (0.5, 0.1)
     """
-    result: Array = np.asarray(degrees.mean(axis=0) if positive else np.prod(1 - degrees, axis=0))
-    return result
+    if positive:
+        return np.asarray(sum(degrees[1:], start=degrees[0]) / len(degrees))
+    return np.asarray(prod([1 - degree for degree in degrees]))
 
 
 def hedged(evidence: Array, weight: float) -> Array:

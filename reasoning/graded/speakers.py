@@ -31,21 +31,19 @@ MOST_OBJECTS = 60
 """Of larger descriptions a connected part of so many objects is judged."""
 
 
-def literal_share(graded: Problem, literal: Problem, objects: Order, things: Order) -> float:
+def literal_share(graded: Problem, literal: Problem, objects: Order) -> float:
     """The share of facts to be taken literally: that of a literal speaker times the probability that one speaks.
 
-    ``graded`` and ``literal`` are the same problem with the facts of either speaker. ``objects`` (n1,) and ``things``
-    (n2,) list both sides in an order that does not depend on how they were given: the search is one, and its result is
-    then the same for the same scene.
+    ``graded`` and ``literal`` are the same problem with the facts of either speaker. ``objects`` (n1,) lists one side
+    in an order that does not depend on how it was given, and the problems' things stand in such an order: the search is
+    one, and its result is then the same for the same scene.
 
     >>> there, order = np.array([[[0, 1], [0, 0]]], np.float32), np.arange(2)
     >>> problem = Problem(np.array([[0, 1]]), np.array([0]), there, np.zeros((2, 2)), np.full(2, -9.0))
-    >>> round(literal_share(problem, replace(problem, tables=3 * there), order, order), 2)
+    >>> round(literal_share(problem, replace(problem, tables=3 * there), order), 2)
     0.58
     """
-    worth = [
-        _best_value(_part(problem, objects), things) if len(problem.ends) else 0.0 for problem in (graded, literal)
-    ]
+    worth = [_best_value(_part(problem, objects)) if len(problem.ends) else 0.0 for problem in (graded, literal)]
     odds = PRIOR / (1 - PRIOR) * np.exp(np.clip(worth[1] - worth[0], -500, 500))
     return float(LITERAL * odds / (1 + odds))
 
@@ -80,11 +78,8 @@ def _connected(ends: NDArray[np.int64], order: Order) -> Order:
     return np.array(list(reached), dtype=np.int64)
 
 
-def _best_value(problem: Problem, things: Order) -> float:
+def _best_value(problem: Problem) -> float:
     """About what the best map is worth, by a short search."""
     from deixis.reasoning.matching.scalable import scalable
 
-    ordered = replace(
-        problem, tables=problem.tables[:, things][:, :, things], unary=np.ascontiguousarray(problem.unary[:, things])
-    )
-    return scalable(ordered, effort=EFFORT * min(1.0, SIZE / len(problem.absent))).value
+    return scalable(problem, effort=EFFORT * min(1.0, SIZE / len(problem.absent))).value

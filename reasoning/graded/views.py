@@ -7,6 +7,7 @@ mirror each other share a model, and an inverse looks at the exchanged pair and 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from functools import reduce
 
 import numpy as np
 from numpy.typing import NDArray
@@ -51,33 +52,32 @@ def view(pairs: PairGeometry, word: str) -> View:
 
 def _direction(pairs: PairGeometry, heading: tuple[int, int]) -> View:
     axes = [axis for axis in (0, 1) if heading[axis]]
-    clear, trail, lead = (
-        np.min(found, axis=0) for found in zip(*(_along(pairs, a, heading[a]) for a in axes), strict=True)
-    )
     to = np.array(heading) / np.hypot(*heading)
-    forward = pairs.offset @ to
+    forward = pairs.offset[:, :, 0] * to[0] + pairs.offset[:, :, 1] * to[1]
+
+    def least(feature: Callable[[PairGeometry, int, int], Array]) -> Array:
+        return reduce(np.minimum, (feature(pairs, axis, heading[axis]) for axis in axes))
 
     def deviation() -> Array:
-        length = np.maximum(np.linalg.norm(pairs.offset, axis=2), NEARBY)
+        length = np.maximum(np.hypot(pairs.offset[:, :, 0], pairs.offset[:, :, 1]), NEARBY)
         result: Array = np.arccos(np.clip(forward / length, -1.0, 1.0))
         return result
 
     def lateral() -> Array:
-        off = np.abs(pairs.offset @ np.array([-to[1], to[0]]))
+        off = np.abs(pairs.offset[:, :, 1] * to[0] - pairs.offset[:, :, 0] * to[1])
         result: Array = off / (1 + off)
         return result
 
     def abreast() -> Array:
         covers = [pairs.inside[:, :, axis] for axis in ((0, 1) if len(axes) == 2 else (1 - axes[0],))]
-        result: Array = np.max([share for one in covers for share in (one, one.T)], axis=0)
-        return result
+        return reduce(np.maximum, [share for one in covers for share in (one, one.T)])
 
     return _Features(
         {
             "deviation": deviation,
-            "clear": lambda: clear,
-            "trail": lambda: trail,
-            "lead": lambda: lead,
+            "clear": lambda: least(_clear),
+            "trail": lambda: least(_trail),
+            "lead": lambda: least(_lead),
             "forward": lambda: forward / (1 + np.abs(forward)),
             "lateral": lateral,
             "abreast": abreast,
@@ -96,6 +96,9 @@ class _Features(Mapping[str, Array]):
     def __getitem__(self, name: str) -> Array:
         return self._features[name]()
 
+    def __contains__(self, name: object) -> bool:
+        return name in self._features
+
     def __iter__(self) -> Iterator[str]:
         return iter(self._features)
 
@@ -103,12 +106,23 @@ class _Features(Mapping[str, Array]):
         return len(self._features)
 
 
-def _along(pairs: PairGeometry, axis: int, sign: int) -> tuple[Array, Array, Array]:
-    """Near edges, and the lesser and the greater of the offsets of starts and ends, along one axis."""
-    clear, upper, lower = pairs.edges[:, :, :, axis]
-    if sign < 0:
-        clear, upper, lower = clear.T, upper.T, lower.T
-    return clear, np.minimum(upper, lower), np.maximum(upper, lower)
+def _clear(pairs: PairGeometry, axis: int, sign: int) -> Array:
+    """Near edges along one axis."""
+    return _along(pairs.edges[0, :, :, axis], sign)
+
+
+def _trail(pairs: PairGeometry, axis: int, sign: int) -> Array:
+    """The lesser of the offsets of starts and ends."""
+    return np.minimum(_along(pairs.edges[1, :, :, axis], sign), _along(pairs.edges[2, :, :, axis], sign))
+
+
+def _lead(pairs: PairGeometry, axis: int, sign: int) -> Array:
+    """The greater of the two."""
+    return np.maximum(_along(pairs.edges[1, :, :, axis], sign), _along(pairs.edges[2, :, :, axis], sign))
+
+
+def _along(distances: Array, sign: int) -> Array:
+    return distances.T if sign < 0 else distances
 
 
 def _support(pairs: PairGeometry) -> View:

@@ -18,7 +18,7 @@ def climb(labels, problem):  # type: ignore[no-untyped-def]
     while better:
         better = False
         for i in range(len(labels)):
-            _gains(i, labels, problem, gain)
+            gains_of(i, labels, problem, gain)
             best, chosen = 1e-9, -1
             for p in range(out + 1):
                 if p != labels[i] and gain[p] > -np.inf:
@@ -31,7 +31,7 @@ def climb(labels, problem):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
-def _gains(i, labels, problem, gain):  # type: ignore[no-untyped-def]
+def gains_of(i, labels, problem, gain):  # type: ignore[no-untyped-def]
     """What object i is worth as each thing, with the others as they are, into ``gain`` (n2 + 1,)."""
     gain[:] = problem.unary[i]
     for slot in range(problem.first[i], problem.first[i + 1]):

@@ -16,13 +16,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.reasoning.matching.compiled import Compiled, compile_problem, to_assignment
-from deixis.reasoning.matching.exact import Maps
+from deixis.reasoning.matching.compiled import Compiled, compile_problem, to_assignment, to_labels
 from deixis.reasoning.matching.exchangeability import averaged, exchangeable
 from deixis.reasoning.matching.problem import MatchingError, Problem
 from deixis.reasoning.matching.sampling import Ladder, ladder, most_said_twice, sample
 from deixis.reasoning.matching.scalable import search_from
-from deixis.reasoning.matching.summing import Sum, add_up, factors
+from deixis.reasoning.matching.summing import add_up, factors
 
 Marginals = NDArray[np.float64]
 Groups = tuple[tuple[int, ...], ...]
@@ -50,14 +49,12 @@ class Posterior:
     """``marginals`` (n1, n2 + 1): the probability of each thing for each object; last, of its being left out.
 
     ``error``: at most so much mass is missing where ``exact``; otherwise the largest standard error of a marginal over
-    ladders and halves of their runs, which is no guarantee, and infinite where there are not two to compare. ``maps``:
-    where exact and few, the maps that were added up, best first: all that are probable, and some that hardly are.
+    ladders and halves of their runs, which is no guarantee, and infinite where there are not two to compare.
     """
 
     marginals: Marginals
     exact: bool
     error: float
-    maps: Maps | None = None
 
     @property
     def entropy(self) -> Marginals:
@@ -69,34 +66,39 @@ class Posterior:
 
 
 def posterior(
-    problem: Problem, deadline: float = math.inf, *, mass: float = 1e-3, limit: int = 10_000, seed: int = 0
+    problem: Problem,
+    deadline: float = math.inf,
+    *,
+    mass: float = 1e-3,
+    seed: int = 0,
+    start: NDArray[np.int64] | None = None,
 ) -> Posterior:
     """The posterior over maps by its marginals, until ``deadline`` (``time.perf_counter``).
 
-    It is exact but for ``mass`` where that can be shown by adding up maps in little time, and sampled otherwise; at
-    most ``limit`` maps are listed. Raises MatchingError for a mass that is not between 0 and 1 or a limit below 1.
+    It is exact but for ``mass`` where that can be shown by adding up maps in little time, and sampled otherwise. Chains
+    begin at maps of their own; of more than ``MOST_OBJECTS`` objects at ``start`` (n1,), a map of high value, where it
+    is known: to look for others would take longer than the chains. Raises MatchingError for a mass that is not between
+    0 and 1, and where ``start`` is no map of the problem.
 
     >>> problem = Problem(np.zeros((0, 2), np.int64), np.zeros(0, np.int64), np.zeros((0, 1, 1), np.float32),
     ...                   np.array([[np.log(3.0)]]), np.zeros(1))
     >>> found = posterior(problem)
-    >>> found.marginals.round(3).tolist(), found.exact, found.maps.assignments.tolist()
-    ([[0.75, 0.25]], True, [[0], [-1]])
+    >>> found.marginals.round(3).tolist(), found.exact
+    ([[0.75, 0.25]], True)
     """
-    if not 0 < mass < 1 or limit < 1:
-        raise MatchingError(
-            f"the mass that may be missing lies between 0 and 1, and a limit is 1 or more, not {mass} and {limit}"
-        )
+    if not 0 < mass < 1:
+        raise MatchingError(f"the mass that may be missing lies between 0 and 1, not at {mass}")
     n1, n2 = problem.unary.shape
     if n1 == 0 or n2 == 0:
-        nobody = Maps(np.full((1, n1), -1), np.array([problem.absent.sum()]), complete=True, limited=False)
-        return Posterior(np.ones((n1, 1)) if n2 == 0 else np.zeros((0, n2 + 1)), True, 0.0, nobody)
+        return Posterior(np.ones((n1, 1)) if n2 == 0 else np.zeros((0, n2 + 1)), True, 0.0)
+    if start is not None:
+        problem.require_map(start)
     compiled = compile_problem(problem)
-    return _added_up(problem, compiled, deadline, mass, limit, seed) or _sampled(problem, compiled, deadline, seed)
+    begin = None if start is None or n1 <= MOST_OBJECTS else to_labels(start, n2)
+    return _added_up(problem, compiled, deadline, mass, seed) or _sampled(problem, compiled, deadline, seed, begin)
 
 
-def _added_up(
-    problem: Problem, compiled: Compiled, deadline: float, mass: float, limit: int, seed: int
-) -> Posterior | None:
+def _added_up(problem: Problem, compiled: Compiled, deadline: float, mass: float, seed: int) -> Posterior | None:
     """The sum over maps, or None where it would take too long."""
     n1, width = compiled.unary.shape
     if len(compiled.kind) * width * width > FACTOR_CELLS:
@@ -108,30 +110,23 @@ def _added_up(
     for threshold in THRESHOLDS:
         if time.perf_counter() > deadline:
             return None
-        state, (total, missing, found, looked_at) = add_up(compiled, parts, threshold * top, nodes, limit)
+        marginals, (total, missing, looked_at) = add_up(compiled, parts, threshold * top, nodes)
         if missing == math.inf or total <= 0:
             return None
         error = missing / (total + missing)
         if error <= mass:
-            maps = _listed(problem, state, int(found)) if found <= limit else None
-            marginals = averaged(state.marginals / total, exchangeable(problem))
-            return Posterior(marginals, True, error, maps)
+            return Posterior(averaged(marginals / total, exchangeable(problem)), True, error)
         if looked_at * SMALL > nodes and looked_at * GROWTH ** math.log(error / mass, FALL) > nodes:
             return None
     return None
 
 
-def _listed(problem: Problem, state: Sum, count: int) -> Maps:
-    assignments = to_assignment(state.maps[:count], problem.unary.shape[1])
-    values = np.array([problem.value(assignment) for assignment in assignments])
-    order = np.lexsort([*assignments.T[::-1], -np.round(values, 7)])
-    return Maps(assignments[order], values[order], complete=True, limited=False)
-
-
-def _sampled(problem: Problem, compiled: Compiled, deadline: float, seed: int) -> Posterior:
+def _sampled(
+    problem: Problem, compiled: Compiled, deadline: float, seed: int, start: NDArray[np.int64] | None
+) -> Posterior:
     """A short run of ladders, then one as long as the first one's error shows to be needed, and so on.
 
-    Each leaves out all before, as being on the way.
+    Each leaves out all before, as being on the way. All ladders begin at ``start`` (n1,), where there is one.
     """
     n1, width = compiled.unary.shape
     groups, rng = exchangeable(problem), np.random.default_rng(seed)
@@ -139,7 +134,9 @@ def _sampled(problem: Problem, compiled: Compiled, deadline: float, seed: int) -
     thresholds = -rng.exponential(size=THRESHOLDS_KEPT)
     ladders = []
     for number in range(LADDERS):
-        labels, _ = search_from(np.full(n1, width - 1), compiled, deadline, seed + number, START_EFFORT, 1)
+        labels = start
+        if labels is None:
+            labels, _ = search_from(np.full(n1, width - 1), compiled, deadline, seed + number, START_EFFORT, 1)
         ladders.append(ladder(labels, compiled, coldness))
         if time.perf_counter() > deadline:
             break

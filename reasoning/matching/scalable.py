@@ -19,17 +19,21 @@ from deixis.reasoning.matching.climbing import climb
 from deixis.reasoning.matching.compiled import Compiled, compile_problem, to_assignment, to_labels
 from deixis.reasoning.matching.kept_gains import keep
 from deixis.reasoning.matching.problem import Problem
+from deixis.reasoning.matching.reassignment import reassign
 from deixis.reasoning.matching.recombination import combine
 
-HOT, WARM, COLD = 0.35, 0.2, 0.06  # temperatures in units of the mean range of a table: first, reheated, and last
+HOT, WARM, COLD = 0.25, 0.2, 0.06  # temperatures in units of the mean range of a table: first, reheated, and last
 LEVELS, WARM_LEVELS = 15, 10  # temperatures on the way down from the first, and from the second
 ONE_TURN_LEVELS = 40  # where there is one turn only
-SWEEPS = 3600  # over all objects, in all; small problems get more, those of many cells get fewer
-SMALL, MOST_SWEEPS, CELLS = 170_000, 5_600, 8e8
+QUICK_HOT = 0.35  # the first temperature where sweeps are few: what cools fast freezes sooner
+SWEEPS = 3600  # over all objects, in all; small problems and large ones get more, those of many cells get fewer
+SMALL, MOST_SWEEPS, MANY, CELLS = 180_000, 6_000, 100, 8e8
 MOST_TURNS, TURN_CELLS = 13, 11_700  # many short turns for few objects, one long one for many
 FRESH = 0.3  # the share of turns that start anew; the others reheat the best map
+PATIENCE = 20  # reassignments in a row that do not help, at the end
 LAST_SWEEPS = 3  # without noise, where the deadline struck
-PART = 3e6  # cells of the sweeps between two looks at the clock
+HURRY = 1.25  # times its equal share of the time left that a temperature may take
+PART = 2e6  # cells of the sweeps between two looks at the clock
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,6 +93,8 @@ def search_from(
         if not finished:
             return best, False
     climb(best, compiled)
+    if reassign(best, compiled, PATIENCE, seed) > 0.0:
+        climb(best, compiled)
     return best, True
 
 
@@ -96,8 +102,11 @@ def turns_and_sweeps(objects: int, width: int) -> tuple[list[tuple[float, int]],
     """For each turn its first temperature and how many, and how many sweeps at each, at an effort of 1."""
     turns = int(np.clip(TURN_CELLS / objects**2, 1, MOST_TURNS))
     fresh = math.ceil(FRESH * turns)
-    plan = [(HOT, LEVELS)] * fresh + [(WARM, WARM_LEVELS)] * (turns - fresh) if turns > 1 else [(HOT, ONE_TURN_LEVELS)]
-    sweeps = min(max(SWEEPS, min(SMALL / objects, MOST_SWEEPS)), CELLS / (objects * width))
+    enough = max(SWEEPS, SWEEPS * (objects / MANY) ** 0.2, min(SMALL / objects, MOST_SWEEPS))
+    sweeps = min(enough, CELLS / (objects * width))
+    plan = [(HOT, LEVELS)] * fresh + [(WARM, WARM_LEVELS)] * (turns - fresh)
+    if turns == 1:
+        plan = [(HOT if sweeps >= SWEEPS else QUICK_HOT, ONE_TURN_LEVELS)]
     return plan, max(1, round(sweeps / sum(levels for _, levels in plan)))
 
 
@@ -110,16 +119,25 @@ def _cool(
     noise: NDArray[np.float32],
     rng: np.random.Generator,
 ) -> bool:
-    """One annealing from ``best`` (n1,), which takes the best map on the way; false where the deadline struck."""
-    state, ahead = keep(best, compiled), 0.0
+    """One annealing from ``best`` (n1,), which takes the best map on the way; false where the deadline cut it short.
+
+    No temperature gets more than ``HURRY`` times its share of the time that is left: a search in a hurry cools faster,
+    and is not stopped while it is hot.
+    """
+    state, ahead, finished = keep(best, compiled), 0.0, True
     part = max(1, int(PART / state.gains.size))
-    for temperature in schedule:
+    for level, temperature in enumerate(schedule):
+        now = time.perf_counter()
+        if now > deadline:
+            return False
+        next_level = now + HURRY * (deadline - now) / (len(schedule) - level)
         for done in range(0, sweeps, part):
-            if time.perf_counter() > deadline:
-                return False
+            if time.perf_counter() > next_level:
+                finished = False
+                break
             count, seed = min(part, sweeps - done), int(rng.integers(1 << 31))
             ahead = anneal(state, best, ahead, compiled, count, temperature, noise, seed)
-    return True
+    return finished
 
 
 def mean_range(compiled: Compiled) -> float:

@@ -33,7 +33,6 @@ class Sum(NamedTuple):
     below: NDArray[np.float64]  # (depth,): what was found below the node so far
     labels: NDArray[np.int64]  # (n1,): -1 for what is left
     marginals: NDArray[np.float64]  # (n1, n2 + 1): weights of the maps found, by match
-    maps: NDArray[np.int64]  # (limit, n1): the first maps found
 
 
 class Factors(NamedTuple):
@@ -62,12 +61,12 @@ def factors(problem: Compiled) -> Factors:
 
 
 def add_up(
-    problem: Compiled, parts: Factors, threshold: float, nodes: int, limit: int
-) -> tuple[Sum, NDArray[np.float64]]:
+    problem: Compiled, parts: Factors, threshold: float, nodes: int
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Searches until ``nodes`` partial maps were looked at, turning back where less than ``threshold`` is below.
 
-    Returns the state, and (4,): the sum of all maps found, a bound on what is missing (inf where the nodes did not
-    suffice), the number of maps found, and of nodes.
+    Returns the weights of the maps found, by match (n1, n2 + 1), and (3,): the sum of them all, a bound on what is
+    missing (inf where the nodes did not suffice), and the number of nodes.
     """
     n1, width = parts.weights.shape
     state = Sum(
@@ -79,13 +78,12 @@ def add_up(
         np.zeros(n1 + 1),
         np.full(n1, -1),
         np.zeros((n1, width)),
-        np.zeros((limit, n1), dtype=np.int64),
     )
     state.weights[0] = parts.weights
     state.sums[0] = parts.weights.sum(axis=1)
-    counts = np.zeros(4)
+    counts = np.zeros(3)
     _search(problem, parts, state, threshold, nodes, counts)
-    return state, counts
+    return state.marginals, counts
 
 
 @njit(cache=True)
@@ -101,14 +99,14 @@ def _search(problem, parts, state, threshold, nodes, counts):  # type: ignore[no
         p = state.position[depth]
         state.position[depth] += 1
         below = _child(depth, p, problem, parts, state, threshold, counts)
-        if counts[3] > nodes:
+        if counts[2] > nodes:
             counts[1] = np.inf
             return
         if below <= threshold:
             counts[1] += below
             state.labels[state.chosen[depth]] = -1
         elif depth + 1 == n1:
-            _keep(parts, state, counts)
+            _add(depth, state.prefix[depth + 1] * _idle(parts, state), state)
         else:
             depth += 1
             state.chosen[depth], state.position[depth], state.below[depth] = _next_object(depth, state), 0, 0.0
@@ -123,19 +121,9 @@ def _child(depth, p, problem, parts, state, threshold, counts):  # type: ignore[
     below = weight * _product(depth, i, state)
     if below <= threshold:
         return below
-    counts[3] += 1
+    counts[2] += 1
     _assign(depth, i, p, weight, problem, parts, state)
     return weight * _product(depth + 1, -1, state)
-
-
-@njit(cache=True)
-def _keep(parts, state, counts):  # type: ignore[no-untyped-def]
-    """Counts a whole map."""
-    depth = len(state.labels) - 1
-    if counts[2] < len(state.maps):
-        state.maps[int(counts[2])] = state.labels
-    counts[2] += 1
-    _add(depth, state.prefix[depth + 1] * _idle(parts, state), state)
 
 
 @njit(cache=True)

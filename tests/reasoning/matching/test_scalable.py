@@ -10,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from matching_problems import every_map, problems
 
+from deixis.reasoning.matching import scalable as module
 from deixis.reasoning.matching.climbing import climb
 from deixis.reasoning.matching.compiled import compile_problem, to_assignment, to_labels
 from deixis.reasoning.matching.problem import MatchingError, Problem
@@ -63,6 +64,23 @@ def test_past_the_deadline_there_is_a_map_that_is_not_called_finished() -> None:
     assert time.perf_counter() - started < 2.0
     problem.require_map(found.assignment)
     assert not found.finished
+
+
+def test_in_a_hurry_it_still_cools_all_the_way(monkeypatch: pytest.MonkeyPatch) -> None:
+    seen, clock = [], iter(np.arange(0.0, 1e4, 0.01))
+
+    def record(*arguments: object) -> float:
+        seen.append(float(arguments[5]))  # type: ignore[arg-type]
+        return 0.0
+
+    monkeypatch.setattr(module, "anneal", record)
+    monkeypatch.setattr(module, "PART", 1e5)  # so that there are many looks at the clock
+    monkeypatch.setattr(time, "perf_counter", lambda: float(next(clock)))
+    found = scalable(random_problem(300), 20.0)
+    assert not found.finished
+    assert seen[-1] == 0.0
+    assert sorted(set(seen), reverse=True) == list(dict.fromkeys(seen))
+    assert len(set(seen)) == module.ONE_TURN_LEVELS + 1
 
 
 @pytest.mark.parametrize("start", [[0, 0], [0], [5, 1], [-2, 0]])
