@@ -40,6 +40,15 @@ def ours(cloud: PointCloud) -> Found:
     return found.labels, found.boxes.mean(axis=1) @ back[:3, :3].T + back[:3, 3]
 
 
+def without_image(cloud: PointCloud) -> Found:
+    """The same of the bare points in another order: it is not said which of them are next to each other."""
+    order = np.random.default_rng(0).permutation(np.flatnonzero(cloud.finite))
+    found, middles = ours(cloud.take(order))
+    labels = np.full(len(cloud), -1, np.int64)
+    labels[order] = found
+    return labels, middles
+
+
 def clustering(voxel: float, gap: float) -> Callable[[PointCloud], Found]:
     """The tabletop detector's method: RANSAC's largest plane, and what is above it in clusters (Open3D's DBSCAN)."""
 
@@ -69,6 +78,7 @@ def clustering(voxel: float, gap: float) -> Callable[[PointCloud], Found]:
 
 METHODS: dict[str, Callable[[PointCloud], Found]] = {
     "detect": ours,
+    "detect, no image": without_image,
     "cluster 5mm/2cm": clustering(0.005, 0.02),
     "cluster 3mm/1cm": clustering(0.003, 0.01),
 }

@@ -1,4 +1,4 @@
-"""Spin images beside the Point Cloud Library's: 500 keypoints of a bottle, at three densities, by threads; describers.
+"""Spin images beside the Point Cloud Library's: 500 keypoints of a bottle, at four densities, by threads; describers.
 
 Both are timed in turn from points and normals to images, their search structures included; times are medians, ratios
 those of medians. Without the library (Debian: libpcl-dev) only our own times are printed. ``--quick`` takes few runs.
@@ -27,7 +27,7 @@ from deixis.perception.features.spin_images import spin_images
 
 SUPPORT = 0.08
 KEYPOINTS = 500
-SIZES = (4_054, 15_000, 45_000)
+SIZES = (4_054, 5_000, 15_000, 45_000)
 
 Cloud = tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.int64]]
 """Points and normals (n, 3), keypoints (k,)."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +15,7 @@ from deixis.perception.detection.neighbours import neighbour_table
 from deixis.perception.detection.outline import above_outline
 from deixis.perception.detection.plane import Outlook, Plane, table_plane
 from deixis.perception.detection.settings import DetectionSettings
+from deixis.perception.detection.viewpoint import checked_outlook
 from deixis.perception.errors import CloudError
 from deixis.perception.scene import PerceivedObject, Scene
 
@@ -23,6 +24,9 @@ NONE = -1
 
 ON_TABLE = 0.01
 """Metres from the plane within which a point is the table's, as far as its outline goes."""
+
+WIDEST = 20.0
+"""Metres from the middle of a cloud: where half the points are farther away, the unit is another."""
 
 SURELY = 1.5
 """A thing is so many times as high as what may be taken for a point above the table."""
@@ -58,8 +62,8 @@ class Detection:
 def detect(cloud: PointCloud, settings: DetectionSettings | None = None) -> Detection:
     """The table of a cloud and the things on it; labels that a cloud bears are not looked at.
 
-    Raises CloudError for a cloud without one finite point. A cloud without a table, and a table with nothing on it,
-    give an answer that says so.
+    Raises CloudError for a cloud without one finite point, or so wide that it is not in metres. A cloud without a
+    table, and a table with nothing on it, give an answer that says so.
 
     >>> x, y = (axis.ravel() for axis in np.mgrid[-0.5:0.5:0.01, 0.5:1.5:0.01])
     >>> table = np.stack([x, y, np.full(x.shape, -0.7)], axis=1)
@@ -72,12 +76,12 @@ def detect(cloud: PointCloud, settings: DetectionSettings | None = None) -> Dete
     if not len(kept):
         raise CloudError("a cloud without one finite point shows nothing; is its depth image empty?")
     points = cloud.points[kept].astype(np.float64)
-    outlook = outlook_of(cloud, settings)
-    plane = table_plane(points, outlook, settings.seed)
+    _require_metres(points)
+    plane, outlook = _table(points, outlook_of(cloud, settings), settings.seed)
     if plane is None:
         return _nothing(len(cloud), None, np.eye(4), "no table was found: no large level surface is in view")
     view = _view(points, plane, outlook, settings)
-    neighbours = neighbour_table(points, kept, cloud.organised)
+    neighbours = neighbour_table(points, kept, cloud.organised, outlook.eye if outlook.known else None)
     rising = raised(view.heights, view.distance, neighbours, settings)
     colours = None if cloud.colours is None else cloud.colours[kept]
     found = _things(view, rising, neighbours, colours, settings)
@@ -89,6 +93,25 @@ def detect(cloud: PointCloud, settings: DetectionSettings | None = None) -> Dete
     members = [view.points[numbers == k] for k in range(int(numbers.max()) + 1)]
     boxes = np.stack([upright_box(thing) for thing in members])
     return Detection(plane, view.frame, labels, boxes, tuple(oriented_box(thing) for thing in members))
+
+
+def _require_metres(points: NDArray[np.float64]) -> None:
+    few = points[:: max(1, len(points) // 10_000)]
+    spread = float(np.median(np.linalg.norm(few - np.median(few, axis=0), axis=1)))
+    if spread > WIDEST:
+        raise CloudError(
+            f"half of the points are more than {spread:.0f} m from the middle, too far for a table;"
+            " coordinates are metres: if these are millimetres, divide them by 1000"
+        )
+
+
+def _table(points: NDArray[np.float64], outlook: Outlook, seed: int) -> tuple[Plane | None, Outlook]:
+    """The table's plane, for a camera that is held upright, else upside down; and from where it was seen."""
+    plane = table_plane(points, outlook, seed)
+    if plane is None and outlook.up is not None and outlook.right is not None:
+        outlook = replace(outlook, up=-outlook.up, right=-outlook.right)
+        plane = table_plane(points, outlook, seed)
+    return plane, outlook if plane is None else checked_outlook(outlook, points, plane, seed)
 
 
 @dataclass(frozen=True, eq=False)

@@ -64,6 +64,8 @@ def _away(
     """Directions away from the viewer, the best first; not all need to be of use."""
     if viewer is not None:
         return [middle - np.asarray(viewer, dtype=np.float64)]
+    if not outlook.known:
+        return []
     if outlook.right is not None:
         return [np.cross(plane.normal, outlook.right)]
     return [middle - outlook.eye]

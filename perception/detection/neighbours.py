@@ -1,5 +1,8 @@
 """Who is next to whom: the pixels around a pixel, or the nearest points of a cloud that is no image.
 
+As seen from the sensor a point's neighbours are those in nearly the same direction, as in an image; so it is known what
+hides what. Of a cloud that was not seen from one known place, the nearest in space are taken.
+
 Everything after this works on a table of neighbours, and does not ask where it came from.
 """
 
@@ -7,6 +10,8 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
+
+from deixis.perception.detection.viewpoint import directions
 
 COUNT = 8
 """Neighbours of a point."""
@@ -18,18 +23,22 @@ _AROUND = ((-1, -1), (-1, 0), (-1, 1), (0, -1), (0, 1), (1, -1), (1, 0), (1, 1))
 
 
 def neighbour_table(
-    points: NDArray[np.float64], kept: NDArray[np.intp], organised: tuple[int, int] | None
+    points: NDArray[np.float64],
+    kept: NDArray[np.intp],
+    organised: tuple[int, int] | None,
+    eye: NDArray[np.float64] | None = None,
 ) -> NDArray[np.int32]:
     """For each of the points (n, 3), finite, its neighbours (n, 8) as indices among these, -1 where there is none.
 
-    ``kept`` (n,) are the places of the points in the image of ``organised`` rows and columns.
+    ``kept`` (n,) are the places of the points in the image of ``organised`` rows and columns; without these, ``eye``
+    (3,) is from where they were seen, if that is known.
 
     >>> neighbour_table(np.zeros((3, 3)), np.array([0, 1, 3]), (2, 2))[0].tolist()
     [-1, -1, -1, -1, 1, -1, -1, 2]
     """
     if organised is not None:
         return _pixels(kept, *organised)
-    return _nearest(points)
+    return _nearest(points if eye is None else directions(points, eye))
 
 
 def _pixels(kept: NDArray[np.intp], rows: int, columns: int) -> NDArray[np.int32]:

@@ -39,15 +39,23 @@ class Plane:
         result: NDArray[np.float64] = points @ self.normal - self.offset
         return result
 
+    def turned(self) -> Plane:
+        """The same plane, with its normal to the other side."""
+        return Plane(-self.normal, -self.offset)
+
 
 @dataclass(frozen=True, eq=False)
 class Outlook:
-    """From where a cloud was seen. ``up`` and ``right`` (3,) are those of the image, None where that is not known."""
+    """From where a cloud was seen. ``up`` and ``right`` (3,) are those of the image, None where that is not known.
+
+    ``known`` is false for an eye that was only assumed, for want of the place where the sensor stood.
+    """
 
     eye: NDArray[np.float64]
     up: NDArray[np.float64] | None = None
     right: NDArray[np.float64] | None = None
     upwards: NDArray[np.float64] | None = None  # against gravity, where it was told
+    known: bool = True
 
     def could_be_table(self, normal: NDArray[np.float64]) -> bool:
         """Whether a plane with this normal, towards the eye, is level for a camera that is held upright."""
@@ -69,6 +77,8 @@ def table_plane(points: NDArray[np.float64], outlook: Outlook, seed: int) -> Pla
     free = np.ones(len(sample), dtype=np.bool_)
     for plane in planes:
         free &= np.abs(plane.heights(sample)) > tolerance
+    # What stands on a table tells its upper side, should the sensor seem to be below: the origin may be a mere default.
+    planes += [turned for turned in (plane.turned() for plane in planes) if outlook.could_be_table(turned.normal)]
     bearing = [_bearing(plane, sample, tolerance, sample[free]) for plane in planes]
     best = planes[int(np.argmax(bearing))]
     chosen = points[:: max(1, len(points) // MOST_REFINED)]
@@ -147,7 +157,7 @@ def _towards(plane: Plane, outlook: Outlook, points: NDArray[np.float64]) -> Pla
     elif abs(side) < 0.05:
         heights = plane.heights(points)
         side = float((heights > STANDING[0]).sum() - (heights < -STANDING[0]).sum())
-    return plane if side >= 0 else Plane(-plane.normal, -plane.offset)
+    return plane if side >= 0 else plane.turned()
 
 
 def _bearing(

@@ -141,15 +141,20 @@ def _add(a, b, bins, count, sums):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _to_corners(sums, image):  # type: ignore[no-untyped-def]
-    """Adds to the image (width + 1, 2 width + 1) the shares that the sums stand for; returns the number of points."""
+    """Adds to the image (width + 1, 2 width + 1) the shares that the sums stand for; returns the number of points.
+
+    Sums are read one by one: a view of an array per bin costs as much as all the points of a small cloud.
+    """
     total, columns = 0.0, image.shape[1] - 1
     for row in range(image.shape[0] - 1):
         for column in range(columns):
-            one, other = sums[0, row * columns + column], sums[1, row * columns + column]
-            ones = one[0] + other[0]
+            at = row * columns + column
+            ones = sums[0, at, 0] + sums[1, at, 0]
             if ones > 0.0:
                 total += ones
-                a, b, ab = one[1] + other[1], one[2] + other[2], one[3] + other[3]
+                a = sums[0, at, 1] + sums[1, at, 1]
+                b = sums[0, at, 2] + sums[1, at, 2]
+                ab = sums[0, at, 3] + sums[1, at, 3]
                 image[row, column] += ones - a - b + ab
                 image[row + 1, column] += a - ab
                 image[row, column + 1] += b - ab

@@ -15,7 +15,7 @@ from deixis.ontology.tbox import Ontology, default_ontology
 from deixis.perception.clouds.mesh import Mesh
 from deixis.perception.simulator.blocks import CLOTH_CELL
 from deixis.perception.simulator.errors import SimulationError
-from deixis.perception.simulator.resting import draped, lowered, overlap_in_plan, plan_box
+from deixis.perception.simulator.resting import PlanBox, draped, lowered, overlap_in_plan, plan_box
 from deixis.perception.simulator.solids import moved
 from deixis.perception.simulator.tableware import Colour, make
 
@@ -106,19 +106,25 @@ def lay(placements: Iterable[Placement], top: TableTop | None = None, ontology: 
     """
     ontology = ontology or default_ontology()
     things: list[LaidThing] = []
+    boxes: list[PlanBox] = []
     for placement in placements:
         if any(thing.name == placement.name for thing in things):
             raise SimulationError(f"'{placement.name}' is placed twice; give every thing a name of its own")
         if not np.isfinite([placement.x, placement.y, placement.yaw]).all():
             raise SimulationError(f"'{placement.name}' has no place: {placement.x}, {placement.y}, yaw {placement.yaw}")
-        things.append(_set_down(placement, things, ontology))
+        things.append(_set_down(placement, things, boxes, ontology))
+        boxes.append(plan_box(things[-1].mesh))
     return LaidTable(top or top_under(things), tuple(things))
 
 
-def _set_down(placement: Placement, there: Sequence[LaidThing], ontology: Ontology) -> LaidThing:
+def _set_down(
+    placement: Placement, there: Sequence[LaidThing], boxes: Sequence[PlanBox], ontology: Ontology
+) -> LaidThing:
+    """The thing laid over what is ``there``, which has these boxes."""
     thing, soft = _upright(placement, ontology)
     mesh = moved(thing.mesh, placement.yaw, by=(placement.x, placement.y, 0.0))
-    below = [other.mesh for other in there if overlap_in_plan(mesh, other.mesh)]
+    own = plan_box(mesh)
+    below = [other.mesh for other, box in zip(there, boxes, strict=True) if overlap_in_plan(own, box)]
     return replace(thing, mesh=draped(mesh, below, CLOTH_CELL) if soft else lowered(mesh, below))
 
 

@@ -17,15 +17,17 @@ CLEARANCE = 0.0002
 STEP = 0.002
 """Metres between these places, beside the vertices of both."""
 
-
-def overlap_in_plan(mesh: Mesh, other: Mesh) -> bool:
-    """Whether the boxes of two meshes overlap, seen from above."""
-    (low, high), (other_low, other_high) = (plan_box(each) for each in (mesh, other))
-    return bool((low < other_high).all() and (other_low < high).all())
+PlanBox = tuple[NDArray[np.float64], NDArray[np.float64]]
+"""The least and the greatest corner (2,) in the plan."""
 
 
-def plan_box(mesh: Mesh) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """The least and the greatest corner (2,) in the plan."""
+def overlap_in_plan(box: PlanBox, other: PlanBox) -> bool:
+    """Whether two boxes of the plan overlap."""
+    return bool((box[0] < other[1]).all() and (other[0] < box[1]).all())
+
+
+def plan_box(mesh: Mesh) -> PlanBox:
+    """The box around a mesh, seen from above."""
     return mesh.vertices[:, :2].min(axis=0), mesh.vertices[:, :2].max(axis=0)
 
 

@@ -64,7 +64,7 @@ class _Floor:
 
     def __init__(self, rng: np.random.Generator) -> None:
         self._rng = rng
-        self._taken: list[NDArray[np.float64]] = []
+        self._taken = np.empty((0, 4, 2))
         self._plates: list[tuple[float, float, float]] = []
         self._half = 0.15
 
@@ -75,8 +75,8 @@ class _Floor:
                 x, y = self._rng.uniform(-1, 1, 2) * (1.2 * self._half, 0.85 * self._half)
                 yaw = float(self._rng.uniform(0, 2 * np.pi))
                 corners = _corners(x, y, yaw, plan)
-                if not any(_overlap(corners, other) for other in self._taken):
-                    self._taken.append(corners)
+                if not _overlaps_any(corners, self._taken):
+                    self._taken = np.append(self._taken, corners[None], axis=0)
                     return self._stands(thing, plan, float(x), float(y), yaw)
             self._half *= 1.15
 
@@ -107,11 +107,17 @@ def _corners(x: float, y: float, yaw: float, plan: tuple[float, float]) -> NDArr
     return turned
 
 
-def _overlap(a: NDArray[np.float64], b: NDArray[np.float64]) -> bool:
-    """Whether two rectangles overlap: no side of either has the other beyond it (separating axes)."""
-    for sides in (a[1:3] - a[:2], b[1:3] - b[:2]):
-        along_a, along_b = a @ sides.T, b @ sides.T
-        apart = (along_a.max(axis=0) <= along_b.min(axis=0)) | (along_b.max(axis=0) <= along_a.min(axis=0))
-        if apart.any():
-            return False
-    return True
+def _overlaps_any(rectangle: NDArray[np.float64], others: NDArray[np.float64]) -> bool:
+    """Whether a rectangle (4, 2) overlaps one of the others (m, 4, 2): no side of either has the other beyond it
+    (separating axes)."""
+    own = rectangle[1:3] - rectangle[:2]
+    theirs = (others[:, 1:3] - others[:, :2]).transpose(0, 2, 1)
+    apart = _apart(rectangle @ own.T, others @ own.T) | _apart(rectangle @ theirs, others @ theirs)
+    return not bool(apart.all())
+
+
+def _apart(one: NDArray[np.float64], other: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Whether there is a direction along which corners (…, 4, directions) and the others' do not overlap, (m,)."""
+    beyond = (one.max(axis=-2) <= other.min(axis=-2)) | (other.max(axis=-2) <= one.min(axis=-2))
+    result: NDArray[np.bool_] = beyond.any(axis=-1)
+    return result

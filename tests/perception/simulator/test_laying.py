@@ -105,6 +105,14 @@ def test_too_many_things_or_none_are_refused() -> None:
             scattered(count, 0)
 
 
+def test_as_many_things_as_are_allowed_find_room() -> None:
+    table = lay(scattered(MOST, 3))
+    assert len(table.things) == MOST
+    boxes = np.array([thing.box for thing in table.things if thing.box[0, 2] == 0])
+    area = np.prod(boxes[:, 1, :2] - boxes[:, 0, :2], axis=1).sum()
+    assert area > 1.0 and np.ptp(boxes[:, :, 0]) > np.ptp(boxes[:, :, 1])
+
+
 def test_laying_is_deterministic() -> None:
     one, other = (lay(scattered(6, 2)) for _ in range(2))
     for a, b in zip(one.things, other.things, strict=True):

@@ -1,0 +1,95 @@
+"""Clouds that are no image: seen from a known place, from a place that the file does not tell, or from none."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from deixis.perception.clouds.cloud import PointCloud
+from deixis.perception.detection.detect import Detection, detect
+from deixis.perception.detection.neighbours import neighbour_table
+from deixis.perception.detection.viewpoint import MOST_APART, apart
+from deixis.perception.errors import CloudError
+
+Look = Callable[..., PointCloud]
+ToTable = Callable[[NDArray[np.floating]], NDArray[np.float64]]
+
+CUBE, PLANK = ((-0.25, -0.1, 0.0), (-0.17, -0.02, 0.08)), ((0.0, -0.1, 0.0), (0.25, -0.06, 0.008))
+LOW, STACKED = ((-0.1, 0.0, 0.0), (0.1, 0.16, 0.05)), ((-0.04, 0.04, 0.05), (0.03, 0.1, 0.13))
+CENTRES = [[-0.21, -0.06], [0.125, -0.08]]
+
+
+def no_image(cloud: PointCloud) -> PointCloud:
+    return cloud.take(np.random.default_rng(0).permutation(np.flatnonzero(cloud.finite)))
+
+
+def centres(found: Detection) -> NDArray[np.float64]:
+    """In the cloud's frame."""
+    back = np.linalg.inv(found.frame)
+    result: NDArray[np.float64] = found.boxes.mean(axis=1) @ back[:3, :3].T + back[:3, 3]
+    return result
+
+
+def test_neighbours_in_direction_are_the_pixels_around_a_pixel(boxes_seen: Look) -> None:
+    cloud = boxes_seen([CUBE, STACKED])
+    kept = np.flatnonzero(cloud.finite)
+    points = cloud.points[kept].astype(np.float64)
+    pixels = neighbour_table(points, kept, cloud.organised)
+    inner = (pixels >= 0).all(axis=1)
+    found = neighbour_table(points, kept, None, np.zeros(3))
+    assert inner.sum() > 10_000
+    assert (np.sort(found[inner], axis=1) == np.sort(pixels[inner], axis=1)).all()
+
+
+def test_without_its_order_an_image_shows_the_same_things(boxes_seen: Look) -> None:
+    cloud = boxes_seen([CUBE, PLANK, LOW, STACKED])
+    order = np.random.default_rng(1).permutation(np.flatnonzero(cloud.finite))
+    as_image, as_points = detect(cloud), detect(cloud.take(order))
+    assert len(as_points.boxes) == len(as_image.boxes) == 4
+    image = as_image.labels[order]
+    whose = np.array([np.bincount(as_points.labels[image == k] + 1).argmax() - 1 for k in range(-1, 4)])
+    assert sorted(whose.tolist()) == [-1, 0, 1, 2, 3]
+    assert (whose[image + 1] == as_points.labels).mean() > 0.99
+
+
+def test_points_seen_from_elsewhere_have_neighbours_that_are_apart(boxes_seen: Look, to_table: ToTable) -> None:
+    points = no_image(boxes_seen([CUBE, STACKED, LOW])).points.astype(np.float64)
+    assert apart(points, np.zeros(3)) < MOST_APART / 2
+    assert apart(to_table(points), np.zeros(3)) > 2 * MOST_APART
+
+
+@pytest.mark.parametrize("shift", [(0.0, 0.0, 0.0), (0.8, 0.1, 0.75)])
+@pytest.mark.parametrize("organised", [True, False])
+def test_a_cloud_whose_origin_is_no_viewpoint_keeps_its_own_y_axis(
+    boxes_seen: Look, to_table: ToTable, shift: tuple[float, float, float], organised: bool
+) -> None:
+    cloud = boxes_seen([CUBE, PLANK])
+    cloud = cloud if organised else no_image(cloud)
+    found = detect(replace(cloud, points=(to_table(cloud.points) + shift).astype(np.float32)))
+    assert found.frame[:3, :3] == pytest.approx(np.eye(3), abs=0.01)
+    assert len(found.boxes) == 2
+    assert (centres(found) - shift)[:, :2] == pytest.approx(np.array(CENTRES), abs=0.008)
+
+
+def test_a_camera_held_upside_down_sees_the_same_table(boxes_seen: Look) -> None:
+    cloud = boxes_seen([CUBE, PLANK])
+    points = (cloud.points * np.array([-1, -1, 1]))[::-1].astype(np.float32)
+    one, other = detect(cloud), detect(PointCloud(points, organised=cloud.organised))
+    assert other.boxes == pytest.approx(one.boxes, abs=0.003)
+    assert (other.labels[::-1] == one.labels).mean() > 0.99
+
+
+def test_a_cloud_in_millimetres_is_refused_and_told_so(boxes_seen: Look) -> None:
+    cloud = boxes_seen([CUBE])
+    with pytest.raises(CloudError, match="millimetres"):
+        detect(replace(cloud, points=cloud.points * np.float32(1000)))
+
+
+def test_points_beyond_all_others_are_no_other_unit(boxes_seen: Look) -> None:
+    cloud = no_image(boxes_seen([CUBE]))
+    far = np.random.default_rng(0).uniform(100, 200, (200, 3)).astype(np.float32)
+    assert len(detect(PointCloud(np.concatenate([cloud.points, far]))).boxes) == 1
