@@ -21,6 +21,7 @@ problem whose value is the similarity itself.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -29,6 +30,7 @@ from numpy.typing import NDArray
 
 from deixis.ontology.graph import RelationGraph
 from deixis.ontology.kinds import Kinds
+from deixis.ontology.size_model import SizeModel
 from deixis.ontology.sizes import Sizes
 from deixis.ontology.tbox import Ontology
 from deixis.reasoning.closeness import STEP, Closeness
@@ -135,9 +137,13 @@ class Shares:
 
 
 class Comparison:
-    """Compares layouts with scenes; keeps what it works out for every relation and kind."""
+    """Compares layouts with scenes; keeps what it works out for every relation and kind.
 
-    def __init__(self, ontology: Ontology) -> None:
+    ``learned`` sizes in metres, by class IRI, take the place of the usual ones of the TBox.
+    """
+
+    def __init__(self, ontology: Ontology, learned: Mapping[str, SizeModel] | None = None) -> None:
+        self._learned = {kind: model for kind, model in (learned or {}).items() if not model.relative}
         self._kinds: Kinds = ontology.kinds
         self._sizes: Sizes = ontology.sizes
         self.closeness = Closeness(ontology.relations)
@@ -206,13 +212,22 @@ class Comparison:
 
     def _usual(self, kind: str, extents: Array) -> Array:
         """How usual extents (n2, 2) are for a kind: 1 within its ranges, falling off as a Gaussian of the logarithm."""
-        usual, off = self._sizes.of(kind), np.zeros(len(extents))
+        least, greatest = self._range(kind)
         logs = np.log(np.maximum(extents, 1e-9))
-        for axis, range_ in enumerate((usual.length, usual.width)):
-            beyond = np.maximum(math.log(range_.least) - logs[:, axis], logs[:, axis] - math.log(range_.greatest))
-            off += np.maximum(beyond, 0.0) ** 2
-        result: Array = np.exp(-off / (2 * SIZE_SPREAD**2))
+        beyond = np.maximum(0.0, np.maximum(least - logs, logs - greatest))
+        result: Array = np.exp(-(beyond**2).sum(axis=1) / (2 * SIZE_SPREAD**2))
         return result
+
+    def _range(self, kind: str) -> tuple[Array, Array]:
+        """Least and greatest logarithms of length and width, each (2,): two deviations off where they were learned."""
+        model = self._learned.get(kind)
+        if model is None:
+            usual = self._sizes.of(kind)
+            ranges = usual.length, usual.width
+            return np.log([one.least for one in ranges]), np.log([one.greatest for one in ranges])
+        (length, spread), (aspect, other) = model.length, model.aspect
+        typical, off = np.array([length, length + aspect]), 2 * np.array([spread, math.hypot(spread, other)])
+        return typical - off, typical + off
 
     def _kinship(self, a: str, b: str) -> float:
         """1 for the same kind, times ``STEP`` for every kind, itself and broader ones, that only one of the two is."""

@@ -61,10 +61,10 @@ def retrieve(
     from deixis.show_retrieve import retrieved_lines, retrieved_to_dict
 
     ontology, deadline = default_ontology(), time.perf_counter() + time_limit
-    comparison = Comparison(ontology)
     by_script = is_script_file(query) and not query.endswith(".json")
     compared: Mapping[str, object]
     with _remembering(memory, no_memory) as session:
+        comparison = Comparison(ontology, session.meaning().sizes if session else None)
         if by_script:
             compared = scenes = _known_scenes(session, among, hide_labels, ontology)
             layouts = {query: _script(query)}

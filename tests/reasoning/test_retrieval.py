@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import product
 from typing import Any
 
@@ -12,6 +13,7 @@ from hypothesis import strategies as st
 
 from deixis.grammar.parser import parse_script
 from deixis.ontology.graph import RelationGraph
+from deixis.ontology.size_model import SizeModel
 from deixis.ontology.tbox import default_ontology
 from deixis.perception.settings import formal_setting
 from deixis.reasoning.closeness import Closeness
@@ -202,3 +204,16 @@ def test_most_pairs_are_ruled_out_by_their_bounds(monkeypatch: pytest.MonkeyPatc
 def test_to_look_for_none_is_refused() -> None:
     with pytest.raises(SettingError, match="1 or more"):
         rank_layouts(seen("scene", table(1, 2)), [], COMPARISON, top=0)
+
+
+def test_a_learned_size_takes_the_place_of_the_usual_one_unless_it_is_relative() -> None:
+    scene = perceived_graph(["a"], np.array([[[0.0, 0.0], [0.9, 0.45]]]), RELATIONS)
+    plate = layout("layout x; dinner_plate is a dinner plate")
+    kind = plate.graph.kinds[0]
+    large = SizeModel((np.log(0.9), 0.1), (np.log(0.5), 0.1))
+    found = {
+        name: Comparison(ONTOLOGY, {str(kind): model}).likeness(plate, seen("scene", scene)).objects
+        for name, model in (("metres", large), ("relative", replace(large, relative=True)))
+    }
+    assert found["metres"] == 1
+    assert found["relative"] == COMPARISON.likeness(plate, seen("scene", scene)).objects < 0.5
