@@ -36,6 +36,14 @@ LEAST_SPREAD = 0.05
 """Standard deviation of a logarithm below which no learned range falls: 5 per cent of a length."""
 
 
+IN_IMAGE = 0.3
+"""Standard deviation of the logarithm by which perspective changes lengths and proportions in an image: a plate at the
+far edge of a table, or seen from aslant, is about so much smaller."""
+
+KINDS_APART = 0.7
+"""Standard deviation of the logarithm of usual lengths of tableware between kinds, by the TBox."""
+
+
 @dataclass(frozen=True, slots=True)
 class UnaryWeights:
     """By how much labels, sizes and colours are multiplied; 1 takes them at their word, 0 leaves them out."""
@@ -85,19 +93,38 @@ def size_evidence(
 ) -> Array:
     """What sizes say of n1 objects of some kinds (class IRIs) being each of n2 boxes, shape (n1, n2), finite.
 
-    A learned model takes the place of the usual size; a kind of which no size is known says nothing, nor does, where
-    units are pixels (not ``metric``), one that is not relative. Chance is the scene itself: a thing weighs as much as
-    it fits the kind better than the things around do, log n2 at the most, and nothing where all are alike.
+    A learned model takes the place of the usual size; a kind of which no size is known says nothing. Where units are
+    pixels (not ``metric``), sizes in metres say how large the objects are beside each other. Chance is the scene
+    itself: a thing weighs as much as it fits the kind better than the things around do, log n2 at the most, and nothing
+    where all are alike.
     """
     evidence = np.zeros((len(kinds), len(boxes)))
-    found: dict[SizeModel, Array] = {}
-    for row, kind in enumerate(kinds):
-        model = (learned or {}).get(kind) or (usual_size(kind, sizes) if metric else None)
-        if model is not None and (model.relative or metric) and len(boxes):
-            if model not in found:
-                found[model] = _density_ratio(log_sizes(boxes, model.relative), model)
-            evidence[row] = found[model]
+    known = {kind: model for kind in kinds if (model := (learned or {}).get(kind) or usual_size(kind, sizes))}
+    if not metric:
+        known = beside_each_other(known, kinds)
+    for kind, model in known.items():
+        if len(boxes):
+            ratio = _density_ratio(log_sizes(boxes, model.relative), model)
+            evidence[[row for row, other in enumerate(kinds) if other == kind]] = ratio
     return evidence
+
+
+def beside_each_other(known: Mapping[str, SizeModel], kinds: Sequence[str]) -> dict[str, SizeModel]:
+    """The models of the kinds of some objects, those in metres made relative to the scene.
+
+    The median of the objects whose size is known stands for that of the scene, the less surely the fewer they are.
+    """
+    lengths = [known[kind].length[0] for kind in kinds if kind in known and not known[kind].relative]
+    if not lengths:
+        return dict(known)
+    middle, doubt = float(np.median(lengths)), float(np.hypot(IN_IMAGE, KINDS_APART / np.sqrt(len(lengths))))
+    return {kind: model if model.relative else _relative(model, middle, doubt) for kind, model in known.items()}
+
+
+def _relative(model: SizeModel, middle: float, doubt: float) -> SizeModel:
+    (length, spread), (aspect, other) = model.length, model.aspect
+    wide = float(np.hypot(spread, doubt)), float(np.hypot(other, IN_IMAGE))
+    return SizeModel((length - middle, wide[0]), (aspect, wide[1]), True, model.views)
 
 
 def usual_size(kind: str, sizes: Sizes) -> SizeModel | None:

@@ -29,11 +29,12 @@ LEARNED = "https://w3id.org/deixis/learned/"
 
 @pytest.fixture(scope="module")
 def taught(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A memory with two lessons: the fuller script, and Figure 7."""
+    """A memory with two lessons: the fuller script, and Figure 7 with two words of which no size is known."""
     path = tmp_path_factory.mktemp("taught") / "memory"
+    text = SCRIPT1.read_text(encoding="utf-8").replace("dinner_knife", "implement").replace("water_glass", "vessel")
     with Session(path) as session:
         session.learn(FULL, SCENE)
-        session.learn(SCRIPT1, replace(read_scene(SCENE), unit="px"))  # so that sizes do not settle it
+        session.learn(read_script(text=text), replace(read_scene(SCENE), unit="px"))
     return path
 
 
@@ -57,10 +58,10 @@ def test_what_is_doubtful_is_recorded_and_teaches_nothing(taught: Path) -> None:
             "SELECT ?name (COUNT(?thing) AS ?n) { ?m dx:ofRole ?role ; dx:decided false ; dx:couldBe ?thing . "
             f"?role rdfs:label ?name ; dx:inLayout <{LEARNED}layout/script1-1> }} GROUP BY ?name ORDER BY ?name"
         ).rows
-        assert len(rows) >= 8
+        assert len(rows) >= 6
         asked = "ASK { ?m dx:ofRole/dx:inLayout ?l ; dx:decided false ; dx:category ?c }"
         assert session.query(asked).boolean is False
-        swap = "ASK { ?a rdfs:label 'dinner_knife' . ?a dx:interchangeableWith/rdfs:label 'water_glass' }"
+        swap = "ASK { ?a rdfs:label 'implement' . ?a dx:interchangeableWith/rdfs:label 'vessel' }"
         assert session.query(swap).boolean is True
 
 
@@ -112,7 +113,7 @@ def test_forgetting_b_after_a_and_b_leaves_what_a_alone_leaves(tmp_path: Path) -
 
 @pytest.mark.slow
 def test_a_lesson_that_makes_a_kind_impossible_is_refused_and_changes_nothing(tmp_path: Path) -> None:
-    scene = replace(formal_setting().without_labels(), unit="px")  # so that sizes do not speak
+    scene = replace(formal_setting().without_labels(), unit="px")  # so that sizes say less
     says = FULL.read_text(encoding="utf-8").split("chair")[1].replace("napkin", "thing") + "thing is a "
     with Session(tmp_path / "memory") as session:
         assert "thing" in session.learn(read_script(text=f"layout a\n{says} Napkin"), scene).categories
@@ -179,7 +180,7 @@ def test_the_memory_is_where_the_environment_says(monkeypatch: pytest.MonkeyPatc
 
 @pytest.mark.slow
 def test_an_import_that_contradicts_what_is_known_is_refused_and_changes_nothing(tmp_path: Path) -> None:
-    scene = replace(formal_setting().without_labels(), unit="px")  # so that sizes do not speak
+    scene = replace(formal_setting().without_labels(), unit="px")  # so that sizes say less
     says = FULL.read_text(encoding="utf-8").split("chair")[1].replace("napkin", "thing") + "thing is a "
     for name, kind in (("first", "Napkin"), ("second", "Fork")):
         with Session(tmp_path / name) as session:

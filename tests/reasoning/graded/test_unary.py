@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -14,6 +16,7 @@ from deixis.reasoning.evidence import evidence_from
 from deixis.reasoning.graded.size_learning import learn_size, pooled_prior
 from deixis.reasoning.graded.unary import (
     UnaryWeights,
+    beside_each_other,
     label_ratios,
     log_sizes,
     size_evidence,
@@ -88,8 +91,24 @@ def test_a_spoon_lies_as_well_across() -> None:
     assert size_evidence([SPOON], turned, SIZES) == pytest.approx(size_evidence([SPOON], TABLE, SIZES))
 
 
-def test_pixels_say_nothing_until_relative_sizes_are_learned_and_these_know_no_scale() -> None:
-    assert (size_evidence([SPOON], TABLE * 900, SIZES, metric=False) == 0).all()
+def test_in_pixels_sizes_in_metres_say_how_large_things_are_beside_each_other() -> None:
+    found = size_evidence([SPOON, PLATE], TABLE[:2] * 900, SIZES, metric=False)
+    assert found.argmax(axis=1).tolist() == [0, 1] and found.min() < 0
+    assert found == pytest.approx(size_evidence([SPOON, PLATE], TABLE[:2] * 7, SIZES, metric=False))
+    sure = size_evidence([SPOON, PLATE], TABLE[:2], SIZES)
+    assert found[0, 0] - found[0, 1] < sure[0, 0] - sure[0, 1]
+
+
+def test_the_fewer_objects_have_a_known_size_the_less_lengths_say_in_pixels() -> None:
+    known = {kind: SizeModel((length, 0.1), (0.0, 0.1)) for kind, length in (("a", -2.0), ("b", 0.0))}
+    few, many = beside_each_other(known, ["a", "b"]), beside_each_other(known, ["a", "b"] * 20)
+    assert few["a"].length[0] == many["a"].length[0] == -1.0 and few["a"].relative
+    assert few["a"].length[1] > many["a"].length[1] > 0.3
+    already = {"a": replace(known["a"], relative=True)}
+    assert beside_each_other(already, ["a"]) == already
+
+
+def test_relative_sizes_know_no_scale() -> None:
     relative = {SPOON: learned_from((TABLE[:2], 0), (TABLE[:2] * 3, 0), relative=True)}
     here, there = (size_evidence([SPOON], TABLE[:2] * f, SIZES, relative, metric=False) for f in (1, 900))
     assert here == pytest.approx(there)
