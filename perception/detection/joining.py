@@ -38,13 +38,22 @@ so much farther away."""
 FOOT, STEM = 0.022, 0.03
 """Most of the foot of a glass is lower than the first, and hidden by what is higher above it than the second."""
 
+CLEAR, BESIDE = 0.012, 0.5
+"""A handle begins so much higher (metres) than what it is on, and no more of it is within the outline of that."""
+
+REACH = 0.02
+"""Metres from a handle to what it is on, as seen from above; its ends may be too thin to be seen."""
+
+SMALLER = 0.6
+"""A handle is so much narrower than what it is on, at the most, and of so much less surface."""
+
 Pairs = NDArray[np.intp]
 
 
 def whole_things(parts: Parts) -> Parts:
     """Parts joined until they are things, rule by rule."""
     parts = _without_fragments(parts)
-    for rule in (of_one_colour, enclosed, bridged, enclosed, of_one_colour, insides, on_a_foot):
+    for rule in (of_one_colour, enclosed, bridged, enclosed, of_one_colour, insides, on_a_foot, handles):
         parts = _applied(rule, parts)
     return parts
 
@@ -106,6 +115,19 @@ def on_a_foot(parts: Parts) -> Pairs:
     return _chosen(pairs, lambda glass, foot: _inside(parts, foot, glass) > 0.1)
 
 
+def handles(parts: Parts) -> Pairs:
+    """Something small that stands on nothing, and the larger thing of its colour and height beside which it is."""
+    small = (parts.widths[:, None] < SMALLER * parts.widths[None]) & (
+        parts.areas[:, None] < SMALLER * parts.areas[None]
+    )
+    clear = parts.bottoms[:, None] > parts.bottoms[None] + CLEAR
+    as_high = parts.tops[:, None] < parts.tops[None] + LEVEL
+    pairs = _pairs(small & clear & as_high & (parts.unlike() < UNLIKE))
+    return _chosen(
+        pairs, lambda handle, body: _apart(parts, handle, body) < REACH and _inside(parts, handle, body) < BESIDE
+    )
+
+
 def _chosen(pairs: Pairs, belong: Callable[[int, int], bool]) -> Pairs:
     return pairs[np.array([belong(a, b) for a, b in pairs.tolist()], dtype=np.bool_)]
 
@@ -128,6 +150,14 @@ def _inside(parts: Parts, inner: int, outer: int) -> float:
         return 0.0
     plan = parts.patches.middles[parts.members(inner), :2]
     return float((plan @ hull[:, :2].T + hull[:, 2] <= 0.004).all(axis=1).mean())
+
+
+def _apart(parts: Parts, a: int, b: int) -> float:
+    """The least distance between patches of two parts, as seen from above."""
+    from scipy.spatial import cKDTree
+
+    one, two = (parts.patches.middles[parts.members(part), :2] for part in (a, b))
+    return float(cKDTree(two).query(one)[0].min())
 
 
 def _hull(plan: NDArray[np.float64]) -> NDArray[np.float64] | None:

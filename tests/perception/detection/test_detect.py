@@ -62,6 +62,13 @@ def test_a_thing_behind_another_is_its_own(boxes_seen: Look) -> None:
     assert min(overlaps(detect(cloud), cloud)) > 0.8
 
 
+@pytest.mark.parametrize("clear", [0.03, 0.0])
+def test_what_stands_on_nothing_beside_a_thing_is_its_handle(boxes_seen: Look, clear: float) -> None:
+    mug, handle = ((-0.1, 0.0, 0.0), (-0.02, 0.08, 0.09)), ((-0.016, 0.03, clear), (0.014, 0.05, 0.07))
+    cloud = boxes_seen([mug, handle], colours=[(200, 60, 50), (200, 60, 50)])
+    assert len(detect(cloud).boxes) == (1 if clear else 2)
+
+
 def test_a_plate_of_one_colour_goes_on_below_a_knife(boxes_seen: Look) -> None:
     plate, knife = ((-0.1, -0.1, 0.0), (0.1, 0.1, 0.02)), ((-0.018, -0.1, 0.02), (0.018, 0.1, 0.045))
     cloud = boxes_seen([plate, knife], colours=[(230, 230, 225), (90, 95, 100)])
