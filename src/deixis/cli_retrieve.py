@@ -21,6 +21,7 @@ from deixis.cli_common import (
     TimeLimit,
     print_json,
     print_lines,
+    working,
 )
 
 if TYPE_CHECKING:
@@ -71,10 +72,11 @@ def retrieve(
         else:
             compared = layouts = _known_layouts(session, among, ontology)
             scenes = {query: seen_scene(query, load_scene(query, hide_labels), ontology)}
-    if by_script:
-        ranked = rank_scenes(layouts[query], scenes.values(), comparison, top, deadline)
-    else:
-        ranked = rank_layouts(scenes[query], layouts.values(), comparison, top, deadline)
+    with working("comparing"):
+        if by_script:
+            ranked = rank_scenes(layouts[query], scenes.values(), comparison, top, deadline)
+        else:
+            ranked = rank_layouts(scenes[query], layouts.values(), comparison, top, deadline)
     similar = [one for one in ranked if one.similarity >= least]
     found = [_retrieved(one, layouts[one.layout], scenes[one.scene], by_script) for one in similar]
     if as_json:

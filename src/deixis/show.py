@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from deixis.grammar.script import Script
     from deixis.inference import Inference, Inferred
     from deixis.ontology.graph import Fact
-    from deixis.reasoning.answer import Alternative, FactOutcome, Grounding, Match, Pivotal
+    from deixis.reasoning.answer import Alternative, FactOutcome, Grounding, LeftOut, Match, Pivotal
     from deixis.reasoning.checking import RoleCheck
     from deixis.reasoning.why_not import WhyNot
     from deixis.session import Checked, Learned
@@ -123,14 +123,21 @@ def grounding_lines(found: Grounding) -> list[str]:
         lines += ["    " + ", ".join(group) for group in groups]
     lines += ["", f"Facts: {len(found.outcomes)} stated, {len(found.satisfied)} satisfied" + _rest(found)]
     lines += [f"    violated: {violation_text(entry)}" for entry in found.violated]
-    lines += [
-        f"Left out: {left.name}: {left.reason}." for left in (*found.unmatched_objects, *found.unmatched_perceived)
-    ]
+    lines += _left_out_lines((*found.unmatched_objects, *found.unmatched_perceived))
     lines += [_pivotal_line(pivotal) for pivotal in (found.pivotal or ())[:MANY]]
     if len(found.pivotal or ()) > MANY:
         lines.append(f"and {len(found.pivotal or ()) - MANY} more facts that matter (--json has them)")
     lines.append(f"Graph similarity {found.graph_similarity:.3f}; engine {found.engine}, {_standing(found)}.")
     return lines + [f"Note: {note}." for note in found.notes]
+
+
+def _left_out_lines(left_out: Sequence[LeftOut]) -> Iterator[str]:
+    """A line for each, or one for many that are left out for the same reason."""
+    for reason in dict.fromkeys(left.reason for left in left_out):
+        names = [left.name for left in left_out if left.reason == reason]
+        if len(names) > MANY:
+            names = [f"{', '.join(names[:MANY])} and {len(names) - MANY} more (--json has them)"]
+        yield from (f"Left out: {name}: {reason}." for name in names)
 
 
 def _match_line(match: Match) -> str:
@@ -220,10 +227,9 @@ def check_lines(checked: Checked) -> list[str]:
     from deixis.reasoning.checking import Verdict
 
     table = checked.table
-    head = "Nothing is wrong" if table.well else "This table is not laid"
-    lines = [
-        f"{head} as '{checked.layout.name}' says." if not table.well else f"{head}, as '{checked.layout.name}' has it."
-    ]
+    right = "Nothing is known to be wrong" if table.of(Verdict.UNDETERMINED) else "Nothing is wrong"
+    name = checked.layout.name
+    lines = [f"{right}, as '{name}' has it." if table.well else f"This table is not laid as '{name}' says."]
     for entry in table.of(Verdict.MISSING):
         lines.append(f"missing     {entry.role}{_said_of(entry.role, checked)}")
     for entry in table.of(Verdict.MISPLACED):

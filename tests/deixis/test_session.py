@@ -14,6 +14,7 @@ import deixis
 from deixis.examples_data import example
 from deixis.perception.scene import Scene
 from deixis.reasoning.answer import Grounding
+from deixis.show import grounding_lines
 
 SCRIPT1 = deixis.read_script(example("script1.layout"))
 SCENE = deixis.read_scene(example("place_setting.scene.json"))
@@ -193,3 +194,10 @@ def test_an_empty_scene() -> None:
     found = deixis.ground(SCRIPT1, Scene(()))
     assert not found.matches
     assert found.graph_similarity == 0
+
+
+def test_many_things_left_out_for_one_reason_are_one_line() -> None:
+    scene = {"objects": [box(f"p{i}", 3 * i) for i in range(40)]}
+    shown = grounding_lines(deixis.ground(deixis.read_script(text="fork left of plate"), scene))
+    told = [line for line in shown if line.startswith("Left out:")]
+    assert len(told) < 5 and any("more (--json has them): " in line for line in told)
