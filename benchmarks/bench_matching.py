@@ -22,7 +22,10 @@ from numpy.typing import NDArray
 from peers import annealing, cp_sat, faq, graph_matching
 
 from deixis.experiments.generated_tables import GeneratedTable, generate
+from deixis.reasoning.engines import engine_named
+from deixis.reasoning.evidence import no_unary_evidence
 from deixis.reasoning.graded.facts import fact_tables
+from deixis.reasoning.grounding import ground
 from deixis.reasoning.matching.exact import exact, maps_within, warm
 from deixis.reasoning.matching.problem import Problem
 from deixis.reasoning.matching.scalable import scalable
@@ -34,6 +37,7 @@ REFERENCE_LIMIT = 2.0  # seconds of the exact engine where it only serves to kno
 SETTINGS = [(facts, off) for off in (0.0, 0.2, 0.1) for facts in (1.0, 1.5, 2.5)]  # facts an object, share off
 QUICK = [(30, 1, SETTINGS[-1:]), (100, 1, SETTINGS[-1:])]  # objects, cases a row, rows
 FULL = [(30, 3, SETTINGS), (100, 1, SETTINGS), (300, 1, SETTINGS[0::4]), (1000, 1, SETTINGS[-1:])]
+HURRY = 1.0  # seconds
 ABSENT = math.log(0.05 / 0.95)  # as grounding has it
 
 
@@ -46,6 +50,7 @@ def main() -> None:
         _proofs(3 if quick else 10, centred)
     for objects, cases, settings in QUICK if quick else FULL:
         _values(objects, cases, settings)
+    _in_a_hurry(1 if quick else 3)
     print(f"peak memory {resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20:.2f} GB")
 
 
@@ -96,6 +101,21 @@ def _row(problems: list[Problem]) -> None:
     best = np.max(list(values.values()), axis=0)
     for name in values:
         print(f"   {name:30} {np.mean(np.array(values[name]) / best):.4f}  {_span(times[name])}", flush=True)
+
+
+def _in_a_hurry(cases: int) -> None:
+    """The whole of grounding under a short time limit, from boxes and facts to the answer."""
+    print(f"\nscalable grounding, time limit {HURRY:g} s: objects, seconds of the processor, seconds by the clock")
+    for objects in (100, 300, 1000):
+        out, spent, waited = objects // 10, [], []
+        for seed in range(cases):
+            table = generate(objects, missing=out, extra=out, seed=seed)
+            evidence = no_unary_evidence(table.description(), table.scene())
+            worked, started = time.process_time(), time.perf_counter()
+            ground(evidence, engine_named("scalable"), HURRY)
+            spent.append(time.process_time() - worked)
+            waited.append(time.perf_counter() - started)
+        print(f"{objects:7}  {statistics.median(spent):.2f}  {statistics.median(waited):.2f}", flush=True)
 
 
 def _graded(table: GeneratedTable) -> Problem:

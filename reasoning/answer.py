@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from enum import StrEnum
@@ -9,8 +10,8 @@ from enum import StrEnum
 from deixis.ontology.graph import Fact
 from deixis.ontology.relation import Relation
 
-DECIDED = 0.95
-"""Probability from which a match is called decided."""
+DECIDED = 0.975
+"""Probability from which a match is called decided: where things are missing, somewhat less is right than was said."""
 
 
 class Standing(StrEnum):
@@ -99,7 +100,9 @@ class Grounding:
     """The answer of an engine, with all that qualifies it.
 
     ``probabilities`` says what those of the matches are worth, and ``probability_error`` by how much they may be off.
-    ``pivotal`` is None where it was not looked for what would change without a fact.
+    ``pivotal`` is None where it was not looked for what would change without a fact. ``finished`` says whether the
+    engine came to its end within the time limit. By ``gap`` (nats) another answer may be likelier at most: 0 where this
+    one is proved the best, infinite where the engine has no bound.
     """
 
     engine: str
@@ -116,6 +119,8 @@ class Grounding:
     pivotal: tuple[Pivotal, ...] | None = None
     probabilities: Standing = Standing.NONE
     probability_error: float = 0.0
+    finished: bool = True
+    gap: float = math.inf
 
     def of(self, outcome: Outcome) -> tuple[FactOutcome, ...]:
         return tuple(entry for entry in self.outcomes if entry.outcome is outcome)

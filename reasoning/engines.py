@@ -55,6 +55,8 @@ class Alignment:
     converged: bool
     proved_best: bool
     notes: tuple[str, ...] = ()
+    finished: bool = True  # whether the time limit left the search its course
+    gap: float = math.inf  # by how much another map may be more likely (log) at most; infinite where nobody knows
     posterior: Posterior | None = None  # of engines that work with likelihoods
     margins: NDArray[np.float64] | None = None  # (n1,) what the next best choice for each would lose; nan: not known
     runners_up: NDArray[np.int64] | None = None  # (n1,) that choice, or UNMATCHED

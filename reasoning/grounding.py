@@ -33,6 +33,8 @@ DEFAULT_TIME_LIMIT = 10.0
 DROPPING = 0.1
 """Share of the time limit for finding out what would change without each fact."""
 
+NO_TIME = "there was no time to find out what rests on which fact"
+
 WORTH_NAMING = 0.01
 """Probability from which an alternative is named."""
 
@@ -52,34 +54,40 @@ def ground(
     started = time.perf_counter()
     rows = np.array(sorted(range(len(evidence.description.nodes)), key=lambda i: evidence.description.nodes[i]), int)
     columns = np.array(sorted(range(len(evidence.scene.nodes)), key=lambda i: evidence.scene.nodes[i]), int)
-    ordered = evidence.reordered(rows, columns)
-    in_order = _facts_in_order(ordered)
+    in_order, stated = _facts_in_order(evidence.reordered(rows, columns))
     alignment = engine.align(in_order, started + (1 - DROPPING) * time_limit)
-    groups = _groups(ordered)
-    outcomes = _outcomes(ordered, alignment)
-    matches = _matches(ordered, alignment, outcomes, groups)
+    groups = _groups(in_order)
+    outcomes = _outcomes(in_order, alignment, stated)
+    matches = _matches(in_order, alignment, outcomes, groups)
     names = evidence.description.nodes
     posterior = alignment.posterior
+    pivotal = _pivotal(in_order, alignment, matches, time.perf_counter() + DROPPING * time_limit)
+    hurried = pivotal is None and posterior is not None and alignment.proved_best
     return Grounding(
         engine=alignment.engine,
         matches=MappingProxyType({name: matches[name] for name in names if name in matches}),
-        unmatched_objects=_left_out_objects(ordered, alignment, names),
-        unmatched_perceived=_left_out_things(ordered, alignment, evidence.scene.nodes),
+        unmatched_objects=_left_out_objects(in_order, alignment, names),
+        unmatched_perceived=_left_out_things(in_order, alignment, evidence.scene.nodes),
         interchangeable=groups,
         graph_similarity=alignment.graph_similarity,
         outcomes=outcomes,
         proved_best=alignment.proved_best,
+        finished=alignment.finished,
+        gap=alignment.gap,
         converged=alignment.converged,
-        notes=notes + _notes(ordered, alignment),
-        pivotal=_pivotal(in_order, alignment, matches, time.perf_counter() + DROPPING * time_limit),
+        notes=notes + _notes(evidence, alignment) + ((NO_TIME,) if hurried else ()),
+        pivotal=pivotal,
         probabilities=Standing.NONE if posterior is None else (Standing.EXACT if posterior.exact else Standing.SAMPLED),
         probability_error=0.0 if posterior is None else posterior.error,
         seconds=time.perf_counter() - started,
     )
 
 
-def _facts_in_order(evidence: Evidence) -> Evidence:
-    """The same evidence with its facts by what they say: sums in another order could break a tie by rounding."""
+def _facts_in_order(evidence: Evidence) -> tuple[Evidence, NDArray[np.int64]]:
+    """The same evidence with its facts by what they say, and where each was stated (edges,).
+
+    Sums in another order could break a tie by rounding.
+    """
     graph = evidence.description
     keys = (graph.weights, graph.optional, graph.positive, graph.relation_sets, graph.objects, graph.subjects)
     order = np.lexsort(keys)
@@ -93,14 +101,15 @@ def _facts_in_order(evidence: Evidence) -> Evidence:
         weights=graph.weights[order],
         sources=tuple(graph.sources[edge] for edge in order) if graph.sources else (),
     )
-    return replace(evidence, description=description)
+    return replace(evidence, description=description), order.astype(np.int64)
 
 
 def _groups(evidence: Evidence) -> tuple[tuple[str, ...], ...]:
     return tuple(interchangeable(evidence.description, [row.tobytes() for row in evidence.unary]))
 
 
-def _outcomes(evidence: Evidence, alignment: Alignment) -> tuple[FactOutcome, ...]:
+def _outcomes(evidence: Evidence, alignment: Alignment, stated: NDArray[np.int64]) -> tuple[FactOutcome, ...]:
+    """What became of the facts that can be compared, in the order in which they were stated."""
     degrees = evidence.degrees(alignment.assignment)
     vocabulary = evidence.description.vocabulary
     outcomes = []
@@ -121,7 +130,7 @@ def _outcomes(evidence: Evidence, alignment: Alignment) -> tuple[FactOutcome, ..
                 vocabulary.members(1 << int(evidence.names[p, q]))[0],
             )
         )
-    return tuple(outcomes)
+    return tuple(outcomes[place] for place in np.argsort(stated[evidence.facts]).tolist())
 
 
 def _matches(
@@ -280,9 +289,10 @@ def _left_out_things(evidence: Evidence, alignment: Alignment, ids: tuple[str, .
 
 def _notes(evidence: Evidence, alignment: Alignment) -> tuple[str, ...]:
     notes = list(alignment.notes)
-    if not alignment.converged:
+    nothing = alignment.matrix.size and not alignment.matrix.any()
+    if not alignment.converged and not nothing:
         notes.append("the similarity did not converge; its figures are those of the last iteration")
-    if alignment.matrix.size and not alignment.matrix.any():
+    if alignment.converged and nothing:
         notes.append("the similarity collapsed to zero: the description and the scene have no relation in common")
     hidden = [str(fact) for fact in evidence.description.facts() if not fact.plain]
     if hidden:

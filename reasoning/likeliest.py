@@ -28,6 +28,9 @@ PROOF, SEARCH = 0.5, 0.8
 COMPARISON = 0.3
 """Share of that rest that the similarity may take."""
 
+CELLS, GRACE = 2e7, 0.1
+"""Pairs of things by relation that the similarity looks at in a second before its first step; it may be so late."""
+
 
 @dataclass(frozen=True)
 class ExactEngine:
@@ -37,7 +40,8 @@ class ExactEngine:
         problem, now = evidence.problem, time.perf_counter()
         found = exact(problem, now + PROOF * (deadline - now))
         notes = () if found.proved else ("the time limit struck before the alignment was proved the best",)
-        return _answer("exact", evidence, found.assignment, deadline, found.proved, notes)
+        gap = 0.0 if found.proved else found.gap
+        return _answer("exact", evidence, found.assignment, deadline, notes, gap=gap, finished=found.proved)
 
 
 @dataclass(frozen=True)
@@ -48,7 +52,7 @@ class ScalableEngine:
         now = time.perf_counter()
         found = scalable(evidence.problem, now + SEARCH * (deadline - now))
         notes = () if found.finished else ("the time limit struck before the search came to its end",)
-        return _answer("scalable", evidence, found.assignment, deadline, False, notes)
+        return _answer("scalable", evidence, found.assignment, deadline, notes, finished=found.finished)
 
 
 @dataclass(frozen=True)
@@ -68,21 +72,35 @@ def _answer(
     evidence: Evidence,
     assignment: NDArray[np.int64],
     deadline: float,
-    proved: bool,
     notes: tuple[str, ...],
+    *,
+    finished: bool,
+    gap: float = math.inf,
 ) -> Alignment:
     """The map with its probability, where the time sufficed for one, and the paper's similarity for comparison."""
     now = time.perf_counter()
-    similarity = paper_similarity(evidence, deadline=now + COMPARISON * (deadline - now))
+    matrix, converged, unknown = _similarity(evidence, now + COMPARISON * (deadline - now))
     probable = posterior(evidence.problem, deadline, start=assignment)
     known = math.isfinite(probable.error)
+    notes += unknown
     notes += () if known else ("there was no time to find out how probable the matches are",)
     return Alignment(
         engine=engine,
         assignment=assignment,
-        matrix=similarity.matrices[0],
-        converged=bool(similarity.converged[0]),
-        proved_best=proved,
+        matrix=matrix,
+        converged=converged,
+        proved_best=gap == 0,
         notes=notes,
+        finished=finished,
+        gap=gap,
         posterior=probable if known else None,
     )
+
+
+def _similarity(evidence: Evidence, deadline: float) -> tuple[NDArray[np.float64], bool, tuple[str, ...]]:
+    """The paper's similarity (n1, n2) and whether it converged; zeros and a note where there is no time to begin."""
+    cells = len(evidence.description.vocabulary) * len(evidence.scene.nodes) ** 2
+    if cells / CELLS > deadline - time.perf_counter() + GRACE:
+        return np.zeros(evidence.allowed.shape), False, ("there was no time for the paper's similarity: it says 0",)
+    found = paper_similarity(evidence, deadline=deadline)
+    return found.matrices[0], bool(found.converged[0]), ()

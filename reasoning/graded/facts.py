@@ -96,8 +96,7 @@ def fact_tables(
         away = np.full(shape[0], AWAY) if absent is None else absent
         graded, exact = (Problem(ends, kinds, usual.tables(share), alone, away) for share in (0.0, LITERAL))
         literal = literal_share(graded, exact, np.argsort(np.array(description.nodes, dtype=str)))
-    back = np.argsort(order)
-    return FactTables(edges, ends, kinds, said.tables(literal)[:, back[:, None], back])
+    return FactTables(edges, ends, kinds, said.tables(literal, np.argsort(order)))
 
 
 def _key(description: RelationGraph, edge: int) -> tuple[int, bool, float]:
@@ -126,24 +125,33 @@ class _Said:
         saying: bool,
         distinct: Sequence[tuple[int, bool, float]],
     ) -> None:
-        self.names, self.models, self.vocabulary = names, models, vocabulary
+        self.names = np.where(names < 0, len(vocabulary), names).astype(np.intp)
+        self.models, self.vocabulary = models, vocabulary
         self.degrees = WordDegrees(pairs, models)
-        self.spoken = saying_degree(pairs, models) if saying else np.ones((len(pairs), len(pairs)))
+        self.spoken = saying_degree(pairs, models).astype(np.float32) if saying else np.float32(1.0)
         self.spoken_by_chance = models[SAYING].chance if saying else 1.0
         self.said = [(vocabulary.members(mask), positive, weight) for mask, positive, weight in distinct]
         self.graded = [self._graded(relations, positive) for relations, positive, _ in self.said]
         self.literal = [self._literal(relations, positive) for relations, positive, _ in self.said]
 
-    def tables(self, share: float) -> NDArray[np.float32]:
-        """The evidence where ``share`` of facts is meant literally, shape (k, n2, n2), 0 on the diagonals."""
-        tables = np.empty((len(self.said), *self.names.shape), dtype=np.float32)
+    def tables(self, share: float, order: NDArray[np.int64] | None = None) -> NDArray[np.float32]:
+        """The evidence where ``share`` of facts is meant literally, shape (k, n2, n2), 0 on the diagonals.
+
+        ``order`` (n2,) lists the things as they shall stand.
+        """
+        n = len(self.names)
+        tables, said = np.empty((len(self.said), n, n), dtype=np.float32), np.empty((n, n), dtype=np.float32)
+        moved = None if order is None else order[:, None] * n + order
         for table, (_, _, weight), graded, literal in zip(tables, self.said, self.graded, self.literal, strict=True):
-            kept = np.float32(weight * (1 - share))
             offset = (weight * share * literal + (1 - weight)).astype(np.float32)
-            np.multiply(graded, kept, out=table)
-            table += offset[self.names]
-            np.log(table, out=table)
-            np.fill_diagonal(table, 0.0)
+            np.take(offset, self.names, out=said, mode="clip")
+            said += np.multiply(graded, np.float32(weight * (1 - share)), out=table)
+            np.log(said, out=said)
+            np.fill_diagonal(said, 0.0)
+            if moved is None:
+                table[:] = said
+            else:
+                np.take(said, moved, out=table, mode="clip")
         return tables
 
     def _graded(self, relations: tuple[Relation, ...], positive: bool) -> NDArray[np.float32]:
@@ -151,10 +159,12 @@ class _Said:
         outliers = float(np.mean([self.models.of(relation).outliers for relation in relations]))
         chances = np.array([self.models.of(relation).chance for relation in relations])
         chance = float(combined(chances, positive)) * self.spoken_by_chance
-        degree = combined([self.degrees.of(relation) for relation in relations], positive) * self.spoken
-        degree *= (1 - outliers) / (outliers + (1 - outliers) * chance)
-        degree += outliers / (outliers + (1 - outliers) * chance)
-        ratio: NDArray[np.float32] = degree.astype(np.float32)
+        by_chance = outliers + (1 - outliers) * chance
+        degrees = combined([self.degrees.of(relation) for relation in relations], positive)
+        ratio: NDArray[np.float32] = degrees.astype(np.float32)
+        ratio *= self.spoken
+        ratio *= np.float32((1 - outliers) / by_chance)
+        ratio += np.float32(outliers / by_chance)
         return ratio
 
     def _literal(self, relations: tuple[Relation, ...], positive: bool) -> Array:

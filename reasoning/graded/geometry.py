@@ -26,13 +26,19 @@ SLACK = 0.1
 class PairGeometry:
     """All ordered pairs of n boxes in the plan (and in height, where d is 3); row: subject, column: object.
 
-    Built by :func:`pair_geometry`. Arrays of pairs have shape (n, n), or (n, n, 2) with x and y last.
+    Built by :func:`pair_geometry`. Arrays of pairs have shape (n, n), or (n, n, 2) with x and y last; what holds for
+    one axis lies together in memory, since that is how it is read.
     """
 
     boxes: Array  # (n, 2, d)
 
     def __len__(self) -> int:
         return len(self.boxes)
+
+    @cached_property
+    def _corners(self) -> tuple[Array, Array]:
+        """Least and greatest corner in the plan, each of shape (2, n)."""
+        return self.boxes[:, 0, :2].T.copy(), self.boxes[:, 1, :2].T.copy()
 
     @cached_property
     def size(self) -> Array:
@@ -52,25 +58,32 @@ class PairGeometry:
 
         Between two points, the direction alone: length 1, or 0 where both are one.
         """
-        low, high = self.boxes[:, 0, :2], self.boxes[:, 1, :2]
+        low, high = self._corners
         centres, extents = (low + high) / 2, high - low
-        apart = centres[:, None] - centres[None, :]
-        unit = (extents[:, None] + extents[None, :]) / 2 + SLACK * self.pair_size[:, :, None]
-        points = np.linalg.norm(apart, axis=2, keepdims=True)
-        return _ratio(apart, np.where(self.pair_size[:, :, None] > 0, unit, points))
+        apart = centres[:, :, None] - centres[:, None, :]
+        unit = (extents[:, :, None] + extents[:, None, :]) / 2 + SLACK * self.pair_size
+        if not self.pair_size.all():
+            unit = np.where(self.pair_size > 0, unit, np.hypot(*apart))
+        return _axes_last(_ratio(apart, unit))
+
+    @cached_property
+    def distance(self) -> Array:
+        """Length of the offset, shape (n, n)."""
+        length: Array = np.hypot(self.offset[:, :, 0], self.offset[:, :, 1])
+        return length
 
     @cached_property
     def gap(self) -> Array:
         """Distance between the boxes, as g / (1 + g) with g in mean sizes of the pair: 0 touching, towards 1 afar."""
-        low, high = self.boxes[:, 0, :2], self.boxes[:, 1, :2]
-        between = np.maximum(np.maximum(low[:, None] - high[None, :], low[None, :] - high[:, None]), 0.0)
-        apart = np.linalg.norm(between, axis=2)
+        low, high = self._corners
+        before = low[:, :, None] - high[:, None, :]
+        apart = np.hypot(*np.maximum(np.maximum(before, before.transpose(0, 2, 1)), 0.0))
         return _ratio(apart, apart + self.pair_size)
 
     @cached_property
     def inside(self) -> Array:
         """Share of the subject's extent on each axis that lies within the object's, shape (n, n, 2)."""
-        return _share_inside(self.boxes[:, 0, :2], self.boxes[:, 1, :2])
+        return _axes_last(_share_inside(*self._corners))
 
     @cached_property
     def smaller(self) -> Array:
@@ -84,7 +97,7 @@ class PairGeometry:
 
         Subject's lower edge less object's upper one; the two upper edges; the two lower edges.
         """
-        return _edges(self.boxes[:, 0, :2], self.boxes[:, 1, :2], self.pair_size)
+        return _axes_last(_edges(*self._corners, self.pair_size))
 
     @cached_property
     def foot(self) -> Array:
@@ -99,10 +112,10 @@ class PairGeometry:
         """How far the subject reaches higher at both ends on z, in mean heights, as v / (1 + |v|); None in 2-D."""
         if self.boxes.shape[2] < 3:
             return None
-        low, high = self.boxes[:, 0, 2:], self.boxes[:, 1, 2:]
-        height = (high - low)[:, 0]
-        edges = _edges(low, high, (height[:, None] + height[None, :]) / 2)
-        rise: Array = edges[1:].min(axis=0)[:, :, 0]
+        low, high = self.boxes[:, 0, 2], self.boxes[:, 1, 2]
+        height = high - low
+        edges = _edges(low[None], high[None], (height[:, None] + height[None, :]) / 2)
+        rise: Array = np.minimum(edges[1, 0], edges[2, 0])
         return rise
 
     @cached_property
@@ -111,7 +124,7 @@ class PairGeometry:
         n = len(self)
         if n < 3:
             return np.zeros((n, n))
-        distance = np.linalg.norm(self.offset, axis=2)
+        distance = np.round(self.distance, 9)  # what is as far, as any two points are, is not nearer by rounding
         np.fill_diagonal(distance, np.inf)
         ordered = np.sort(distance, axis=1)
         nearer = np.stack([np.searchsorted(ordered[i], distance[i], side="left") for i in range(n)]) / (n - 2)
@@ -135,23 +148,36 @@ def pair_geometry(boxes: NDArray[np.float64]) -> PairGeometry:
 
 def _ratio(part: Array, whole: Array) -> Array:
     """part / whole, 0 where the whole is 0."""
+    if whole.all():  # as nearly always; twice as fast
+        plain: Array = part / whole
+        return plain
     result: Array = np.divide(part, whole, out=np.zeros(np.broadcast(part, whole).shape), where=whole > 0)
     return result
 
 
+def _axes_last(pairs: Array) -> Array:
+    """(…, axes, n, n) as (…, n, n, axes), without moving a number."""
+    return np.moveaxis(pairs, -3, -1)
+
+
 def _share_inside(low: Array, high: Array) -> Array:
-    """Shape (n, n, axes); of a subject without an extent: 1 where the object holds it, else 0."""
-    shared = np.minimum(high[:, None], high[None, :]) - np.maximum(low[:, None], low[None, :])
-    extent = np.broadcast_to((high - low)[:, None], shared.shape)
-    share = _ratio(np.maximum(shared, 0.0), extent)
-    result: Array = np.where(extent > 0, np.minimum(share, 1.0), (shared >= 0).astype(np.float64))
+    """Shape (axes, n, n), of corners (axes, n); of a subject without an extent: 1 where the object holds it, else 0."""
+    shared = np.minimum(high[:, :, None], high[:, None, :]) - np.maximum(low[:, :, None], low[:, None, :])
+    extent = np.broadcast_to((high - low)[:, :, None], shared.shape)
+    share = np.minimum(_ratio(np.maximum(shared, 0.0), extent), 1.0)
+    if extent.all():
+        return share
+    result: Array = np.where(extent > 0, share, (shared >= 0).astype(np.float64))
     return result
 
 
 def _edges(low: Array, high: Array, unit: Array) -> Array:
-    pairs = ((low, high), (high, high), (low, low))
-    apart = np.stack([subject[:, None] - object[None, :] for subject, object in pairs])
-    return _ratio(apart, np.abs(apart) + unit[:, :, None])
+    """Shape (3, axes, n, n), of corners (axes, n)."""
+    found = np.empty((3, len(low), *unit.shape))
+    for edges, subject, object in zip(found, (low, high, low), (high, high, low), strict=True):
+        apart = subject[:, :, None] - object[:, None, :]
+        edges[:] = _ratio(apart, np.abs(apart) + unit)
+    return found
 
 
 def _level(low: Array, high: Array) -> Array:

@@ -59,8 +59,7 @@ def _direction(pairs: PairGeometry, heading: tuple[int, int]) -> View:
         return reduce(np.minimum, (feature(pairs, axis, heading[axis]) for axis in axes))
 
     def deviation() -> Array:
-        length = np.maximum(np.hypot(pairs.offset[:, :, 0], pairs.offset[:, :, 1]), NEARBY)
-        result: Array = np.arccos(np.clip(forward / length, -1.0, 1.0))
+        result: Array = np.arccos(np.clip(forward / np.maximum(pairs.distance, NEARBY), -1.0, 1.0))
         return result
 
     def lateral() -> Array:

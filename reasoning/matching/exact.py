@@ -22,7 +22,7 @@ from deixis.reasoning.matching.branching import (
     node_at,
     search,
 )
-from deixis.reasoning.matching.compiled import Compiled, compile_problem, to_assignment
+from deixis.reasoning.matching.compiled import Compiled, to_assignment
 from deixis.reasoning.matching.problem import MatchingError, Problem
 from deixis.reasoning.matching.scalable import search_from
 
@@ -85,7 +85,7 @@ def exact(problem: Problem, deadline: float = math.inf, *, seed: int = 0) -> Opt
     if n1 == 0 or n2 == 0:
         nobody = np.full(n1, -1)
         return Optimum(nobody, problem.value(nobody), problem.value(nobody), 0)
-    compiled = compile_problem(problem)
+    compiled = problem.compiled
     labels, _ = search_from(np.full(n1, n2), compiled, deadline, seed, min(1.0, WARM * n1**2), 1)
     step = max(_grid(problem) - 1e-3, 0.0) or SLACK
     value = evaluate(labels, compiled)
@@ -116,7 +116,7 @@ def maps_within(problem: Problem, margin: float = 0.0, deadline: float = math.in
     if n1 == 0 or n2 == 0 or not best.proved:
         return Maps(best.assignment[None], np.array([best.value]), complete=best.proved, limited=False)
     record = _record(limit, n1, best.value - margin - SLACK, np.inf)
-    _, state = _run(compile_problem(problem), record, deadline, loose_bound(problem))
+    _, state = _run(problem.compiled, record, deadline, loose_bound(problem))
     count = int(record.found[0])
     if count == 0 or (state != DONE and record.values[:count].max() < best.value - SLACK):
         return Maps(best.assignment[None], np.array([best.value]), complete=False, limited=state == FULL)

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.reasoning.matching.compiled import Compiled, compile_problem, to_assignment, to_labels
+from deixis.reasoning.matching.compiled import Compiled, to_assignment, to_labels
 from deixis.reasoning.matching.exchangeability import averaged, exchangeable
 from deixis.reasoning.matching.problem import MatchingError, Problem
 from deixis.reasoning.matching.sampling import Ladder, ladder, most_said_twice, sample
@@ -77,7 +77,8 @@ def posterior(
 
     It is exact but for ``mass`` where that can be shown by adding up maps in little time, and sampled otherwise. Chains
     begin at maps of their own; of more than ``MOST_OBJECTS`` objects at ``start`` (n1,), a map of high value, where it
-    is known: to look for others would take longer than the chains. Raises MatchingError for a mass that is not between
+    is known: to look for others would take longer than the chains. Past the deadline that map, or nobody's being
+    anything, is all the answer. Raises MatchingError for a mass that is not between
     0 and 1, and where ``start`` is no map of the problem.
 
     >>> problem = Problem(np.zeros((0, 2), np.int64), np.zeros(0, np.int64), np.zeros((0, 1, 1), np.float32),
@@ -93,7 +94,10 @@ def posterior(
         return Posterior(np.ones((n1, 1)) if n2 == 0 else np.zeros((0, n2 + 1)), True, 0.0)
     if start is not None:
         problem.require_map(start)
-    compiled = compile_problem(problem)
+    if time.perf_counter() > deadline:
+        labels = np.full(n1, n2) if start is None else to_labels(start, n2)
+        return Posterior((labels[:, None] == np.arange(n2 + 1)).astype(np.float64), False, math.inf)
+    compiled = problem.compiled
     begin = None if start is None or n1 <= MOST_OBJECTS else to_labels(start, n2)
     return _added_up(problem, compiled, deadline, mass, seed) or _sampled(problem, compiled, deadline, seed, begin)
 

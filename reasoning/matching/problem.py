@@ -9,11 +9,16 @@ add up to the logarithm of a posterior, up to a constant.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from deixis.ontology.errors import DeixisError
+
+if TYPE_CHECKING:
+    from deixis.reasoning.matching.compiled import Compiled
 
 UNMATCHED = -1
 
@@ -61,6 +66,13 @@ class Problem:
         for name, shape in wanted.items():
             if getattr(self, name).shape != shape:
                 raise MatchingError(f"the array '{name}' has to have shape {shape}, not {getattr(self, name).shape}")
+
+    @cached_property
+    def compiled(self) -> Compiled:
+        """The problem as compiled loops read it: laid out once for all that look at it."""
+        from deixis.reasoning.matching.compiled import compile_problem
+
+        return compile_problem(self)
 
     def value(self, assignment: NDArray[np.int64]) -> float:
         """The value of one map, shape (n1,), ``UNMATCHED`` for what is left out.

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from deixis.reasoning.matching.annealing import NOISE, anneal
 from deixis.reasoning.matching.climbing import climb
-from deixis.reasoning.matching.compiled import Compiled, compile_problem, to_assignment, to_labels
+from deixis.reasoning.matching.compiled import Compiled, to_assignment, to_labels
 from deixis.reasoning.matching.kept_gains import keep
 from deixis.reasoning.matching.problem import Problem
 from deixis.reasoning.matching.reassignment import reassign
@@ -69,7 +69,7 @@ def scalable(
     best = np.full(n1, n2) if start is None else to_labels(start, n2)
     finished = True
     if n1 and n2:
-        best, finished = search_from(best, compile_problem(problem), deadline, seed, effort, MOST_TURNS)
+        best, finished = search_from(best, problem.compiled, deadline, seed, effort, MOST_TURNS)
     assignment = to_assignment(best, n2)
     return Found(assignment, problem.value(assignment), finished)
 
@@ -144,5 +144,6 @@ def mean_range(compiled: Compiled) -> float:
     """The mean over all facts of largest less least entry, or 1 where there is no fact that distinguishes."""
     if len(compiled.kind) == 0:
         return 1.0
-    spans = compiled.tables.max(axis=(1, 2)) - compiled.tables.min(axis=(1, 2))
-    return float(spans[compiled.kind].mean()) or 1.0
+    tables = compiled.tables[: len(compiled.tables) // 2]  # each comes again transposed
+    spans = tables.max(axis=(1, 2)) - tables.min(axis=(1, 2))
+    return float(spans[compiled.kind % len(tables)].mean()) or 1.0

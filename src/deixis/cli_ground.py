@@ -20,6 +20,7 @@ from deixis.cli_common import (
     TimeLimit,
     print_json,
     print_lines,
+    working,
 )
 from deixis.reasoning.engine_name import EngineName
 
@@ -78,13 +79,15 @@ def ground(
     if viewpoint is not ViewpointName.STATED:
         from deixis.asking import seen_from_anywhere
 
-        seen, notes = seen_from_anywhere(parsed, seen, meaning, viewpoint is ViewpointName.UNKNOWN, time_limit)
+        with working("looking from other sides"):
+            seen, notes = seen_from_anywhere(parsed, seen, meaning, viewpoint is ViewpointName.UNKNOWN, time_limit)
     if ask or oracle is not None:
         if engine is not EngineName.EXACT:
             raise SettingError(f"only the engine 'exact' asks, not '{engine}': leave out --engine")
         found = _ask(parsed, seen, meaning, oracle, time_limit, as_json)
     else:
-        found = run(parsed, seen, engine=engine, time_limit=time_limit, meaning=meaning)
+        with working("grounding"):
+            found = run(parsed, seen, engine=engine, time_limit=time_limit, meaning=meaning)
     found = found.noting(notes)
     if plot is not None:
         from deixis.plot import plot_grounding
@@ -132,6 +135,8 @@ def _ask(
 
 
 def _verdict(found: Grounding) -> int:
+    """No match at all is a no; what the time limit cut short, or left unproved, is undecided."""
     if not found.matches:
         return NO
-    return UNDECIDED if found.engine == EngineName.EXACT and not found.proved_best else 0
+    unproved = found.engine == EngineName.EXACT and not found.proved_best
+    return UNDECIDED if unproved or not found.finished else 0

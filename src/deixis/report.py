@@ -136,6 +136,8 @@ def grounding_to_dict(found: Grounding) -> dict[str, Any]:
             "error": None if found.probabilities is Standing.NONE else _rounded(found.probability_error),
         },
         "proved_best": found.proved_best,
+        "gap": _rounded(found.gap),
+        "finished": found.finished,
         "converged": found.converged,
         "notes": list(found.notes),
         "seconds": round(found.seconds, 6),

@@ -7,6 +7,8 @@ from collections.abc import Iterator, Sequence, Sized
 from itertools import islice
 from typing import TYPE_CHECKING, Any
 
+from deixis.ontology.kinds import with_article
+
 MANY = 12
 """Lines that are listed one by one."""
 
@@ -28,7 +30,7 @@ def script_lines(script: Script) -> list[str]:
     title = f' "{script.title}"' if script.title else ""
     viewpoint = f", seen from {script.viewpoint}" if script.viewpoint else ""
     head = f"{script.name or script.file}{title}: {_count(script.objects, 'object')}, {_count(script.facts, 'fact')}"
-    kinds = [f"        {name} is a {kind.label}" for name, kind in script.kinds.items()]
+    kinds = [f"        {name} is {with_article(kind.label)}" for name, kind in script.kinds.items()]
     kinds += [f"        {name} is {colour.label}" for name, colour in script.colours.items()]
     return [
         f"{head}{viewpoint}",
@@ -200,6 +202,8 @@ def _standing(found: Grounding) -> str:
     from deixis.reasoning.answer import Standing
 
     how = "proved the best in" if found.proved_best else "not proved the best,"
+    if not found.proved_best and math.isfinite(found.gap):
+        how = f"not proved the best: another could be likelier by {found.gap:.3g} nats at most;"
     sampled = found.probabilities is Standing.SAMPLED and math.isfinite(found.probability_error)
     error = f"; probabilities are sampled, within about {found.probability_error:.1g}" if sampled else ""
     return f"{how} {found.seconds:.2f} s{error}"

@@ -23,7 +23,14 @@ PROMISED = {
     "proved_best": bool,
     "seconds": float,
 }
-QUALIFYING = {"left_out": dict, "might_be": dict, "probabilities": dict, "converged": bool, "notes": list}
+QUALIFYING = {
+    "left_out": dict,
+    "might_be": dict,
+    "probabilities": dict,
+    "converged": bool,
+    "finished": bool,
+    "notes": list,
+}
 MAGIC = {"png": b"\x89PNG\r\n\x1a\n", "svg": b"<?xml", "pdf": b"%PDF-"}
 
 
@@ -44,11 +51,12 @@ def test_text_says_who_is_who_and_what_is_open() -> None:
 
 @pytest.mark.parametrize("engine", ["exact", "similarity"])
 def test_json_holds_what_is_promised(engine: str) -> None:
-    code, out, err = deixis("ground", FULL, SCENE, "--json", "--engine", engine)
+    code, out, err = deixis("ground", FULL, SCENE, "--json", "--engine", engine, "--time-limit", "60")
     data = json.loads(out)
     assert (code, err) == (0, "")
+    gap = {"gap": float if engine == "exact" else type(None)}
     pivotal = {"pivotal": list if engine == "exact" else type(None)}
-    assert {key: type(value) for key, value in data.items()} == PROMISED | QUALIFYING | pivotal
+    assert {key: type(value) for key, value in data.items()} == PROMISED | QUALIFYING | pivotal | gap
     assert data["engine"] == engine
     assert data["proved_best"] is (engine == "exact")
     assert len(data["matches"]) == 12
@@ -114,16 +122,18 @@ def test_an_unwritable_place(tmp_path: Path) -> None:
     assert "the folder of the picture cannot be made" in err
 
 
-def test_without_time_there_is_an_answer_all_the_same(tmp_path: Path) -> None:
+@pytest.mark.parametrize("engine", ["exact", "scalable"])
+def test_without_time_there_is_an_answer_that_is_called_undecided(tmp_path: Path, engine: str) -> None:
     script = write(tmp_path / "s.layout", "\n".join(f"a{i} left of a{(i * 7 + 1) % 20}" for i in range(1, 20)))
     boxes = [
         {"id": f"o{i}", "min": [i * 37 % 20, i * 11 % 20], "max": [i * 37 % 20 + 2, i * 11 % 20 + 2]} for i in range(20)
     ]
     scene = write(tmp_path / "s.scene.json", json.dumps({"objects": boxes}))
-    code, out, err = deixis("ground", script, scene, "--time-limit", "0", "--json")
+    code, out, err = deixis("ground", script, scene, "--time-limit", "0", "--json", "--engine", engine)
     data = json.loads(out)
     assert (code, err) == (3, "")
-    assert data["proved_best"] is False
+    assert data["proved_best"] is False and data["finished"] is False
+    assert data["gap"] is None if engine == "scalable" else data["gap"] > 0
     assert len(data["matches"]) == 20
     assert any("time limit" in note for note in data["notes"])
 

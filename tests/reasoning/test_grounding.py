@@ -394,6 +394,22 @@ def test_matches_and_outcomes_are_in_the_order_of_the_script(graph_of: MakeGraph
     assert [str(entry.fact) for entry in found.outcomes] == full_script
 
 
+def test_the_names_of_the_pairs_are_worked_out_once(
+    graph_of: MakeGraph, full_script: list[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    import deixis.reasoning.evidence as module
+
+    names, scenes = module.exact_names, []
+
+    def counted(scene: RelationGraph) -> NDArray[np.int16]:
+        scenes.append(scene)
+        return names(scene)
+
+    monkeypatch.setattr(module, "exact_names", counted)
+    answer(graph_of(*full_script), formal_setting())
+    assert len(scenes) == 1
+
+
 def test_the_notes_of_the_caller_come_first_and_the_time_is_told(graph_of: MakeGraph, full_script: list[str]) -> None:
     started = time.perf_counter()
     question = evidence(graph_of(*full_script), formal_setting())

@@ -12,6 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from deixis.experiments.generated_tables import generate
 from deixis.ontology.graph import Fact, RelationGraph
 from deixis.ontology.relation import Relations
 from deixis.ontology.tbox import default_ontology
@@ -236,6 +237,26 @@ def test_without_time_for_probabilities_none_is_told_and_nothing_is_decided() ->
     assert found.probabilities is Standing.NONE
     assert all(match.probability is None and not match.decided for match in found.matches.values())
     assert any("how probable" in note for note in found.notes)
+    assert not found.finished
+
+
+@pytest.mark.parametrize("engine", ["exact", "scalable", "similarity", "blondel"])
+def test_with_time_enough_an_engine_comes_to_its_end(
+    engine: str, relations: Relations, graph_of: MakeGraph, full_script: list[str]
+) -> None:
+    assert ground(no_unary_evidence(graph_of(*full_script), setting(relations)), engine_named(engine)).finished
+
+
+def test_many_objects_are_answered_soon_after_a_short_time_limit() -> None:
+    table = generate(400, seed=5)
+    evidence = no_unary_evidence(table.description(), table.scene())
+    started = time.process_time()
+    found = ground(evidence, engine_named("scalable"), time_limit=0.1)
+    assert time.process_time() - started < 2.0
+    assert len(found.matches) > 300
+    assert found.graph_similarity == 0.0
+    assert any("no time for the paper's similarity" in note for note in found.notes)
+    assert not any("in common" in note for note in found.notes)
 
 
 def test_a_thousand_alike_do_not_list_each_other() -> None:

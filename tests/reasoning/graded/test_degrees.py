@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from deixis.ontology.errors import GraphError
 from deixis.ontology.relation import Reading
-from deixis.ontology.relation_models import FAMILIES, SAYING, RelationModels
+from deixis.ontology.relation_models import FAMILIES, SAYING, RelationModel, RelationModels, Term
 from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.graded.chance import chance_degree, random_pairs
 from deixis.reasoning.graded.degrees import (
@@ -189,7 +189,28 @@ def test_the_nearest_things_are_not_crowded() -> None:
     assert crowd[1, 2] == 0.5
 
 
+def test_points_do_not_crowd_each_other_by_rounding() -> None:
+    places = np.random.default_rng(0).uniform(size=(30, 1, 2))
+    assert (pair_geometry(np.repeat(places, 2, axis=1)).crowd == 0.0).all()
+
+
 def test_a_term_of_an_unknown_feature_counts_as_fitting() -> None:
     features = view(pair_geometry(np.zeros((2, 2, 2))), "on")
     assert "rise" not in features
     assert np.all(degree_of_view(MODELS["support"].without("across", "foot", "gap"), features) == 1.0)
+
+
+@given(
+    st.lists(st.floats(-2, 2, allow_subnormal=False), min_size=2, max_size=9, unique_by=lambda knot: round(knot, 2)),
+    st.lists(st.floats(-5, 0), min_size=9, max_size=9),
+    st.booleans(),
+)
+def test_a_degree_is_linear_between_knots_as_numpy_interpolates(
+    knots: list[float], values: list[float], turned: bool
+) -> None:
+    term = Term("gap", tuple(sorted(knots)), tuple(values[: len(knots)]))
+    looked_at = np.random.default_rng(0).uniform(-3, 3, (150, 150))  # several blocks
+    feature = looked_at.T if turned else looked_at
+    found = degree_of_view(RelationModel("support", (term,), 0.01, 0.1), {"gap": feature})
+    np.testing.assert_allclose(found, np.exp(np.interp(feature, term.knots, term.values)), rtol=1e-9)
+    assert found.max() <= 1.0

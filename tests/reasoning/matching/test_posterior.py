@@ -14,7 +14,7 @@ from matching_problems import every_map, problems
 from deixis.reasoning.matching import posterior as module
 from deixis.reasoning.matching.exchangeability import exchangeable
 from deixis.reasoning.matching.posterior import posterior
-from deixis.reasoning.matching.problem import MatchingError, Problem
+from deixis.reasoning.matching.problem import UNMATCHED, MatchingError, Problem
 
 NONE = np.zeros((0, 2), np.int64)
 
@@ -123,6 +123,15 @@ def test_the_deadline_is_kept_and_nothing_is_claimed(seconds: float) -> None:
     assert not found.exact
     assert found.error == math.inf
     np.testing.assert_allclose(found.marginals.sum(axis=1), 1.0)
+
+
+def test_past_the_deadline_the_start_is_all_that_is_said() -> None:
+    problem, start = large(40), np.arange(40)[::-1].copy()
+    start[3] = UNMATCHED
+    found = posterior(problem, time.perf_counter() - 1.0, start=start)
+    assert (found.exact, found.error) == (False, math.inf)
+    assert found.marginals.argmax(axis=1).tolist() == np.where(start == UNMATCHED, 40, start).tolist()
+    assert set(np.unique(found.marginals)) == {0.0, 1.0}
 
 
 @pytest.mark.parametrize("mass", [0.0, 1.0, -1.0])

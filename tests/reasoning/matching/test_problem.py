@@ -19,6 +19,11 @@ def test_the_value_of_a_map_is_the_sum_of_what_speaks_for_it(problem: Problem) -
         assert problem.value(np.array(choice, dtype=np.int64)) == pytest.approx(value, abs=1e-5)
 
 
+def test_a_problem_is_laid_out_for_compiled_loops_once() -> None:
+    problem = Problem(**GOOD)
+    assert problem.compiled is problem.compiled
+
+
 GOOD: dict[str, Any] = {
     "ends": np.array([[0, 1]]),
     "kinds": np.array([0]),
