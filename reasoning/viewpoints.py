@@ -15,8 +15,9 @@ too, and cannot be told from a round one.
 from __future__ import annotations
 
 import math
+import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,7 +42,9 @@ TIE = 1e-6  # nats within which a description cannot tell
 class Viewpoint:
     """Turn the scene by ``angle`` (radians, counter-clockwise, 0 to 2 pi), having mirrored left and right if so.
 
-    ``log_evidence`` is in nats; ``assignment`` (n1,) is the best map as seen from there.
+    ``log_evidence`` is in nats; ``assignment`` (n1,) is the best map as seen from there. ``concentration`` is the mean
+    resultant length of the angles that were taken together (Mardia and Jupp 2000, 2.3): 1 for a single one, 0 where
+    they are the whole circle, so that their mean says nothing.
     """
 
     angle: float
@@ -49,6 +52,7 @@ class Viewpoint:
     probability: float
     log_evidence: float
     assignment: NDArray[np.int64]
+    concentration: float = 1.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,11 +61,12 @@ class Viewpoints:
 
     ``ties`` are those for which the description speaks as much as for the first, itself among them: where there are
     several, the words cannot tell, and only the prior chooses. ``exact``: every log evidence counts all maps within the
-    margin; if not, it is a lower bound.
+    margin; if not, it is a lower bound. ``everywhere``: there was time to look from every side.
     """
 
     viewpoints: tuple[Viewpoint, ...]
     exact: bool
+    everywhere: bool = True
 
     @property
     def best(self) -> Viewpoint:
@@ -125,6 +130,8 @@ def recover_viewpoint(
 ) -> Viewpoints:
     """The posterior over viewpoints, quarter turns or (``any_angle``) any, until ``deadline`` (``time.perf_counter``).
 
+    The scene is first looked at as it stands, deadline or not, then quarter turned, then from the other sides.
+
     ``problem_of`` builds the matching problem from boxes (n2, 2, d) as seen from a viewpoint; its values have to be
     log-likelihood ratios, comparable between viewpoints. Raises GraphError for boxes that are none.
     """
@@ -132,16 +139,19 @@ def recover_viewpoint(
     sides = (False, True) if mirror else (False,)
     count = COARSE if any_angle else 4
     tried = [_Tried(step * 2 * math.pi / count, side, 1 / count) for side in sides for step in range(count)]
+    tried.sort(key=lambda one: one.angle % (math.pi / 2) > 1e-9)
     look = _Looker(boxes, problem_of, deadline)
     looked = look.at(tried)
+    everywhere = len(looked) == len(tried)
     if any_angle:
-        looked = look.closer(looked)
+        looked, closely = look.closer(looked)
+        everywhere = everywhere and closely
     modes = _modes(looked) if any_angle else [[one] for one in looked]
     found = [_viewpoint(mode, mirror) for mode in modes]
     total = _log_sum([score for _, score in found])
-    views = [_with_probability(view, math.exp(score - total)) for view, score in found]
+    views = [replace(view, probability=math.exp(score - total)) for view, score in found]
     views.sort(key=lambda view: (-round(view.probability, 9), view.mirrored, view.angle))
-    return Viewpoints(tuple(views), all(one.complete for one in looked))
+    return Viewpoints(tuple(views), everywhere and all(one.complete for one in looked), everywhere)
 
 
 @dataclass(frozen=True)
@@ -168,38 +178,57 @@ class _Looker:
     deadline: float
 
     def at(self, tried: Sequence[_Tried]) -> list[_Looked]:
-        """The best map of each; where that is not hopeless, the evidence of all maps."""
-        problems = [self.problem_of(turned(self.boxes, one.angle, one.mirrored)) for one in tried]
-        found = [self._best(one, problem) for one, problem in zip(tried, problems, strict=True)]
-        most = max(one.log_evidence for one in found)
-        return [
-            self._listed(one, problem) if one.log_evidence >= most - HOPELESS else one
-            for one, problem in zip(found, problems, strict=True)
-        ]
+        """The best map of each until the deadline; where that is not hopeless, the evidence of all maps.
 
-    def _best(self, one: _Tried, problem: Problem) -> _Looked:
+        Each has its share of the time that is left, lest the first search takes it all; the first is always looked at.
+        """
+        found: list[tuple[_Looked, Problem]] = []
+        for one in tried:
+            if found and self.left <= 0:
+                break
+            problem = self.problem_of(turned(self.boxes, one.angle, one.mirrored))
+            found.append((self._best(one, problem, self.left / (len(tried) - len(found))), problem))
+        most = max(one.log_evidence for one, _ in found)
+        return [self._listed(one, problem) if one.log_evidence >= most - HOPELESS else one for one, problem in found]
+
+    @property
+    def left(self) -> float:
+        """Seconds to the deadline."""
+        return self.deadline - time.perf_counter()
+
+    def _best(self, one: _Tried, problem: Problem, seconds: float) -> _Looked:
         from deixis.reasoning.matching.exact import exact
 
-        best = exact(problem, self.deadline)
+        best = exact(problem, time.perf_counter() + seconds)
         return _Looked(one, best.value, best.assignment, best.proved)
 
     def _listed(self, one: _Looked, problem: Problem) -> _Looked:
         from deixis.reasoning.matching.exact import maps_within
 
+        if self.left <= 0:
+            return replace(one, complete=False)
         maps = maps_within(problem, MARGIN, self.deadline, limit=LISTED)
         return _Looked(one.tried, _log_sum(maps.values.tolist()), maps.assignments[0], maps.complete)
 
-    def closer(self, looked: Sequence[_Looked]) -> list[_Looked]:
-        """Every angle that is worth it replaced by finer ones over the same arc."""
+    def closer(self, looked: Sequence[_Looked]) -> tuple[list[_Looked], bool]:
+        """Every angle that is worth it replaced by finer ones over the same arc, and whether there was time for all."""
         best = max(one.log_evidence for one in looked)
-        kept = [one for one in looked if one.log_evidence < best - WORTH]
-        fine = []
-        for one in looked:
-            width = 2 * math.pi * one.tried.share / FINE
-            for k in range(FINE) if one.log_evidence >= best - WORTH else ():
-                angle = (one.tried.angle + (k - (FINE - 1) / 2) * width) % (2 * math.pi)
-                fine.append(_Tried(angle, one.tried.mirrored, one.tried.share / FINE))
-        return kept + self.at(fine)
+        worth = [one.tried for one in looked if one.log_evidence >= best - WORTH]
+        if self.left <= 0:
+            return list(looked), False
+        fine = [finer for one in worth for finer in _finer(one)]
+        seen = self.at(fine)
+        done = len(seen) // FINE  # an arc of which not all was seen is left as it was
+        replaced = {id(one) for one in worth[:done]}
+        kept = [one for one in looked if id(one.tried) not in replaced]
+        return kept + seen[: done * FINE], len(seen) == len(fine)
+
+
+def _finer(one: _Tried) -> list[_Tried]:
+    """The angles of a finer grid over the same arc."""
+    share = one.share / FINE
+    angles = [one.angle + (k - (FINE - 1) / 2) * 2 * math.pi * share for k in range(FINE)]
+    return [_Tried(angle % (2 * math.pi), one.mirrored, share) for angle in angles]
 
 
 def _modes(looked: Sequence[_Looked]) -> list[list[_Looked]]:
@@ -235,22 +264,20 @@ def _viewpoint(mode: list[_Looked], mirror: bool) -> tuple[Viewpoint, float]:
     peak = max(mode, key=lambda one: (round(one.log_evidence, 9), -one.tried.angle))
     shares = [one.log_evidence + math.log(one.tried.share) for one in mode]
     score = _log_sum(shares) + math.log(prior)
-    return Viewpoint(_mean_angle(mode), peak.tried.mirrored, 0.0, peak.log_evidence, peak.assignment), score
+    angle, concentration = _mean_angle(mode)
+    view = Viewpoint(angle, peak.tried.mirrored, 0.0, peak.log_evidence, peak.assignment, concentration)
+    return view, score
 
 
-def _mean_angle(mode: list[_Looked]) -> float:
-    """The circular mean by evidence; of a single angle just that."""
+def _mean_angle(mode: list[_Looked]) -> tuple[float, float]:
+    """The circular mean by evidence and the mean resultant length; of a single angle just that, and 1."""
     if len(mode) == 1:
-        return mode[0].tried.angle
+        return mode[0].tried.angle, 1.0
     most = max(one.log_evidence for one in mode)
     weights = np.array([one.tried.share * math.exp(one.log_evidence - most) for one in mode])
     angles = np.array([one.tried.angle for one in mode])
-    mean = math.atan2(float(weights @ np.sin(angles)), float(weights @ np.cos(angles)))
-    return round(mean, 12) % (2 * math.pi)
-
-
-def _with_probability(view: Viewpoint, probability: float) -> Viewpoint:
-    return Viewpoint(view.angle, view.mirrored, probability, view.log_evidence, view.assignment)
+    x, y = float(weights @ np.cos(angles)), float(weights @ np.sin(angles))
+    return round(math.atan2(y, x), 12) % (2 * math.pi), math.hypot(x, y) / float(weights.sum())
 
 
 def _log_sum(values: Sequence[float]) -> float:

@@ -16,9 +16,10 @@ from deixis.grammar.script import Script
 from deixis.perception.scene import Scene
 from deixis.reasoning.answer import Grounding
 from deixis.reasoning.asking.candidates import Candidates, candidates_of
-from deixis.reasoning.asking.inquiry import begin
+from deixis.reasoning.asking.inquiry import Inquiry, Outcome, begin
+from deixis.reasoning.asking.questions import ABSENT, NO, YES, QuestionKind
 from deixis.reasoning.asking.situation import Situation, situation_of
-from deixis.reasoning.evidence import Evidence
+from deixis.reasoning.evidence import PRESENT, Evidence
 from deixis.reasoning.grounding import DEFAULT_TIME_LIMIT
 from deixis.reasoning.grounding import ground as ground_evidence
 from deixis.reasoning.likeliest import ExactEngine
@@ -27,8 +28,14 @@ from deixis.reasoning.meaning import SHIPPED, Meaning
 from deixis.reasoning.viewpoints import Viewpoint, Viewpoints, recover_viewpoint, turned
 from deixis.session import evidence_of
 
-MARGIN = 2.0
-"""How much less likely than the best (in nats) a grounding may be that is still asked about: seven times."""
+MARGINS = (6.0, 2.0)
+"""How much less likely than the best (in nats) a grounding may be that is still asked about: 400 times.
+
+Rarer ones hardly ever keep a match from being decided. Where so many cannot be listed: seven times.
+"""
+
+CONCENTRATED = 0.5
+"""Mean resultant length below which angles are no side: that of an even spread over 217 degrees."""
 
 
 def ask(
@@ -46,21 +53,51 @@ def ask(
     """
     evidence = evidence_of(script, scene, meaning)
     situation = situation_of(evidence.description, evidence.scene)
-    candidates = candidates_of(evidence.problem, time.perf_counter() + time_limit, margin=MARGIN)
-    done = run(begin(situation, candidates), source(situation), out)
-    return ground_evidence(_narrowed(evidence, done.candidates), ExactEngine(), time_limit)
+    done = run(begin(situation, _considered(evidence, time_limit)), source(situation), out)
+    return ground_evidence(_narrowed(evidence, done), ExactEngine(), time_limit)
 
 
-def _narrowed(evidence: Evidence, left: Candidates) -> Evidence:
-    """Only what the remaining candidates give an object may it be; what they hold as a group is left as it was."""
-    labels = evidence.labels.copy()
-    grouped = {i for group in left.groups for i in group}
-    for i in range(len(labels)):
-        things = np.unique(left.assignments[:, i])
-        things = things[things != UNMATCHED]
-        if i not in grouped and len(things):
-            labels[i, ~np.isin(np.arange(labels.shape[1]), things)] = -np.inf
-    return replace(evidence, labels=labels)
+def _considered(evidence: Evidence, time_limit: float) -> Candidates:
+    """The groundings within the widest margin of which all can be listed; half the time is for each."""
+    deadline = time.perf_counter() + time_limit
+    wide = candidates_of(evidence.problem, deadline - time_limit / 2, margin=MARGINS[0])
+    return wide if wide.complete else candidates_of(evidence.problem, deadline, margin=MARGINS[1])
+
+
+def _narrowed(evidence: Evidence, done: Inquiry) -> Evidence:
+    """The evidence and what was answered; what was never considered stays as likely as it was.
+
+    Ruled out is what an object was in some candidate before the dialogue and is in none after it. A list that was cut
+    off at any place says nothing about the maps that are not in it: there only what was said of a single object counts.
+    """
+    labels, out = evidence.labels.copy(), np.zeros(evidence.labels.shape, dtype=bool)
+    if done.start.complete or done.start.groups:
+        out = _possible(done.start, labels.shape) & ~_possible(done.candidates, labels.shape)
+    for exchange in done.exchanges:
+        question, answer = exchange.question, exchange.answer
+        if exchange.outcome is not Outcome.RESOLVED or question.kind is QuestionKind.RELATION:
+            continue
+        if answer == NO:
+            out[question.subject, question.thing] = True
+            continue
+        out[question.subject] = True
+        if answer != ABSENT:  # as a certain label: the object is this thing, and no other is
+            p = question.thing if answer == YES else done.situation.things.index(answer)
+            labels[:, p] = -np.inf
+            labels[question.subject, p] = -PRESENT
+            out[question.subject, p] = False
+    # not in the labels: -inf there says that the thing bears a certain label
+    return replace(evidence, labels=labels, sizes=np.where(out, -np.inf, evidence.sizes))
+
+
+def _possible(candidates: Candidates, shape: tuple[int, ...]) -> NDArray[np.bool_]:
+    """Which object is which thing in some candidate, shape (n1, n2); the members of a group share their things."""
+    found = np.zeros(shape, dtype=bool)
+    rows, objects = np.nonzero(candidates.assignments != UNMATCHED)
+    found[objects, candidates.assignments[rows, objects]] = True
+    for group in candidates.groups:
+        found[list(group)] = found[list(group)].any(axis=0)
+    return found
 
 
 def seen_from_anywhere(
@@ -73,10 +110,12 @@ def seen_from_anywhere(
     """The scene as seen from the side from which the script most probably speaks, and notes that say which that is.
 
     Turned by quarters only, unless ``any_angle``; mirrored where that explains it better. Where no fact compares two
-    things, nothing tells a side, and the scene stays as it is.
+    things that were found, or most of the circle does as well, nothing tells a side, and the scene stays as it is.
     """
-    if not len(evidence_of(script, scene, meaning).facts) or len(scene.objects) < 2:
-        return scene, ("the scene was taken as it stands: nothing tells from which side the description speaks",)
+    as_it_stands = scene, ("the scene was taken as it stands: nothing tells from which side the description speaks",)
+    evidence = evidence_of(script, scene, meaning)
+    if not len(evidence.facts) or len(scene.objects) < 2:
+        return as_it_stands
 
     def problem(boxes: NDArray[np.float64]):  # type: ignore[no-untyped-def]
         return evidence_of(script, _with_boxes(scene, boxes), meaning).problem
@@ -84,6 +123,9 @@ def seen_from_anywhere(
     deadline = time.perf_counter() + time_limit
     found = recover_viewpoint(scene.boxes, problem, any_angle=any_angle, deadline=deadline)
     best = found.best
+    placed = (best.assignment[evidence.problem.ends] != UNMATCHED).all(axis=1)
+    if not placed.any() or best.concentration < CONCENTRATED:
+        return as_it_stands
     return _with_boxes(scene, turned(scene.boxes, best.angle, best.mirrored)), _notes(found)
 
 
@@ -101,7 +143,9 @@ def _notes(found: Viewpoints) -> tuple[str, ...]:
     if len(found.ties) > 1:
         others = ", or ".join(_described(view) for view in found.ties if view is not best)
         notes.append(f"the description fits as well {others}")
-    if not found.exact:
+    if not found.everywhere:
+        notes.append("there was no time to look from every side, so that the probability is approximate")
+    elif not found.exact:
         notes.append("not all groundings were counted for every side, so that the probability is approximate")
     return tuple(notes)
 

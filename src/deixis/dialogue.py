@@ -71,13 +71,15 @@ def closing_lines(inquiry: Inquiry) -> list[str]:
     left, names = inquiry.candidates, inquiry.situation.objects
     count = len(inquiry.exchanges)
     asked = f"{count} question{'' if count == 1 else 's'}"
-    if left.count == 1:
-        lines = [f"One grounding is left after {asked}."]
+    if inquiry.start.count == 1 and not left.complete:
+        lines = ["One grounding was considered, so that there was nothing to ask."]
+    elif left.count == 1:
+        lines = [f"One {'grounding' if left.complete else 'of those considered'} is left after {asked}."]
     else:
         open_ = ", ".join(spoken(names[i]) for i in left.undecided)
         lines = [f"{left.count} groundings are left after {asked}; undecided: {open_}."]
     if not left.complete:
-        lines.append("There were too many groundings to consider all of them; others may fit as well.")
+        lines.append("Not all groundings could be considered; others may fit as well.")
     return lines
 
 

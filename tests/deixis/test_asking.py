@@ -5,14 +5,22 @@ from __future__ import annotations
 import io
 import json
 import math
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 from commands import deixis
 
+from deixis.asking import _narrowed
 from deixis.examples_data import example
 from deixis.perception.scene_file import read_scene
+from deixis.reasoning.asking.candidates import Candidates
+from deixis.reasoning.asking.inquiry import begin
+from deixis.reasoning.asking.questions import questions
+from deixis.reasoning.asking.situation import situation_of
 from deixis.reasoning.viewpoints import turned
+from deixis.session import evidence_of, read_script
 
 SCENE = example("place_setting.scene.json")
 TRUTH = {thing.label: thing.id for thing in read_scene(example("place_setting.labelled.scene.json")).objects}
@@ -86,3 +94,118 @@ def test_no_side_is_recovered_where_nothing_tells_one(viewpoint: str, tmp_path: 
     assert code == 0
     assert matches(out) == matches(stated)
     assert any("nothing tells from which side" in note for note in json.loads(out)["notes"])
+
+
+def boxes_file(tmp_path: Path, lows: list[list[float]], side: float = 0.1) -> Path:
+    """A scene of equal things, o1, o2, …, told by their lower corners."""
+    things = [{"id": f"o{k + 1}", "min": low, "max": [x + side for x in low]} for k, low in enumerate(lows)]
+    file = tmp_path / "boxes.scene.json"
+    file.write_text(
+        json.dumps({"frame": "table", "viewpoint": "chair", "unit": "m", "objects": things}), encoding="utf-8"
+    )
+    return file
+
+
+def layout_file(tmp_path: Path, *lines: str) -> Path:
+    file = tmp_path / "words.layout"
+    file.write_text("\n".join(("layout words seen from chair", *lines)) + "\n", encoding="utf-8")
+    return file
+
+
+def probabilities(out: str) -> list[float | None]:
+    return [match["probability"] for match in json.loads(out)["matches"]]
+
+
+def test_without_an_answer_nothing_becomes_certain_where_not_all_groundings_were_considered(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    script = layout_file(tmp_path, *(f"a{k} left of a{k + 1}" for k in range(29)))
+    scene = boxes_file(tmp_path, [[0.0, 0.0]] * 30)
+    monkeypatch.setattr("sys.stdin", io.StringIO(""))
+    code, out, err = deixis("ground", script, scene, "--ask", "--time-limit", 1, "--json")
+    assert code in (0, 3)
+    assert "Not all groundings could be considered" in err
+    assert len(matches(out)) == 30
+    assert all(chance is None or chance < 0.2 for chance in probabilities(out))
+
+
+def test_who_does_not_know_leaves_every_probability_as_it_was(monkeypatch: pytest.MonkeyPatch) -> None:
+    arguments = ("ground", example("script2.layout"), SCENE, "--json")
+    monkeypatch.setattr("sys.stdin", io.StringIO("?\n" * 50))
+    _, asked, err = deixis(*arguments, "--ask")
+    assert err.startswith("1. ")
+    assert json.loads(asked)["matches"] == json.loads(deixis(*arguments)[1])["matches"]
+
+
+def test_what_is_pointed_out_is_certain_and_no_other_object(tmp_path: Path) -> None:
+    script = layout_file(tmp_path, "cup left of mug", "cup left of jug")
+    scene = boxes_file(tmp_path, [[0.0, 0.0], [0.3, 0.1], [0.3, -0.1], [0.6, 0.0]])
+    oracle = tmp_path / "truth.json"
+    oracle.write_text('{"cup": "o1", "mug": "o4", "jug": "o2"}', encoding="utf-8")
+    _, out, err = deixis("ground", script, scene, "--oracle", oracle, "--json")
+    assert "Which one is" in err
+    assert matches(out) == {"cup": "o1", "mug": "o4", "jug": "o2"}
+    assert all(chance is not None and chance > 0.975 for chance in probabilities(out))
+
+
+def test_it_is_asked_about_what_would_otherwise_not_be_decided(monkeypatch: pytest.MonkeyPatch) -> None:
+    arguments = ("ground", example("script2.layout"), SCENE, "--json")
+    undecided = [match for match in json.loads(deixis(*arguments)[1])["matches"] if not match["decided"]]
+    monkeypatch.setattr("sys.stdin", io.StringIO(""))
+    assert bool(undecided) == deixis(*arguments, "--ask")[2].startswith("1. ")
+    assert undecided
+
+
+@pytest.mark.parametrize("viewpoint", ["quarter", "unknown"])
+def test_no_side_is_told_where_no_two_things_that_are_compared_were_found(viewpoint: str, tmp_path: Path) -> None:
+    script = layout_file(tmp_path, "cup is a Cup", "mug is a Mug", "cup left of mug")
+    scene = boxes_file(tmp_path, [[0.0, 0.0], [0.4, 0.1]])
+    things = json.loads(scene.read_text(encoding="utf-8"))
+    for thing in things["objects"]:
+        thing["label"] = "fish_knife"
+    scene.write_text(json.dumps(things), encoding="utf-8")
+    _, out, err = deixis("ground", script, scene, "--viewpoint", viewpoint, "--json")
+    assert matches(out) == {}, err
+    (note,) = [note for note in json.loads(out)["notes"] if note.startswith("the scene was taken")]
+    assert "nothing tells from which side" in note
+
+
+def test_no_side_is_told_where_every_angle_does_as_well(tmp_path: Path) -> None:
+    script = layout_file(tmp_path, "cup inside box")
+    scene = boxes_file(tmp_path, [[0.0, 0.0]], side=0.6)
+    things = json.loads(scene.read_text(encoding="utf-8"))
+    things["objects"].append({"id": "small", "min": [0.25, 0.25], "max": [0.35, 0.35]})
+    scene.write_text(json.dumps(things), encoding="utf-8")
+    _, out, err = deixis("ground", script, scene, "--viewpoint", "unknown", "--json")
+    assert matches(out) == {"cup": "small", "box": "o1"}, err
+    assert any("nothing tells from which side" in note for note in json.loads(out)["notes"])
+
+
+def test_what_an_answer_rules_out_does_not_make_an_uncertain_label_certain(tmp_path: Path) -> None:
+    script = read_script(layout_file(tmp_path, "cup is a Cup", "mug is a Mug"))
+    scene = read_scene(boxes_file(tmp_path, [[0.0, 0.0], [0.4, 0.0], [0.8, 0.0]]))
+    evidence = evidence_of(script, scene)
+    labels = evidence.labels.copy()
+    labels[0, 0] = 0.3  # perhaps the cup
+    evidence = replace(evidence, labels=labels)
+    maps = np.array([[0, 1], [1, 0], [2, 1], [1, 2]])
+    start = begin(situation_of(evidence.description, evidence.scene), Candidates(maps, np.ones(4)))
+    is_it = next(
+        q for q in questions(start.situation, start.start) if (q.kind, q.subject, q.thing) == ("identity", 1, 0)
+    )
+    narrowed = _narrowed(evidence, start.answered(is_it, "no"))
+    assert np.isneginf(narrowed.unary[1, 0])
+    assert narrowed.problem.absent.tolist() == evidence.problem.absent.tolist()
+
+
+@pytest.mark.parametrize("truth", ["o3", None])
+def test_of_a_single_object_the_answer_is_believed(truth: str | None, tmp_path: Path) -> None:
+    script = layout_file(tmp_path, "cup is a Cup")
+    scene = boxes_file(tmp_path, [[0.3 * k, 0.0] for k in range(3)])
+    oracle = tmp_path / "truth.json"
+    oracle.write_text(json.dumps({"cup": truth}), encoding="utf-8")
+    _, out, err = deixis("ground", script, scene, "--oracle", oracle, "--json")
+    assert err.startswith("1. Which one is the cup?")
+    assert matches(out) == ({"cup": "o3"} if truth else {})
+    assert all(chance is not None and chance > 0.975 for chance in probabilities(out))
+    assert "labels of the scene" not in out

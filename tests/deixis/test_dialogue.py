@@ -137,3 +137,14 @@ def test_a_truth_file_that_is_none_is_refused(tmp_path: Path, data: object, mess
 def test_a_missing_truth_file_is_told_by_its_name(tmp_path: Path) -> None:
     with pytest.raises(OracleError, match=r"nowhere\.json: cannot be read"):
         read_oracle(tmp_path / "nowhere.json", three_cups().situation, io.StringIO())
+
+
+def test_a_list_that_is_not_complete_is_not_said_to_leave_one_grounding() -> None:
+    several = three_cups(QuestionKind.POINTING)
+    alone = begin(several.situation, Candidates(np.array([[0, 1, 2]]), np.ones(1), complete=False))
+    assert typed(alone)[1] == (
+        "One grounding was considered, so that there was nothing to ask.\n"
+        "Not all groundings could be considered; others may fit as well.\n"
+    )
+    cut = begin(several.situation, Candidates(several.start.assignments, np.ones(4), complete=False), several.kinds)
+    assert "One of those considered is left after 1 question.\n" in typed(cut, "o3", "o1")[1]

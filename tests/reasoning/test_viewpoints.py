@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+import time
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -18,7 +20,7 @@ from deixis.perception.settings import formal_setting
 from deixis.reasoning.graded.facts import fact_tables
 from deixis.reasoning.matching.exact import exact
 from deixis.reasoning.matching.problem import Problem
-from deixis.reasoning.viewpoints import Viewpoints, recover_viewpoint, turned
+from deixis.reasoning.viewpoints import COARSE, Viewpoints, recover_viewpoint, turned
 
 Boxes = NDArray[np.float64]
 FORMAL = read_script(str(Path(__file__).parents[2] / "examples" / "formal_dinner.layout")).graph()
@@ -173,3 +175,52 @@ def test_a_scene_of_nothing_has_every_viewpoint() -> None:
 def test_boxes_that_are_none_are_refused() -> None:
     with pytest.raises(GraphError, match="not finite"):
         turned(np.full((1, 2, 2), np.nan), 1.0)
+
+
+def looked_until(monkeypatch: pytest.MonkeyPatch, most: int) -> tuple[Viewpoints, list[Boxes]]:
+    """What is recovered from a formal dinner where the deadline passes with so many problems built, and what was."""
+    scene, built, deadline = formal_setting(0, 0.01), list[Boxes](), time.perf_counter() + 1000
+    real = time.perf_counter
+    clock = SimpleNamespace(perf_counter=lambda: real() + (2000 if len(built) >= most else 0))
+    monkeypatch.setattr("deixis.reasoning.viewpoints.time", clock)
+
+    def noted(seen: Boxes) -> Problem:
+        built.append(seen)
+        return problem(FORMAL, seen)
+
+    return recover_viewpoint(scene.boxes, noted, any_angle=True, deadline=deadline), built
+
+
+def test_no_problem_is_built_after_the_deadline_and_quarter_turns_come_first(monkeypatch: pytest.MonkeyPatch) -> None:
+    found, built = looked_until(monkeypatch, 10)
+    assert len(built) == 10
+    assert not found.exact
+    assert not found.everywhere
+    boxes = formal_setting(0, 0.01).boxes
+    quarters = [turned(boxes, k * QUARTER, mirrored) for mirrored in (False, True) for k in range(4)]
+    for seen, expected in zip(built, quarters, strict=False):
+        assert np.array_equal(seen, expected)
+
+
+def test_the_scene_as_it_stands_is_looked_at_where_there_is_no_time_at_all() -> None:
+    found = recover_viewpoint(formal_setting(0, 0.01).boxes, lambda seen: problem(FORMAL, seen), deadline=0.0)
+    assert [view.angle for view in found.viewpoints] == [0.0]
+    assert not found.exact
+
+
+def test_an_arc_that_there_was_no_time_to_look_at_finely_stays_as_it_was(monkeypatch: pytest.MonkeyPatch) -> None:
+    found, built = looked_until(monkeypatch, 2 * COARSE + 7)
+    assert len(built) == 2 * COARSE + 7
+    assert not found.everywhere
+    assert sum(view.probability for view in found.viewpoints) == pytest.approx(1.0)
+    assert min(found.best.angle, 2 * math.pi - found.best.angle) < math.radians(10)
+
+
+def test_angles_all_around_are_no_side() -> None:
+    row = np.array([[[0.0, 0.0], [1.0, 1.0]], [[2.0, 0.0], [3.0, 1.0]]])
+    nothing = Problem(
+        np.zeros((0, 2), np.int64), np.zeros(0, np.int64), np.zeros((0, 2, 2), np.float32), np.eye(2), np.zeros(2)
+    )
+    around = recover_viewpoint(row, lambda _: nothing, any_angle=True)
+    assert around.best.concentration == pytest.approx(0.0, abs=1e-9)
+    assert recovered(FORMAL, formal_setting(0, 0.01).boxes, any_angle=True).best.concentration > 0.9
