@@ -11,7 +11,7 @@ from deixis.grammar.names import NameBook
 from deixis.grammar.phrases import chains
 from deixis.grammar.script import Mention
 from deixis.ontology.colours import Colour
-from deixis.ontology.kinds import Kind
+from deixis.ontology.kinds import Kind, with_article
 from deixis.ontology.relation import Relation, nearest, plain_phrase
 from deixis.ontology.source import Source
 from deixis.ontology.tbox import Ontology
@@ -101,7 +101,8 @@ class Draft:
                 before = self.declared.setdefault(name, [])
                 for other in before:
                     if not (kinds.is_a(kind, other) or kinds.is_a(other, kind)):
-                        message = f"'{shortened(name)}' was declared as a {other.label}, and is no {kind.label}"
+                        before_it = with_article(other.label)
+                        message = f"'{shortened(name)}' was declared as {before_it}, and is no {kind.label}"
                         raise Refusal(mention.source, message)
                 if kind not in before:
                     before.append(kind)

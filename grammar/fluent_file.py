@@ -209,11 +209,6 @@ def format_fluents(content: FluentFile) -> str:
     return f'{head}  "fluents": {fluents},\n  "relations": {relations}\n}}\n'
 
 
-def write_fluents(content: FluentFile, path: str | Path) -> None:
-    """Writes a file of fluents."""
-    Path(path).write_text(format_fluents(content), encoding="utf-8")
-
-
 def bounds_to_json(bounds: Bounds) -> Any:
     """Bounds as a file has them: ``[lower, upper]``, unless an end is open.
 

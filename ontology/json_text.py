@@ -11,10 +11,11 @@ MAX_DIGITS = 4000
 """Digits of a whole number: what Python itself reads at the most, nearly."""
 
 
-def parse_json(text: str, file: str, error: type[DeixisError], no_number: str) -> Any:
+def parse_json(text: str, file: str, error: type[DeixisError], no_number: str | None) -> Any:
     """The data in a JSON text; raises ``error`` with the file, and the line and column where it is no JSON.
 
-    ``no_number`` says what is wrong with ``NaN`` and ``Infinity``, after their name.
+    ``no_number`` says what is wrong with ``NaN`` and ``Infinity``, after their name; None lets them in, for a reader
+    that refuses them where they stand.
 
     >>> parse_json('{"x": 1}', "t.json", DeixisError, "is no number")
     {'x': 1}
@@ -30,7 +31,7 @@ def parse_json(text: str, file: str, error: type[DeixisError], no_number: str) -
     try:
         return json.loads(
             text.removeprefix("\ufeff"),
-            parse_constant=refuse,
+            parse_constant=refuse if no_number else None,
             parse_int=_whole_number,
             object_pairs_hook=_without_repeats,
         )

@@ -17,6 +17,15 @@ def plain_name(name: str) -> str:
     return re.sub(r"_\d+$", "", name)
 
 
+def with_article(noun: str) -> str:
+    """The noun after its indefinite article, by how English words that begin so are mostly spoken.
+
+    >>> with_article("egg cup"), with_article("utensil"), with_article("fork")
+    ('an egg cup', 'a utensil', 'a fork')
+    """
+    return f"{'an' if re.match(r'(?!eu|one|uni|us|ute)[aeiou]', noun, re.IGNORECASE) else 'a'} {noun}"
+
+
 @dataclass(frozen=True, slots=True)
 class Kind:
     """A class of the taxonomy: its words (label and synonyms, case-folded) and every broader class's IRI."""

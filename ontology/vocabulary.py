@@ -57,8 +57,6 @@ class DX(StrEnum):
     PROTOTYPE = BASE + "prototype"
     SPREAD = BASE + "spread"
     OF_COLOUR = BASE + "ofColour"
-    SPATIAL_RELATION = BASE + "spatialRelation"
-    DIRECTION = BASE + "direction"
     SUPPORT = BASE + "support"
     FILLS = BASE + "fills"
     SHOWS = BASE + "shows"

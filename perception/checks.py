@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+import math
 from collections.abc import Mapping
 from typing import Any
 
@@ -19,13 +21,16 @@ def mapping(data: Any, where: str) -> Mapping[str, Any]:
 
 
 def number(data: Any, where: str) -> float:
-    """A number, not a truth value; it may still be infinite."""
+    """A number, not a truth value, and finite."""
     if isinstance(data, bool) or not isinstance(data, int | float):
         raise SceneError(f"{where}: a number is expected, not {kind(data)}")
     try:
-        return float(data)
+        value = float(data)
     except OverflowError:
         raise SceneError(f"{where}: the number is too large") from None
+    if not math.isfinite(value):
+        raise SceneError(f"{where}: {json.dumps(value)} is no number to work with; leave the object out")
+    return value
 
 
 def text(data: Any, where: str) -> str:

@@ -59,7 +59,7 @@ def _parsed(path: Path) -> Any:
         raise SceneError(f"{path}: the file is not UTF-8 (byte {error.start})") from error
     except ValueError as error:
         raise SceneError(f"{path}: cannot be read: {error}") from error
-    return parse_json(content, str(path), SceneError, "is no number that a coordinate can be; leave the object out")
+    return parse_json(content, str(path), SceneError, no_number=None)
 
 
 def scene_from_dict(data: Any, file: str, image: str | int | None = None) -> Scene:

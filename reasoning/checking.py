@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.ontology.graph import RelationGraph, dispensable
-from deixis.ontology.kinds import Kinds
+from deixis.ontology.kinds import Kinds, with_article
 from deixis.reasoning.answer import FactOutcome, Grounding, Outcome
 from deixis.reasoning.evidence import Evidence
 from deixis.reasoning.labels import Label, named_objects, objects_called
@@ -246,6 +246,6 @@ def _extra(
         elif sure[thing]:
             reason = f"one {label.text} too many"
         else:
-            reason = f"the layout has no place left for a {label.text}"
+            reason = f"the layout has no place left for {with_article(label.text)}"
         found.append(Extra(thing, label.text if label else None, reason))
     return tuple(found)

@@ -26,12 +26,17 @@ from deixis.memory.perceptual.tensors import pack
 FORMAT, VERSION = "deixis-perceptual-memory", 1
 _HEAD = "memory.json"
 _ENTRY = re.compile(r"(categories|views)/\d{9}\.safetensors")
+_BEGINNING = b"PK\x03\x04"  # of a zip archive with something in it
 _LONG_AGO = (1980, 1, 1, 0, 0, 0)  # the earliest that a zip archive can say
 
 
 def is_archive(file: Path) -> bool:
     """Whether a file is one, by looking at its beginning only."""
-    return zipfile.is_zipfile(file)
+    try:
+        with file.open("rb") as opened:
+            return opened.read(len(_BEGINNING)) == _BEGINNING
+    except OSError:
+        return False
 
 
 def write_archive(memory: PerceptualReading, file: Path) -> None:
@@ -86,7 +91,11 @@ class Archive:
         self.file = file
         try:
             self._zip = zipfile.ZipFile(file)
-        except (OSError, ValueError, NotImplementedError, zipfile.BadZipFile) as error:
+        except zipfile.BadZipFile as error:
+            raise ImportFormatError(
+                f"{file}: no archive of views can be read: {error}; if it was cut short, get the whole file"
+            ) from error
+        except (OSError, ValueError, NotImplementedError) as error:
             raise ImportFormatError(f"{file}: no archive of views can be read: {error}") from error
         try:
             self._check_head()

@@ -19,6 +19,9 @@ from deixis.memory.perceptual.protocol import Finding, PerceptualStats, Progress
 from deixis.memory.perceptual.records import CategoryRecord, View, check_name
 from deixis.ontology.relation import nearest
 
+MOST_LISTED = 5
+"""Categories that a message names."""
+
 
 class Snapshot:
     """A database as it was when this was made, until it is closed.
@@ -240,6 +243,7 @@ def _same(item: Any) -> Any:
 def unknown_category(name: str, known: tuple[str, ...]) -> UnknownCategoryError:
     """The error for a category that is not there."""
     near = nearest(name, known)
-    others = f"known are: {', '.join(known[-5:])}" if known else "none is known yet"
+    listed = ", ".join(known[:MOST_LISTED]) + (", among others" if len(known) > MOST_LISTED else "")
+    others = f"known are: {listed}" if known else "none is known yet"
     hint = f"did you mean '{near}'?" if near else others
     return UnknownCategoryError(f"no category '{name}'; {hint}")

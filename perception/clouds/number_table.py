@@ -29,17 +29,27 @@ class TextTable:
 
 
 def read_table(
-    content: Content, at: int, rows: int, width: int, wanted: Sequence[int], lists: Sequence[int] = (), kept: int = -1
+    content: Content,
+    at: int,
+    rows: int | None,
+    width: int,
+    wanted: Sequence[int],
+    lists: Sequence[int] = (),
+    kept: int = -1,
 ) -> TextTable:
     """``rows`` lines of ``width`` columns from byte ``at`` on, of which ``lists`` are lists, their length first.
 
-    Raises CloudError, before anything is allocated, where the file is too short for so many values; and at a line
-    with too few or too many, or with something that is no number.
+    None for ``rows`` stands for all there are, in a file that declares nothing: as wide as the first. Raises
+    CloudError, before anything is allocated, where the file is too short for so many values; and at a line with too few
+    or too many, or with something that is no number.
     """
     from deixis.perception.clouds import number_kernels as kernels
 
     room = (len(content) - at + 1) // 2  # a value is a digit and a blank
-    if rows * width > room:
+    declared = rows is not None
+    if rows is None:
+        rows = min(kernels.count_rows(content.data, at), room // width + 1)  # for more, one of these is too short
+    elif rows * width > room:
         raise CloudError(
             f"{content.name}:{content.line_of(at)}: {rows} rows of {width} values are declared, and the file has room"
             f" for {room} values; correct the count, or get the whole file"
@@ -59,7 +69,7 @@ def read_table(
             content.data, at, roles, out, inexact, lengths, values
         )
         if status != kernels.DONE:
-            raise _error(content, status, end, row, rows, column, width)
+            raise _error(content, status, end, row, rows, column, width, declared)
         again = many > len(inexact) or filled > len(values)
     _settle(content, out, inexact[:many])
     return TextTable(out, lengths, values[:filled], end)
@@ -78,17 +88,20 @@ def _settle(content: Content, out: NDArray[np.float64], inexact: NDArray[np.int6
         out[some[:, 0], some[:, 1]] = [float(bytes(raw[begin:end])) for begin, end in some[:, 2:].tolist()]
 
 
-def _error(content: Content, status: int, at: int, row: int, rows: int, column: int, width: int) -> CloudError:
+def _error(
+    content: Content, status: int, at: int, row: int, rows: int, column: int, width: int, declared: bool
+) -> CloudError:
     """What a kernel found, in words."""
     from deixis.perception.clouds import number_kernels as kernels
 
     where = f"{content.name}:{content.line_of(at)}"
+    values = f"{width} values {'declared' if declared else 'of the first line'}"
     if status == kernels.TOO_FEW and not content.data[at:].size and not column:
         return CloudError(f"{where}: the file ends after {row} of {rows} rows; get the whole file")
     if status == kernels.TOO_FEW:
-        return CloudError(f"{where}: this line has {column} of the {width} values declared; add what is missing")
+        return CloudError(f"{where}: this line has {column} of the {values}; add what is missing")
     if status == kernels.TOO_MANY:
-        return CloudError(f"{where}: this line has more than the {width} values declared; take the others out")
+        return CloudError(f"{where}: this line has more than the {values}; take the others out")
     if status == kernels.BAD_LENGTH:
         return CloudError(f"{where}: the length of a list is a whole number of 0 or more that fits; correct it")
     word = content.data[at : at + 64].tobytes().split(maxsplit=1)[0].decode("latin-1")

@@ -24,7 +24,7 @@ _SEPARATORS = b",;"
 
 def read_xyz(content: Content) -> PointCloud:
     """The cloud in a text file; raises CloudError, with the line, where it is malformed or has no point."""
-    from deixis.perception.clouds.number_kernels import count_rows, row_start
+    from deixis.perception.clouds.number_kernels import row_start
 
     blank = content.data.copy()
     for separator in _SEPARATORS:
@@ -33,7 +33,7 @@ def read_xyz(content: Content) -> PointCloud:
     start = row_start(blank, 0)
     width = _width(content, start)
     chosen = [0, 1, 2, 3, 4, 5] if width == 6 else [0, 1, 2]
-    table = read_table(plain, start, count_rows(blank, start), width, chosen).columns
+    table = read_table(plain, start, None, width, chosen).columns
     points, more = single(table[:, :3]), table[:, 3:]
     if width != 6:
         return PointCloud(points)

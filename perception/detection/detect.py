@@ -28,6 +28,9 @@ ON_TABLE = 0.01
 WIDEST = 20.0
 """Metres from the middle of a cloud: where half the points are farther away, the unit is another."""
 
+LEAST_TABLE = 0.3
+"""Metres: what is shorter in both directions is hardly a table, but a side of a thing that was scanned alone."""
+
 SURELY = 1.5
 """A thing is so many times as high as what may be taken for a point above the table."""
 
@@ -85,14 +88,15 @@ def detect(cloud: PointCloud, settings: DetectionSettings | None = None) -> Dete
     rising = raised(view.heights, view.distance, neighbours, settings)
     colours = None if cloud.colours is None else cloud.colours[kept]
     found = _things(view, rising, neighbours, colours, settings)
+    doubts = _doubts(view)
     if not found.max(initial=NONE) >= 0:
-        return _nothing(len(cloud), plane, view.frame, "nothing is on the table")
+        return _nothing(len(cloud), plane, view.frame, "nothing is on the table", *doubts)
     numbers = _left_to_right(view.points, found)
     labels = np.full(len(cloud), NONE, np.int32)
     labels[kept] = numbers
     members = [view.points[numbers == k] for k in range(int(numbers.max()) + 1)]
     boxes = np.stack([upright_box(thing) for thing in members])
-    return Detection(plane, view.frame, labels, boxes, tuple(oriented_box(thing) for thing in members))
+    return Detection(plane, view.frame, labels, boxes, tuple(map(oriented_box, members)), doubts)
 
 
 def _require_metres(points: NDArray[np.float64]) -> None:
@@ -134,6 +138,16 @@ def _view(points: NDArray[np.float64], plane: Plane, outlook: Outlook, settings:
     eye = moved(outlook.eye[None], frame)[0]
     at = np.ascontiguousarray(moved(points, frame))
     return _View(frame, at, np.linalg.norm(at - eye, axis=1), eye)
+
+
+def _doubts(view: _View) -> tuple[str, ...]:
+    """A note where the table is too small for one."""
+    on = view.points[np.abs(view.heights) < ON_TABLE, :2]
+    across, deep = np.ptp(on, axis=0).tolist() if len(on) else (0.0, 0.0)
+    if max(across, deep) >= LEAST_TABLE:
+        return ()
+    size = f"{100 * across:.0f} by {100 * deep:.0f} cm"
+    return (f"what was taken for the table is only {size}: it may be a part of a thing seen alone",)
 
 
 def _things(
@@ -194,5 +208,5 @@ def _left_to_right(points: NDArray[np.float64], numbers: NDArray[np.int32]) -> N
     return rank[numbers]
 
 
-def _nothing(count: int, plane: Plane | None, frame: NDArray[np.float64], why: str) -> Detection:
-    return Detection(plane, frame, np.full(count, NONE, np.int32), np.zeros((0, 2, 3)), (), (why,))
+def _nothing(count: int, plane: Plane | None, frame: NDArray[np.float64], *why: str) -> Detection:
+    return Detection(plane, frame, np.full(count, NONE, np.int32), np.zeros((0, 2, 3)), (), why)

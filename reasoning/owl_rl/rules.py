@@ -95,11 +95,6 @@ scm-avf2: ?c owl:allValuesFrom ?y , ?c owl:onProperty ?p , ?d owl:allValuesFrom 
 | ?p rdfs:subPropertyOf ?q => ?d rdfs:subClassOf ?c
 """
 
-LIST_RULES = (
-    "cax-adc", "cls-int1", "cls-int2", "cls-oo", "cls-uni", "eq-diff2", "eq-diff3", "prp-adp", "prp-key", "prp-spo2",
-    "scm-int", "scm-uni",
-)  # fmt: skip
-
 TermAtom = tuple[str, str, str]
 """A pattern: three terms, each an N-Triples spelling or a variable such as ``?x``."""
 

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from deixis.cli_common import AsJson, MemoryDir, print_json, print_lines
+from deixis.cli_common import BAD_INPUT, AsJson, MemoryDir, print_json, print_lines
 
 category_app = typer.Typer(help="List, rename, merge or forget what was taught.", no_args_is_help=True)
 
@@ -19,15 +19,20 @@ def register(app: typer.Typer) -> None:
 
 @category_app.command("list")
 def list_categories(memory: MemoryDir = None, as_json: AsJson = False) -> None:
-    """What was taught, with the number of views."""
+    """What was taught, with the number of views; exit 2 where damaged ones are left out."""
     from deixis.session import Session
 
+    left_out: list[str] = []
     with Session(memory) as session:
-        known = session.categories(lambda note: print(f"deixis: {note}", file=sys.stderr))
+        known = session.categories(left_out.append)
     if as_json:
         print_json(known)
-    else:
+    elif known or not left_out:
         print_lines([f"{name:<24} {count}" for name, count in known.items()] or ["Nothing was taught."])
+    for note in left_out:
+        print(f"deixis: {note}", file=sys.stderr)
+    if left_out:
+        raise typer.Exit(BAD_INPUT)
 
 
 @category_app.command("rename")

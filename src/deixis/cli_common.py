@@ -20,6 +20,7 @@ SceneFile = Annotated[
     str, typer.Argument(metavar="SCENE", help="A scene (.scene.json), or COCO or LabelMe annotations.")
 ]
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
+ENGINE_HELP = "exact; scalable; similarity: the paper's; and two others from the literature."
 TimeLimit = Annotated[float, typer.Option(min=0.0, metavar="SECONDS", help="Answer by then.")]
 HideLabels = Annotated[bool, typer.Option("--hide-labels", help="Look at the scene as if nothing in it were named.")]
 Image = Annotated[str | None, typer.Option(metavar="NAME", help="Which image of a COCO file.")]

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from deixis.cli_common import (
+    ENGINE_HELP,
     NO,
     UNDECIDED,
     AsJson,
@@ -40,9 +41,7 @@ class ViewpointName(StrEnum):
 def ground(
     script: Script,
     scene: SceneFile,
-    engine: Annotated[
-        EngineName, typer.Option(help="exact; scalable; similarity: the paper's; and two others from the literature.")
-    ] = EngineName.EXACT,
+    engine: Annotated[EngineName, typer.Option(help=ENGINE_HELP)] = EngineName.EXACT,
     literal: Annotated[bool, typer.Option("--literal", help="Take words literally, not by degrees.")] = False,
     no_sizes: Annotated[bool, typer.Option("--no-sizes", help="Leave out how large things usually are.")] = False,
     ask: Annotated[bool, typer.Option("--ask", help="Ask what tells groundings apart.")] = False,

@@ -10,6 +10,7 @@ from typing import Annotated
 import typer
 
 from deixis.cli_common import (
+    ENGINE_HELP,
     AsJson,
     HideLabels,
     Image,
@@ -20,7 +21,9 @@ from deixis.cli_common import (
     print_json,
     print_lines,
     progress_bar,
+    working,
 )
+from deixis.reasoning.engine_name import EngineName
 
 memory_app = typer.Typer(help="Export, import, count, or forget what was learned.", no_args_is_help=True)
 
@@ -48,7 +51,7 @@ def register(app: typer.Typer) -> None:
 def learn(
     script: Script,
     scene: SceneFile,
-    engine: Annotated[str, typer.Option(help="exact, graded, or similarity: the paper's.")] = "exact",
+    engine: Annotated[EngineName, typer.Option(help=ENGINE_HELP)] = EngineName.EXACT,
     time_limit: TimeLimit = 10.0,
     hide_labels: HideLabels = False,
     image: Image = None,
@@ -63,7 +66,8 @@ def learn(
 
     with Session(memory) as session:
         try:
-            learned = session.learn(script, load_scene(scene, hide_labels, image), engine, time_limit)
+            with working("grounding"):
+                learned = session.learn(script, load_scene(scene, hide_labels, image), engine, time_limit)
         except NothingFoundError as error:
             print(f"deixis: {error}", file=sys.stderr)
             raise typer.Exit(1) from error
@@ -115,7 +119,7 @@ def check(
 
         require_picture(plot)
     seen = load_scene(scene, hide_labels, image)
-    with Session(memory) as session:
+    with Session(memory) as session, working("grounding"):
         checked = session.check(layout, seen, time_limit)
     if report is not None:
         report.parent.mkdir(parents=True, exist_ok=True)
@@ -246,10 +250,14 @@ def stats(memory: MemoryDir = None, as_json: AsJson = False) -> None:
 def verify(memory: MemoryDir = None, as_json: AsJson = False) -> None:
     """Read every view that was taught, and say what is not as it was written; exit 1 where something is not."""
     from deixis.memory.perceptual.whole import verify_views
-    from deixis.memory_session import default_memory
+    from deixis.session import Session
 
+    with Session(memory) as session:
+        if not session.has_views() and not session.remembers():
+            session.memory()  # raises: there is none
+        where = session.path
     with progress_bar("verifying") as progress:
-        found = verify_views(memory or default_memory(), progress)
+        found = verify_views(where, progress)
     if as_json:
         print_json({"findings": [{"where": entry.where, "what": entry.what} for entry in found]})
     else:
@@ -263,7 +271,7 @@ def forget(
     lesson: Annotated[str, typer.Argument(metavar="LESSON", help="The id that learn printed; see memory stats.")],
     memory: MemoryDir = None,
 ) -> None:
-    """Take back one lesson, with everything that follows from it alone."""
+    """Take back one lesson, with everything that follows from it alone; views of things stay (category forget)."""
     from deixis.session import Session
 
     with Session(memory) as session:

@@ -41,8 +41,8 @@ def relation(
     found = relations.by_word.get(plain_phrase(word))
     if found is None:
         hint = nearest(plain_phrase(word), relations.by_word)
-        advice = f"; did you mean '{hint}'?" if hint else ""
-        raise UnknownTermError(f"no relation is called '{word}'" + advice)
+        advice = f"did you mean '{hint}'?" if hint else f"there are {', '.join(relations)}"
+        raise UnknownTermError(f"no relation is called '{word}'; {advice}")
     known = _in_force(memory, no_memory) if models is None else read_models(models)
     if plot is not None:
         require_picture(plot)

@@ -124,6 +124,8 @@ def _lines(found: Simulation, written: list[Path]) -> Iterator[str]:
         place = f"at {100 * middle[0]:.1f}, {100 * middle[1]:.1f}"
         shape = f"{thing.shape}{', for want of a shape of its kind' if thing.generic else ''}"
         yield f"{seen.id:<4} {thing.name:<22} {place:<16} {points:>7} points  {shape}"
+    if found.laid.top_name is not None:
+        yield f"{found.laid.top_name} is the table itself, and none of the things."
     x, y, z = found.camera.eye.tolist()
     measured = int(found.cloud.finite.sum())
     yield f"Camera at {100 * x:.1f}, {100 * y:.1f}, {100 * z:.1f} cm; {measured} of {len(found.cloud)} points measured."
@@ -145,7 +147,11 @@ def simulation_to_dict(found: Simulation, view: View, seed: int) -> dict[str, An
         "seed": seed,
         "camera": {**{name: getattr(lens, name) for name in names}, "pose": camera.pose.tolist()},
         "sensor": {"noise": sensor.noise, "missing": sensor.missing, "quantised": sensor.quantised},
-        "table": {"min": list(found.laid.table.top.low), "max": list(found.laid.table.top.high)},
+        "table": {
+            "name": found.laid.top_name,
+            "min": list(found.laid.table.top.low),
+            "max": list(found.laid.table.top.high),
+        },
         "things": [
             {
                 "id": seen.id,

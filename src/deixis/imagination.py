@@ -9,7 +9,7 @@ import numpy as np
 
 from deixis.grammar.script import Script
 from deixis.ontology.graph import Fact, RelationGraph
-from deixis.ontology.kinds import Kind, Kinds, plain_name
+from deixis.ontology.kinds import Kind, Kinds, plain_name, with_article
 from deixis.ontology.sizes import SizeRange
 from deixis.perception.scene import PerceivedObject, Scene
 from deixis.reasoning.conflict import find_conflict
@@ -32,7 +32,7 @@ class Sized:
     size: SizeRange
 
     def __str__(self) -> str:
-        return f"{self.name}, {'of unknown kind' if self.kind is None else f'a {self.kind.label}'}: {self.size}"
+        return f"{self.name}, {'of unknown kind' if self.kind is None else with_article(self.kind.label)}: {self.size}"
 
 
 @dataclass(frozen=True, slots=True)

@@ -55,11 +55,15 @@ class TimeIsUpError(DeixisError, TimeoutError):
 
 @dataclass(frozen=True, eq=False)
 class LaidScript:
-    """A laid table, and what of the script does not hold there: hedged or optional facts that did not fit."""
+    """A laid table, and what of the script does not hold there: hedged or optional facts that did not fit.
+
+    ``top_name`` is the object of the script that is the table itself, which is none of the things on it.
+    """
 
     table: LaidTable
     viewpoint: str = "chair"
     missed: tuple[Fact, ...] = ()
+    top_name: str | None = None
 
 
 def lay_random(
@@ -102,7 +106,8 @@ def lay_script(
     plan = _planned(script, graph, meshes, seed, time_limit)
     laid = _laid_straight_where_needed(plan)
     table = replace(laid, top=_top(plan, laid, cloth))
-    return LaidScript(table, script.viewpoint or "chair", _missed(plan, table))
+    top_name = next((name for name, is_table in zip(graph.nodes, plan.tables, strict=True) if is_table), None)
+    return LaidScript(table, script.viewpoint or "chair", _missed(plan, table), top_name)
 
 
 @dataclass(frozen=True, eq=False)

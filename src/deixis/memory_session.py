@@ -124,7 +124,10 @@ class MemorySession:
         self._meaning = None
 
     def forget(self, lesson: str) -> None:
-        """Takes back one lesson, with everything that follows from it alone, and what it taught of words and sizes."""
+        """Takes back one lesson, with everything that follows from it alone, and what it taught of words and sizes.
+
+        What it kept of how things look stays.
+        """
         from deixis.keeping import forget
 
         forget(self.memory(), self.ontology, lesson)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.perception.detection.detect import ON_TABLE
 from deixis.plot import INK, QUIET, dress_table, new_figure, save
 from deixis.plot_names import write_names
 
@@ -22,6 +23,12 @@ if TYPE_CHECKING:
 MOST_POINTS = 40_000
 """Points that are drawn of a cloud."""
 
+MARGIN = 0.05
+"""Metres around the table that are drawn."""
+
+FEW = 0.005
+"""The share of the table's points, on each side, that may be some other level surface of its height."""
+
 
 def plot_perceived(found: Perceived, path: str | Path) -> None:
     """The points from above, grey where they belong to no thing; beside it the image, where the cloud is one."""
@@ -30,12 +37,14 @@ def plot_perceived(found: Perceived, path: str | Path) -> None:
     organised = found.cloud.organised
     figure, axes = new_figure(14.0 if organised else 8.0, 6.5, ncols=2 if organised else 1, squeeze=False)
     points = in_frame(found.cloud, found.detection.frame).points
-    _points(axes[0][0], points, found.detection.labels)
+    shown = _worth_showing(points, found)
+    _points(axes[0][0], points[shown], found.detection.labels[shown])
     _boxes(axes[0][0], found.scene)
     axes[0][0].set_aspect("equal")
+    axes[0][0].set_anchor("N")
     dress_table(axes[0][0], found.scene, "From above, in the table's frame")
     if organised:
-        _image(axes[0][1], found.detection.labels.reshape(organised))
+        _image(axes[0][1], found.detection.labels.reshape(organised), shown.reshape(organised))
     things = tuple(replace(thing, label=thing.label or thing.id) for thing in found.scene.objects)
     write_names(figure, axes[0][0], things)
     save(figure, path)
@@ -53,12 +62,29 @@ def plot_recognised(found: Recognised, path: str | Path) -> None:
             _points(axes, points, np.full(len(points), number))
         answer = found.answers.get(thing.id)
         said = thing.label if answer is None else f"{answer.label or 'unknown'} {answer.probability:.2f}"
-        named.append(replace(thing, label=said or "unknown"))
+        named.append(replace(thing, label=f"{thing.id} {said or 'unknown'}"))
     _boxes(axes, found.scene)
     axes.set_aspect("equal")
     dress_table(axes, found.scene, "What was recognised")
     write_names(figure, axes, named)
     save(figure, path)
+
+
+def _worth_showing(points: NDArray[np.float32], found: Perceived) -> NDArray[np.bool_]:
+    """Which points (n, 3) of the table's frame lie above or below the table and its things, or near: (n,).
+
+    All of them where no table was found.
+    """
+    if found.detection.table is None:
+        return np.ones(len(points), dtype=np.bool_)
+    on_things = found.detection.labels >= 0
+    of_interest = on_things | (np.abs(points[:, 2]) < ON_TABLE)
+    low, high = np.quantile(points[of_interest, :2], [FEW, 1.0 - FEW], axis=0)
+    if on_things.any():
+        things = points[on_things, :2]
+        low, high = np.minimum(low, things.min(axis=0)), np.maximum(high, things.max(axis=0))
+    shown: NDArray[np.bool_] = ((points[:, :2] > low - MARGIN) & (points[:, :2] < high + MARGIN)).all(axis=1)
+    return shown
 
 
 def _points(axes: Axes, points: NDArray[np.float32], labels: NDArray[np.integer]) -> None:
@@ -79,10 +105,16 @@ def _boxes(axes: Axes, scene: Scene) -> None:
         axes.add_patch(Rectangle((x, y), right - x, top - y, fill=False, edgecolor=INK, linewidth=1.0))
 
 
-def _image(axes: Axes, labels: NDArray[np.integer]) -> None:
+def _image(axes: Axes, labels: NDArray[np.integer], shown: NDArray[np.bool_]) -> None:
+    """The things' labels as an image (height, width), as far as there is something that is shown."""
     picture = np.full((*labels.shape, 3), 0.93)
     picture[labels >= 0] = _colour(labels[labels >= 0])
     axes.imshow(picture)
+    rows, columns = np.nonzero(shown)
+    if len(rows):
+        axes.set_xlim(columns.min() - 0.5, columns.max() + 0.5)
+        axes.set_ylim(rows.max() + 0.5, rows.min() - 0.5)
+    axes.set_anchor("N")
     axes.set_title("As the camera sees it", color=INK, fontsize=12, loc="left")
     axes.set_axis_off()
 

@@ -312,6 +312,28 @@ def test_damaged_views_are_left_out_and_told_and_mended_by_teaching_again(tables
     assert json.loads(deixis("category", "list", "--json", *memory)[1]) == {"fork": 2, "plate": 2}
 
 
+def test_a_memory_of_which_nothing_can_be_read_is_not_called_empty(tables: Path, tmp_path: Path) -> None:
+    memory = ("--memory", tmp_path / "memory")
+    deixis("teach", tables / "7.scene.json", "o1", "plate", *memory)
+    store = tmp_path / "memory" / "perceptual" / "store-1"
+    with plyvel.DB(str(store)) as db:
+        key, value = next(db.iterator(prefix=b"vplate"))
+        db.put(key, value[:-1] + bytes([value[-1] ^ 1]))
+    (store.parent / "seal.json").unlink()
+    code, out, err = deixis("category", "list", *memory)
+    assert (code, out) == (2, "")
+    assert "left out" in err
+
+
+def test_a_memory_that_is_not_there_is_not_called_whole(tmp_path: Path) -> None:
+    (tmp_path / "empty").mkdir()
+    for place in ("nowhere", "empty"):
+        code, out, err = deixis("memory", "verify", "--memory", tmp_path / place)
+        assert (code, out) == (2, "")
+        assert "there is no memory" in err
+    assert not (tmp_path / "nowhere").exists()
+
+
 def test_what_is_no_memory_is_told_by_every_command(tables: Path, tmp_path: Path) -> None:
     scene, file, folder = tables / "7.scene.json", tmp_path / "file", tmp_path / "folder"
     file.write_text("dear\n")

@@ -95,6 +95,8 @@ def test_points_are_counted_for_each_thing() -> None:
 def test_a_table_that_a_script_speaks_of_is_the_tables_top() -> None:
     laid = lay_script(parse_script("plate on table; fork on table; fork left of plate"), seed=1)
     assert [thing.name for thing in laid.table.things] == ["plate", "fork"]
+    assert laid.top_name == "table"
+    assert lay_script(parse_script("fork left of plate"), seed=1).top_name is None
     low, high = np.array(laid.table.top.low), np.array(laid.table.top.high)
     for thing in laid.table.things:
         assert (low <= thing.box[0, :2]).all() and (thing.box[1, :2] <= high).all()
@@ -173,6 +175,10 @@ def test_the_command_lists_what_it_laid_and_says_what_is_generic(tmp_path: Path)
     assert result.exit_code == 0, result.output
     assert "cylinder, for want of a shape of its kind" in result.output
     assert f"Written: {tmp_path / 's.ply'}" in result.output.replace("\n", "\n")
+    assert "the table itself" not in result.output
+    layout.write_text("plate on coffee_table\n")
+    assert "coffee_table is the table itself, and none of the things." in run(layout).output
+    assert json.loads(run(layout, "--json").output)["table"]["name"] == "coffee_table"
     assert np.nanmin(np.abs(read_cloud(tmp_path / "s.ply").points[:, 2])) < 1e-4
 
 

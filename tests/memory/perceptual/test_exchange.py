@@ -192,6 +192,21 @@ def test_a_compressed_archive_is_refused(memory: PerceptualMemory, file: Path) -
         import_views(file, memory)
 
 
+def test_an_archive_that_was_cut_short_is_known_for_one(
+    memory: PerceptualMemory, make_view: MakeView, tmp_path: Path
+) -> None:
+    memory.write(Batch([make_view("v1")]))
+    file = tmp_path / "views.zip"
+    export_views(memory, file)
+    assert is_archive(file)
+    file.write_bytes(file.read_bytes()[:-100])
+    assert is_archive(file)
+    with pytest.raises(ImportFormatError, match="if it was cut short, get the whole file"):
+        import_views(file, memory)
+    file.write_text("<a> <b> <c> .")
+    assert not is_archive(file)
+
+
 def test_what_is_no_archive_is_refused(memory: PerceptualMemory, tmp_path: Path) -> None:
     (tmp_path / "x.zip").write_bytes(b"no zip")
     for name in ("x.zip", "gone.zip", "."):

@@ -199,6 +199,17 @@ def test_an_unknown_category_is_told_with_the_nearest_at_once(
     assert isinstance(caught.value, KeyError) and isinstance(caught.value, DeixisError)
 
 
+def test_an_unknown_category_near_none_is_told_with_some_and_that_there_are_others(
+    memory: PerceptualMemory, make_view: MakeView
+) -> None:
+    memory.write(Batch([make_view(f"v{k}", name) for k, name in enumerate("abcde")]))
+    with pytest.raises(UnknownCategoryError, match=r"known are: a, b, c, d, e$"):
+        memory.category("xylophone")
+    memory.write(Batch([make_view("v9", "f")]))
+    with pytest.raises(UnknownCategoryError, match=r"known are: a, b, c, d, e, among others$"):
+        memory.category("xylophone")
+
+
 def test_a_snapshot_stays_as_it_was(
     memory: PerceptualMemory, make_view: MakeView, make_record: MakeRecord, content: Content
 ) -> None:

@@ -65,3 +65,16 @@ def test_an_npz_file_may_hold_points_alone_and_colors_as_shares(tmp_path: Path) 
     np.savez(file, points=np.zeros((1, 3), ">f8"), colors=np.array([[0, 0.5, 1]]))
     colours = read_cloud(file).colours
     assert colours is not None and colours.tolist() == [[0, 128, 255]]
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("1 2 3\n4 5\n", r"a\.xyz:2: this line has 2 of the 3 values of the first line; add what is missing"),
+        ("1 2 3\n4 5", r"a\.xyz:2: this line has 2 of the 3 values of the first line"),
+        ("1 2 3\n4 5 6 7\n", r"a\.xyz:2: this line has more than the 3 values of the first line"),
+    ],
+)
+def test_a_line_of_another_width_than_the_first_is_named(tmp_path: Path, text: str, message: str) -> None:
+    with pytest.raises(CloudError, match=message):
+        text_cloud(tmp_path, text)

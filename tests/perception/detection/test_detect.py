@@ -153,3 +153,12 @@ def test_a_cloud_without_a_finite_point_is_bad_input() -> None:
 def test_settings_that_cannot_be_are_refused(wrong: dict[str, float]) -> None:
     with pytest.raises(CloudError, match=r"detection's|a thing has"):
         DetectionSettings(**wrong)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(("side", "doubted"), [(0.2, True), (0.5, False)])
+def test_a_table_too_small_for_one_is_noted(side: float, doubted: bool) -> None:
+    x, y = (axis.ravel() for axis in np.mgrid[0 : side + 1e-6 : 0.005, 0 : side + 1e-6 : 0.005])
+    points = np.stack([x, y + 0.6, np.full(x.shape, -0.5)], axis=1).astype(np.float32)
+    found = detect(PointCloud(points))
+    assert found.notes[0] == "nothing is on the table"
+    assert [note.startswith("what was taken for the table is only 2") for note in found.notes[1:]] == [True] * doubted
