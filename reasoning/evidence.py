@@ -32,6 +32,9 @@ from deixis.reasoning.labels import Label, classes
 from deixis.reasoning.matching.problem import UNMATCHED, Problem
 from deixis.reasoning.meaning import SHIPPED, Meaning
 
+RARELY = 0.05
+"""The odds at most that an object is absent from a scene that has room for all."""
+
 PRESENT = -30.0
 """What leaving an object out costs where a certain label says that it is there."""
 
@@ -156,14 +159,16 @@ def absence(objects: int, things: int) -> float:
 
     Whoever leaves an object out says that it is not there, and that one thing more was not described. The odds of
     either are those of Jeffreys' rule, (k + 1/2) / (n - k + 1/2), for the k that there are at least: all but as many
-    as there are on the other side.
+    as there are on the other side. But a few words about a full table are no sign that what they name is missing: where
+    none has to be absent, its odds are ``RARELY`` at most, and where most things are not described anyway, one more
+    says nothing.
 
-    >>> round(absence(12, 12), 1), round(absence(15, 12), 1)
-    (-6.4, -4.5)
+    >>> round(absence(12, 12), 1), round(absence(15, 12), 1), round(absence(2, 300), 1)
+    (-6.4, -4.5, -3.0)
     """
     absent, extra = max(0, objects - things), max(0, things - objects)
-    of_objects = (absent + 0.5) / (objects - absent + 0.5)
-    return math.log(of_objects) + math.log((extra + 0.5) / (things - extra + 0.5))
+    of_objects = (absent + 0.5) / (objects - absent + 0.5) if absent else min(0.5 / (objects + 0.5), RARELY)
+    return math.log(of_objects) + min(0.0, math.log((extra + 0.5) / (things - extra + 0.5)))
 
 
 def exact_names(scene: RelationGraph) -> NDArray[np.int16]:

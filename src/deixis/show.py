@@ -147,7 +147,8 @@ def _match_line(match: Match) -> str:
     line = f"{match.object:<24} {match.perceived:<10}"
     if match.probability is not None:
         line += f" {_probability(match.probability)}"
-        others = [f"{_thing(other)} {_probability(other.probability or 0)}" for other in match.alternatives]
+        others = [f"{_thing(other)} {_probability(other.probability or 0)}" for other in match.alternatives[:MANY]]
+        others += [f"{len(match.alternatives) - MANY} more"] if len(match.alternatives) > MANY else []
         return line + (f"   or {', '.join(others)}" if others and not match.decided else "")
     equal = [_thing(other) for other in match.alternatives if other.cost <= 1e-9]
     if match.decided or not match.alternatives:

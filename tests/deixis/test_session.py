@@ -196,6 +196,14 @@ def test_an_empty_scene() -> None:
     assert found.graph_similarity == 0
 
 
+def test_two_words_about_a_full_table_are_found_and_said_to_be_unsure() -> None:
+    scene = {"objects": [box(f"p{i}", i) for i in range(40)]}
+    found = deixis.ground(deixis.read_script(text="fork left of plate"), scene)
+    assert set(found.matches) == {"fork", "plate"} and not found.violated
+    assert not any(match.decided for match in found.matches.values())
+    assert len(grounding_lines(found)[0]) < 200
+
+
 def test_many_things_left_out_for_one_reason_are_one_line() -> None:
     scene = {"objects": [box(f"p{i}", 3 * i) for i in range(40)]}
     shown = grounding_lines(deixis.ground(deixis.read_script(text="fork left of plate"), scene))

@@ -6,12 +6,14 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from deixis.ontology.errors import GraphError
 from deixis.ontology.graph import RelationGraph
 from deixis.ontology.relation import Relations
-from deixis.reasoning.evidence import Evidence, exact_names, no_unary_evidence
+from deixis.reasoning.evidence import Evidence, absence, exact_names, no_unary_evidence
 from deixis.reasoning.matching.problem import UNMATCHED
 from deixis.reasoning.rectangle import perceived_graph
 
@@ -95,3 +97,9 @@ def test_a_scene_in_which_a_pair_has_no_one_exact_name_is_an_error(
 ) -> None:
     with pytest.raises(GraphError, match=message):
         exact_names(graph_of(*sentences, nodes="a b"))
+
+
+@given(st.integers(1, 60), st.integers(1, 400))
+def test_leaving_out_is_never_worth_more_than_a_match_where_there_is_room_for_all(objects: int, things: int) -> None:
+    worth = absence(objects, things)
+    assert worth < -2.9 if objects <= things else worth > absence(things, things)
