@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from deixis.learned_words import fit, informed, new_lessons
@@ -74,7 +75,8 @@ def test_more_examples_move_a_model_further_and_a_stronger_prior_less() -> None:
     def moved(number: int, strength: float) -> float:
         lessons = tuple(remembered(f"a-{i}") for i in range(number))
         model, prior = (models["saying"] for models in (fit(Recollection(lessons), strength).models, shipped_models()))
-        return abs(model.outliers - prior.outliers) + abs(model.chance - prior.chance)
+        values = [(term.values, before.values) for term, before in zip(model.terms, prior.terms, strict=True)]
+        return float(sum(np.abs(np.subtract(*both)).sum() for both in values))
 
     assert moved(8, 1.0) > moved(1, 1.0) > moved(1, 20.0) > 0
 
