@@ -7,9 +7,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from deixis.learned_words import fit, informed, new_lessons
 from deixis.ontology.lesson_triples import asserted_triples, episode_triples
+from deixis.ontology.relation_models import Term
 from deixis.ontology.tbox import default_ontology
 from deixis.perception.scene import Scene
 from deixis.perception.scene_file import read_scene
@@ -75,8 +77,11 @@ def test_more_examples_move_a_model_further_and_a_stronger_prior_less() -> None:
     def moved(number: int, strength: float) -> float:
         lessons = tuple(remembered(f"a-{i}") for i in range(number))
         model, prior = (models["saying"] for models in (fit(Recollection(lessons), strength).models, shipped_models()))
-        values = [(term.values, before.values) for term, before in zip(model.terms, prior.terms, strict=True)]
-        return float(sum(np.abs(np.subtract(*both)).sum() for both in values))
+        pairs = zip(model.terms, prior.terms, strict=True)
+        return sum(float(np.abs(degrees(term) - degrees(before)).max()) for term, before in pairs)
+
+    def degrees(term: Term) -> NDArray[np.float64]:
+        return np.interp(np.linspace(-1, 1, 41), term.knots, term.values)
 
     assert moved(8, 1.0) > moved(1, 1.0) > moved(1, 20.0) > 0
 
