@@ -7,7 +7,7 @@ where none is stated, what the views of all kinds have in common. Sizes are natu
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -84,3 +84,14 @@ def learn_size(views: Array, prior: SizePrior, relative: bool = False) -> SizeMo
     deviation = np.maximum(np.sqrt(variance + 1 / precision), LEAST_SPREAD)
     length, aspect = zip(typical.tolist(), deviation.tolist(), strict=True)
     return SizeModel(length, (min(aspect[0], 0.0), aspect[1]), relative, float(n))
+
+
+def learn_sizes(
+    views: Mapping[str, Array], relative: bool = False, usual: Mapping[str, SizeModel] | None = None
+) -> dict[str, SizeModel]:
+    """The sizes of kinds from views of each, (n, 2), n at least 1: near its usual size, or what all have in common."""
+    if not views:
+        return {}
+    pooled = pooled_prior(list(views.values()))
+    priors = {kind: usual_prior(model) for kind, model in (usual or {}).items()}
+    return {kind: learn_size(seen, priors.get(kind, pooled), relative) for kind, seen in views.items()}

@@ -99,13 +99,17 @@ def size_evidence(
     where all are alike.
     """
     evidence = np.zeros((len(kinds), len(boxes)))
-    known = {kind: model for kind in kinds if (model := (learned or {}).get(kind) or usual_size(kind, sizes))}
+    different = dict.fromkeys(kinds)
+    known = {kind: model for kind in different if (model := (learned or {}).get(kind) or usual_size(kind, sizes))}
+    if not known or not len(boxes):
+        return evidence
     if not metric:
         known = beside_each_other(known, kinds)
-    for kind, model in known.items():
-        if len(boxes):
-            ratio = _density_ratio(log_sizes(boxes, model.relative), model)
-            evidence[[row for row, other in enumerate(kinds) if other == kind]] = ratio
+    measured = {relative: log_sizes(boxes, relative) for relative in {model.relative for model in known.values()}}
+    ratios = {kind: _density_ratio(measured[model.relative], model) for kind, model in known.items()}
+    for row, kind in enumerate(kinds):
+        if kind in ratios:
+            evidence[row] = ratios[kind]
     return evidence
 
 

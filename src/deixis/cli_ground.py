@@ -134,8 +134,7 @@ def _ask(
 
 
 def _verdict(found: Grounding) -> int:
-    """No match at all is a no; what the time limit cut short, or left unproved, is undecided."""
+    """No match at all is a no; what the time limit cut short, so that it is not proved either, is undecided."""
     if not found.matches:
         return NO
-    unproved = found.engine == EngineName.EXACT and not found.proved_best
-    return UNDECIDED if unproved or not found.finished else 0
+    return 0 if found.finished else UNDECIDED

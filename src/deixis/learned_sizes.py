@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Set
 
 import numpy as np
 import pyoxigraph as ox
@@ -13,8 +13,9 @@ from deixis.ontology.kinds import Kinds, plain_name
 from deixis.ontology.lesson_triples import scene_text_iri
 from deixis.ontology.size_model import SizeModel
 from deixis.ontology.size_model_triples import size_triples
+from deixis.ontology.sizes import Sizes
 from deixis.ontology.tbox import Ontology
-from deixis.reasoning.graded.size_learning import SizePrior, learn_size, pooled_prior, usual_prior
+from deixis.reasoning.graded.size_learning import learn_sizes
 from deixis.reasoning.graded.unary import log_sizes, usual_size
 from deixis.reasoning.labels import category_of, classes
 from deixis.remembered import Recollection, Remembered
@@ -30,16 +31,16 @@ View = tuple[Remembered, int]  # a lesson, and the place of a thing in its scene
 
 def learned_size_triples(recollection: Recollection, ontology: Ontology) -> list[ox.Triple]:
     """The sizes that the lessons teach, with the scenes that they are derived from."""
-    used = {}
-    for kind, views in _views(recollection, ontology.kinds).items():
-        usual = usual_size(kind, ontology.sizes)
-        if usual is None or len(views) >= FEWEST:
-            used[kind] = _comparable(views), usual
-    measured = _Measured({kind: views for kind, (views, _) in used.items()})
+    used = {
+        kind: _comparable(views)
+        for kind, views in _views(recollection, ontology.kinds).items()
+        if len(views) >= FEWEST or usual_size(kind, ontology.sizes) is None
+    }
+    models = _models(used, ontology.sizes)
     triples: list[ox.Triple] = []
-    for kind, (views, usual) in used.items():
+    for kind, views in used.items():
         scenes = sorted({scene_text_iri(lesson.texts[1]) for lesson, _ in views})
-        triples += size_triples(kind, measured.model(kind, usual), scenes)
+        triples += size_triples(kind, models[kind], scenes)
     return triples
 
 
@@ -53,26 +54,23 @@ def _metric(view: View) -> bool:
     return view[0].scene.unit == "m"
 
 
-class _Measured:
-    """The sizes of the views of each kind, in metres where all of them are, else relative to the scene."""
+def _models(used: Mapping[str, list[View]], sizes: Sizes) -> dict[str, SizeModel]:
+    """The size of each kind, in metres where all its views are, else relative to their scenes."""
+    in_metres = {kind for kind, views in used.items() if all(map(_metric, views))}
+    usual = {kind: model for kind in in_metres if (model := usual_size(kind, sizes))}
+    relative = learn_sizes(_measured(used, used.keys() - in_metres, relative=True), relative=True)
+    return learn_sizes(_measured(used, in_metres, relative=False), usual=usual) | relative
 
-    def __init__(self, views: Mapping[str, list[View]]) -> None:
-        self._relative = {kind: not all(map(_metric, seen)) for kind, seen in views.items()}
-        self._sizes = {
-            kind: np.array([log_sizes(lesson.scene.boxes, self._relative[kind])[thing] for lesson, thing in seen])
-            for kind, seen in views.items()
-        }
 
-    def model(self, kind: str, usual: SizeModel | None) -> SizeModel:
-        relative = self._relative[kind]
-        prior = usual_prior(usual) if usual is not None and not relative else self._pooled(relative)
-        return learn_size(self._sizes[kind], prior, relative)
-
-    def _pooled(self, relative: bool) -> SizePrior:
-        alike: list[NDArray[np.float64]] = [
-            sizes for kind, sizes in self._sizes.items() if self._relative[kind] == relative
-        ]
-        return pooled_prior(alike)
+def _measured(used: Mapping[str, list[View]], kinds: Set[str], relative: bool) -> dict[str, NDArray[np.float64]]:
+    """Log length and log aspect of the views (n, 2) of some kinds; each scene is measured once."""
+    lessons = {lesson.lesson: lesson for kind in kinds for lesson, _ in used[kind]}
+    sizes = {id: log_sizes(lesson.scene.boxes, relative) for id, lesson in lessons.items()}
+    return {
+        kind: np.array([sizes[lesson.lesson][thing] for lesson, thing in views])
+        for kind, views in used.items()
+        if kind in kinds
+    }
 
 
 def _views(recollection: Recollection, kinds: Kinds) -> dict[str, list[View]]:

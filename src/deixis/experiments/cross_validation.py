@@ -13,7 +13,7 @@ from deixis.ontology.size_model import SizeModel
 from deixis.reasoning.graded.fitting import FitSettings, learn_relations
 from deixis.reasoning.graded.lessons import said_pairs
 from deixis.reasoning.graded.shipped import shipped_models
-from deixis.reasoning.graded.size_learning import learn_size, pooled_prior
+from deixis.reasoning.graded.size_learning import learn_sizes
 from deixis.reasoning.graded.unary import log_sizes
 from deixis.reasoning.labels import classes
 from deixis.reasoning.meaning import Meaning
@@ -47,6 +47,4 @@ def relative_sizes(images: Sequence[Photograph]) -> Mapping[str, SizeModel]:
     for said, boxes in images:
         for kind, size in zip(classes(said), log_sizes(boxes, relative=True), strict=True):
             views[kind].append(size)
-    sizes = {kind: np.array(seen) for kind, seen in views.items()}
-    prior = pooled_prior(list(sizes.values()))
-    return {kind: learn_size(seen, prior, relative=True) for kind, seen in sizes.items()}
+    return learn_sizes({kind: np.array(seen) for kind, seen in views.items()}, relative=True)
