@@ -2,10 +2,10 @@
 
 Every image's facts become log-likelihood ratios (:mod:`deixis.reasoning.graded.facts`); the one-to-one map with the
 largest sum is found exactly. Share of objects named right, mean over images, each a mean over random node orders.
-``shipped`` models know nothing of these images. ``learned`` words, and sizes of what people call things, are fitted by
-cross-validation over images: the test fold is never seen. ``--halves`` adds the shares of two fixed halves of the
-images, development and confirmation; the last choices of form, and the strengths of the priors, were made by looking
-at the first alone.
+``shipped`` words and sizes know nothing of these images. ``learned`` words, and sizes of what people call things, are
+fitted by cross-validation over images: the test fold is never seen. ``--halves`` adds the shares of two fixed halves
+of the images, development and confirmation; the last choices of form, and the strengths of the priors of what is
+learned, were made by looking at the first alone.
 
 ``--tables N`` grounds N generated tables of 12 objects a setting instead: the share right of the best map, beside
 the exact Bayes limit of who knows the words only and of who knows as well how pairs are drawn; the expected calibration
@@ -30,7 +30,7 @@ from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.evidence import exact_names
 from deixis.reasoning.graded.facts import FactTables, crisp_tables, fact_tables
 from deixis.reasoning.graded.fitting import FitSettings
-from deixis.reasoning.graded.unary import size_evidence
+from deixis.reasoning.graded.unary import UnaryWeights, size_evidence
 from deixis.reasoning.labels import classes
 from deixis.reasoning.matching.exact import exact
 from deixis.reasoning.matching.posterior import posterior
@@ -66,7 +66,7 @@ def graded_shares(
     """The share named right of each image, by a meaning of its own."""
     rng, sizes, shares = np.random.default_rng(1), default_ontology().sizes, []
     for (said, boxes), meaning in zip(images, meanings, strict=True):
-        alone = size_evidence(classes(said), boxes, sizes, meaning.sizes, metric=False)
+        alone = meaning.weights.sizes * size_evidence(classes(said), boxes, sizes, meaning.sizes, metric=False)
         away = np.full(len(boxes), -1e3)
         facts = fact_tables(said, boxes, meaning.models, saying=saying, literal=literal, unary=alone, absent=away)
         shares.append(share_right(facts, alone, len(boxes), rng, orders))
@@ -130,24 +130,27 @@ def on_photographs(options: argparse.Namespace) -> None:
     folder = data_folder("vrd")
     if folder is None:
         return
-    images = list(photographs(folder, default_ontology().relations))
+    images = list(photographs(folder, default_ontology()))
     print(f"{len(images)} images, {options.orders} node orders, seed 1")
     started = time.perf_counter()
     report("crisp degrees", crisp_shares(images, options.orders), started, options.halves)
-    for name, saying, literal in (
-        ("shipped, words alone", False, 0.0),
-        ("shipped, none literal", True, 0.0),
-        ("shipped, judged (default)", True, None),
-        ("shipped, 0.9 literal", True, 0.9),
+    no_sizes = Meaning(weights=UnaryWeights(sizes=0.0))
+    for name, meaning, saying, literal in (
+        ("no sizes, words alone", no_sizes, False, 0.0),
+        ("no sizes, none literal", no_sizes, True, 0.0),
+        ("no sizes, judged", no_sizes, True, None),
+        ("no sizes, 0.9 literal", no_sizes, True, 0.9),
+        ("shipped (default)", SHIPPED, True, None),
     ):
         started = time.perf_counter()
-        shares = graded_shares(images, [SHIPPED] * len(images), options.orders, saying, literal)
+        shares = graded_shares(images, [meaning] * len(images), options.orders, saying, literal)
         report(name, shares, started, options.halves)
     for seed in map(int, filter(None, options.seeds.split(","))):
         started = time.perf_counter()
         settings = FitSettings(options.strength, options.word_contrast, iterations=60)
         learned = learned_meanings(images, seed, options.folds, settings)
         for name, meanings in (
+            ("words, no sizes", [Meaning(one.models, weights=no_sizes.weights) for one in learned]),
             ("words", [Meaning(one.models) for one in learned]),
             ("sizes", [Meaning(sizes=one.sizes) for one in learned]),
             ("words and sizes", learned),

@@ -35,9 +35,10 @@ class _Lines:
 def _statements(layout: LayoutConcept, ontology: Ontology, lines: _Lines) -> Iterator[Statement]:
     yield Header(layout.name, layout.title, layout.viewpoint, lines.next())
     gap = True
+    related = {name for fact in layout.facts for name in (fact.subject, fact.object)}
     for role in layout.roles:
         kind = ontology.kinds[role.kind] if role.declared and role.kind is not None else None
-        colour = _declared_colour(role, ontology)
+        colour = _declared_colour(role, role.name in related, ontology)
         if kind is not None or colour is not None:
             source = lines.next(gap)
             yield Declaration((_mention(role.name, source),), kind, colour, source)
@@ -49,10 +50,10 @@ def _statements(layout: LayoutConcept, ontology: Ontology, lines: _Lines) -> Ite
         gap = False
 
 
-def _declared_colour(role: Role, ontology: Ontology) -> Colour | None:
-    """The colour of a role, None where its name says it already."""
+def _declared_colour(role: Role, related: bool, ontology: Ontology) -> Colour | None:
+    """The colour of a role, None where its name says it already and a fact bears the name."""
     colour = ontology.colours[role.colour] if role.colour is not None else None
-    return None if colour is ontology.of_name(role.name)[1] else colour
+    return None if related and colour is ontology.of_name(role.name)[1] else colour
 
 
 def _placement(fact: Fact, ontology: Ontology, source: Source) -> Placement:

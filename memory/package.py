@@ -4,33 +4,34 @@ from __future__ import annotations
 
 import hashlib
 from functools import lru_cache
-from pathlib import Path
 from typing import TypeVar
 
 import pyoxigraph as ox
 
 from deixis.memory.graphs import GraphName
 from deixis.ontology.skolem import skolem
-from deixis.ontology.tbox import TBOX_FILE
+from deixis.ontology.tbox import TBOX_FILES, tbox_turtle
 
-SHAPES_FILE = TBOX_FILE.with_name("shapes.ttl")
-
-_FILES = {GraphName.ONTOLOGY: TBOX_FILE, GraphName.SHAPES: SHAPES_FILE}
+SHAPES_FILE = TBOX_FILES[0].with_name("shapes.ttl")
 
 
 @lru_cache(maxsize=1)
 def packaged() -> dict[GraphName, tuple[ox.Triple, ...]]:
     """The packaged ontology and shapes as triples, blank nodes as names that stay the same."""
-    return {name: tuple(_read(name, file)) for name, file in _FILES.items()}
+    return {name: tuple(_read(name, turtle)) for name, turtle in _texts().items()}
 
 
 def package_digest() -> str:
-    """A digest of the packaged files, to see whether a memory has them already."""
-    return hashlib.sha256(b"".join(file.read_bytes() for file in _FILES.values())).hexdigest()
+    """A digest of the packaged texts, to see whether a memory has them already."""
+    return hashlib.sha256("".join(_texts().values()).encode()).hexdigest()
 
 
-def _read(name: GraphName, file: Path) -> list[ox.Triple]:
-    dataset = ox.Dataset(ox.parse(path=file, format=ox.RdfFormat.TURTLE))
+def _texts() -> dict[GraphName, str]:
+    return {GraphName.ONTOLOGY: tbox_turtle(), GraphName.SHAPES: SHAPES_FILE.read_text(encoding="utf-8")}
+
+
+def _read(name: GraphName, turtle: str) -> list[ox.Triple]:
+    dataset = ox.Dataset(ox.parse(turtle, format=ox.RdfFormat.TURTLE))
     dataset.canonicalize(ox.CanonicalizationAlgorithm.RDFC_1_0)
     return [ox.Triple(_named(name, quad.subject), quad.predicate, _named(name, quad.object)) for quad in dataset]
 

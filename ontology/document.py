@@ -35,7 +35,7 @@ _PROPERTIES = {
 _CHARACTERISTICS = ("Functional", "InverseFunctional", "Transitive", "Symmetric", "Asymmetric", "Irreflexive")
 
 _INTRODUCTION = """\
-<!-- Made from ontology/deixis.ttl by: python -m deixis.ontology.document > docs/ontology.md -->
+<!-- Made from ontology/deixis.ttl and everyday.ttl by: python -m deixis.ontology.document > docs/ontology.md -->
 
 # The ontology
 
@@ -104,8 +104,8 @@ Terms = Mapping[str, Term]
 def term_document(turtle: str) -> str:
     """The page, in Markdown, of an ontology in Turtle that is built as the shipped TBox is.
 
-    >>> from deixis.ontology.tbox import TBOX_FILE
-    >>> page = term_document(TBOX_FILE.read_text(encoding="utf-8"))
+    >>> from deixis.ontology.tbox import tbox_turtle
+    >>> page = term_document(tbox_turtle())
     >>> "**fork** (`dx:Fork`): Cutlery with tines." in page
     True
 
@@ -336,6 +336,6 @@ def _table(heads: tuple[str, ...], rows: Iterable[tuple[str, ...]]) -> str:
 if __name__ == "__main__":
     import sys
 
-    from deixis.ontology.tbox import TBOX_FILE
+    from deixis.ontology.tbox import tbox_turtle
 
-    sys.stdout.buffer.write(term_document(TBOX_FILE.read_text(encoding="utf-8")).encode("utf-8"))
+    sys.stdout.buffer.write(term_document(tbox_turtle()).encode("utf-8"))

@@ -1,4 +1,4 @@
-"""Reads the TBox (``deixis.ttl``) and turns it into the names and meanings that the other rooms use."""
+"""Reads the TBox (``deixis.ttl``, ``everyday.ttl``): the names and meanings that the other rooms use."""
 
 from __future__ import annotations
 
@@ -15,7 +15,8 @@ from deixis.ontology.relation import Relation, Relations, relation_from_triples
 from deixis.ontology.sizes import Sizes, sizes_from_triples
 from deixis.ontology.vocabulary import DX, W3C
 
-TBOX_FILE = Path(__file__).with_name("deixis.ttl")
+TBOX_FILES = tuple(Path(__file__).with_name(name) for name in ("deixis.ttl", "everyday.ttl"))
+"""The vocabulary and the kinds of tableware, and the everyday kinds around them: one ontology."""
 
 
 class Triples:
@@ -106,12 +107,17 @@ def load_ontology(*extra: str) -> Ontology:
     Raises OntologyError where a text is no Turtle or a relation lacks what code needs.
     """
     triples = Triples()
-    for text in (TBOX_FILE.read_text(encoding="utf-8"), *extra):
+    for text in (tbox_turtle(), *extra):
         for subject, predicate, value in _parse(text):
             triples.add(subject, predicate, value)
     return Ontology(
         _relations(triples), _kinds(triples), _hedges(triples), sizes_from_triples(triples), _colours(triples)
     )
+
+
+def tbox_turtle() -> str:
+    """The shipped TBox as one Turtle text."""
+    return "\n".join(file.read_text(encoding="utf-8") for file in TBOX_FILES)
 
 
 @lru_cache(maxsize=1)

@@ -86,10 +86,13 @@ def kind(data: Any) -> str:
 
 
 def shown(value: object) -> str:
-    """A value as a message repeats it: never longer than :data:`MAX_SHOWN`, whatever a file holds.
+    """A value as a message repeats it: on one line, never longer than :data:`MAX_SHOWN`, whatever a file holds.
 
     >>> shown("a.jpg"), len(shown("a" * 1000))
     ('a.jpg', 60)
+    >>> print(shown("two\\nlines"))
+    two\\nlines
     """
-    plain = str(value).encode("utf-8", "backslashreplace").decode("utf-8")
+    text = str(value)[: MAX_SHOWN + 1]
+    plain = "".join(c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in text)
     return plain if len(plain) <= MAX_SHOWN else plain[: MAX_SHOWN - 1] + "…"

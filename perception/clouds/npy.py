@@ -69,8 +69,7 @@ def read_npz(content: Content, names: Iterable[str]) -> dict[str, NDArray[np.gen
     except (zipfile.BadZipFile, zlib.error, EOFError, OSError, ValueError, NotImplementedError) as error:
         if isinstance(error, CloudError):
             raise
-        reason = " ".join(shown(error).split())
-        raise CloudError(f"{content.name}: this is no whole .npz file ({reason}); save it again") from error
+        raise CloudError(f"{content.name}: this is no whole .npz file ({shown(error)}); save it again") from error
     return found
 
 

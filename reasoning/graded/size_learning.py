@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from deixis.ontology.size_model import SizeModel
 from deixis.reasoning.errors import SettingError
-from deixis.reasoning.graded.unary import LEAST_SPREAD
+from deixis.reasoning.graded.looks import LEAST_SPREAD
 
 Array = NDArray[np.float64]
 

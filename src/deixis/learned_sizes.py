@@ -15,8 +15,9 @@ from deixis.ontology.size_model import SizeModel
 from deixis.ontology.size_model_triples import size_triples
 from deixis.ontology.sizes import Sizes
 from deixis.ontology.tbox import Ontology
+from deixis.reasoning.graded.looks import usual_size
 from deixis.reasoning.graded.size_learning import learn_sizes
-from deixis.reasoning.graded.unary import log_sizes, usual_size
+from deixis.reasoning.graded.unary import log_sizes
 from deixis.reasoning.labels import category_of, classes
 from deixis.remembered import Recollection, Remembered
 

@@ -36,13 +36,13 @@ def folder(tmp_path: Path) -> Path:
 
 
 def test_images_with_four_related_objects_are_read_and_y_points_up(folder: Path) -> None:
-    (found,) = photographs(folder, default_ontology().relations)
+    (found,) = photographs(folder, default_ontology())
     assert [str(fact) for fact in found.description.facts()] == ["on(dog_0, wing_chair_1)", "top(dog_2, sky_3)"]
     assert found.boxes[1].tolist() == [[0, -15], [8, -10]]
 
 
 def test_every_order_keeps_who_is_who(folder: Path) -> None:
-    (original,) = photographs(folder, default_ontology().relations)
+    (original,) = photographs(folder, default_ontology())
     cases = list(photograph_cases(folder, 3, None, seed=1))
     assert [case.unit for case in cases] == [0, 0, 0]
     assert len({case.description.nodes for case in cases}) > 1
@@ -57,13 +57,13 @@ def test_every_order_keeps_who_is_who(folder: Path) -> None:
 def test_other_files_are_an_error(folder: Path, name: str, text: str) -> None:
     (folder / name).write_text(text)
     with pytest.raises(PhotographError, match="no annotations of Visual Relationship Detection"):
-        list(photographs(folder, default_ontology().relations))
+        list(photographs(folder, default_ontology()))
 
 
 def test_a_missing_file_is_an_error(folder: Path) -> None:
     (folder / "objects.json").unlink()
     with pytest.raises(PhotographError, match=r"objects\.json"):
-        list(photographs(folder, default_ontology().relations))
+        list(photographs(folder, default_ontology()))
 
 
 def test_without_the_variable_there_is_no_folder(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:

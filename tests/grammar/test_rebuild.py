@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pytest
 from hypothesis import given, settings
 from random_scripts import scripts
 
@@ -23,6 +24,13 @@ def test_parse_learn_show_parse_gives_the_same_facts(script: Script) -> None:
     assert again.kinds == script.kinds
     assert again.colours == script.colours
     assert (again.title, again.viewpoint) == (script.title, script.viewpoint)
+
+
+@pytest.mark.parametrize("text", ["red_fork is red", "red_fork is red; knife left of spoon", "fork is a plate"])
+def test_what_was_declared_and_never_related_is_still_there(text: str) -> None:
+    again = parse_script(layout_script(layout_concept(parse_script(text), "x-1"), default_ontology()))
+    assert again.colours == parse_script(text).colours
+    assert again.objects == parse_script(text).objects
 
 
 def test_the_layout_is_written_a_fact_a_line() -> None:

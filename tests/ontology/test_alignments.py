@@ -13,10 +13,10 @@ import pytest
 from rdflib import DCTERMS, OWL, RDF, RDFS, SKOS, SOSA, SSN, Graph, URIRef
 from rdflib.namespace import GEO
 
-from deixis.ontology.tbox import TBOX_FILE
+from deixis.ontology.tbox import TBOX_FILES, tbox_turtle
 from deixis.ontology.vocabulary import BASE, ONTOLOGY_IRI
 
-FOLDER = TBOX_FILE.parent / "alignments"
+FOLDER = TBOX_FILES[0].parent / "alignments"
 FILES = {path.stem: path for path in sorted(FOLDER.glob("*.ttl"))}
 
 DUL = "http://www.ontologydesignpatterns.org/ont/dul/DUL.owl#"
@@ -66,7 +66,7 @@ sumo:Object owl:disjointWith sumo:Process, sumo:Abstract .
 
 @pytest.fixture(scope="module")
 def core() -> Graph:
-    return Graph().parse(TBOX_FILE, format="turtle")
+    return Graph().parse(data=tbox_turtle(), format="turtle")
 
 
 def namespace(term: URIRef) -> str:
@@ -147,13 +147,13 @@ def unsatisfiable(*turtle: str) -> list[str]:
 
 
 def texts() -> list[str]:
-    return [path.read_text(encoding="utf-8") for path in (TBOX_FILE, *FILES.values())]
+    return [path.read_text(encoding="utf-8") for path in (*TBOX_FILES, *FILES.values())]
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("path", FILES.values(), ids=FILES)
 def test_the_core_with_an_alignment_stays_consistent(path: Path) -> None:
-    assert unsatisfiable(TBOX_FILE.read_text(encoding="utf-8"), path.read_text(encoding="utf-8"), THEIRS) == []
+    assert unsatisfiable(tbox_turtle(), path.read_text(encoding="utf-8"), THEIRS) == []
 
 
 @pytest.mark.slow

@@ -12,12 +12,12 @@ from rdflib import RDF, RDFS, SKOS, Graph, URIRef
 
 from deixis.ontology.document import term_document
 from deixis.ontology.errors import OntologyError
-from deixis.ontology.tbox import TBOX_FILE, default_ontology
+from deixis.ontology.tbox import default_ontology, tbox_turtle
 from deixis.ontology.vocabulary import BASE, DX
 
 PAGE = Path(__file__).parents[2] / "docs" / "ontology.md"
-TURTLE = TBOX_FILE.read_text(encoding="utf-8")
-GRAPH = Graph().parse(TBOX_FILE, format="turtle")
+TURTLE = tbox_turtle()
+GRAPH = Graph().parse(data=tbox_turtle(), format="turtle")
 TERMS = sorted({s for s in GRAPH.subjects(RDF.type) if isinstance(s, URIRef) and s.startswith(BASE)})
 
 PREFIXES = """

@@ -16,14 +16,14 @@ import pyoxigraph as ox
 import pytest
 from rdflib import OWL, RDF, Graph, Literal, Namespace, URIRef
 
-from deixis.ontology.tbox import TBOX_FILE
+from deixis.ontology.tbox import TBOX_FILES, tbox_turtle
 from deixis.ontology.vocabulary import BASE, ONTOLOGY_IRI
 
 CHECKS: dict[str, dict[str, Any]] = {
     check["name"]: check
     for check in tomllib.loads(Path(__file__).with_name("lint.toml").read_text(encoding="utf-8"))["check"]
 }
-ALIGNMENTS = sorted((TBOX_FILE.parent / "alignments").glob("*.ttl"))
+ALIGNMENTS = sorted((TBOX_FILES[0].parent / "alignments").glob("*.ttl"))
 PREFIXES = {
     "dc": "http://purl.org/dc/elements/1.1/",
     "dcterms": "http://purl.org/dc/terms/",
@@ -64,12 +64,12 @@ def findings(name: str, graph: ox.Store) -> list[str]:
 
 @pytest.fixture(scope="module")
 def tbox() -> ox.Store:
-    return store(TBOX_FILE.read_text(encoding="utf-8"))
+    return store(tbox_turtle())
 
 
 @pytest.fixture(scope="module")
 def aligned() -> ox.Store:
-    return store(*(path.read_text(encoding="utf-8") for path in (TBOX_FILE, *ALIGNMENTS)))
+    return store(*(path.read_text(encoding="utf-8") for path in (*TBOX_FILES, *ALIGNMENTS)))
 
 
 def test_the_checks_are_those_of_robots_default_profile() -> None:
@@ -105,7 +105,7 @@ def test_what_is_only_worth_a_remark_is_known(tbox: ox.Store) -> None:
 
 
 def test_the_header_is_whole() -> None:
-    graph = Graph().parse(TBOX_FILE, format="turtle")
+    graph = Graph().parse(data=tbox_turtle(), format="turtle")
     header = URIRef(ONTOLOGY_IRI)
     assert list(graph.subjects(RDF.type, OWL.Ontology)) == [header]
     version = str(graph.value(header, OWL.versionInfo))
@@ -122,7 +122,7 @@ def test_the_header_is_whole() -> None:
 
 
 def test_rdflib_oxigraph_and_owlready_read_the_same_terms(tbox: ox.Store) -> None:
-    graph = Graph().parse(TBOX_FILE, format="turtle")
+    graph = Graph().parse(data=tbox_turtle(), format="turtle")
     assert len(graph) == len(tbox)
     classes = {str(c) for c in graph.subjects(RDF.type, OWL.Class) if isinstance(c, URIRef)}
     ntriples = tbox.dump(format=ox.RdfFormat.N_TRIPLES, from_graph=ox.DefaultGraph())

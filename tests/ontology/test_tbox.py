@@ -16,7 +16,7 @@ from rdflib import DCTERMS, OWL, PROV, RDF, RDFS, SKOS, Graph, URIRef
 
 from deixis.ontology import vocabulary
 from deixis.ontology.errors import DeixisError, OntologyError
-from deixis.ontology.tbox import TBOX_FILE, default_ontology, load_ontology
+from deixis.ontology.tbox import default_ontology, load_ontology, tbox_turtle
 from deixis.ontology.vocabulary import BASE, DX, ONTOLOGY_IRI
 
 PREFIXES = """
@@ -29,7 +29,7 @@ PREFIXES = """
 
 @pytest.fixture(scope="module")
 def tbox() -> Graph:
-    return Graph().parse(TBOX_FILE, format="turtle")
+    return Graph().parse(data=tbox_turtle(), format="turtle")
 
 
 @pytest.fixture(scope="module")
@@ -39,7 +39,7 @@ def declared(tbox: Graph) -> set[URIRef]:
 
 @pytest.fixture(scope="module")
 def ntriples() -> bytes:
-    quads = pyoxigraph.parse(path=str(TBOX_FILE), format=pyoxigraph.RdfFormat.TURTLE)
+    quads = pyoxigraph.parse(tbox_turtle(), format=pyoxigraph.RdfFormat.TURTLE)
     text = pyoxigraph.serialize((quad.triple for quad in quads), format=pyoxigraph.RdfFormat.N_TRIPLES)
     assert text is not None
     return text

@@ -18,7 +18,7 @@ from rdflib import OWL, RDF, RDFS, Graph, URIRef
 import deixis.reasoning.orders.closed as module
 from deixis.ontology.graph import Fact, RelationGraph
 from deixis.ontology.relation import Relation, Relations
-from deixis.ontology.tbox import TBOX_FILE, default_ontology
+from deixis.ontology.tbox import default_ontology, tbox_turtle
 from deixis.reasoning.calculi.calculus import ProductCalculus
 from deixis.reasoning.calculi.registry import calculus
 from deixis.reasoning.conflict import find_conflict
@@ -43,7 +43,7 @@ facts = st.lists(
 @cache
 def axioms() -> tuple[dict[str, set[str]], dict[str, str], set[str]]:
     """Direct super-properties, inverses and transitive properties, by relation name, read with rdflib."""
-    tbox = Graph().parse(TBOX_FILE, format="turtle")
+    tbox = Graph().parse(data=tbox_turtle(), format="turtle")
     by_iri = {relation.iri: relation.name for relation in R.values()}
 
     def name(node: object) -> str:

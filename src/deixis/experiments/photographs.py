@@ -2,7 +2,8 @@
 
 Each image with four or more related objects becomes a scene (its boxes, y turned up, nothing named) and a description:
 what people said of them, in the words that the layout language has, of objects that are called what people called
-them, and numbered (``person_1``). The truth is which box was meant. The data is read from ``$DEIXIS_DATA/vrd``.
+them, and numbered (``person_1``), of the kinds that these names stand for. The truth is which box was meant. The data
+is read from ``$DEIXIS_DATA/vrd``.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from numpy.typing import NDArray
 
 from deixis.ontology.errors import DeixisError
 from deixis.ontology.graph import Fact, RelationGraph
-from deixis.ontology.relation import Relations
+from deixis.ontology.tbox import Ontology
 
 FOLDER = "vrd"
 LEAST_OBJECTS = 4
@@ -53,14 +54,14 @@ def photographs_folder() -> Path | None:
     return folder if folder is not None and folder.is_dir() else None
 
 
-def photographs(folder: Path, relations: Relations) -> Iterator[Photograph]:
+def photographs(folder: Path, ontology: Ontology) -> Iterator[Photograph]:
     """All images of which enough was said, by name; raises PhotographError where the files are no annotations."""
     try:
         annotations: dict[str, list[Any]] = json.loads((folder / "annotations.json").read_text(encoding="utf-8"))
         predicates: list[str] = json.loads((folder / "predicates.json").read_text(encoding="utf-8"))
         words: list[str] = json.loads((folder / "objects.json").read_text(encoding="utf-8"))
         for name in sorted(annotations):
-            found = _photograph(annotations[name], predicates, words, relations)
+            found = _photograph(annotations[name], predicates, words, ontology)
             if len(found.boxes) >= LEAST_OBJECTS:
                 yield found
     except (OSError, KeyError, IndexError, TypeError, AttributeError, json.JSONDecodeError) as error:
@@ -69,7 +70,7 @@ def photographs(folder: Path, relations: Relations) -> Iterator[Photograph]:
         ) from error
 
 
-def _photograph(entries: list[Any], predicates: list[str], words: list[str], relations: Relations) -> Photograph:
+def _photograph(entries: list[Any], predicates: list[str], words: list[str], ontology: Ontology) -> Photograph:
     boxes: dict[tuple[int, ...], str] = {}
     facts: dict[tuple[str, str, str], None] = {}
     for entry in entries:
@@ -78,9 +79,11 @@ def _photograph(entries: list[Any], predicates: list[str], words: list[str], rel
         if word is not None and ends[0] != ends[1]:
             subject, object = (boxes.setdefault(end, _name(words[end[0]], len(boxes))) for end in ends)
             facts[word, subject, object] = None
+    relations, names = ontology.relations, list(boxes.values())
     stated = [Fact(subject, (relations[word],), object) for word, subject, object in facts]
+    kinds = [kind.iri if (kind := ontology.of_name(name)[0]) else None for name in names]
     corners = [[[x0, -y1], [x1, -y0]] for _, y0, y1, x0, x1 in boxes]
-    return Photograph(RelationGraph.from_facts(relations, list(boxes.values()), stated), np.array(corners, dtype=float))
+    return Photograph(RelationGraph.from_facts(relations, names, stated, kinds=kinds), np.array(corners, dtype=float))
 
 
 def _name(word: str, number: int) -> str:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -16,11 +14,9 @@ from deixis.reasoning.evidence import evidence_from
 from deixis.reasoning.graded.size_learning import learn_size, pooled_prior
 from deixis.reasoning.graded.unary import (
     UnaryWeights,
-    beside_each_other,
     label_ratios,
     log_sizes,
     size_evidence,
-    size_model,
 )
 from deixis.reasoning.labels import Label
 from deixis.reasoning.meaning import Meaning
@@ -99,13 +95,20 @@ def test_in_pixels_sizes_in_metres_say_how_large_things_are_beside_each_other() 
     assert found[0, 0] - found[0, 1] < sure[0, 0] - sure[0, 1]
 
 
-def test_the_fewer_objects_have_a_known_size_the_less_lengths_say_in_pixels() -> None:
-    known = {kind: SizeModel((length, 0.1), (0.0, 0.1)) for kind, length in (("a", -2.0), ("b", 0.0))}
-    few, many = beside_each_other(known, ["a", "b"]), beside_each_other(known, ["a", "b"] * 20)
-    assert few["a"].length[0] == many["a"].length[0] == -1.0 and few["a"].relative
-    assert few["a"].length[1] > many["a"].length[1] > 0.3
-    already = {"a": replace(known["a"], relative=True)}
-    assert beside_each_other(already, ["a"]) == already
+def test_in_an_image_a_person_stands_and_is_no_car() -> None:
+    person, car = (kind.iri for word in ("person", "car") if (kind := KINDS.of_word(word)))
+    photograph = np.array([[[0.0, 0.0], [60.0, 170.0]], [[100.0, 0.0], [520.0, 150.0]]])
+    found = size_evidence([car, person], photograph, SIZES, metric=False)
+    assert found.argmax(axis=1).tolist() == [1, 0] and found.min() < 0
+
+
+def test_a_table_in_an_image_is_seen_from_above_where_that_fits_the_whole_of_it() -> None:
+    plate, glass = (kind.iri for word in ("dinner plate", "wine glass") if (kind := KINDS.of_word(word)))
+    round_things = np.array([[[0.0, 0.0], [81.0, 81.0]], [[100.0, 0.0], [124.0, 24.0]]] * 2)
+    upright = np.array([[[0.0, 0.0], [81.0, 8.0]], [[100.0, 0.0], [124.0, 63.0]]] * 2)
+    for scene in (round_things, upright):
+        found = size_evidence([plate, glass], scene, SIZES, metric=False)
+        assert (found[0, [0, 2]].min() > found[0, [1, 3]].max()) and (found[1, [1, 3]].min() > found[1, [0, 2]].max())
 
 
 def test_relative_sizes_know_no_scale() -> None:
@@ -119,13 +122,6 @@ def test_a_learned_range_replaces_the_shipped_one() -> None:
     learned = learned_from(*((TABLE * f, 0) for f in (0.48, 0.5, 0.52, 0.5)))
     small = TABLE * 0.5
     assert size_evidence([SPOON], small, SIZES, {SPOON: learned})[0, 0] > size_evidence([SPOON], small, SIZES)[0, 0]
-
-
-def test_the_shipped_range_is_two_deviations_wide() -> None:
-    usual, model = SIZES.of(SPOON), size_model(SIZES.of(SPOON))
-    assert isinstance(model, SizeModel)
-    assert np.exp(model.length[0]) == pytest.approx(usual.length.typical)
-    assert 4 * model.length[1] == pytest.approx(np.log(usual.length.greatest / usual.length.least))
 
 
 def test_labels_weigh_by_confidence_and_a_certain_one_decides() -> None:

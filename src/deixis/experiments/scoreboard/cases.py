@@ -145,7 +145,7 @@ def generated_cases(settings: Sequence[Setting], count: int, seed: int, *, kinds
 def photograph_cases(folder: Path, orders: int, most: int | None, seed: int, *, learn: bool = False) -> Iterator[Case]:
     """Photographs (at most so many), each in so many random orders; with ``learn`` each with what the others teach."""
     setting = Setting(PHOTOGRAPHS, 0.0, 0.0, False)
-    images = list(photographs(folder, default_ontology().relations))
+    images = list(photographs(folder, default_ontology()))
     learned = learned_meanings(images, seed) if learn else [None] * len(images)
     for unit, ((said, boxes), taught) in enumerate(zip(images[:most], learned[:most], strict=True)):
         names, truth = _names(len(boxes)), np.arange(len(boxes))
