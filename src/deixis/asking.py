@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TextIO
 
 import numpy as np
@@ -16,7 +16,7 @@ from deixis.grammar.script import Script
 from deixis.perception.scene import Scene
 from deixis.reasoning.answer import Grounding
 from deixis.reasoning.asking.candidates import Candidates, candidates_of
-from deixis.reasoning.asking.inquiry import Inquiry, Outcome, begin
+from deixis.reasoning.asking.inquiry import Exchange, Inquiry, Outcome, begin
 from deixis.reasoning.asking.questions import ABSENT, NO, YES, QuestionKind
 from deixis.reasoning.asking.situation import Situation, situation_of
 from deixis.reasoning.evidence import PRESENT, Evidence
@@ -38,6 +38,23 @@ CONCENTRATED = 0.5
 """Mean resultant length below which angles are no side: that of an even spread over 217 degrees."""
 
 
+@dataclass(frozen=True, slots=True)
+class Asked:
+    """What a dialogue came to, and what was said in it."""
+
+    grounding: Grounding
+    exchanges: tuple[Exchange, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class SeenFrom:
+    """A scene as seen from the side from which a script speaks; ``viewpoints`` None where nothing tells a side."""
+
+    scene: Scene
+    viewpoints: Viewpoints | None
+    notes: tuple[str, ...]
+
+
 def ask(
     script: Script,
     scene: Scene,
@@ -45,7 +62,7 @@ def ask(
     out: TextIO,
     meaning: Meaning = SHIPPED,
     time_limit: float = DEFAULT_TIME_LIMIT,
-) -> Grounding:
+) -> Asked:
     """Grounds, asks what would tell the likeliest groundings apart, and grounds again.
 
     The dialogue is written to ``out``; ``source`` makes who answers, given what there is to be seen. The time limit is
@@ -54,7 +71,7 @@ def ask(
     evidence = evidence_of(script, scene, meaning)
     situation = situation_of(evidence.description, evidence.scene)
     done = run(begin(situation, _considered(evidence, time_limit)), source(situation), out)
-    return ground_evidence(_narrowed(evidence, done), ExactEngine(), time_limit)
+    return Asked(ground_evidence(_narrowed(evidence, done), ExactEngine(), time_limit), done.exchanges)
 
 
 def _considered(evidence: Evidence, time_limit: float) -> Candidates:
@@ -106,13 +123,14 @@ def seen_from_anywhere(
     meaning: Meaning = SHIPPED,
     any_angle: bool = True,
     time_limit: float = DEFAULT_TIME_LIMIT,
-) -> tuple[Scene, tuple[str, ...]]:
+) -> SeenFrom:
     """The scene as seen from the side from which the script most probably speaks, and notes that say which that is.
 
     Turned by quarters only, unless ``any_angle``; mirrored where that explains it better. Where no fact compares two
     things that were found, or most of the circle does as well, nothing tells a side, and the scene stays as it is.
     """
-    as_it_stands = scene, ("the scene was taken as it stands: nothing tells from which side the description speaks",)
+    untold = "the scene was taken as it stands: nothing tells from which side the description speaks"
+    as_it_stands = SeenFrom(scene, None, (untold,))
     evidence = evidence_of(script, scene, meaning)
     if not len(evidence.facts) or len(scene.objects) < 2:
         return as_it_stands
@@ -126,7 +144,7 @@ def seen_from_anywhere(
     placed = (best.assignment[evidence.problem.ends] != UNMATCHED).all(axis=1)
     if not placed.any() or best.concentration < CONCENTRATED:
         return as_it_stands
-    return _with_boxes(scene, turned(scene.boxes, best.angle, best.mirrored)), _notes(found)
+    return SeenFrom(_with_boxes(scene, turned(scene.boxes, best.angle, best.mirrored)), found, _notes(found))
 
 
 def _with_boxes(scene: Scene, boxes: NDArray[np.float64]) -> Scene:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -26,6 +26,7 @@ from deixis.cli_common import (
 from deixis.reasoning.engine_name import EngineName
 
 if TYPE_CHECKING:
+    from deixis.asking import Asked, SeenFrom
     from deixis.grammar.script import Script as ParsedScript
     from deixis.perception.scene import Scene
     from deixis.reasoning.answer import Grounding
@@ -62,8 +63,7 @@ def ground(
     as_json: AsJson = False,
 ) -> None:
     """Work out which perceived thing each object of a script is."""
-    from deixis.reasoning.errors import SettingError
-    from deixis.report import grounding_to_dict
+    from deixis.report import exchanges_to_dict, grounding_to_dict, viewpoints_to_dict
     from deixis.session import ground as run
     from deixis.session import load_scene, read_script
     from deixis.show import grounding_lines
@@ -74,16 +74,15 @@ def ground(
         require_picture(plot)
     parsed, seen = read_script(script), load_scene(scene, hide_labels, image)
     meaning = _meaning(literal, no_sizes, memory)
+    more: dict[str, Any] = {}
     notes: tuple[str, ...] = ()
     if viewpoint is not ViewpointName.STATED:
-        from deixis.asking import seen_from_anywhere
-
-        with working("looking from other sides"):
-            seen, notes = seen_from_anywhere(parsed, seen, meaning, viewpoint is ViewpointName.UNKNOWN, time_limit)
+        side = _looked_around(parsed, seen, meaning, viewpoint, time_limit)
+        seen, notes, more = side.scene, side.notes, viewpoints_to_dict(side.viewpoints)
     if ask or oracle is not None:
-        if engine is not EngineName.EXACT:
-            raise SettingError(f"only the engine 'exact' asks, not '{engine}': leave out --engine")
-        found = _ask(parsed, seen, meaning, oracle, time_limit, as_json)
+        _require_asking(engine)
+        asked = _ask(parsed, seen, meaning, oracle, time_limit, as_json)
+        found, more = asked.grounding, more | exchanges_to_dict(asked.exchanges)
     else:
         with working("grounding"):
             found = run(parsed, seen, engine=engine, time_limit=time_limit, meaning=meaning)
@@ -93,7 +92,7 @@ def ground(
 
         plot_grounding(found, seen, plot, title=parsed.title or parsed.name)
     if as_json:
-        print_json(grounding_to_dict(found))
+        print_json(grounding_to_dict(found) | more)
     else:
         print_lines(grounding_lines(found))
         if plot is not None:
@@ -117,9 +116,25 @@ def _meaning(literal: bool, no_sizes: bool, memory: Path | None) -> Meaning:
     return replace(meaning, graded=meaning.graded and not literal, weights=weights)
 
 
+def _looked_around(
+    script: ParsedScript, scene: Scene, meaning: Meaning, viewpoint: ViewpointName, time_limit: float
+) -> SeenFrom:
+    from deixis.asking import seen_from_anywhere
+
+    with working("looking from other sides"):
+        return seen_from_anywhere(script, scene, meaning, viewpoint is ViewpointName.UNKNOWN, time_limit)
+
+
+def _require_asking(engine: EngineName) -> None:
+    from deixis.reasoning.errors import SettingError
+
+    if engine is not EngineName.EXACT:
+        raise SettingError(f"only the engine 'exact' asks, not '{engine}': leave out --engine")
+
+
 def _ask(
     script: ParsedScript, scene: Scene, meaning: Meaning, oracle: Path | None, time_limit: float, as_json: bool
-) -> Grounding:
+) -> Asked:
     """The dialogue goes to standard error where standard output is JSON."""
     from deixis.asking import ask
     from deixis.dialogue import Terminal, read_oracle

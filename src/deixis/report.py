@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from deixis.ontology.export import fact_to_dict, graph_to_dict
@@ -11,7 +12,9 @@ if TYPE_CHECKING:
     from deixis.grammar.script import Script
     from deixis.inference import Inference, Inferred
     from deixis.reasoning.answer import Alternative, FactOutcome, Grounding, Pivotal
+    from deixis.reasoning.asking.inquiry import Exchange
     from deixis.reasoning.derivation import Claim, Derivation
+    from deixis.reasoning.viewpoints import Viewpoints
     from deixis.reasoning.why_not import WhyNot
     from deixis.session import Checked, Learned
 
@@ -141,6 +144,36 @@ def grounding_to_dict(found: Grounding) -> dict[str, Any]:
         "converged": found.converged,
         "notes": list(found.notes),
         "seconds": round(found.seconds, 6),
+    }
+
+
+def viewpoints_to_dict(found: Viewpoints | None) -> dict[str, Any]:
+    """From which sides a script may speak, most probable first; none where nothing tells."""
+    sides = found.viewpoints if found else ()
+    return {
+        "viewpoints": [
+            {
+                "turned": round(math.degrees(side.angle), 1) % 360,
+                "mirrored": side.mirrored,
+                "probability": _rounded(side.probability),
+            }
+            for side in sides
+        ]
+    }
+
+
+def exchanges_to_dict(exchanges: Sequence[Exchange]) -> dict[str, Any]:
+    """What was asked and answered, in order, with what was expected of it and what came of it."""
+    return {
+        "questions": [
+            {
+                "question": one.question.text,
+                "bits": round(one.question.bits, 6),
+                "answer": one.answer,
+                "outcome": one.outcome.value,
+            }
+            for one in exchanges
+        ]
     }
 
 

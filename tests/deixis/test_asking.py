@@ -40,6 +40,9 @@ def test_an_oracle_settles_who_is_who_in_few_questions(script: str, tmp_path: Pa
     assert all(match["decided"] for match in json.loads(out)["matches"])
     asked = [line for line in err.splitlines() if line[:1].isdigit()]
     assert len(asked) <= 6
+    questions = json.loads(out)["questions"]
+    assert [f"{n}. {one['question']}" for n, one in enumerate(questions, 1)] == [line.split("   ")[0] for line in asked]
+    assert all(one["outcome"] == "resolved" and one["answer"] and one["bits"] > 0 for one in questions)
 
 
 def test_without_answers_the_dialogue_ends_and_the_answer_is_as_without_it(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -81,8 +84,13 @@ def test_a_turned_table_is_grounded_as_if_it_were_not(quarters: int, option: str
     code, out, _ = deixis("ground", example("formal_dinner.layout"), file, "--viewpoint", option, "--json")
     assert code == 0
     assert matches(out) == matches(straight) == TRUTH
-    notes = json.loads(out)["notes"]
-    assert any(note.startswith("the scene was taken turned by ") for note in notes)
+    said = json.loads(out)
+    assert any(note.startswith("the scene was taken turned by ") for note in said["notes"])
+    best, *others = said["viewpoints"]
+    back = (best["turned"] + 90 * quarters) % 360
+    assert min(back, 360 - back) < 15 and not best["mirrored"]
+    assert best["probability"] == max(side["probability"] for side in said["viewpoints"])
+    assert "viewpoints" not in json.loads(straight)
 
 
 @pytest.mark.parametrize("viewpoint", ["quarter", "unknown"])
@@ -94,6 +102,7 @@ def test_no_side_is_recovered_where_nothing_tells_one(viewpoint: str, tmp_path: 
     assert code == 0
     assert matches(out) == matches(stated)
     assert any("nothing tells from which side" in note for note in json.loads(out)["notes"])
+    assert json.loads(out)["viewpoints"] == []
 
 
 def boxes_file(tmp_path: Path, lows: list[list[float]], side: float = 0.1) -> Path:
