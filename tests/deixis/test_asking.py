@@ -86,7 +86,7 @@ def test_a_turned_table_is_grounded_as_if_it_were_not(quarters: int, option: str
     assert matches(out) == matches(straight) == TRUTH
     said = json.loads(out)
     assert any(note.startswith("the scene was taken turned by ") for note in said["notes"])
-    best, *others = said["viewpoints"]
+    best, *_ = said["viewpoints"]
     back = (best["turned"] + 90 * quarters) % 360
     assert min(back, 360 - back) < 15 and not best["mirrored"]
     assert best["probability"] == max(side["probability"] for side in said["viewpoints"])
