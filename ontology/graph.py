@@ -59,6 +59,10 @@ class Fact:
         return mask
 
 
+OPTIONAL_WEIGHT = 0.5
+"""By what the weight of an optional fact is multiplied."""
+
+
 def dispensable(facts: Iterable[Fact]) -> frozenset[str]:
     """The objects of which something is said, but nothing firmly: no plain affirmed fact needs them to be there."""
     mentioned: set[str] = set()
@@ -106,6 +110,11 @@ class RelationGraph:
             raise GraphError("there must be one kind a node, or none at all, and so with colours")
         if self.boxes is not None and len(self.boxes) != len(self.nodes):
             raise GraphError("there must be one box a node, or none at all")
+
+    @property
+    def net_weights(self) -> NDArray[np.float64]:
+        """By what each edge counts (m,): its weight, and half of it where it is optional."""
+        return self.weights * np.where(self.optional, OPTIONAL_WEIGHT, 1.0)
 
     @classmethod
     def from_facts(

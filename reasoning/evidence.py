@@ -25,7 +25,7 @@ from deixis.ontology.relation import Reading
 from deixis.ontology.sizes import Sizes
 from deixis.reasoning.graded.colours import colour_evidence
 from deixis.reasoning.graded.degrees import log_likelihood_ratio
-from deixis.reasoning.graded.facts import OPTIONAL_WEIGHT, fact_tables, hedged
+from deixis.reasoning.graded.facts import fact_tables, hedged
 from deixis.reasoning.graded.shipped import OUTLIERS
 from deixis.reasoning.graded.unary import label_ratios, size_evidence
 from deixis.reasoning.labels import Label, classes
@@ -80,8 +80,8 @@ class Evidence:
     def _literal_tables(self) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float32]]:
         """Ends, kinds and tables of the facts in the crisp reading, chance being one pair for each of the names."""
         graph, edges = self.description, self.facts
-        weights = np.where(graph.optional[edges], OPTIONAL_WEIGHT, 1.0) * graph.weights[edges]
-        rows, kinds = np.unique(np.column_stack([self.degree_table, weights]), axis=0, return_inverse=True)
+        said = np.column_stack([self.degree_table, graph.net_weights[edges]])
+        rows, kinds = np.unique(said, axis=0, return_inverse=True)
         exact = [relation.index for relation in graph.vocabulary.of_reading(Reading.EXACT)]
         tables = np.zeros((len(rows), len(self.scene.nodes), len(self.scene.nodes)), dtype=np.float32)
         for table, row in zip(tables, rows, strict=True):

@@ -46,9 +46,6 @@ in ``benchmarks/bench_retrieval.py`` with seed 2."""
 SIZE_SPREAD = 0.35
 """How far (natural logarithm) a length lies outside the usual range where its similarity has fallen to exp(-1/2)."""
 
-OPTIONAL_WEIGHT = 0.5
-"""By what the weight of an optional fact is multiplied."""
-
 
 @dataclass(frozen=True, eq=False)
 class Described:
@@ -65,9 +62,7 @@ class Described:
     @cached_property
     def weights(self) -> Array:
         """Of the comparable facts."""
-        optional = np.where(self.graph.optional[self.edges], OPTIONAL_WEIGHT, 1.0)
-        result: Array = self.graph.weights[self.edges] * optional
-        return result
+        return self.graph.net_weights[self.edges]
 
     @cached_property
     def total(self) -> float:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from deixis.ontology.relation_models import FAMILIES, SAYING, RelationModel
 from deixis.reasoning.graded.degrees import degree_of_view
-from deixis.reasoning.graded.geometry import PairGeometry, pair_geometry
+from deixis.reasoning.graded.geometry import PairGeometry
 from deixis.reasoning.graded.views import view
 
 
@@ -30,8 +30,3 @@ def chance_degree(model: RelationModel, scenes: Iterable[PairGeometry]) -> float
         found += [degree_of_view(model, view(pairs, word))[apart] for word in words]
     pooled = np.concatenate(found) if found else np.zeros(0)
     return float(pooled.mean()) if pooled.size else 1.0
-
-
-def random_pairs() -> list[PairGeometry]:
-    """The pairs of :func:`random_scenes`."""
-    return [pair_geometry(boxes) for boxes in random_scenes()]

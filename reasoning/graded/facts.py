@@ -34,9 +34,6 @@ from deixis.reasoning.rectangle import box_relations
 
 Array = NDArray[np.float64]
 
-OPTIONAL_WEIGHT = 0.5
-"""By what the weight of an optional fact is multiplied."""
-
 IMPLIED = 0.1
 """How readily a literal speaker says *left* of a pair whose name is *top left*: nine times in ten, the name is said."""
 
@@ -81,9 +78,10 @@ def fact_tables(
     if literal is not None and not 0 <= literal <= 1:
         raise SettingError(f"the share of facts that are meant literally lies between 0 and 1, not at {literal:g}")
     edges = np.flatnonzero(description.subjects != description.objects).astype(np.int64)
-    keys = [_key(description, edge) for edge in edges.tolist()]
+    keys = _statements(description, edges)
     distinct = sorted(set(keys))
-    kinds = np.array([distinct.index(key) for key in keys], dtype=np.int64)
+    places = {key: place for place, key in enumerate(distinct)}
+    kinds = np.array([places[key] for key in keys], dtype=np.int64)
     ends = _ends(description, edges)
     order = _by_place(boxes)
     names = box_relations(np.asarray(boxes, dtype=np.float64), description.vocabulary).names[np.ix_(order, order)]
@@ -99,10 +97,10 @@ def fact_tables(
     return FactTables(edges, ends, kinds, said.tables(literal, np.argsort(order)))
 
 
-def _key(description: RelationGraph, edge: int) -> tuple[int, bool, float]:
-    """What a fact says: its relations, whether it is stated or denied, and its weight."""
-    weight = float(description.weights[edge]) * (OPTIONAL_WEIGHT if description.optional[edge] else 1.0)
-    return int(description.relation_sets[edge]), bool(description.positive[edge]), weight
+def _statements(description: RelationGraph, edges: NDArray[np.int64]) -> list[tuple[int, bool, float]]:
+    """What each fact says: its relations, whether it is stated or denied, and its weight."""
+    columns = (description.relation_sets, description.positive, description.net_weights)
+    return list(zip(*(column[edges].tolist() for column in columns), strict=True))
 
 
 def _by_place(boxes: NDArray[np.float64]) -> NDArray[np.int64]:

@@ -13,7 +13,7 @@ from deixis.ontology.errors import GraphError
 from deixis.ontology.relation import Reading
 from deixis.ontology.relation_models import FAMILIES, SAYING, RelationModel, RelationModels, Term
 from deixis.ontology.tbox import default_ontology
-from deixis.reasoning.graded.chance import chance_degree, random_pairs
+from deixis.reasoning.graded.chance import chance_degree, random_scenes
 from deixis.reasoning.graded.degrees import (
     degree_of_view,
     log_likelihood_ratio,
@@ -144,7 +144,7 @@ def test_a_fact_is_bounded_by_the_outliers_and_by_chance() -> None:
 def test_the_best_word_is_mostly_the_exact_name_of_random_boxes(word: str) -> None:
     """The graded reading refines the crisp one: where a name fits best by degrees, it is mostly the name of the ten."""
     agreed = total = 0
-    for pairs in random_pairs()[:40]:
+    for pairs in map(pair_geometry, random_scenes()[:40]):
         names = box_relations(pairs.boxes, RELATIONS).names
         graded = np.argmax([word_degree(pairs, other, MODELS) for other in FAMILIES], axis=0)
         here = names == next(r.index for r in RELATIONS.of_reading(Reading.EXACT) if r.word == word)
@@ -154,7 +154,7 @@ def test_the_best_word_is_mostly_the_exact_name_of_random_boxes(word: str) -> No
 
 
 def test_chance_is_the_mean_degree_of_random_pairs() -> None:
-    pairs = random_pairs()
+    pairs = [pair_geometry(boxes) for boxes in random_scenes()]
     for name, model in MODELS.models.items():
         assert chance_degree(model, pairs) == pytest.approx(model.chance, abs=0.001), name
 
