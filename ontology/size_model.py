@@ -9,7 +9,8 @@ from dataclasses import dataclass
 class SizeModel:
     """Log-normal length (longer side in the plan) and aspect (shorter by longer side) of a kind of thing.
 
-    ``relative``: the length is in units of the scene's median length, as it must be where scenes are in pixels.
+    ``relative``: as images teach it. The length is in units of the scene's median length, and the aspect is height by
+    width, since what is up stays up.
     """
 
     length: tuple[float, float]  # mean and standard deviation of the natural logarithm

@@ -1,6 +1,7 @@
 """How large the box around a thing of a kind looks: from above where scenes are measured, from any side in an image.
 
-A box is compared by the natural logarithms of its length and of its aspect (shorter by longer side).
+A box is compared by the natural logarithms of its length, the longer side, and of its aspect: shorter by longer side,
+or in an image, where what is up stays up, height by width.
 """
 
 from __future__ import annotations
@@ -38,7 +39,7 @@ KINDS_APART = 0.7
 class Look:
     """A box looks one of k ways, each so often, and is normal around each with the same deviations.
 
-    ``relative``: lengths are in units of the median of the scene.
+    ``relative``, as for an image: lengths are in units of the median of the scene, and the aspect is height by width.
     """
 
     centres: Array  # (k, 2): log length, log aspect
@@ -76,14 +77,14 @@ def usual_size(kind: str, sizes: Sizes) -> SizeModel | None:
 
 
 def from_above(model: SizeModel) -> Look:
-    """The look of a thing that lies or stands on a table, in the plan.
+    """The look of a thing that lies or stands on a table, in the plan; of what images taught, as they showed it.
 
     Of a thing l long and w wide that lies at an angle a, the box is l cos a + w sin a by l sin a + w cos a. A thing
     about as wide as long is taken to be round, and looks the same however it lies.
     """
     straight = np.array([[model.length[0], model.aspect[0]]])
     spread = np.array([model.length[1], model.aspect[1]])
-    if model.aspect[0] > -2 * LEAST_SPREAD:
+    if model.relative or model.aspect[0] > -2 * LEAST_SPREAD:
         return Look(straight, np.ones(1), spread, model.relative)
     length, width = np.exp(model.length[0]), np.exp(model.length[0] + model.aspect[0])
     long = length * np.cos(ANGLES) + width * np.sin(ANGLES)
@@ -93,17 +94,27 @@ def from_above(model: SizeModel) -> Look:
     return Look(np.concatenate([straight, turned]), shares, spread, model.relative)
 
 
-def from_any_side(kind: str, model: SizeModel, sizes: Sizes) -> Look:
-    """The look of a thing in an image from aside: one of the faces that length, width and height make, as likely each.
+def in_image_from_above(model: SizeModel) -> Look:
+    """The same in an image, in which a thing lies as well across as along."""
+    plan = from_above(model)
+    if model.relative:
+        return plan
+    shares = np.concatenate([plan.shares, plan.shares]) / 2
+    return Look(np.concatenate([plan.centres, plan.centres * [1.0, -1.0]]), shares, plan.spread)
 
-    Of a kind whose height is not stated, and of one that was learned from images, the look is the plan's.
+
+def in_image_from_aside(kind: str, model: SizeModel, sizes: Sizes) -> Look:
+    """The look in an image from aside: one of the faces that length, width and height make, as likely each.
+
+    The height is upright. Of a kind whose height is not stated the look is that from above, and of one that was learned
+    from images as they showed it.
     """
-    plan, usual = from_above(model), sizes.of(kind)
+    plan, usual = in_image_from_above(model), sizes.of(kind)
     if model.relative or usual.stated_of == DX.THING:
         return plan
     height = np.log(usual.height.typical)
     sides = np.array([model.length[0], model.length[0] + model.aspect[0]])
-    faces = np.stack([np.maximum(sides, height), -np.abs(sides - height)], axis=1)
+    faces = np.stack([np.maximum(sides, height), height - sides], axis=1)
     shares = np.concatenate([plan.shares, np.ones(len(faces))]) / (1 + len(faces))
     return Look(np.concatenate([plan.centres, faces]), shares, plan.spread)
 

@@ -70,7 +70,7 @@ def learn_size(views: Array, prior: SizePrior, relative: bool = False) -> SizeMo
 
     Its spread is the views' (median absolute deviation), mixed with the prior's, which counts as
     ``VIEWS_OF_PRIOR`` views; what is typical lies between the views' median and the prior's centre, by their precision;
-    and the doubt about it is added. ``relative``: lengths are in units of each scene's median. Raises SettingError
+    and the doubt about it is added. ``relative``: the views are, and upright, as images show them. Raises SettingError
     without a view.
     """
     n = len(views)
@@ -83,7 +83,7 @@ def learn_size(views: Array, prior: SizePrior, relative: bool = False) -> SizeMo
     typical = (n * median / variance + prior.centre / prior.between**2) / precision
     deviation = np.maximum(np.sqrt(variance + 1 / precision), LEAST_SPREAD)
     length, aspect = zip(typical.tolist(), deviation.tolist(), strict=True)
-    return SizeModel(length, (min(aspect[0], 0.0), aspect[1]), relative, float(n))
+    return SizeModel(length, aspect if relative else (min(aspect[0], 0.0), aspect[1]), relative, float(n))
 
 
 def learn_sizes(

@@ -22,7 +22,8 @@ from deixis.reasoning.graded.looks import (
     Look,
     beside_each_other,
     from_above,
-    from_any_side,
+    in_image_from_above,
+    in_image_from_aside,
     usual_size,
 )
 from deixis.reasoning.labels import Label, named_objects
@@ -47,12 +48,18 @@ class UnaryWeights:
 
 
 def log_sizes(boxes: NDArray[np.float64], relative: bool) -> Array:
-    """Natural logarithms of length and aspect of n boxes, shape (n, 2); of nothing's length, a millionth is taken."""
-    extents = np.sort(pair_geometry(boxes).boxes[:, 1, :2] - boxes[:, 0, :2], axis=1)
-    scale = float(np.median(extents[:, 1])) if relative and len(extents) else 1.0
-    length = np.maximum(extents[:, 1] / (scale or 1.0), 1e-6)
-    aspect = np.maximum(extents[:, 0], 1e-6 * extents[:, 1]) / np.where(extents[:, 1] > 0, extents[:, 1], 1.0)
-    logs: Array = np.log(np.stack([length, np.where(extents[:, 1] > 0, aspect, 1.0)], axis=1))
+    """Natural logarithms of length and aspect of n boxes, shape (n, 2); of nothing's length, a millionth is taken.
+
+    The aspect is the shorter by the longer side. ``relative``, as for an image: lengths are in units of their median, and
+    the aspect is height by width.
+    """
+    extents = pair_geometry(boxes).boxes[:, 1, :2] - boxes[:, 0, :2]
+    length = extents.max(axis=1)
+    scale = float(np.median(length)) if relative and len(length) else 1.0
+    sides = np.log(np.maximum(extents, 1e-6 * np.where(length > 0, length, 1.0)[:, None]))
+    aspect = sides[:, 1] - sides[:, 0]
+    lengths = np.log(np.maximum(length / (scale or 1.0), 1e-6))
+    logs: Array = np.stack([lengths, aspect if relative else -np.abs(aspect)], axis=1)
     return logs
 
 
@@ -74,12 +81,11 @@ def size_evidence(
     known = {kind: model for kind in different if (model := (learned or {}).get(kind) or usual_size(kind, sizes))}
     if not known or not len(boxes):
         return np.zeros((len(kinds), len(boxes)))
-    above = {kind: from_above(model) for kind, model in known.items()}
     if metric:
-        return _ratios(kinds, boxes, above)
-    aside = {kind: from_any_side(kind, model, sizes) for kind, model in known.items()}
-    views = (beside_each_other(above, kinds), beside_each_other(aside, kinds))
-    return _whichever_view([_ratios(kinds, boxes, looks) for looks in views])
+        return _ratios(kinds, boxes, {kind: from_above(model) for kind, model in known.items()})
+    above = {kind: in_image_from_above(model) for kind, model in known.items()}
+    aside = {kind: in_image_from_aside(kind, model, sizes) for kind, model in known.items()}
+    return _whichever_view([_ratios(kinds, boxes, beside_each_other(looks, kinds)) for looks in (above, aside)])
 
 
 def _whichever_view(views: Sequence[Array]) -> Array:

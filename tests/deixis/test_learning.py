@@ -119,7 +119,7 @@ def test_a_lesson_that_makes_a_kind_impossible_is_refused_and_changes_nothing(tm
         assert "thing" in session.learn(read_script(text=f"layout a\n{says} Napkin"), scene).categories
         before = export_memory(session.memory(), "trig")
         with pytest.raises(InconsistencyError, match="nothing can be a 'thing' any more"):
-            session.learn(read_script(text=f"layout b\n{says} Fork"), scene)
+            session.learn(read_script(text=f"layout b\n{says} BreadBasket"), scene)
         assert export_memory(session.memory(), "trig") == before
 
 
@@ -182,7 +182,7 @@ def test_the_memory_is_where_the_environment_says(monkeypatch: pytest.MonkeyPatc
 def test_an_import_that_contradicts_what_is_known_is_refused_and_changes_nothing(tmp_path: Path) -> None:
     scene = replace(formal_setting().without_labels(), unit="px")  # so that sizes say less
     says = FULL.read_text(encoding="utf-8").split("chair")[1].replace("napkin", "thing") + "thing is a "
-    for name, kind in (("first", "Napkin"), ("second", "Fork")):
+    for name, kind in (("first", "Napkin"), ("second", "BreadBasket")):
         with Session(tmp_path / name) as session:
             session.learn(read_script(text=f"layout {name}\n{says} {kind}"), scene)
             (tmp_path / f"{name}.trig").write_text(export_memory(session.memory()), encoding="utf-8")

@@ -16,7 +16,8 @@ from deixis.reasoning.graded.looks import (
     Look,
     beside_each_other,
     from_above,
-    from_any_side,
+    in_image_from_above,
+    in_image_from_aside,
     size_model,
     usual_size,
 )
@@ -34,7 +35,7 @@ def iri(word: str) -> str:
 def in_image(word: str) -> Look:
     usual = usual_size(iri(word), SIZES)
     assert usual is not None
-    return from_any_side(iri(word), usual, SIZES)
+    return in_image_from_aside(iri(word), usual, SIZES)
 
 
 def sides(look: Look) -> list[tuple[float, float]]:
@@ -66,25 +67,36 @@ def test_a_long_thing_may_lie_at_any_angle() -> None:
 
 def test_a_person_in_an_image_is_seen_from_above_from_the_front_or_from_the_side() -> None:
     look = in_image("person")
-    assert sides(look)[0] == pytest.approx((0.5, 0.3))
-    assert sides(look)[-2:] == [pytest.approx((1.6, 0.5)), pytest.approx((1.6, 0.3))]
+    lengths, tall = np.exp(look.centres).T
+    assert (lengths[0], tall[0]) == pytest.approx((0.5, 0.6))
+    assert lengths[-2:] == pytest.approx([1.6, 1.6]) and tall[-2:] == pytest.approx([1.6 / 0.5, 1.6 / 0.3])
     assert look.shares[-2:] == pytest.approx([1 / 3, 1 / 3]) and look.shares.sum() == pytest.approx(1)
 
 
 def test_a_plate_seen_from_the_side_is_flat() -> None:
-    assert sides(in_image("dinner plate")) == [
-        pytest.approx((0.27, 0.27)),
-        pytest.approx((0.27, 0.024)),
-        pytest.approx((0.27, 0.024)),
-    ]
+    lengths, tall = np.exp(in_image("dinner plate").centres).T
+    assert lengths == pytest.approx([0.27] * 4) and tall == pytest.approx([1, 1, 0.024 / 0.27, 0.024 / 0.27])
 
 
-@pytest.mark.parametrize("relative", [False, True])
-def test_of_what_has_no_height_or_was_learned_from_images_the_plan_is_all(relative: bool) -> None:
-    model = SizeModel((np.log(0.3), 0.1), (-1.0, 0.1), relative)
-    kind = iri("dinner plate") if relative else "https://example.org/unheard"
-    look = from_any_side(kind, model, SIZES)
-    assert look.centres.tolist() == from_above(model).centres.tolist() and look.relative == relative
+def test_a_fork_lies_as_well_across_an_image_as_along_it() -> None:
+    usual = usual_size(iri("fork"), SIZES)
+    assert usual is not None
+    look = in_image_from_above(usual)
+    tall, half = look.centres[:, 1], len(look.centres) // 2
+    assert tall[:half].tolist() == (-tall[half:]).tolist() == from_above(usual).centres[:, 1].tolist()
+    assert look.shares.sum() == pytest.approx(1) and look.shares[:half].tolist() == look.shares[half:].tolist()
+
+
+def test_of_what_has_no_height_the_plan_is_all() -> None:
+    model = SizeModel((np.log(0.3), 0.1), (-1.0, 0.1))
+    aside = in_image_from_aside("https://example.org/unheard", model, SIZES)
+    assert aside.centres.tolist() == in_image_from_above(model).centres.tolist() and not aside.relative
+
+
+def test_what_images_taught_looks_as_they_showed_it() -> None:
+    model = SizeModel((0.4, 0.1), (1.2, 0.3), relative=True)
+    for look in (from_above(model), in_image_from_above(model), in_image_from_aside(iri("person"), model, SIZES)):
+        assert (look.centres.tolist(), look.shares.tolist(), look.relative) == ([[0.4, 1.2]], [1.0], True)
 
 
 def test_the_median_of_what_is_known_stands_for_the_scene() -> None:
