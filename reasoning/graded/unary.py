@@ -50,8 +50,8 @@ class UnaryWeights:
 def log_sizes(boxes: NDArray[np.float64], relative: bool) -> Array:
     """Natural logarithms of length and aspect of n boxes, shape (n, 2); of nothing's length, a millionth is taken.
 
-    The aspect is the shorter by the longer side. ``relative``, as for an image: lengths are in units of their median, and
-    the aspect is height by width.
+    The aspect is the shorter by the longer side. ``relative``, as for an image: lengths are in units of their median,
+    and the aspect is height by width.
     """
     extents = pair_geometry(boxes).boxes[:, 1, :2] - boxes[:, 0, :2]
     length = extents.max(axis=1)
