@@ -63,7 +63,7 @@ def described(
 ) -> Iterator[tuple[str, Descriptors]]:
     """Views of things of a kind, by the thing's seed and the view's number."""
     for thing in things:
-        for number, view in enumerate(views_of(make(kind, seed=thing).mesh, each, seed=thing)):
+        for number, view in enumerate(views_of(make(kind, seed=thing).mesh, each, seed=thing, upright=True)):
             yield f"{kind} {thing} {number}", describe(view)
 
 
@@ -163,13 +163,13 @@ def _with_things(kind: str, views: list[tuple[str, Descriptors]]) -> InstanceCat
 
 def constants() -> None:
     """Prints what is shipped, measured on simulated tableware."""
-    named = {name: describer_named(name).describe for name in ("spin_images", "fpfh", "good", "d2_extents")}
-    for name, describe in {"spin_image_roots": recognising.describe, **named}.items():
+    named = {name: describer_named(name).describe for name in ("spin_images", "fpfh", "good", "d2_extents", "upright")}
+    for name, describe in {"spin_image_roots": recognising.ROOTS.describe, **named}.items():
         icds = [category.width(over_things=True).icd or np.nan for category in taught(6, 2, describe).values()]
         print(f"PRIOR_SPREADS: {name} {np.median(icds):.3g}", flush=True)
-    kinds = taught(6, 3, recognising.describe)
+    kinds = taught(6, 3, recognising.UPRIGHT.describe)
     folds = [[kinds[kind] for place, kind in enumerate(KINDS) if place % 4 != fold] for fold in range(4)]
-    found = [Recogniser.of(known, recognising.SETTINGS).calibrated().calibration for known in folds]
+    found = [Recogniser.of(known, recognising.UPRIGHT.settings).calibrated().calibration for known in folds]
     for name in ("threshold", "even", "doubt", "choice"):
         values = [getattr(each, name) for each in found]
         print(f"SHIPPED: {name} {np.mean(values):.3g}, from {min(values):.3g} to {max(values):.3g}")
@@ -180,9 +180,9 @@ def calibration(things: int = 6, each: int = 3) -> None:
     fresh = [
         (kind, view)
         for kind in KINDS
-        for _, view in described(kind, range(FIRST_TARGET, FIRST_TARGET + 3), each, recognising.describe)
+        for _, view in described(kind, range(FIRST_TARGET, FIRST_TARGET + 3), each, recognising.UPRIGHT.describe)
     ]
-    by_things = taught(things, each, recognising.describe)
+    by_things = taught(things, each, recognising.UPRIGHT.describe)
     by_views = {kind: replace(category, things={}) for kind, category in by_things.items()}
     print(
         f"\ncalibration: {things} things of {len(KINDS)} kinds, {each} views of each; 3 other things of each as targets"
@@ -203,7 +203,7 @@ def _answers(
     """Confidence, whether right, whether unknown, and ND; as many unknown targets as known ones, as the prior says."""
     hidden = set(KINDS[fold::4])
     rest = [category for kind, category in categories.items() if kind not in hidden]
-    known = Recogniser.of(rest, recognising.SETTINGS).calibrated()
+    known = Recogniser.of(rest, recognising.UPRIGHT.settings).calibrated()
     for kind, view in fresh:
         found, unknown = known.recognise(view), kind in hidden
         right = found.label == (None if unknown else kind)
@@ -215,7 +215,7 @@ def _auroc(known: NDArray[np.float64], unknown: NDArray[np.float64]) -> float:
     return float(((known[:, None] < unknown) + 0.5 * (known[:, None] == unknown)).mean())
 
 
-def found_on_table(seed: int) -> list[tuple[str, Descriptors]]:
+def found_on_table(seed: int) -> list[tuple[str, PointCloud]]:
     """What detection finds on a table laid for a formal dinner, by the words that its layout grounds there."""
     script = parse_script(example("formal_dinner.layout").read_text(encoding="utf-8"))
     with tempfile.TemporaryDirectory() as folder:
@@ -223,7 +223,7 @@ def found_on_table(seed: int) -> list[tuple[str, Descriptors]]:
         write_cloud(cloud, simulate(lay_script(script, seed=seed), seed=seed).cloud)
         scene = write_perceived(perceive(cloud), file)
         matches = ground(example("formal_dinner.layout"), scene).matches
-        return [(n, recognising.describe(cloud_of(scene, scene[m.perceived]))) for n, m in matches.items()]
+        return [(name, cloud_of(scene, scene[match.perceived])) for name, match in matches.items()]
 
 
 def tables() -> None:
@@ -231,14 +231,20 @@ def tables() -> None:
 
     A thing counts as unknown with its category left out.
     """
-    taught, asked = ([found_on_table(seed) for seed in seeds] for seeds in (range(1, 7), range(31, 37)))
-    print(f"\nthings found on {len(asked)} laid tables: {sum(map(len, asked))}")
-    for count in (1, 3, 6):
-        views = [(name, f"{place} {name}", view) for place in range(count) for name, view in taught[place]]
-        names = sorted({name for name, _, _ in views})
-        categories = [InstanceCategory.of(name, [(key, view) for n, key, view in views if n == name]) for name in names]
-        for said, settings in (("equations 1-4", PAPER), ("by default", DEFAULT)):
-            settings = replace(settings, prior_spread=recognising.SETTINGS.prior_spread)
+    seen, tested = ([found_on_table(seed) for seed in seeds] for seeds in (range(1, 7), range(31, 37)))
+    print(f"\nthings found on {len(tested)} laid tables: {sum(map(len, tested))}")
+    ways = (
+        ("equations 1-4", recognising.ROOTS, PAPER),
+        ("spin images", recognising.ROOTS, DEFAULT),
+        ("by default", recognising.UPRIGHT, DEFAULT),
+    )
+    for said, way, settings in ways:
+        settings = replace(settings, prior_spread=way.settings.prior_spread)
+        taught, asked = ([[(n, way.describe(c)) for n, c in table] for table in found] for found in (seen, tested))
+        for count in (1, 3, 6):
+            views = [(name, f"{place} {name}", view) for place in range(count) for name, view in taught[place]]
+            names = sorted({name for name, _, _ in views})
+            categories = [InstanceCategory.of(n, [(key, view) for m, key, view in views if m == n]) for n in names]
             known = Recogniser.of(categories, settings).calibrated()
             rows = np.array([_named(known, name, view) for table in asked for name, view in table])
             nearest, right, told = rows[:, :3].mean(axis=0)

@@ -11,6 +11,7 @@ from deixis.perception.features.describer import Describer
 from deixis.perception.features.fpfh import FpfhDescriber
 from deixis.perception.features.good import GoodDescriber
 from deixis.perception.features.spin_describer import SpinImageDescriber
+from deixis.perception.features.upright_describer import UprightDescriber
 
 DESCRIBERS: Mapping[str, Callable[[], Describer]] = MappingProxyType(
     {
@@ -18,6 +19,7 @@ DESCRIBERS: Mapping[str, Callable[[], Describer]] = MappingProxyType(
         "fpfh": FpfhDescriber,
         "good": GoodDescriber,
         "d2_extents": D2ExtentsDescriber,
+        "upright": UprightDescriber,
     }
 )
 """Each makes a describer with its default settings; a further descriptor is one more line."""

@@ -46,9 +46,8 @@ class SpinImageDescriber:
 
     def describe(self, cloud: PointCloud) -> NDArray[np.float32]:
         """Spin images (k, size), in the order of voxels."""
-        keypoints = voxel_keypoints(cloud.points, self.voxel)
-        normals = self._normals(cloud, keypoints)
-        keypoints = keypoints[np.isfinite(normals[keypoints]).all(axis=1)]
+        everywhere = self.angular or self.support_angle_cos > 0
+        keypoints, normals = keypoints_and_normals(cloud, self.voxel, self.normal_radius, everywhere, self.threads)
         return spin_images(
             cloud.points,
             normals,
@@ -61,14 +60,19 @@ class SpinImageDescriber:
             threads=self.threads,
         )
 
-    def _normals(self, cloud: PointCloud, keypoints: NDArray[np.int64]) -> NDArray[np.float32]:
-        """Normals (n, 3): the cloud's own, or estimated; only those of keypoints where no others are looked at."""
-        if cloud.normals is not None:
-            return cloud.normals
-        everywhere = self.angular or self.support_angle_cos > 0
+
+def keypoints_and_normals(
+    cloud: PointCloud, voxel: float, radius: float, everywhere: bool = False, threads: int | None = None
+) -> tuple[NDArray[np.int64], NDArray[np.float32]]:
+    """Indices (k,) of the voxels' keypoints that have a normal, and normals (n, 3): the cloud's own, or estimated.
+
+    Estimated are only those of keypoints, the others being nan, unless they are wanted ``everywhere``.
+    """
+    keypoints = voxel_keypoints(cloud.points, voxel)
+    if cloud.normals is not None:
+        normals = cloud.normals
+    else:
         at = np.flatnonzero(cloud.finite) if everywhere else keypoints
         normals = np.full(cloud.points.shape, np.nan, np.float32)
-        normals[at] = estimate_normals(
-            cloud.points, radius=self.normal_radius, origin=cloud.origin, at=at, threads=self.threads
-        )
-        return normals
+        normals[at] = estimate_normals(cloud.points, radius=radius, origin=cloud.origin, at=at, threads=threads)
+    return keypoints[np.isfinite(normals[keypoints]).all(axis=1)], normals

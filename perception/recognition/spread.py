@@ -23,11 +23,18 @@ FLOOR = 0.05
 """An ICD below this share of the median one is no measure of a category's width: its views are copies of each other."""
 
 PRIOR_SPREADS: Mapping[str, float] = MappingProxyType(
-    {"spin_images": 0.108, "spin_image_roots": 0.36, "fpfh": 49.5, "good": 0.249, "d2_extents": 0.0495}
+    {
+        "spin_images": 0.108,
+        "spin_image_roots": 0.36,
+        "upright": 0.465,
+        "fpfh": 49.5,
+        "good": 0.249,
+        "d2_extents": 0.0495,
+    }
 )
 """By a descriptor's name, with its default settings: the median ICD over things of 16 kinds of simulated tableware, six
 things of each, two views of each thing (benchmarks/bench_recognition.py --constants). Roots of spin images are those of
-:func:`deixis.recognising.describe`."""
+:data:`deixis.recognising.ROOTS`."""
 
 
 @dataclass(frozen=True)

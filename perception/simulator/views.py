@@ -23,12 +23,13 @@ LARGEST = 1.0
 """Metres that a thing may measure, so that all of it is before the camera."""
 
 
-def views_of(mesh: Mesh, count: int, seed: int, noise: float = 1.0) -> list[PointCloud]:
+def views_of(mesh: Mesh, count: int, seed: int, noise: float = 1.0, upright: bool = False) -> list[PointCloud]:
     """So many views of a thing by itself, as a depth camera at other places sees it: only its points, without a table.
 
     The mesh is in metres, z up, wherever it stands. Cameras are spread evenly over the part of the upper hemisphere
     that ``ELEVATION`` leaves, at ``DISTANCE`` from the middle of the thing, and look there. Each cloud is in its
-    camera's frame, with the camera as origin; ``noise`` multiplies that of :class:`DepthSensor`, and 0 takes away
+    camera's frame, with the camera as origin; with ``upright`` it is in the table's, z up, with the camera where it
+    stood. ``noise`` multiplies that of :class:`DepthSensor`, and 0 takes away
     all that is wrong with the sensor. The same seed gives the same views, and more views begin with fewer's. Raises
     SimulationError for a mesh without faces or larger than ``LARGEST``.
 
@@ -43,11 +44,19 @@ def views_of(mesh: Mesh, count: int, seed: int, noise: float = 1.0) -> list[Poin
         raise SimulationError(f"the mesh measures {(high - low).max():g} m; is its unit the metre?")
     caster, sensor = RayCaster([standing]), DepthSensor(noise=noise) if noise > 0 else DepthSensor.ideal()
     middle = (low + high) / 2
-    return [_view(standing, middle, caster, sensor, np.random.default_rng([seed, number])) for number in range(count)]
+    return [
+        _view(standing, middle, caster, sensor, np.random.default_rng([seed, number]), upright)
+        for number in range(count)
+    ]
 
 
 def _view(
-    mesh: Mesh, middle: NDArray[np.float64], caster: RayCaster, sensor: DepthSensor, rng: np.random.Generator
+    mesh: Mesh,
+    middle: NDArray[np.float64],
+    caster: RayCaster,
+    sensor: DepthSensor,
+    rng: np.random.Generator,
+    upright: bool,
 ) -> PointCloud:
     height = rng.uniform(*np.sin(ELEVATION))  # even on the sphere, by Archimedes
     azimuth, distance = rng.uniform(0, 2 * np.pi), rng.uniform(*DISTANCE)
@@ -55,4 +64,8 @@ def _view(
     eye = middle + distance * np.array([aside * np.cos(azimuth), aside * np.sin(azimuth), height])
     camera = Camera(looking_pose(eye, middle)).windowed(mesh.vertices)
     found = look(caster, camera, sensor, rng)
-    return PointCloud(found.points[found.mesh >= 0])
+    points = found.points[found.mesh >= 0]
+    if not upright:
+        return PointCloud(points)
+    x, y, z = eye.tolist()
+    return PointCloud(camera.to_table(points).astype(np.float32), origin=(x, y, z))

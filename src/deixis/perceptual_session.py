@@ -96,14 +96,16 @@ class PerceptualSession(MemorySession):
         """
         from deixis.perceiving import cloud_of
         from deixis.perception.recognition.recogniser import Recogniser
-        from deixis.recognising import recognise, recogniser_of
+        from deixis.recognising import UPRIGHT, Known, recognise, recogniser_of
 
         scene = scene if isinstance(scene, Scene) else read_scene(scene)
         clouds = [cloud_of(scene, thing) if thing.cloud is not None else None for thing in scene.objects]
         if self.has_views():
-            known = self._despite_damage(self.views(), lambda memory: recogniser_of(memory, progress), left_out)
+            known = self._despite_damage(
+                self.views(), lambda memory: recogniser_of(memory, scene.frame, progress), left_out
+            )
         else:
-            known = Recogniser.of([])
+            known = Known(Recogniser.of([]), UPRIGHT)
         return recognise(known, scene, clouds)
 
     def _despite_damage(
@@ -148,7 +150,7 @@ def _view(scene: Scene, object: str, category: str, teacher: str) -> View:
     from deixis.recognising import view_of
 
     metadata = {"scene": os.path.abspath(scene.file), "object": object, "teacher": teacher}
-    return view_of(cloud_of(scene, _thing(scene, object)), category, datetime.now(UTC), metadata)
+    return view_of(cloud_of(scene, _thing(scene, object)), scene.frame, category, datetime.now(UTC), metadata)
 
 
 def category_name(text: str) -> str:

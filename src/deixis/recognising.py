@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from datetime import datetime
 from typing import Any
@@ -18,7 +18,9 @@ from deixis.memory.perceptual.protocol import PerceptualMemory, PerceptualReadin
 from deixis.memory.perceptual.records import Batch, CategoryRecord, View
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.errors import CloudError
+from deixis.perception.features.describer import Describer
 from deixis.perception.features.spin_describer import SpinImageDescriber
+from deixis.perception.features.upright_describer import UprightDescriber
 from deixis.perception.recognition.instances import InstanceCategory
 from deixis.perception.recognition.learners.view_features import roots
 from deixis.perception.recognition.recogniser import Recogniser
@@ -28,19 +30,42 @@ from deixis.perception.recognition.spread import PRIOR_SPREADS
 from deixis.perception.recognition.views import PackedViews
 from deixis.perception.scene import Scene
 
-DESCRIBER = "spin_image_roots"
-"""What views are compared by."""
 
-SETTINGS = RecognitionSettings(prior_spread=PRIOR_SPREADS[DESCRIBER])
+@dataclass(frozen=True)
+class Way:
+    """A way to compare views: what describes them, under which name a view keeps that, and how distances are judged."""
 
-DESCRIBED = SpinImageDescriber(support=0.2)
-"""A support of 20 cm takes in most of a thing on a table."""
+    name: str
+    describer: Describer
+    root: bool = False
 
-COMPARED = f"{DESCRIBER} {DESCRIBED} {SETTINGS}"
-"""How, in full: what was worked out from views that were compared in another way is worked out anew."""
+    @property
+    def settings(self) -> RecognitionSettings:
+        """The settings of recognition, with the shipped width of a category for these descriptors."""
+        return RecognitionSettings(prior_spread=PRIOR_SPREADS[self.name])
 
-DISTANCES, IDS = "distances", "views"
-"""The names of a category's state: D_V between its views, and the ids of the views, in the same order."""
+    def describe(self, cloud: PointCloud) -> NDArray[np.float32]:
+        """What a thing's points are compared by, (k, d); none of too few points."""
+        found = self.describer.describe(cloud)
+        return roots(found) if self.root else found
+
+    def __str__(self) -> str:
+        return f"{self.name} {self.describer} {self.settings}"
+
+
+UPRIGHT = Way("upright", UprightDescriber())
+"""How views in a table's frame are compared, where all of them are."""
+
+ROOTS = Way("spin_image_roots", SpinImageDescriber(support=0.2), root=True)
+"""How all others are, whatever their frame, and views that were kept before there was another way. With square roots
+the distance of equation 1 is Hellinger's; a support of 20 cm takes in most of a thing on a table."""
+
+TABLE = "table"
+"""The frame in which z is up, and 0 on the table."""
+
+DISTANCES, IDS, COMPARED = "distances", "views", "compared"
+"""The names of a category's state: D_V between its views, the ids of the views, in the same order, and the way in which
+they were compared."""
 
 LEAST_CONFIDENCE = 0.01
 MOST_CONFIDENCE = 0.99
@@ -65,22 +90,22 @@ class Recognised:
     answers: Mapping[str, Recognition]
 
 
-def describe(cloud: PointCloud) -> NDArray[np.float32]:
-    """What a thing's points are compared by: square roots of spin images, (k, 153); none of too few points.
+def ways_in(frame: str) -> tuple[Way, ...]:
+    """The ways to compare what is seen in a frame, the best first."""
+    return (UPRIGHT, ROOTS) if frame == TABLE else (ROOTS,)
 
-    With roots the distance of equation 1 is Hellinger's.
+
+def view_of(cloud: PointCloud, frame: str, category: str, time: datetime, metadata: Mapping[str, Any]) -> View:
+    """A view of a thing of a category, ready to be kept; raises CloudError where nothing on it can be described.
+
+    It is kept with what every way needs in which it can be compared.
     """
-    return roots(DESCRIBED.describe(cloud))
-
-
-def view_of(cloud: PointCloud, category: str, time: datetime, metadata: Mapping[str, Any]) -> View:
-    """A view of a thing of a category, ready to be kept; raises CloudError where nothing on it can be described."""
-    descriptors = describe(cloud)
-    if not len(descriptors):
+    descriptors = {way.name: way.describe(cloud) for way in ways_in(frame)}
+    if not all(map(len, descriptors.values())):
         raise CloudError("the thing has too few points to say what it looks like; perceive it from nearer")
     points = np.ascontiguousarray(cloud.points[cloud.finite], dtype=np.float32)
     id = hashlib.sha256(points.tobytes()).hexdigest()[:16]
-    return View(id, category, time, {DESCRIBER: descriptors}, points, dict(metadata))
+    return View(id, category, time, descriptors, points, dict(metadata))
 
 
 def thing_of(view: View) -> str | None:
@@ -93,17 +118,23 @@ def keep_views(memory: PerceptualMemory, views: Sequence[View]) -> tuple[Taught,
     """Keeps views, all or none; the same points kept again under another word correct it."""
     with memory.exclusive():
         place = {key.id: key.category for key in memory.listing()}
-        known, taught = {name: instances_of(memory, name) for name in _involved(memory, views, place)}, []
+        kept = {name: list(memory.views(name)) for name in _involved(memory, views, place)}
+        grown = {name: [*kept.get(name, ()), *_of(views, name)] for name in (*kept, *(view.category for view in views))}
+        ways = {name: way_of(together, (UPRIGHT, ROOTS)) for name, together in grown.items()}
+        known = {name: instances_of(memory.category(name), own, ways[name]) for name, own in kept.items()}
+        taught = []
         for view in views:
             before = place.get(view.id)
             if before is not None:
                 known[before] = known[before].without_view(view.id)
-            grown = known.get(view.category, InstanceCategory(view.category))
-            known[view.category] = grown.with_view(view.id, view.descriptors[DESCRIBER], thing_of(view))
+            category = known.get(view.category, InstanceCategory(view.category))
+            descriptors = view.descriptors[ways[view.category].name]
+            known[view.category] = category.with_view(view.id, descriptors, thing_of(view))
             place[view.id] = view.category
             corrected = before if before != view.category else None
             taught.append(Taught(view.id, view.category, len(known[view.category]), corrected))
-        memory.write(Batch(views, [record_of(category) for category in known.values() if len(category)]))
+        records = [record_of(category, ways[name]) for name, category in known.items() if len(category)]
+        memory.write(Batch(views, records))
         for name, category in known.items():
             if not len(category):
                 memory.forget(name)  # nothing is left of it
@@ -116,50 +147,73 @@ def _involved(memory: PerceptualReading, views: Sequence[View], place: Mapping[s
     return [name for name in memory.categories() if name in named]
 
 
-def instances_of(memory: PerceptualReading, category: str) -> InstanceCategory:
-    """A category with its views' descriptors; distances that a record has are not worked out again."""
-    kept = [view for view in memory.views(category) if DESCRIBER in view.descriptors]
-    views = [(view.id, view.descriptors[DESCRIBER]) for view in kept]
+def _of(views: Iterable[View], category: str) -> list[View]:
+    return [view for view in views if view.category == category]
+
+
+def way_of(views: Iterable[View], ways: Sequence[Way]) -> Way:
+    """The first of some ways in which these views can all be compared."""
+    kept = list(views)
+    return next((way for way in ways if all(way.name in view.descriptors for view in kept)), ROOTS)
+
+
+def instances_of(record: CategoryRecord, views: Sequence[View], way: Way) -> InstanceCategory:
+    """A category with its views' descriptors; distances that its record has are not worked out again."""
+    kept = [view for view in views if way.name in view.descriptors]
+    named = [(view.id, view.descriptors[way.name]) for view in kept]
     things = {view.id: thing for view in kept if (thing := thing_of(view)) is not None}
-    record = memory.category(category)
-    ids = tuple(view for view, _ in views)
-    if DISTANCES not in record.state or record.metadata.get(IDS) != sorted(ids):
-        return InstanceCategory.of(category, views, things)
+    ids = tuple(view for view, _ in named)
+    compared = record.metadata.get(COMPARED, ROOTS.name)  # before there was a choice
+    if compared != way.name or DISTANCES not in record.state or record.metadata.get(IDS) != sorted(ids):
+        return InstanceCategory.of(record.name, named, things)
     order = np.argsort(np.argsort(np.array(ids, dtype=str)))
     distances = np.asarray(record.state[DISTANCES])[np.ix_(order, order)]
-    return InstanceCategory(category, PackedViews.of(views), distances, things=things)
+    return InstanceCategory(record.name, PackedViews.of(named), distances, things=things)
 
 
-def record_of(category: InstanceCategory) -> CategoryRecord:
+def record_of(category: InstanceCategory, way: Way) -> CategoryRecord:
     """What a category has learned, its views in the order of their ids."""
     order = np.argsort(np.array(category.views.ids, dtype=str))
     return CategoryRecord(
-        category.name, {DISTANCES: category.distances[np.ix_(order, order)]}, {IDS: sorted(category.views.ids)}
+        category.name,
+        {DISTANCES: category.distances[np.ix_(order, order)]},
+        {IDS: sorted(category.views.ids), COMPARED: way.name},
     )
 
 
-def recogniser_of(memory: LevelMemory, progress: Progress | None = None) -> Recogniser:
-    """The recogniser of everything that was taught, with its threshold from its own views.
+@dataclass(frozen=True)
+class Known:
+    """A recogniser, and the way in which it compares."""
+
+    recogniser: Recogniser
+    way: Way
+
+
+def recogniser_of(memory: LevelMemory, frame: str, progress: Progress | None = None) -> Known:
+    """The recogniser of everything that was taught for what is seen in a frame, with its threshold from its own views.
 
     That is worked out anew when a tenth of the views are others than the last time, and kept in the memory.
     """
     with memory.exclusive():
-        known = Recogniser.of([instances_of(memory, name) for name in memory.categories()], SETTINGS)
+        taught = {name: list(memory.views(name)) for name in memory.categories()}
+        way = way_of((view for kept in taught.values() for view in kept), ways_in(frame))
+        categories = [instances_of(memory.category(name), kept, way) for name, kept in taught.items()]
+        known = Recogniser.of(categories, way.settings)
         views = {(key.category, key.id) for key in memory.listing()}
-        kept = kept_calibration(memory.path, views, COMPARED)
-        if kept is not None:
-            return replace(known, calibration=kept)
+        calibration = kept_calibration(memory.path, views, str(way))
+        if calibration is not None:
+            return Known(replace(known, calibration=calibration), way)
         known = known.calibrated(progress)
-        keep_calibration(memory.path, known.calibration, views, COMPARED)
-    return known
+        keep_calibration(memory.path, known.calibration, views, str(way))
+    return Known(known, way)
 
 
-def recognise(recogniser: Recogniser, scene: Scene, clouds: Sequence[PointCloud | None]) -> Recognised:
+def recognise(known: Known, scene: Scene, clouds: Sequence[PointCloud | None]) -> Recognised:
     """Names the things of a scene that have a cloud; what a scene says already stays."""
     answers, things = {}, []
     for thing, cloud in zip(scene.objects, clouds, strict=True):
         if cloud is not None:
-            answer = recogniser.recognise(describe(cloud))
+            answer = known.recogniser.recognise(known.way.describe(cloud))
             answers[thing.id] = answer
             if answer.label is not None and thing.label is None:
                 sure = float(np.clip(answer.probability, LEAST_CONFIDENCE, MOST_CONFIDENCE))

@@ -113,14 +113,15 @@ def test_a_view_is_taught_and_corrected_and_categories_are_renamed_merged_and_fo
 
 def test_what_a_category_has_learned_is_kept_and_is_what_its_views_give(tables: Path, tmp_path: Path) -> None:
     from deixis.perception.recognition.instances import InstanceCategory
-    from deixis.recognising import DESCRIBER, DISTANCES, instances_of
+    from deixis.recognising import DISTANCES, UPRIGHT, instances_of
 
     with Session(tmp_path / "memory") as session:
         for object in ("o1", "o5", "o8"):
             session.teach(tables / "7.scene.json", object, "flat thing")
-        kept = instances_of(session.views(), "flat_thing")
-        views = [(view.id, view.descriptors[DESCRIBER]) for view in session.views().views("flat_thing")]
-        assert DISTANCES in session.views().category("flat_thing").state
+        record, taught = session.views().category("flat_thing"), list(session.views().views("flat_thing"))
+        kept = instances_of(record, taught, UPRIGHT)
+        views = [(view.id, view.descriptors[UPRIGHT.name]) for view in taught]
+        assert DISTANCES in record.state
     fresh = InstanceCategory.of("flat_thing", views)
     assert kept.views.ids == fresh.views.ids
     np.testing.assert_allclose(kept.distances, fresh.distances, atol=1e-6)
@@ -233,14 +234,16 @@ def test_a_calibration_is_kept_while_a_tenth_of_the_views_stays(
     with Session(tmp_path / "memory") as session:
         for object, word in (("o1", "plate"), ("o5", "plate"), ("o3", "fork"), ("o4", "fork")):
             session.teach(scene, object, word)
-        first = recogniser_of(session.views()).calibration
-        assert recogniser_of(session.views()).calibration == first
+        first = recogniser_of(session.views(), "table").recogniser.calibration
+        assert recogniser_of(session.views(), "table").recogniser.calibration == first
         assert len(calls) == 1
         assert len(set(calls[0].values())) == 4
         file.write_text(file.read_text().replace(str(first.threshold), str(first.threshold + 1)))
-        assert recogniser_of(session.views()).calibration == first  # a changed number is not believed
+        assert (
+            recogniser_of(session.views(), "table").recogniser.calibration == first
+        )  # a changed number is not believed
         session.teach(scene, "o7", "spoon")
-        recogniser_of(session.views())
+        recogniser_of(session.views(), "table")
         assert len(calls) == 3
     assert deixis("memory", "verify", "--memory", tmp_path / "memory")[0] == 0
 

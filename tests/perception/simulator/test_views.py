@@ -64,3 +64,11 @@ def test_a_mesh_in_another_unit_or_without_faces_is_refused() -> None:
         views_of(Mesh(mesh.vertices * 1000, mesh.faces), 1, 0)
     with pytest.raises(SimulationError, match="no faces"):
         views_of(Mesh(mesh.vertices, mesh.faces[:0]), 1, 0)
+
+
+def test_an_upright_view_is_the_same_view_in_the_frame_of_the_table() -> None:
+    mesh = make("mug", seed=1).mesh
+    aside, upright = views_of(mesh, 1, seed=3)[0], views_of(mesh, 1, seed=3, upright=True)[0]
+    assert abs(float(upright.points[:, 2].min())) < 0.01
+    distances = [np.linalg.norm(each.points - np.array(each.origin), axis=1) for each in (aside, upright)]
+    np.testing.assert_allclose(distances[1], distances[0], atol=1e-5)

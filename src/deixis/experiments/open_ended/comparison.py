@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.experiments.open_ended.contestants import D2
+from deixis.experiments.open_ended.contestants import D2, SPIN
 from deixis.experiments.open_ended.shown import Shown
 from deixis.experiments.open_ended.splits import Split
 from deixis.perception.recognition.distances import Target, view_distances
@@ -22,10 +22,10 @@ Matrix = NDArray[np.float32]
 
 @dataclass(frozen=True)
 class Nearest:
-    """A way to name a view: by D_C (``settings`` None) or by ND; over spin images, or D2 and extents."""
+    """A way to name a view: by D_C (``settings`` None) or by ND, over the descriptors of one name."""
 
     name: str
-    spin_images: bool
+    descriptor: str
     settings: RecognitionSettings | None
 
 
@@ -38,9 +38,9 @@ class Scores:
     auroc: float
 
 
-def spin_distances(shown: Shown, tick: Callable[[str], None]) -> Matrix:
-    """D_V (n, n) from each view, a row, to each, by square roots of spin images."""
-    sets = [roots(view["spin_images"]) for view in shown.views]
+def view_matrix(shown: Shown, descriptor: str, tick: Callable[[str], None]) -> Matrix:
+    """D_V (n, n) from each view, a row, to each; by square roots of spin images."""
+    sets = [roots(view[SPIN]) if descriptor == SPIN else view[descriptor] for view in shown.views]
     packed = PackedViews.of((str(number), rows) for number, rows in enumerate(sets))
     out = np.empty((len(sets), len(sets)), np.float32)
     for number, rows in enumerate(sets):

@@ -17,6 +17,8 @@ EQUATIONS = "equations 1-4"
 THINGS = "ICD of things"
 NEAREST = "equations 1-2"
 D2 = "d2_extents"
+SPIN = "spin_images"
+UPRIGHT = "upright"
 
 Contestants = Mapping[str, Callable[[], Learner]]
 
@@ -26,6 +28,7 @@ def contestants(codebook: Codebook) -> Contestants:
     return {
         EQUATIONS: lambda: InstanceBased(settings=PAPER, name=EQUATIONS),
         THINGS: lambda: InstanceBased(name=THINGS),
+        UPRIGHT: lambda: InstanceBased(UPRIGHT, root=False, name=UPRIGHT),
         NEAREST: lambda: InstanceBased(by_distance=True, name=NEAREST),
         "D2 and extents": lambda: InstanceBased(D2, root=False, by_distance=True, name="D2 and extents"),
         "SVDD": SupportVectorDescription,

@@ -9,8 +9,17 @@ from pathlib import Path
 
 import numpy as np
 
-from deixis.experiments.open_ended.comparison import Matrix, Nearest, Scores, compared, d2_distances, spin_distances
-from deixis.experiments.open_ended.contestants import EQUATIONS, NEAREST, THINGS, Contestants, contestants
+from deixis.experiments.open_ended.comparison import Matrix, Nearest, Scores, compared, d2_distances, view_matrix
+from deixis.experiments.open_ended.contestants import (
+    D2,
+    EQUATIONS,
+    NEAREST,
+    SPIN,
+    THINGS,
+    UPRIGHT,
+    Contestants,
+    contestants,
+)
 from deixis.experiments.open_ended.shown import Shown, described, kept
 from deixis.experiments.open_ended.splits import Split, by_things, by_views
 from deixis.experiments.open_ended.things import FOLDER, from_meshes, rows_of, simulated
@@ -26,10 +35,11 @@ Stage = Callable[[int], AbstractContextManager[Tick]]
 """Opens a stage of so many steps, and gives what is to be told after each."""
 
 WAYS = (
-    Nearest(NEAREST, True, None),
-    Nearest(EQUATIONS, True, PAPER),
-    Nearest(THINGS, True, DEFAULT),
-    Nearest("D2 and extents", False, None),
+    Nearest(NEAREST, SPIN, None),
+    Nearest(EQUATIONS, SPIN, PAPER),
+    Nearest(THINGS, SPIN, DEFAULT),
+    Nearest(UPRIGHT, UPRIGHT, DEFAULT),
+    Nearest("D2 and extents", D2, None),
 )
 SPLITS = {"new things": by_things, "new views of things taught": by_views}
 
@@ -143,8 +153,8 @@ def _found(plan: Plan, shown: Shown, able: Contestants, stage: Stage, keep_back:
         taught = tuple(
             _taught(plan, shown, name, make, seed, tick) for name, make in able.items() for seed in plan.seeds()
         )
-    with stage(len(shown.views)) as tick:
-        matrices = {True: spin_distances(shown, tick), False: d2_distances(shown)}
+    with stage(2 * len(shown.views)) as tick:
+        matrices = {D2: d2_distances(shown), **{name: view_matrix(shown, name, tick) for name in (SPIN, UPRIGHT)}}
     nearest = _nearest(plan, shown, matrices)
     places = np.concatenate([shown.of(kind) for kind in shown.kinds[1::2]])
     part = {key: matrix[np.ix_(places, places)] for key, matrix in matrices.items()}
@@ -173,10 +183,10 @@ def _views(shown: Shown, split: Split, asked: int | None) -> dict[str, list[View
     return {kind: views[:asked] for kind, views in found.items()}
 
 
-def _nearest(plan: Plan, shown: Shown, matrices: dict[bool, Matrix]) -> Ways:
+def _nearest(plan: Plan, shown: Shown, matrices: dict[str, Matrix]) -> Ways:
     return {
         (title, way.name): tuple(
-            compared(shown, matrices[way.spin_images], cut(shown, seed), way.settings) for seed in plan.seeds()
+            compared(shown, matrices[way.descriptor], cut(shown, seed), way.settings) for seed in plan.seeds()
         )
         for title, cut in SPLITS.items()
         for way in WAYS

@@ -18,14 +18,16 @@ from deixis.perception.features.d2_extents import D2ExtentsDescriber
 from deixis.perception.features.describer import Describer
 from deixis.perception.features.good import GoodDescriber
 from deixis.perception.features.spin_describer import SpinImageDescriber
+from deixis.perception.features.upright_describer import UprightDescriber
 from deixis.perception.recognition.learners.view_features import ViewFeatures, features_of
 
 DESCRIBERS: tuple[Describer, ...] = (
     SpinImageDescriber(support=0.2),
     GoodDescriber(),
     D2ExtentsDescriber(),
+    UprightDescriber(),
 )
-"""Settings are the same for all data. Those of spin images were chosen beforehand (docs/open_ended.md)."""
+"""Settings are the same for all data. Those of the first and the last were chosen beforehand (docs/open_ended.md)."""
 
 
 class Seen(NamedTuple):

@@ -37,7 +37,7 @@ def simulated(kinds: Iterable[str], instances: int, views: int, seed: int) -> It
     for kind in kinds:
         for number in range(instances):
             one = 10_000 * seed + number
-            yield Seen(kind, f"{kind} {number}", views_of(make(kind, seed=one).mesh, views, seed=one))
+            yield Seen(kind, f"{kind} {number}", views_of(make(kind, seed=one).mesh, views, seed=one, upright=True))
 
 
 def meshes_folder() -> Path | None:
@@ -68,7 +68,7 @@ def from_meshes(folder: Path, views: int, seed: int) -> Iterator[Seen]:
         if counts[category] > 1:
             each = -(-views // counts[category])
             mesh = upright(in_metres(read_mesh(file)), y_up)
-            yield Seen(category, file.name, views_of(mesh, each, seed=10_000 * seed + number))
+            yield Seen(category, file.name, views_of(mesh, each, seed=10_000 * seed + number, upright=True))
 
 
 def in_metres(mesh: Mesh) -> Mesh:
