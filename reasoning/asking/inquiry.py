@@ -12,6 +12,9 @@ from deixis.reasoning.asking.candidates import Candidates
 from deixis.reasoning.asking.questions import DONT_KNOW, Question, QuestionKind, answers_of, best_question
 from deixis.reasoning.asking.situation import Situation
 
+PATIENCE = 6
+"""Answers in a row that nobody knows after which no more is asked."""
+
 
 class ContradictionError(DeixisError, ValueError):
     """An answer that no candidate gives."""
@@ -65,8 +68,13 @@ class Inquiry:
     def next_question(self) -> Question | None:
         """The question that is expected to resolve most, or None where there is none.
 
-        None is asked twice, nor one that takes a look at what the person could not tell before.
+        None is asked twice, nor one that takes a look at what the person could not tell before. Who has not known as
+        many answers in a row as there are objects (``PATIENCE`` at least) is asked no more.
         """
+        patience = max(PATIENCE, len(self.situation.objects))
+        latest = self.exchanges[-patience:]
+        if len(latest) == patience and all(exchange.outcome is Outcome.UNKNOWN for exchange in latest):
+            return None
         barred = {exchange.question.topic for exchange in self.exchanges}
         unknown = (exchange for exchange in self.exchanges if exchange.outcome is Outcome.UNKNOWN)
         return best_question(self.situation, self.candidates, self.kinds, barred | {e.question.look for e in unknown})

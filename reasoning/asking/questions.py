@@ -80,9 +80,12 @@ class Question:
 
     @property
     def look(self) -> Topic:
-        """What two questions share that take one look: who cannot answer the one cannot answer the other."""
+        """What two questions share that take one look: who cannot answer the one cannot answer the other.
+
+        Who does not know an object by sight can neither point to it nor say of a thing whether it is the one.
+        """
         if self.relation is None:
-            return self.topic
+            return (QuestionKind.POINTING, self.subject)
         return (self.kind, min(self.subject, self.object), max(self.subject, self.object))
 
 

@@ -119,6 +119,10 @@ def _places(entry: Inferred) -> str:
 def grounding_lines(found: Grounding) -> list[str]:
     """Who is who, what cannot be told apart, which facts fail, what was left out, and what qualifies the answer."""
     lines = [_match_line(match) for match in found.matches.values()] or ["No object was found."]
+    elsewhere = [match.object for match in found.matches.values() if _likelier_elsewhere(match)]
+    if elsewhere:
+        told = ", ".join(elsewhere[:MANY]) + (f" and {len(elsewhere) - MANY} more" if len(elsewhere) > MANY else "")
+        lines += ["", f"This is the likeliest map as a whole; taken alone, likelier to be another thing: {told}."]
     groups = [group for group in found.interchangeable if any(name in found.matches for name in group)]
     if groups:
         lines += ["", "The description cannot tell these apart, so their names may be swapped:"]
@@ -126,9 +130,10 @@ def grounding_lines(found: Grounding) -> list[str]:
     lines += ["", f"Facts: {len(found.outcomes)} stated, {len(found.satisfied)} satisfied" + _rest(found)]
     lines += [f"    violated: {violation_text(entry)}" for entry in found.violated]
     lines += _left_out_lines((*found.unmatched_objects, *found.unmatched_perceived))
-    lines += [_pivotal_line(pivotal) for pivotal in (found.pivotal or ())[:MANY]]
-    if len(found.pivotal or ()) > MANY:
-        lines.append(f"and {len(found.pivotal or ()) - MANY} more facts that matter (--json has them)")
+    pivotal = [line for entry in found.pivotal or () if (line := _pivotal_line(entry, found))]
+    lines += pivotal[:MANY]
+    if len(pivotal) > MANY:
+        lines.append(f"and {len(pivotal) - MANY} more facts that matter (--json has them)")
     lines.append(f"Graph similarity {found.graph_similarity:.3f}; engine {found.engine}, {_standing(found)}.")
     return lines + [f"Note: {note}." for note in found.notes]
 
@@ -167,15 +172,30 @@ def _probability(value: float) -> str:
     return "1   " if value > 1 - 1e-6 else f"{min(value, 0.99):.2f}"
 
 
-def _pivotal_line(pivotal: Pivotal) -> str:
-    """What would be otherwise without a fact."""
+MORE = 0.02
+"""By how much likelier another thing is where it is told: more than what sampling makes of equal ones."""
+
+
+def _likelier_elsewhere(match: Match) -> bool:
+    """Whether a thing by itself is more probably another one than what it is in the best map."""
+    own = match.probability
+    return own is not None and any((other.probability or 0.0) > own + MORE for other in match.alternatives)
+
+
+def _pivotal_line(pivotal: Pivotal, found: Grounding) -> str:
+    """What would be otherwise without a fact, empty where interchangeable objects would only swap their things."""
+    changes = dict(pivotal.changes)
+    for group in found.interchangeable:
+        held = {found.matches[name].perceived for name in group if name in found.matches}
+        if all(changes[name] in held for name in group if name in changes):
+            changes = {name: thing for name, thing in changes.items() if name not in group}
     place = f" ({pivotal.fact.source})" if pivotal.fact.source else ""
-    would = [f"{name} would be {thing or 'left out'}" for name, thing in pivotal.changes.items()]
+    would = [f"{name} would be {thing or 'left out'}" for name, thing in changes.items()]
     if pivotal.unsettled:
         would.append(f"{', '.join(pivotal.unsettled)} would not be settled")
     if pivotal.settled:
         would.append(f"{', '.join(pivotal.settled)} would be settled")
-    return f"Without {pivotal.fact}{place}: {'; '.join(would)}."
+    return f"Without {pivotal.fact}{place}: {'; '.join(would)}." if would else ""
 
 
 def _rest(found: Grounding) -> str:

@@ -181,3 +181,18 @@ def test_of_very_many_equal_things_a_line_names_the_first_and_counts_the_rest(tm
     _, out, _ = deixis("ground", tmp_path / "t.layout", tmp_path / "t.scene.json", "--engine", "similarity")
     line = next(line for line in out.splitlines() if line.startswith("f_0 "))
     assert line.endswith(", 17 more")
+
+
+def test_what_only_swaps_things_that_cannot_be_told_apart_is_no_news() -> None:
+    arguments = ("ground", SCRIPT1, SCENE, "--no-sizes")
+    _, out, _ = deixis(*arguments)
+    without = [line for line in out.splitlines() if line.startswith("Without ")]
+    assert len(without) == 1 and without[0].startswith("Without right(soup_spoon, fish_knife)")
+    assert len(json.loads(deixis(*arguments, "--json")[1])["pivotal"]) > 1
+
+
+def test_who_is_likelier_something_else_taken_alone_is_told() -> None:
+    arguments = (SCRIPT1, SCENE)
+    told = "taken alone, likelier to be another thing: water_glass, fish_knife."
+    assert told in deixis("ground", *arguments, "--no-sizes")[1]
+    assert "taken alone" not in deixis("ground", *arguments)[1]

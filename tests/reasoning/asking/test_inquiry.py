@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from deixis.ontology.graph import Fact, RelationGraph
 from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.asking.candidates import Candidates
-from deixis.reasoning.asking.inquiry import ContradictionError, Inquiry, Outcome, begin, update
+from deixis.reasoning.asking.inquiry import PATIENCE, ContradictionError, Inquiry, Outcome, begin, update
 from deixis.reasoning.asking.questions import (
     ABSENT,
     DONT_KNOW,
@@ -178,12 +178,23 @@ def test_who_does_not_know_is_not_asked_the_same_again(inquiry_of: Callable[...,
         assert inquiry.exchanges[-1].outcome is Outcome.UNKNOWN
 
 
+def test_who_does_not_know_an_object_by_sight_is_not_asked_to_tell_it_again(inquiry_of: Callable[..., Inquiry]) -> None:
+    inquiry, unknown = inquiry_of("script1"), set()
+    while (question := inquiry.next_question()) is not None:
+        if question.kind is not QuestionKind.RELATION:
+            assert question.subject not in unknown
+            unknown.add(question.subject)
+        inquiry = inquiry.answered(question, DONT_KNOW)
+    assert unknown
+    assert len(inquiry.exchanges) <= len(inquiry.situation.objects)
+
+
 def test_a_dialogue_with_one_who_knows_nothing_ends() -> None:
     inquiry = begin(row_of(3), Candidates(np.array([[0, 1, 2], [1, 2, 0]]), np.ones(2)))
     steps = 0
     while (question := inquiry.next_question()) is not None:
         inquiry, steps = inquiry.answered(question, DONT_KNOW), steps + 1
-    assert 0 < steps < 40
+    assert 0 < steps <= PATIENCE
     assert inquiry.candidates.count == 2
 
 
