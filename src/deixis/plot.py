@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 INK, QUIET, WRONG, PAPER = "#22313f", "#9aa5ae", "#c0392b", "#fbfaf7"
 GROUP_COLOURS = ("#4c78a8", "#e0a02c", "#5a9a5a", "#8e6bbf", "#2a9d9d", "#b5703c")
 PLAIN_FILL, UNNAMED_FILL = "#ffffff", "#eceae4"
+MARGIN = 0.12
+"""Inches between what is drawn and the edge of the picture."""
 
 
 def plot_grounding(found: Grounding, scene: Scene, path: str | Path, title: str | None = None) -> None:
@@ -61,8 +63,10 @@ def new_figure(width: float, height: float, **subplots: Any) -> tuple[Figure, An
     """An empty figure that needs no display, and its axes."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
+    from matplotlib.layout_engine import ConstrainedLayoutEngine
 
-    figure = Figure(figsize=(width, height), facecolor=PAPER, layout="constrained")
+    room = ConstrainedLayoutEngine(w_pad=MARGIN, h_pad=MARGIN)
+    figure = Figure(figsize=(width, height), facecolor=PAPER, layout=room)
     FigureCanvasAgg(figure)
     return figure, figure.subplots(**subplots)
 
@@ -157,18 +161,22 @@ def _draw_fact(axes: Axes, entry: FactOutcome, scene: Scene, colour: str, width:
 
 
 def _arrow(subject: PerceivedObject, object: PerceivedObject) -> tuple[tuple[float, float], tuple[float, float]]:
-    """From just inside the subject to just inside the object, where the two boxes face each other."""
+    """From just inside the subject to just inside the object, where the two boxes face each other or overlap."""
     ends = []
+    over = _overlap_in_plan(subject, object)
     for axis in (0, 1):
         a, b = (subject.minimum[axis], subject.maximum[axis]), (object.minimum[axis], object.maximum[axis])
         low, high = max(a[0], b[0]), min(a[1], b[1])
-        if low > high:
-            near_a, near_b = (a[1], b[0]) if a[1] < b[0] else (a[0], b[1])
+        if a[1] <= b[0] or b[1] <= a[0]:
+            near_a, near_b = (a[1], b[0]) if a[1] <= b[0] else (a[0], b[1])
             ends.append((near_a + 0.3 * (sum(a) / 2 - near_a), near_b + 0.06 * (sum(b) / 2 - near_b)))
-        elif a[0] >= b[0] and a[1] <= b[1] and _overlap_in_plan(subject, object):
+        elif over and a[0] >= b[0] and a[1] <= b[1]:
             ends.append((a[0], b[0] + 0.3 * (a[0] - b[0])))
+        elif over and b[0] >= a[0] and b[1] <= a[1]:
+            ends.append((a[0] + 0.3 * (b[0] - a[0]), b[0]))
         else:
-            ends.append(((low + high) / 2, (low + high) / 2))
+            middle, share = (low + high) / 2, 0.5 if over else 0.0
+            ends.append((middle + share * (sum(a) / 2 - middle), middle + share * (sum(b) / 2 - middle)))
     (x0, x1), (y0, y1) = ends
     return (x0, y0), (x1, y1)
 
@@ -230,7 +238,10 @@ def _dress(
     axes.set_aspect("equal")
     axes.margins(0.06)
     dress_table(axes, scene, title)
-    keys: list[Any] = [Line2D([], [], color=QUIET, label=f"{len(found.satisfied)} facts satisfied")]
+    keys: list[Any] = []
+    if found.satisfied:
+        said = "1 fact satisfied" if len(found.satisfied) == 1 else f"{len(found.satisfied)} facts satisfied"
+        keys.append(Line2D([], [], color=QUIET, label=said))
     if found.violated:
         keys.append(Line2D([], [], color=WRONG, label=f"{len(found.violated)} violated"))
     if wrong:
@@ -240,15 +251,19 @@ def _dress(
     for colour in dict.fromkeys(colours.values()):
         members = [name.replace("_", " ") for name, other in colours.items() if other == colour]
         keys.append(Patch(facecolor=colour, alpha=0.45, label="cannot be told apart: " + ", ".join(members)))
-    axes.legend(handles=keys, fontsize=8, frameon=False, loc="upper center", bbox_to_anchor=(0.5, -0.09), ncols=2)
+    if keys:
+        axes.legend(handles=keys, fontsize=8, frameon=False, loc="upper center", bbox_to_anchor=(0.5, -0.09), ncols=2)
 
 
 def dress_table(axes: Axes, scene: Scene, title: str | None) -> None:
     """Labels, colours and title of a table seen from above, once its aspect and margins are set."""
     axes.autoscale_view()
+    across, along = f"to the right as seen from the {scene.viewpoint}", f"away from the {scene.viewpoint}"
+    if scene.frame == "image" or (scene.unit == "px" and scene.viewpoint != Scene(()).viewpoint):
+        across, along = "to the right", "up"  # nobody said that the image is a plan
     unit = "pixels" if scene.unit == "px" else "metres"
-    axes.set_xlabel(f"{unit}, to the right as seen from the {scene.viewpoint}", color=INK, fontsize=8.5)
-    axes.set_ylabel(f"{unit}, away from the {scene.viewpoint}", color=INK, fontsize=8.5)
+    axes.set_xlabel(f"{unit}, {across}", color=INK, fontsize=8.5)
+    axes.set_ylabel(f"{unit}, {along}", color=INK, fontsize=8.5)
     axes.tick_params(colors=INK, labelsize=8)
     axes.set_facecolor(PAPER)
     for side in axes.spines.values():

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 from deixis.perception.scene import PerceivedObject
-from deixis.plot import INK, PAPER, QUIET
+from deixis.plot import INK, PAPER
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -149,7 +149,7 @@ def _write(axes: Axes, name: str, place: _Place, outline: Box) -> None:
     x, y = inverse.transform(middle).tolist()
     if _gap(place.box, outline) > LEADER:
         (x0, y0), (x1, y1) = inverse.transform(_nearest(place.box, outline)).tolist()
-        axes.plot([x0, x1], [y0, y1], color=QUIET, linewidth=0.7, zorder=900, scalex=False, scaley=False)
+        axes.plot([x0, x1], [y0, y1], color=INK, linewidth=0.6, zorder=900, scalex=False, scaley=False)
     axes.text(
         x,
         y,

@@ -4,49 +4,73 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from deixis.perception.detection.detect import ON_TABLE
-from deixis.plot import INK, QUIET, dress_table, new_figure, save
+from deixis.plot import INK, dress_table, new_figure, save
+from deixis.plot_camera import Camera, camera_of, colours_of, draw_camera
 from deixis.plot_names import write_names
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
     from deixis.perceiving import Perceived
+    from deixis.perception.recognition.recognition import Recognition
     from deixis.perception.scene import Scene
     from deixis.recognising import Recognised
 
-MOST_POINTS = 40_000
-"""Points that are drawn of a cloud."""
+MOST_POINTS = 60_000
+"""Points that are drawn of the things, and of the table."""
 
-MARGIN = 0.05
-"""Metres around the table that are drawn."""
+MARGIN = 0.1
+"""How much is drawn around the things, as a share of their extent."""
 
 FEW = 0.005
 """The share of the table's points, on each side, that may be some other level surface of its height."""
+
+DOT = 0.003
+"""Metres: the width of a point as it is drawn, about that between a depth camera's points on a table."""
+
+TABLE = "#dedbd1"
+WIDEST_DOT = 0.02
+"""Metres: how wide a point of the table is drawn at the most, where these are far apart."""
+
+LEAST_DOT = 1.0
+"""The same in typographic points, whatever the scale."""
+
+HEIGHT, MOST_WIDTH = 5.4, 12.5
+"""Inches: a panel's height, and how wide the panels may be together."""
+
+LEGEND = "Number: the probability that the name is right; beside 'unknown', that no name known is."
+
+Window = tuple[NDArray[np.float64], NDArray[np.float64]]
+"""The least and the greatest x and y that are drawn, in metres."""
 
 
 def plot_perceived(found: Perceived, path: str | Path) -> None:
     """The points from above, grey where they belong to no thing; beside it the image, where the cloud is one."""
     from deixis.perceiving import in_frame
 
-    organised = found.cloud.organised
-    figure, axes = new_figure(14.0 if organised else 8.0, 6.5, ncols=2 if organised else 1, squeeze=False)
-    points = in_frame(found.cloud, found.detection.frame).points
-    shown = _worth_showing(points, found)
-    _points(axes[0][0], points[shown], found.detection.labels[shown])
-    _boxes(axes[0][0], found.scene)
-    axes[0][0].set_aspect("equal")
-    axes[0][0].set_anchor("N")
-    dress_table(axes[0][0], found.scene, "From above, in the table's frame")
-    if organised:
-        _image(axes[0][1], found.detection.labels.reshape(organised), shown.reshape(organised))
-    things = tuple(replace(thing, label=thing.label or thing.id) for thing in found.scene.objects)
-    write_names(figure, axes[0][0], things)
+    points, labels = in_frame(found.cloud, found.detection.frame).points, found.detection.labels
+    window = window_of(points, found)
+    camera = camera_of(found.cloud, labels, found.scene) if found.cloud.organised else None
+    figure, axes, scale = _panels(window, camera)
+    _points(axes[0], points, labels, window, scale)
+    level = found.detection.table is not None
+    _dress(axes[0], found.scene, window, "From above, in the table's frame" if level else "All points, as they stand")
+    if not found.scene.objects:
+        _say(axes[0], "; ".join(found.detection.notes) or "nothing was found")
+    if not level:
+        axes[0].set_xlabel("metres, x of the cloud")
+        axes[0].set_ylabel("metres, y of the cloud")
+    write_names(figure, axes[0], [replace(thing, label=thing.label or thing.id) for thing in found.scene.objects])
+    if camera is not None:
+        draw_camera(axes[1], camera)
+        write_names(figure, axes[1], camera.things)
     save(figure, path)
 
 
@@ -54,76 +78,103 @@ def plot_recognised(found: Recognised, path: str | Path) -> None:
     """The things from above, each with its name and how probable that is; what is unknown says so."""
     from deixis.perceiving import cloud_of
 
-    figure, axes = new_figure(9.0, 7.5)
-    named = []
-    for number, thing in enumerate(found.scene.objects):
-        if thing.cloud is not None:
-            points = cloud_of(found.scene, thing).points
-            _points(axes, points, np.full(len(points), number))
-        answer = found.answers.get(thing.id)
-        said = thing.label if answer is None else f"{answer.label or 'unknown'} {answer.probability:.2f}"
-        named.append(replace(thing, label=f"{thing.id} {said or 'unknown'}"))
-    _boxes(axes, found.scene)
-    axes.set_aspect("equal")
-    dress_table(axes, found.scene, "What was recognised")
-    write_names(figure, axes, named)
+    clouds = [
+        (number, cloud_of(found.scene, thing).points)
+        for number, thing in enumerate(found.scene.objects)
+        if thing.cloud is not None
+    ]
+    points = np.concatenate([np.empty((0, 3), np.float32), *(cloud for _, cloud in clouds)])
+    labels = np.concatenate([np.empty(0, np.int32), *(np.full(len(cloud), number) for number, cloud in clouds)])
+    window = _around_boxes(found.scene)
+    figure, axes, scale = _panels(window, None)
+    _points(axes[0], points, labels.astype(np.int32), window, scale)
+    _dress(axes[0], found.scene, window, "What was recognised")
+    if not found.scene.objects:
+        _say(axes[0], "there is nothing in this scene")
+    if found.answers:
+        axes[0].set_xlabel(f"{axes[0].get_xlabel()}\n\n{LEGEND}", fontsize=8, color=INK)
+    named = [replace(thing, label=_answered(thing.id, thing.label, found)) for thing in found.scene.objects]
+    write_names(figure, axes[0], named)
     save(figure, path)
 
 
-def _worth_showing(points: NDArray[np.float32], found: Perceived) -> NDArray[np.bool_]:
-    """Which points (n, 3) of the table's frame lie above or below the table and its things, or near: (n,).
+def _answered(id: str, label: str | None, found: Recognised) -> str:
+    answer: Recognition | None = found.answers.get(id)
+    said = label if answer is None else f"{answer.label or 'unknown'} {answer.probability:.2f}"
+    return f"{id} {said or 'unknown'}"
 
-    All of them where no table was found.
+
+def window_of(points: NDArray[np.float32], found: Perceived) -> Window:
+    """What is drawn of points (n, 3) in the table's frame: the things, and some of the table around them.
+
+    The whole table where nothing is on it, and all points where no table was found.
     """
-    if found.detection.table is None:
-        return np.ones(len(points), dtype=np.bool_)
-    on_things = found.detection.labels >= 0
-    of_interest = on_things | (np.abs(points[:, 2]) < ON_TABLE)
-    low, high = np.quantile(points[of_interest, :2], [FEW, 1.0 - FEW], axis=0)
-    if on_things.any():
-        things = points[on_things, :2]
-        low, high = np.minimum(low, things.min(axis=0)), np.maximum(high, things.max(axis=0))
-    shown: NDArray[np.bool_] = ((points[:, :2] > low - MARGIN) & (points[:, :2] < high + MARGIN)).all(axis=1)
-    return shown
+    if found.scene.objects:
+        return _around_boxes(found.scene)
+    flat = points[np.isfinite(points).all(axis=1)]
+    if found.detection.table is not None:
+        flat = flat[np.abs(flat[:, 2]) < ON_TABLE]
+    low, high = np.quantile(flat[:, :2].astype(np.float64), [FEW, 1.0 - FEW], axis=0)
+    return _widened(low, high)
 
 
-def _points(axes: Axes, points: NDArray[np.float32], labels: NDArray[np.integer]) -> None:
-    shown = np.flatnonzero(np.isfinite(points).all(axis=1))
-    shown = shown[:: max(1, len(shown) // MOST_POINTS)]
-    on_things = labels[shown] >= 0
-    x, y = 1.0 * points[shown, 0], 1.0 * points[shown, 1]
-    axes.scatter(x[~on_things], y[~on_things], s=0.3, color=QUIET, alpha=0.25, rasterized=True, linewidths=0)
-    colours = _colour(labels[shown][on_things])
-    axes.scatter(x[on_things], y[on_things], s=1.2, color=colours, rasterized=True, linewidths=0)
+def _around_boxes(scene: Scene) -> Window:
+    if not scene.objects:
+        return _widened(np.zeros(2), np.ones(2))
+    return _widened(scene.boxes[:, 0, :2].min(axis=0), scene.boxes[:, 1, :2].max(axis=0))
 
 
-def _boxes(axes: Axes, scene: Scene) -> None:
+def _widened(low: NDArray[np.float64], high: NDArray[np.float64]) -> Window:
+    """With a margin, and neither side less than half the other."""
+    middle, half = (low + high) / 2, (high - low) / 2
+    half = np.maximum(half + 2 * MARGIN * half.max(), max(half.max() / 2, DOT))
+    return middle - half, middle + half
+
+
+def _panels(window: Window, camera: Camera | None) -> tuple[Figure, list[Axes], float]:
+    """A figure with a panel for each view, of one height; and how many inches a metre has in the first."""
+    width, depth = (window[1] - window[0]).tolist()
+    shapes = [width / depth] if camera is None else [width / depth, camera.shape]
+    height = min(HEIGHT, MOST_WIDTH / sum(shapes))
+    figure, axes = new_figure(
+        height * sum(shapes) + 0.4 + 0.6 * len(shapes),
+        height + 1.2,
+        ncols=len(shapes),
+        squeeze=False,
+        width_ratios=shapes,
+    )
+    return figure, list(axes[0]), height / depth
+
+
+def _points(axes: Axes, points: NDArray[np.float32], labels: NDArray[np.int32], window: Window, scale: float) -> None:
+    """Points in the window, the table's so wide that they close up; what is higher lies over what is lower."""
+    inside = np.isfinite(points).all(axis=1) & ((points[:, :2] > window[0]) & (points[:, :2] < window[1])).all(axis=1)
+    style: dict[str, Any] = {"linewidths": 0, "rasterized": True}
+    for of_things in (False, True):
+        shown = np.flatnonzero(inside & ((labels >= 0) == of_things))
+        shown = shown[:: len(shown) // MOST_POINTS + 1]
+        shown = shown[np.argsort(points[shown, 2], kind="stable")]
+        apart = float(np.sqrt(np.prod(window[1] - window[0]) / max(len(shown), 1)))
+        width = DOT if of_things else min(1.5 * max(apart, DOT), WIDEST_DOT)
+        colours = colours_of(labels[shown]) if of_things else TABLE
+        size = max(72 * scale * width, LEAST_DOT) ** 2
+        axes.scatter(1.0 * points[shown, 0], 1.0 * points[shown, 1], s=size, c=colours, **style)
+
+
+def _dress(axes: Axes, scene: Scene, window: Window, title: str) -> None:
+    """Boxes, each edged in a darker tone of its thing's colour, and the frame around them."""
     from matplotlib.patches import Rectangle
 
-    for thing in scene.objects:
+    edges = 0.6 * colours_of(np.arange(len(scene.objects)))
+    for thing, edge in zip(scene.objects, edges, strict=True):
         (x, y), (right, top) = thing.minimum[:2], thing.maximum[:2]
-        axes.add_patch(Rectangle((x, y), right - x, top - y, fill=False, edgecolor=INK, linewidth=1.0))
+        axes.add_patch(Rectangle((x, y), right - x, top - y, fill=False, edgecolor=tuple(edge), linewidth=1.1))
+    axes.set_xlim(window[0][0], window[1][0])
+    axes.set_ylim(window[0][1], window[1][1])
+    axes.set_aspect("equal")
+    dress_table(axes, scene, title)
 
 
-def _image(axes: Axes, labels: NDArray[np.integer], shown: NDArray[np.bool_]) -> None:
-    """The things' labels as an image (height, width), as far as there is something that is shown."""
-    picture = np.full((*labels.shape, 3), 0.93)
-    picture[labels >= 0] = _colour(labels[labels >= 0])
-    axes.imshow(picture)
-    rows, columns = np.nonzero(shown)
-    if len(rows):
-        axes.set_xlim(columns.min() - 0.5, columns.max() + 0.5)
-        axes.set_ylim(rows.max() + 0.5, rows.min() - 0.5)
-    axes.set_anchor("N")
-    axes.set_title("As the camera sees it", color=INK, fontsize=12, loc="left")
-    axes.set_axis_off()
-
-
-def _colour(numbers: NDArray[np.integer]) -> NDArray[np.float64]:
-    """A colour for each number, neighbours far apart on the circle of hues, shape (n, 3)."""
-    from matplotlib.colors import hsv_to_rgb
-
-    hue = (np.asarray(numbers) * 0.61803398875) % 1.0
-    value = 0.55 + 0.3 * ((np.asarray(numbers) * 0.7548776662) % 1.0)
-    colours: NDArray[np.float64] = hsv_to_rgb(np.stack([hue, np.full(len(hue), 0.65), value], axis=1))
-    return colours
+def _say(axes: Axes, what: str) -> None:
+    """A line in the middle of a panel that shows no thing."""
+    axes.text(0.5, 0.5, what, transform=axes.transAxes, ha="center", va="center", fontsize=11, color=INK, wrap=True)

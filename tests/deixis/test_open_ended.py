@@ -211,5 +211,7 @@ def test_the_picture_is_drawn(found: OpenEnded, tmp_path: Path) -> None:
     assert EQUATIONS in (tmp_path / "open.svg").read_text()
 
 
-def test_a_mean_curve_goes_as_far_as_half_of_them() -> None:
-    assert mean_curve([np.array([1.0]), np.array([3.0, 5.0]), np.array([2.0, 4.0, 6.0])]).tolist() == [2.0, 10 / 3]
+def test_a_mean_curve_goes_as_far_as_the_longest_each_staying_where_it_ended() -> None:
+    curves = [np.array([1.0]), np.array([3.0, 5.0]), np.array([2.0, 4.0, 6.0]), np.empty(0)]
+    assert mean_curve(curves).tolist() == [2.0, 10 / 3, 4.0]
+    assert mean_curve([]).tolist() == mean_curve([np.empty(0)]).tolist() == []

@@ -16,7 +16,7 @@ from deixis.plot import INK, PAPER, QUIET, new_figure, save
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-COLOURS = ("#1f4e79", "#e0a02c", "#c0392b", "#7f8c8d", "#5a9a5a", "#8e6bbf", "#2a9d9d", "#b5703c")
+COLOURS = ("#1f4e79", "#e0a02c", "#c0392b", "#7f8c8d", "#5a9a5a", "#8e6bbf", "#2a9d9d", "#b5703c", "#d46a9f")
 Curve = Callable[[Course], NDArray[np.float64]]
 
 
@@ -50,9 +50,9 @@ def stored(course: Course) -> NDArray[np.float64]:
 
 
 def mean_curve(curves: Sequence[NDArray[np.float64]]) -> NDArray[np.float64]:
-    """The mean of the curves as far as half of them go, each staying where it ended."""
-    length = int(np.median([len(curve) for curve in curves]))
-    held = [np.concatenate([curve, np.full(length, curve[-1])])[:length] for curve in curves if len(curve)]
+    """The mean of the curves as far as the longest goes, each staying where it ended, as its course is over."""
+    length = max(map(len, curves), default=0)
+    held = [np.concatenate([curve, np.full(length - len(curve), curve[-1])]) for curve in curves if len(curve)]
     result: NDArray[np.float64] = np.mean(held, axis=0) if held else np.empty(0)
     return result
 
