@@ -91,10 +91,14 @@ def read_mark(folder: Path) -> dict[str, Any]:
     return mark
 
 
+def store_in(folder: Path) -> Path:
+    """Where the store is: after a swap that was cut short, and until :func:`finish` puts it back, beside its place."""
+    aside = not (folder / STORE).is_dir() and (folder / OLD).is_dir()
+    return folder / (OLD if aside else STORE)
+
+
 def _check_current(folder: Path) -> None:
-    store = folder / STORE
-    if not store.is_dir() and (folder / OLD).is_dir():
-        store = folder / OLD  # a swap was cut short; finish() puts it back
+    store = store_in(folder)
     current = store / "CURRENT"
     try:
         manifest = current.read_text(encoding="ascii").strip()

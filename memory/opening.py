@@ -58,8 +58,7 @@ def open_memory(folder: Path, create: bool, fill: Callable[[ox.Store], None] = _
     """Opens a memory, or makes one whose store ``fill`` fills; raises as ``SemanticMemory.open`` does."""
     state = files.inspect(folder)
     if state in (State.ABSENT, State.EMPTY) and not create:
-        what = "there is no memory at" if state is State.ABSENT else "there is no memory yet in the empty folder"
-        raise MemoryFormatError(f"{what} {folder}; learn something into it first, or name another folder")
+        raise MemoryFormatError(f"{_nothing(folder, state)}; learn something into it first, or name another folder")
     made = _make_folder(folder) if state is State.ABSENT else False
     try:
         return _open_locked(folder, fill)
@@ -67,6 +66,15 @@ def open_memory(folder: Path, create: bool, fill: Callable[[ox.Store], None] = _
         if made and not any(folder.iterdir()):
             folder.rmdir()
         raise
+
+
+def _nothing(folder: Path, state: State) -> str:
+    """What there is where nothing was learned."""
+    if state is State.ABSENT:
+        return f"there is no memory at {folder}"
+    if any((folder / files.PERCEPTUAL).glob("store-*")):
+        return f"the memory at {folder} has views only, nothing was learned into it yet"
+    return f"there is no memory yet in the empty folder {folder}"
 
 
 def _make_folder(folder: Path) -> bool:

@@ -59,8 +59,20 @@ class GraphFormat(StrEnum):
     DOT = "dot"
 
 
+def _print_version(wanted: bool) -> None:
+    from deixis.version import VERSION
+
+    if wanted:
+        print(f"deixis {VERSION}")
+        raise typer.Exit
+
+
 @app.callback()
-def _root() -> None:
+def _root(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_print_version, is_eager=True, help="Print the version.")
+    ] = False,
+) -> None:
     pass
 
 

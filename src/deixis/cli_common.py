@@ -59,6 +59,31 @@ def require_writable(written: Iterable[Path | None], read: Iterable[str | Path |
             raise DeixisError(f"{file}: its folder cannot be made: {error.strerror}") from error
 
 
+def require_ending(file: Path, endings: tuple[str, ...], what: str) -> None:
+    """Raises DeixisError, before any work, where a file's name does not say what will be in it."""
+    from deixis.ontology.errors import DeixisError
+
+    if not file.name.lower().endswith(endings):
+        raise DeixisError(f"{file}: {what} is a file that ends in {' or '.join(endings)}")
+
+
+def require_scene_name(file: Path | None) -> None:
+    """The same for a scene, so that none is written over a picture or a script."""
+    if file is not None:
+        require_ending(file, (".json",), "a scene")
+
+
+def require_memory(folder: Path | None) -> None:
+    """Raises MemoryFormatError where a folder is named in which nothing was learned, nor taught."""
+    from deixis.session import Session
+
+    if folder is None:
+        return
+    with Session(folder) as session:
+        if not session.has_views() and not session.remembers():
+            session.memory()  # raises: there is none
+
+
 @contextmanager
 def progress_bar(what: str) -> Iterator[Callable[[int, int], None] | None]:
     """A progress bar on standard error, on a terminal only, and only for what takes long."""
@@ -81,12 +106,32 @@ def progress_bar(what: str) -> Iterator[Callable[[int, int], None] | None]:
 
 
 @contextmanager
-def working(what: str) -> Iterator[None]:
-    """Says on a terminal's standard error what goes on, while nobody knows how long it takes."""
+def working(what: str, after: float = 0.0) -> Iterator[None]:
+    """Says on a terminal's standard error what goes on, while nobody knows how long it takes.
+
+    It says so ``after`` so many seconds, for what takes long only the first time.
+    """
     if not sys.stderr.isatty():
         yield
         return
+    from threading import Timer
+
     from rich.console import Console
 
-    with Console(stderr=True).status(what):
+    status = Console(stderr=True).status(what)
+    begin = Timer(after, status.start)
+    begin.start()
+    try:
         yield
+    finally:
+        begin.cancel()
+        begin.join()
+        status.stop()
+
+
+def ready_to_ground(engine: str = "exact") -> None:
+    """Has the engine compiled before any time limit begins; the first time after an installation takes long."""
+    from deixis.warm import ready_to_ground as ready
+
+    with working("compiling, once", PATIENCE):
+        ready(engine)

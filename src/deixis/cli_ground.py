@@ -21,6 +21,7 @@ from deixis.cli_common import (
     TimeLimit,
     print_json,
     print_lines,
+    ready_to_ground,
     working,
 )
 from deixis.reasoning.engine_name import EngineName
@@ -74,6 +75,7 @@ def ground(
         require_picture(plot)
     parsed, seen = read_script(script), load_scene(scene, hide_labels, image)
     meaning = _meaning(literal, no_sizes, memory)
+    ready_to_ground(engine)
     more: dict[str, Any] = {}
     notes: tuple[str, ...] = ()
     if viewpoint is not ViewpointName.STATED:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from deixis.cli_common import NO, UNDECIDED, AsJson, Script, print_json, print_lines
+from deixis.cli_common import NO, UNDECIDED, AsJson, Script, print_json, print_lines, require_scene_name
 
 if TYPE_CHECKING:
     from deixis.imagination import Imagination
@@ -76,6 +76,7 @@ def _require_writable(script: str, scenes: list[Path], pictures: list[Path]) -> 
             raise DeixisError(f"{scene}: this is a folder; name a file for the scene")
         if scene.exists() and Path(script).exists() and scene.samefile(script):
             raise DeixisError(f"{scene}: this is the script; name another file for the scene")
+        require_scene_name(scene)
         scene.parent.mkdir(parents=True, exist_ok=True)
 
 

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Iterator
 from enum import StrEnum
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -21,9 +22,15 @@ from deixis.cli_common import (
     print_json,
     print_lines,
     progress_bar,
+    ready_to_ground,
+    require_ending,
+    require_memory,
     working,
 )
 from deixis.reasoning.engine_name import EngineName
+
+if TYPE_CHECKING:
+    from deixis.memory.verifying import Verified
 
 memory_app = typer.Typer(help="Export, import, count, or forget what was learned.", no_args_is_help=True)
 
@@ -64,10 +71,12 @@ def learn(
     from deixis.session import Session, load_scene
     from deixis.show import learned_lines
 
+    seen = load_scene(scene, hide_labels, image)
+    ready_to_ground(engine)
     with Session(memory) as session:
         try:
             with working("grounding"):
-                learned = session.learn(script, load_scene(scene, hide_labels, image), engine, time_limit)
+                learned = session.learn(script, seen, engine, time_limit)
         except NothingFoundError as error:
             print(f"deixis: {error}", file=sys.stderr)
             raise typer.Exit(1) from error
@@ -119,6 +128,7 @@ def check(
 
         require_picture(plot)
     seen = load_scene(scene, hide_labels, image)
+    ready_to_ground()
     with Session(memory) as session, working("grounding"):
         checked = session.check(layout, seen, time_limit)
     if report is not None:
@@ -134,6 +144,8 @@ def check(
         print_json(check_to_dict(checked))
     else:
         print_lines(check_lines(checked))
+        if plot is not None:
+            print(f"\nThe picture is in {plot}.")
     if not checked.table.grounding.proved_best:
         raise typer.Exit(3)
     if not checked.table.well:
@@ -179,24 +191,46 @@ def export(
     memory: MemoryDir = None,
 ) -> None:
     """Write everything remembered, sorted: the same bytes for the same content."""
-    from deixis.memory.exchange import export_memory
     from deixis.memory_session import default_memory
     from deixis.ontology.errors import DeixisError
-    from deixis.session import Session
 
+    where = memory or default_memory()
     if format is DumpFormat.VIEWS:
         from deixis.memory.perceptual.whole import export_all
 
         if out is None:
             raise DeixisError("views are no text: name a file with -o")
-        export_all(memory or default_memory(), out)
+        require_ending(out, (".zip",), "an archive of views")
+        export_all(where, out)
         return
+    if out is not None:
+        require_ending(out, _ENDINGS[format], f"an export as {format}")
+    _export_concepts(where, out, format)
+
+
+_ENDINGS = {DumpFormat.TRIG: (".trig",), DumpFormat.TURTLE: (".ttl",)}
+"""What a file is called that import is to read as what it is."""
+
+_VIEWS_TOO = "'--format views -o FILE' writes them"
+
+
+def _export_concepts(memory: Path, out: Path | None, format: DumpFormat) -> None:
+    """Writes or prints what was learned, and says on standard error that views are left behind."""
+    from deixis.memory.exchange import export_memory
+    from deixis.ontology.errors import DeixisError
+    from deixis.session import Session
+
     with Session(memory) as session:
+        views = session.has_views()
+        if views and not session.remembers():
+            raise DeixisError(f"the memory at {memory} has views only, nothing was learned into it; {_VIEWS_TOO}")
         text = export_memory(session.memory(), format.value)
     if out is None:
         sys.stdout.write(text)
     else:
         out.write_text(text, encoding="utf-8")
+    if views:
+        print(f"deixis: the memory has views as well, which are not in this export: {_VIEWS_TOO}", file=sys.stderr)
 
 
 @memory_app.command("import")
@@ -248,22 +282,29 @@ def stats(memory: MemoryDir = None, as_json: AsJson = False) -> None:
 
 @memory_app.command("verify")
 def verify(memory: MemoryDir = None, as_json: AsJson = False) -> None:
-    """Read every view that was taught, and say what is not as it was written; exit 1 where something is not."""
-    from deixis.memory.perceptual.whole import verify_views
-    from deixis.session import Session
+    """Read all that was learned and taught, and say what is not as it was written; exit 1 where something is not."""
+    from deixis.memory.verifying import verify as run
+    from deixis.memory_session import default_memory
 
-    with Session(memory) as session:
-        if not session.has_views() and not session.remembers():
-            session.memory()  # raises: there is none
-        where = session.path
+    where = memory or default_memory()
+    require_memory(where)
     with progress_bar("verifying") as progress:
-        found = verify_views(where, progress)
+        found = run(where, progress)
     if as_json:
-        print_json({"findings": [{"where": entry.where, "what": entry.what} for entry in found]})
+        findings = [{"where": entry.where, "what": entry.what} for entry in found.findings]
+        print_json({"verified": {"concepts": found.semantic, "views": found.perceptual}, "findings": findings})
     else:
-        print_lines([str(entry) for entry in found] or ["All views are as they were written."])
-    if found:
+        print_lines(_verified_lines(found))
+    if found.findings:
         raise typer.Exit(1)
+
+
+def _verified_lines(found: Verified) -> Iterator[str]:
+    there = {"concepts": found.semantic, "views": found.perceptual}
+    yield from map(str, found.findings)
+    if not found.findings:
+        yield f"All {' and '.join(what for what, known in there.items() if known)} are as they were written."
+    yield from (f"There are no {what} in this memory." for what, known in there.items() if not known)
 
 
 @memory_app.command("forget")

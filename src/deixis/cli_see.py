@@ -8,7 +8,18 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from deixis.cli_common import NO, AsJson, MemoryDir, print_json, print_lines, progress_bar, require_writable, working
+from deixis.cli_common import (
+    NO,
+    AsJson,
+    MemoryDir,
+    print_json,
+    print_lines,
+    progress_bar,
+    require_memory,
+    require_scene_name,
+    require_writable,
+    working,
+)
 
 if TYPE_CHECKING:
     from deixis.perception.recognition.recognition import Recognition
@@ -52,6 +63,7 @@ def perceive(
         require_picture(plot)
     if labels is not None and labels.suffix != ".npy":
         raise DeixisError(f"{labels}: the labels are a numpy array; name a file that ends in .npy")
+    require_scene_name(out)
     require_writable([out, labels, plot], [cloud, intrinsics])
     with working("looking for the table"):
         found = run(cloud, intrinsics, viewpoint)
@@ -70,6 +82,8 @@ def perceive(
         print_lines(_scene_lines(scene))
         print_lines(f"Note: {note}." for note in found.detection.notes)
         print(f"The scene is in {out}, its clouds beside it.")
+    if plot is not None and not as_json:  # on standard error where the scene is what is printed
+        print(f"The picture is in {plot}.", file=sys.stderr if out is None else sys.stdout)
     if not scene.objects:
         raise typer.Exit(NO)
 
@@ -91,12 +105,13 @@ def _write_labels(file: Path, labels: Any) -> None:
 
 
 def _scene_lines(scene: Scene) -> list[str]:
+    unit, scale, digits = ("px", 1, 0) if scene.unit == "px" else ("cm", 100, 1)
     lines = []
     for thing in scene.objects:
-        low, high = (100 * value for value in thing.minimum), (100 * value for value in thing.maximum)
-        sides = " x ".join(f"{b - a:.1f}" for a, b in zip(low, high, strict=True))
-        x, y = (50 * (thing.minimum[k] + thing.maximum[k]) for k in (0, 1))
-        lines.append(f"{thing.id:<5} {sides:>20} cm at {x:6.1f}, {y:6.1f}")
+        low, high = ([scale * value for value in corner] for corner in (thing.minimum, thing.maximum))
+        sides = " x ".join(f"{b - a:.{digits}f}" for a, b in zip(low, high, strict=True))
+        x, y = ((low[k] + high[k]) / 2 for k in (0, 1))
+        lines.append(f"{thing.id:<5} {sides:>20} {unit} at {x:6.{digits}f}, {y:6.{digits}f}")
     return lines or ["Nothing was found."]
 
 
@@ -138,6 +153,8 @@ def recognise(
         from deixis.plot import require_picture
 
         require_picture(plot)
+    require_scene_name(out)
+    require_memory(memory)
     seen = load_scene(scene)
     require_writable([out, plot], [thing.cloud and Path(seen.file).parent / thing.cloud for thing in seen.objects])
     with Session(memory) as session, progress_bar("calibrating") as progress:
@@ -154,6 +171,8 @@ def recognise(
         print_lines(_answer_line(id, answer) for id, answer in found.answers.items())
         if not found.answers:
             print("Nothing in this scene has a cloud: only what perceive -o wrote can be recognised.")
+        if plot is not None:
+            print(f"The picture is in {plot}.")
     if not any(answer.label for answer in found.answers.values()):
         raise typer.Exit(NO)
 
@@ -228,6 +247,7 @@ def ask(
     from deixis.session import Session, load_scene
 
     name, seen = category_name(word), load_scene(scene)
+    _require_something_to_show(seen)
     with Session(memory) as session:
         if name in session.categories() and points_at is None:
             with progress_bar("calibrating") as progress:
@@ -245,6 +265,17 @@ def ask(
         print(_taught_line(session.teach(seen, pointed, name, teacher), pointed))
 
 
+def _require_something_to_show(scene: Scene) -> None:
+    """Ends the command, before anybody is asked, where no thing is there, or none whose looks could be kept."""
+    from deixis.ontology.errors import DeixisError
+
+    if not scene.objects:
+        print(f"There is nothing in {scene.file} that a word could mean.")
+        raise typer.Exit(NO)
+    if all(thing.cloud is None for thing in scene.objects):
+        raise DeixisError(f"{scene.file}: nothing in it has a cloud, so none can be shown; 'perceive -o' writes clouds")
+
+
 def _pointed_at(name: str, scene: Scene) -> str | None:
     """Asks until an id of the scene is given, or nothing."""
     print_lines(_scene_lines(scene))
@@ -256,6 +287,9 @@ def _pointed_at(name: str, scene: Scene) -> str | None:
         if not answer:
             print()
             return None
-        if answer in scene.ids:
+        if answer not in scene.ids:
+            print(f"There is no '{answer}' here.")
+        elif scene[answer].cloud is None:
+            print(f"'{answer}' has no cloud, so nobody knows what it looks like.")
+        else:
             return answer
-        print(f"There is no '{answer}' here.")

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from deixis.cli_common import NO, AsJson, print_json, print_lines, require_writable, working
+from deixis.cli_common import NO, AsJson, print_json, print_lines, require_scene_name, require_writable, working
 
 if TYPE_CHECKING:
     from deixis.laying import LaidScript
@@ -57,6 +57,7 @@ def simulate(
     from deixis.simulation import View
     from deixis.simulation import simulate as run
 
+    require_scene_name(truth)
     require_writable([out, truth], [layout, intrinsics, *(entry.partition("=")[2] for entry in mesh or [])])
     if out is not None and out.suffix.lower() not in (".pcd", ".ply"):
         raise DeixisError(f"{out}: a cloud's name ends in .pcd or .ply")

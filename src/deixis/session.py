@@ -29,6 +29,7 @@ from deixis.reasoning.implications import TIME_LIMIT, Implications
 from deixis.reasoning.labels import Label
 from deixis.reasoning.meaning import SHIPPED, Meaning
 from deixis.version import VERSION
+from deixis.warm import ready_to_ground
 
 if TYPE_CHECKING:
     from deixis.ontology.concepts import LayoutConcept, Lesson
@@ -98,6 +99,7 @@ def ground(
         raise SettingError(f"a time limit is 0 or more seconds, not {time_limit}")
     if select not in list(Select):
         raise SettingError(f"select is one of {', '.join(Select)}, not '{select}'")
+    ready_to_ground(engine)
     return ground_evidence(evidence_of(script, scene, meaning), engine_named(engine, Select(select)), time_limit, notes)
 
 
@@ -212,6 +214,7 @@ class Session(PerceptualSession):
         labels = scene_labels(scene)
         evidence = _evidence(graph, scene, self.ontology, self.meaning())
         notes = _viewpoint_notes(concept.viewpoint, scene) + _conflict_notes(graph)
+        ready_to_ground("exact")
         found = ground_evidence(evidence, engine_named("exact"), time_limit)
         kept = tuple(note for note in found.notes if "similarity" not in note)  # a check shows no similarity
         found = replace(found, notes=notes + kept)

@@ -257,3 +257,9 @@ def test_a_contradiction_as_json() -> None:
     assert code == 1
     assert data.keys() == {"consistent", "conflict"}
     assert [fact["line"] for fact in data["conflict"]["facts"]] == [5, 6, 8]
+
+
+def test_the_version_is_that_of_the_package() -> None:
+    from deixis import __version__
+
+    assert deixis("--version") == (0, f"deixis {__version__}\n", "")

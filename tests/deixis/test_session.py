@@ -110,7 +110,7 @@ def test_another_viewpoint_is_noted() -> None:
     (note,) = deixis.ground(script, {"objects": [box("p", 0), box("q", 5)]}).notes
     assert "'window'" in note
     assert "'chair'" in note
-    assert deixis.ground(SCRIPT1, SCENE).notes == ()
+    assert not any("seen from" in note or "chair" in note for note in deixis.ground(SCRIPT1, SCENE).notes)
 
 
 def test_a_contradictory_script_is_noted() -> None:
