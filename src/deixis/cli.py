@@ -11,7 +11,7 @@ import signal
 import sys
 from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
@@ -25,11 +25,12 @@ from deixis.cli_common import (
     print_json,
     print_lines,
 )
+from deixis.cli_concepts import register as register_concepts
 from deixis.cli_experiment import register as register_experiment
 from deixis.cli_ground import ground
 from deixis.cli_imagine import register as register_imagine
 from deixis.cli_infer import infer
-from deixis.cli_memory import register
+from deixis.cli_memory import memory_app
 from deixis.cli_reason import reason
 from deixis.cli_relate import relate
 from deixis.cli_relation import register as register_relation
@@ -38,9 +39,6 @@ from deixis.cli_see import register as register_see
 from deixis.cli_simulate import register as register_simulate
 from deixis.cli_solve import solve
 from deixis.cli_time import time_command
-
-if TYPE_CHECKING:
-    pass
 
 app = typer.Typer(
     name="deixis",
@@ -148,7 +146,8 @@ def demo(
     tell(out)
 
 
-register(app)
+register_concepts(app)
+app.add_typer(memory_app, name="memory")
 register_experiment(app)
 register_imagine(app)
 register_relation(app)

@@ -27,19 +27,21 @@ def ready_to_ground(engine: str) -> None:
     A miniature goes the way of any grounding, and the probabilities of another are sampled as those of many things
     are. Raises UnknownTermError for a name that no engine has.
     """
+    from deixis.grammar.parser import parse_script
     from deixis.perception.scene_file import read_scene
     from deixis.reasoning.conflict import find_conflict
     from deixis.reasoning.engines import engine_named
+    from deixis.reasoning.evidence import evidence_from
     from deixis.reasoning.grounding import ground
     from deixis.reasoning.implications import Implications
-    from deixis.session import evidence_of, read_script
 
     chosen = engine_named(engine)
     boxes = [{"id": f"o{i}", "min": [0.2 * i, 0], "max": [0.2 * i + 0.1, 0.1]} for i in range(3)]
-    script = read_script(text="fork left of plate\nknife right of plate\n")
+    script = parse_script("fork left of plate\nknife right of plate\n")
     find_conflict(Implications(script.graph()))
     scene = read_scene({"frame": "table", "viewpoint": "chair", "unit": "m", "objects": boxes})
-    ground(evidence_of(script, scene), chosen, 3600.0)
+    known, seen = script.ontology, scene.graph(script.ontology.relations)
+    ground(evidence_from(script.graph(), seen, [None] * len(boxes), known.kinds, known.sizes), chosen, 3600.0)
     _sample()
 
 
@@ -61,16 +63,16 @@ def _ground() -> None:
 
 
 def _infer() -> None:
+    from deixis.grammar.parser import parse_script
     from deixis.inference import inference_of
     from deixis.reasoning.why_not import why_not
-    from deixis.session import read_script
 
-    inference = inference_of(read_script(text="a left of b\nb left or above c\nc is not right of d\n"))
+    inference = inference_of(parse_script("a left of b\nb left or above c\nc is not right of d\n"))
     inference.inferred()
     relations = inference.implications.vocabulary
-    why_not(inference.implications, read_script(text="a left of c").facts[0])
+    why_not(inference.implications, parse_script("a left of c").facts[0])
     inference.implications.derive(relations["left"], "a", "b")
-    inference_of(read_script(text="a left of b\nb left of a\n"))
+    inference_of(parse_script("a left of b\nb left of a\n"))
 
 
 def _solve() -> None:
@@ -98,10 +100,10 @@ def _tell_time() -> None:
 
 
 def _imagine() -> None:
+    from deixis.grammar.parser import parse_script
     from deixis.imagination import imagine
-    from deixis.session import read_script
 
-    imagine(read_script(text="fork left of plate\nnapkin on plate\n"))
+    imagine(parse_script("fork left of plate\nnapkin on plate\n"))
 
 
 def _read_clouds() -> None:
