@@ -13,7 +13,7 @@ from deixis.memory import ledger
 from deixis.memory.errors import MemoryBusyError, MemoryFormatError, MemoryWriteError
 from deixis.memory.folder import State
 from deixis.memory.lock import OwnerLock
-from deixis.memory.package import package_digest, packaged
+from deixis.memory.package import package_digest, packaged, packaged_quads
 from deixis.memory.writing import committed
 
 
@@ -51,7 +51,8 @@ def open_store(folder: Path) -> ox.Store:
 
 
 def _fill(store: ox.Store) -> None:
-    store.update(" ;\n".join(ledger.package_update(store, packaged())))
+    """What every memory begins with, into a store that is none of a memory's yet: nobody reads it half full."""
+    store.bulk_extend(packaged_quads())
 
 
 def open_memory(folder: Path, create: bool, fill: Callable[[ox.Store], None] = _fill) -> Opened:

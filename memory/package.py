@@ -8,7 +8,7 @@ from typing import TypeVar
 
 import pyoxigraph as ox
 
-from deixis.memory.graphs import GraphName
+from deixis.memory.graphs import GraphName, graph_iri, package_graph
 from deixis.ontology.skolem import skolem
 from deixis.ontology.tbox import TBOX_FILES, tbox_turtle
 
@@ -19,6 +19,17 @@ SHAPES_FILE = TBOX_FILES[0].with_name("shapes.ttl")
 def packaged() -> dict[GraphName, tuple[ox.Triple, ...]]:
     """The packaged ontology and shapes as triples, blank nodes as names that stay the same."""
     return {name: tuple(_read(name, turtle)) for name, turtle in _texts().items()}
+
+
+@lru_cache(maxsize=1)
+def packaged_quads() -> tuple[ox.Quad, ...]:
+    """The same where a memory keeps them: in the graph that they make up, and as the package's copy."""
+    return tuple(
+        ox.Quad(triple.subject, triple.predicate, triple.object, graph)
+        for name, triples in packaged().items()
+        for graph in (graph_iri(name), package_graph(name))
+        for triple in triples
+    )
 
 
 def package_digest() -> str:
