@@ -111,7 +111,7 @@ def test_bad_command_lines(args: list[object]) -> None:
     assert refused(*args)
 
 
-HOSTILE = settings(max_examples=40, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+HOSTILE = settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 
 
 @HOSTILE

@@ -149,11 +149,15 @@ def test_an_uncertain_label_settles_what_facts_leave_open() -> None:
     assert (found.matches["gizmo"].probability or 0) > 0.5 >= (unlabelled.matches["gizmo"].probability or 0)
 
 
+EXPECTED: dict[str, Grounding] = {}
+"""The answers by engine in the order of the files, each worked out once."""
+
+
 @settings(max_examples=8, deadline=None)
 @given(st.permutations(range(12)), st.permutations(range(11)), st.sampled_from(["exact", "similarity"]))
 def test_the_order_of_lines_and_things_does_not_matter(things: list[int], lines: list[int], engine: str) -> None:
     stated = [str(fact) for fact in SCRIPT1.facts]
-    expected = deixis.ground(SCRIPT1, SCENE, engine=engine)
+    expected = EXPECTED.get(engine) or EXPECTED.setdefault(engine, deixis.ground(SCRIPT1, SCENE, engine=engine))
     script = deixis.read_script(text="\n".join(stated[i] for i in lines))
     found = deixis.ground(script, SCENE.reordered(things), engine=engine)
     assert names(found) == names(expected)

@@ -36,7 +36,7 @@ NASTY = st.one_of(
 )  # fmt: skip
 
 
-@settings(max_examples=15, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=10, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(name=NASTY, lesson=NASTY)
 def test_no_name_changes_the_number_of_triples_or_graphs(memory: SemanticMemory, name: str, lesson: str) -> None:
     thing, text = ox.NamedNode(learned_iri("category", name)), ox.Literal(name)

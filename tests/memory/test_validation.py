@@ -246,7 +246,7 @@ VALUES = [
 ]  # fmt: skip
 
 
-@settings(max_examples=80, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=40, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(
     dropped=st.sets(st.integers(0, 200), max_size=3),
     said=st.lists(
@@ -270,7 +270,7 @@ def test_the_fast_checks_and_pyshacl_agree(
         assert not expected
 
 
-@settings(max_examples=50, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(
     new=st.lists(
         st.tuples(st.sampled_from(LESSON_NODES), st.sampled_from(PREDICATES), st.sampled_from(VALUES)),
