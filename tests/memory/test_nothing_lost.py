@@ -126,7 +126,7 @@ from deixis.memory.semantic import SemanticMemory
 limit = int(sys.argv[2])
 how = sys.argv[3]
 p = ox.NamedNode("urn:p")
-triples = [ox.Triple(ox.NamedNode(f"urn:x{i}"), p, ox.Literal("x" * 50 + str(i))) for i in range(20000)]
+triples = [ox.Triple(ox.NamedNode(f"urn:x{i}"), p, ox.Literal("x" * 50 + str(i))) for i in range(10000)]
 memory = SemanticMemory.open(sys.argv[1])
 resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
 try:
