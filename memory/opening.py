@@ -71,9 +71,11 @@ def open_memory(folder: Path, create: bool, fill: Callable[[ox.Store], None] = _
 
 def _nothing(folder: Path, state: State) -> str:
     """What there is where nothing was learned."""
+    from deixis.memory.perceptual.whole import has_views
+
     if state is State.ABSENT:
         return f"there is no memory at {folder}"
-    if any((folder / files.PERCEPTUAL).glob("store-*")):
+    if has_views(folder):
         return f"the memory at {folder} has views only, nothing was learned into it yet"
     return f"there is no memory yet in the empty folder {folder}"
 

@@ -59,6 +59,14 @@ def require_writable(written: Iterable[Path | None], read: Iterable[str | Path |
             raise DeixisError(f"{file}: its folder cannot be made: {error.strerror}") from error
 
 
+def require_plot(file: Path | None) -> None:
+    """Raises DeixisError, before any work, where a picture is wanted that cannot be written."""
+    if file is not None:
+        from deixis.plot import require_picture
+
+        require_picture(file)
+
+
 def require_ending(file: Path, endings: tuple[str, ...], what: str) -> None:
     """Raises DeixisError, before any work, where a file's name does not say what will be in it."""
     from deixis.ontology.errors import DeixisError

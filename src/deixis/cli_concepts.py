@@ -21,6 +21,7 @@ from deixis.cli_common import (
     print_json,
     print_lines,
     ready_to_ground,
+    require_plot,
     working,
 )
 from deixis.reasoning.engine_name import EngineName
@@ -107,10 +108,7 @@ def check(
     from deixis.session import Session, load_scene
     from deixis.show import check_lines
 
-    if plot is not None:
-        from deixis.plot import require_picture
-
-        require_picture(plot)
+    require_plot(plot)
     seen = load_scene(scene, hide_labels, image)
     ready_to_ground()
     with Session(memory) as session, working("grounding"):

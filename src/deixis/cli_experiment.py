@@ -10,7 +10,7 @@ from typing import Annotated
 
 import typer
 
-from deixis.cli_common import AsJson, print_json, print_lines
+from deixis.cli_common import AsJson, print_json, print_lines, require_plot
 
 experiment = typer.Typer(
     help="Run an experiment, of the paper or of our own.", no_args_is_help=True, rich_markup_mode=None
@@ -52,10 +52,8 @@ def scoreboard(
     from deixis.experiments.scoreboard.report import to_dict
     from deixis.experiments.scoreboard.run import Plan, run, steps
     from deixis.experiments.scoreboard.text import lines
-    from deixis.plot import require_picture
 
-    if plot is not None:
-        require_picture(plot)
+    require_plot(plot)
     plan = Plan(cases=cases, seed=seed, time_limit=time_limit, photographs=photographs_folder())
     plan = plan.quick() if quick else plan
     plan = plan.only(size) if size else plan
@@ -85,10 +83,8 @@ def open_ended(
     from deixis.experiments.open_ended.run import Plan, run
     from deixis.experiments.open_ended.text import lines
     from deixis.experiments.open_ended.things import meshes_folder
-    from deixis.plot import require_picture
 
-    if plot is not None:
-        require_picture(plot)
+    require_plot(plot)
     plan = Plan(orders=orders, seed=seed, meshes=meshes_folder(), cache=cache)
     found = run(plan.quick() if quick else plan, stage=progress)
     if plot is not None:

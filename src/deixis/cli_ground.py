@@ -22,6 +22,7 @@ from deixis.cli_common import (
     print_json,
     print_lines,
     ready_to_ground,
+    require_plot,
     working,
 )
 from deixis.reasoning.engine_name import EngineName
@@ -69,10 +70,7 @@ def ground(
     from deixis.session import load_scene, read_script
     from deixis.show import grounding_lines
 
-    if plot is not None:
-        from deixis.plot import require_picture
-
-        require_picture(plot)
+    require_plot(plot)
     parsed, seen = read_script(script), load_scene(scene, hide_labels, image)
     meaning = _meaning(literal, no_sizes, memory)
     ready_to_ground(engine)

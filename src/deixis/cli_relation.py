@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from deixis.cli_common import AsJson, MemoryDir, NoMemory, print_json, print_lines
+from deixis.cli_common import AsJson, MemoryDir, NoMemory, print_json, print_lines, require_plot
 
 if TYPE_CHECKING:
     from deixis.grammar.script import Script
@@ -34,7 +34,6 @@ def relation(
     from deixis.ontology.errors import UnknownTermError
     from deixis.ontology.relation import nearest, plain_phrase
     from deixis.ontology.tbox import default_ontology
-    from deixis.plot import require_picture
     from deixis.show_relation import relation_lines, relation_to_dict
 
     relations = default_ontology().relations
@@ -44,8 +43,7 @@ def relation(
         advice = f"did you mean '{hint}'?" if hint else f"there are {', '.join(relations)}"
         raise UnknownTermError(f"no relation is called '{word}'; {advice}")
     known = _in_force(memory, no_memory) if models is None else read_models(models)
-    if plot is not None:
-        require_picture(plot)
+    require_plot(plot)
     if as_json:
         print_json(relation_to_dict(found, relations, known))
     else:

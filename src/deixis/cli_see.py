@@ -16,6 +16,7 @@ from deixis.cli_common import (
     print_lines,
     progress_bar,
     require_memory,
+    require_plot,
     require_scene_name,
     require_writable,
     working,
@@ -57,10 +58,7 @@ def perceive(
     from deixis.perceiving import write_perceived
     from deixis.perception.scene_file import scene_to_dict
 
-    if plot is not None:
-        from deixis.plot import require_picture
-
-        require_picture(plot)
+    require_plot(plot)
     if labels is not None and labels.suffix != ".npy":
         raise DeixisError(f"{labels}: the labels are a numpy array; name a file that ends in .npy")
     require_scene_name(out)
@@ -149,10 +147,7 @@ def recognise(
     """Name the things of a scene that look like what was taught; exit 1 where none is known."""
     from deixis.session import Session, load_scene
 
-    if plot is not None:
-        from deixis.plot import require_picture
-
-        require_picture(plot)
+    require_plot(plot)
     require_scene_name(out)
     require_memory(memory)
     seen = load_scene(scene)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from deixis.perception.detection.detect import ON_TABLE
 from deixis.plot import INK, dress_table, new_figure, save
-from deixis.plot_camera import Camera, camera_of, colours_of, draw_camera
+from deixis.plot_camera import MARGIN, Camera, camera_of, colours_of, draw_camera
 from deixis.plot_names import write_names
 
 if TYPE_CHECKING:
@@ -25,9 +25,6 @@ if TYPE_CHECKING:
 
 MOST_POINTS = 60_000
 """Points that are drawn of the things, and of the table."""
-
-MARGIN = 0.1
-"""How much is drawn around the things, as a share of their extent."""
 
 FEW = 0.005
 """The share of the table's points, on each side, that may be some other level surface of its height."""
