@@ -29,7 +29,13 @@ WIDEST = 20.0
 """Metres from the middle of a cloud: where half the points are farther away, the unit is another."""
 
 LEAST_TABLE = 0.3
-"""Metres: what is shorter in both directions is hardly a table, but a side of a thing that was scanned alone."""
+"""Metres: what is shorter in both directions is hardly a table."""
+
+LONGEST_ALONE = 0.4
+"""Metres: a cloud that is no longer, and in its other directions shorter than a table, shows one thing alone."""
+
+FEW = 0.5
+"""Percent of the points at either end that say nothing of how large a thing is."""
 
 SURELY = 1.5
 """A thing is so many times as high as what may be taken for a point above the table."""
@@ -80,7 +86,10 @@ def detect(cloud: PointCloud, settings: DetectionSettings | None = None) -> Dete
         raise CloudError("a cloud without one finite point shows nothing; is its depth image empty?")
     points = cloud.points[kept].astype(np.float64)
     _require_metres(points)
-    plane, outlook = _table(points, outlook_of(cloud, settings), settings.seed)
+    outlook = outlook_of(cloud, settings)
+    if len(points) >= settings.least_points and _is_alone(points, settings):
+        return _alone(cloud, kept, points, outlook, settings)
+    plane, outlook = _table(points, outlook, settings.seed)
     if plane is None:
         return _nothing(len(cloud), None, np.eye(4), "no table was found: no large level surface is in view")
     view = _view(points, plane, outlook, settings)
@@ -88,15 +97,15 @@ def detect(cloud: PointCloud, settings: DetectionSettings | None = None) -> Dete
     rising = raised(view.heights, view.distance, neighbours, settings)
     colours = None if cloud.colours is None else cloud.colours[kept]
     found = _things(view, rising, neighbours, colours, settings)
-    doubts = _doubts(view)
     if not found.max(initial=NONE) >= 0:
-        return _nothing(len(cloud), plane, view.frame, "nothing is on the table", *doubts)
+        why = ("nothing is on the table", *_too_small(view), *_a_wall(view, settings))
+        return _nothing(len(cloud), plane, view.frame, *why)
     numbers = _left_to_right(view.points, found)
     labels = np.full(len(cloud), NONE, np.int32)
     labels[kept] = numbers
     members = [view.points[numbers == k] for k in range(int(numbers.max()) + 1)]
     boxes = np.stack([upright_box(thing) for thing in members])
-    return Detection(plane, view.frame, labels, boxes, tuple(map(oriented_box, members)), doubts)
+    return Detection(plane, view.frame, labels, boxes, tuple(map(oriented_box, members)), _too_small(view))
 
 
 def _require_metres(points: NDArray[np.float64]) -> None:
@@ -107,6 +116,36 @@ def _require_metres(points: NDArray[np.float64]) -> None:
             f"half of the points are more than {spread:.0f} m from the middle, too far for a table;"
             " coordinates are metres: if these are millimetres, divide them by 1000"
         )
+
+
+def _is_alone(points: NDArray[np.float64], settings: DetectionSettings) -> bool:
+    """Whether all there is, but for a few points, is as small as a thing."""
+    axes = np.linalg.svd(np.cov(points.T))[0]
+    low, high = np.percentile(points @ axes, (FEW, 100 - FEW), axis=0)
+    _, middle, longest = np.sort(high - low).tolist()
+    return bool(settings.least_length <= longest < LONGEST_ALONE and middle < LEAST_TABLE)
+
+
+def _alone(
+    cloud: PointCloud,
+    kept: NDArray[np.intp],
+    points: NDArray[np.float64],
+    outlook: Outlook,
+    settings: DetectionSettings,
+) -> Detection:
+    """One thing, all that is seen, as if it stood on a table: upright as told, else as the image, else as the cloud."""
+    ups = (outlook.upwards, outlook.up, np.array([0.0, 0.0, 1.0]))
+    up = next(direction for direction in ups if direction is not None)
+    below = Plane(up, float(np.percentile(points @ up, FEW)))
+    outlook = checked_outlook(outlook, points, below, settings.seed)
+    frame = table_frame(below, points, outlook, settings.viewer)
+    thing = moved(points, frame)
+    labels = np.full(len(cloud), NONE, np.int32)
+    labels[kept] = 0
+    box = upright_box(thing)
+    sides = " by ".join(f"{100 * side:.0f}" for side in (box[1] - box[0]).tolist())
+    note = f"no table was found: all there is, {sides} cm, was taken for one thing seen alone"
+    return Detection(None, frame, labels, box[None], (oriented_box(thing),), (note,))
 
 
 def _table(points: NDArray[np.float64], outlook: Outlook, seed: int) -> tuple[Plane | None, Outlook]:
@@ -140,7 +179,7 @@ def _view(points: NDArray[np.float64], plane: Plane, outlook: Outlook, settings:
     return _View(frame, at, np.linalg.norm(at - eye, axis=1), eye)
 
 
-def _doubts(view: _View) -> tuple[str, ...]:
+def _too_small(view: _View) -> tuple[str, ...]:
     """A note where the table is too small for one."""
     on = view.points[np.abs(view.heights) < ON_TABLE, :2]
     across, deep = np.ptp(on, axis=0).tolist() if len(on) else (0.0, 0.0)
@@ -148,6 +187,15 @@ def _doubts(view: _View) -> tuple[str, ...]:
         return ()
     size = f"{100 * across:.0f} by {100 * deep:.0f} cm"
     return (f"what was taken for the table is only {size}: it may be a part of a thing seen alone",)
+
+
+def _a_wall(view: _View, settings: DetectionSettings) -> tuple[str, ...]:
+    """A note where more is far above the table than on it."""
+    above = (view.heights > settings.reach).sum()
+    if above <= (np.abs(view.heights) < ON_TABLE).sum():
+        return ()
+    rise = f"{100 * settings.reach:.0f} cm"
+    return (f"most of what is seen is more than {rise} above what was taken for the table: it may be a wall",)
 
 
 def _things(

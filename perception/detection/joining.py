@@ -17,7 +17,7 @@ FRAGMENT = 7e-4
 """Square metres: a smaller piece of surface is no thing of its own where it meets another."""
 
 ALIKE, UNLIKE = 9.0, 12.0
-"""Differences of colour below which parts are of one colour, and above which they are not."""
+"""Differences of colour below which parts are of one colour, and above which they are not, if plain."""
 
 PLAIN = 7.0
 """A part whose colours vary less has one colour; the mean of a motley one says nothing."""
@@ -28,15 +28,15 @@ ONE_COLOUR = 1.15
 LIES_ON = 0.005
 """Metres: where a part is by so much higher than another, on the average of where they meet, it lies on it."""
 
-DEEP, LEVEL, HOLLOW = 0.03, 0.012, -0.15
+DEEP, LEVEL, HOLLOW = 0.03, 0.012, -0.1
 """A hollow is so deep (metres), its rim as high on both sides, and it bulges less: it is seen from inside."""
 
 GAP, ALONG = 0.11, 0.015
 """Metres of a surface of one colour that something on it hides: a napkin on a plate. It goes on where it is nearest, or
 so much farther away."""
 
-FOOT, STEM = 0.022, 0.03
-"""Most of the foot of a glass is lower than the first, and hidden by what is higher above it than the second."""
+FOOT, STEM = 0.022, 0.015
+"""Most of the foot of a glass is lower than the first, and what meets or hides it higher above it than the second."""
 
 CLEAR, BESIDE = 0.012, 0.5
 """A handle begins so much higher (metres) than what it is on, and no more of it is within the outline of that."""
@@ -86,7 +86,7 @@ def of_one_colour(parts: Parts) -> Pairs:
 
 def enclosed(parts: Parts) -> Pairs:
     """A part within the outline of one that is above it where they meet, both of one colour: the well of a plate."""
-    low = (parts.rise < 0.001) & (parts.lengths > 0) & (parts.unlike() < UNLIKE)
+    low = (parts.rise < 0.001) & (parts.lengths > 0) & ~_differ(parts)
     low &= (parts.tops[:, None] <= parts.tops[None] + 0.005) & (parts.bulge[:, None] < 0.1)
     return _chosen(_pairs(low), lambda low, rim: _inside(parts, low, rim) > 0.8)
 
@@ -94,7 +94,7 @@ def enclosed(parts: Parts) -> Pairs:
 def insides(parts: Parts) -> Pairs:
     """The inside of a cup, with its outside: it is curved inwards, and its rim is as high."""
     deep = parts.tops - parts.bottoms > DEEP
-    hollow = ((parts.bulge < HOLLOW) & deep)[:, None] & deep[None] & (parts.lengths > 0) & (parts.unlike() < UNLIKE)
+    hollow = ((parts.bulge < HOLLOW) & deep)[:, None] & deep[None] & (parts.lengths > 0) & ~_differ(parts)
     return _pairs(hollow & (np.abs(parts.tops[:, None] - parts.tops[None]) < LEVEL) & (parts.rise < 0.0))
 
 
@@ -106,10 +106,10 @@ def bridged(parts: Parts) -> Pairs:
 
 
 def on_a_foot(parts: Parts) -> Pairs:
-    """Something above a flat foot of its colour that is no wider: a glass whose stem is hidden."""
-    high = parts.bottoms > FOOT
+    """Something high above a flat foot of its colour that is no wider: a glass, its stem hidden or not."""
+    high = parts.middles > 2 * FOOT
     foot = (parts.middles < FOOT) & (parts.bottoms < FOOT / 2)
-    same = (parts.rise > STEM) & (parts.unlike() < UNLIKE)
+    same = (parts.rise > STEM) & ~_differ(parts)
     narrow = parts.widths[None] < 1.2 * parts.widths[:, None]
     pairs = _pairs(high[:, None] & foot[None] & same & narrow)
     return _chosen(pairs, lambda glass, foot: _inside(parts, foot, glass) > 0.1)
@@ -122,7 +122,7 @@ def handles(parts: Parts) -> Pairs:
     )
     clear = parts.bottoms[:, None] > parts.bottoms[None] + CLEAR
     as_high = parts.tops[:, None] < parts.tops[None] + LEVEL
-    pairs = _pairs(small & clear & as_high & (parts.unlike() < UNLIKE))
+    pairs = _pairs(small & clear & as_high & ~_differ(parts))
     return _chosen(
         pairs, lambda handle, body: _apart(parts, handle, body) < REACH and _inside(parts, handle, body) < BESIDE
     )
@@ -136,6 +136,13 @@ def _alike(parts: Parts) -> NDArray[np.bool_]:
     """Which parts are of one plain colour, (p, p)."""
     plain = parts.motley < PLAIN
     return (parts.unlike() < ALIKE) & plain[:, None] & plain[None]
+
+
+def _differ(parts: Parts) -> NDArray[np.bool_]:
+    """Which parts are surely not of one colour, (p, p): they differ by more than both vary in themselves."""
+    varied = np.minimum(parts.motley[:, None], parts.motley[None])
+    result: NDArray[np.bool_] = parts.unlike() >= np.maximum(UNLIKE, varied)
+    return result
 
 
 def _pairs(which: NDArray[np.bool_]) -> Pairs:

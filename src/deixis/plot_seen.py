@@ -57,8 +57,8 @@ def plot_perceived(found: Perceived, path: str | Path) -> None:
     camera = camera_of(found.cloud, labels, found.scene) if found.cloud.organised else None
     figure, axes, scale = _panels(window, camera)
     _points(axes[0], points, labels, window, scale)
-    level = found.detection.table is not None
-    _dress(axes[0], found.scene, window, "From above, in the table's frame" if level else "All points, as they stand")
+    level = found.detection.table is not None or bool(found.scene.objects)
+    _dress(axes[0], found.scene, window, _title(found))
     if not found.scene.objects:
         _say(axes[0], "; ".join(found.detection.notes) or "nothing was found")
     if not level:
@@ -69,6 +69,12 @@ def plot_perceived(found: Perceived, path: str | Path) -> None:
         draw_camera(axes[1], camera)
         write_names(figure, axes[1], camera.things)
     save(figure, path)
+
+
+def _title(found: Perceived) -> str:
+    if found.detection.table is not None:
+        return "From above, in the table's frame"
+    return "One thing alone, from above" if found.scene.objects else "All points, as they stand"
 
 
 def plot_recognised(found: Recognised, path: str | Path) -> None:

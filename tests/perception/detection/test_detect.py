@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.detection.detect import Detection, detect
+from deixis.perception.detection.frame import moved
 from deixis.perception.detection.settings import DetectionSettings
 from deixis.perception.errors import CloudError
 
@@ -155,10 +156,38 @@ def test_settings_that_cannot_be_are_refused(wrong: dict[str, float]) -> None:
         DetectionSettings(**wrong)  # type: ignore[arg-type]
 
 
-@pytest.mark.parametrize(("side", "doubted"), [(0.2, True), (0.5, False)])
-def test_a_table_too_small_for_one_is_noted(side: float, doubted: bool) -> None:
-    x, y = (axis.ravel() for axis in np.mgrid[0 : side + 1e-6 : 0.005, 0 : side + 1e-6 : 0.005])
-    points = np.stack([x, y + 0.6, np.full(x.shape, -0.5)], axis=1).astype(np.float32)
-    found = detect(PointCloud(points))
+def test_a_table_too_small_for_one_is_noted() -> None:
+    x, y = (axis.ravel() for axis in np.mgrid[0:0.2:0.005, 0:0.2:0.005])
+    top = np.stack([x, y + 0.6, np.full(x.shape, -0.5)], axis=1)
+    leg = np.linspace((0.1, 0.7, -0.51), (0.1, 0.7, -1.1), 200)
+    cloud = PointCloud(np.concatenate([top, leg]).astype(np.float32))
+    found = detect(cloud, DetectionSettings(up=(0.0, 0.0, 1.0)))
     assert found.notes[0] == "nothing is on the table"
-    assert [note.startswith("what was taken for the table is only 2") for note in found.notes[1:]] == [True] * doubted
+    assert found.notes[1].startswith("what was taken for the table is only 2")
+
+
+@pytest.mark.parametrize("organised", [None, (80, 80)])
+def test_a_cloud_no_larger_than_a_thing_is_one_thing_without_a_table(organised: tuple[int, int] | None) -> None:
+    x, y = (axis.ravel() for axis in np.mgrid[-1:1:80j, -1:1:80j])
+    ball = np.stack([x, y, 1 - np.sqrt(np.maximum(2.0 - x**2 - y**2, 0))], axis=1) * 0.06 + (0.0, 0.0, 0.7)
+    cloud = PointCloud(ball.astype(np.float32), organised=organised)
+    found = detect(cloud)
+    assert found.table is None and (found.labels == 0).all()
+    low, high = found.boxes[0]
+    inside = (moved(ball, found.frame) >= low - 1e-4) & (moved(ball, found.frame) <= high + 1e-4)
+    assert inside.all(axis=1).mean() > 0.98 and low[2] == pytest.approx(0.0, abs=0.002)
+    assert high[:2] == pytest.approx(-low[:2], abs=0.005) and found.scene().ids == ("o1",)
+    assert found.notes[0].startswith("no table was found: all there is, 12 by")
+
+
+def test_what_is_as_wide_as_a_table_is_no_thing_alone(boxes_seen: Look) -> None:
+    assert detect(boxes_seen([CUBE], half=0.22)).table is not None
+
+
+def test_a_wall_that_was_taken_for_a_table_is_noted() -> None:
+    x, y = (axis.ravel() for axis in np.mgrid[-1:1:0.02, -1:1:0.02])
+    turn, z = np.random.default_rng(0).uniform((0, 1.0), (2 * np.pi, 2.5), (12_000, 2)).T
+    near = np.stack([0.3 * np.cos(turn), 0.3 * np.sin(turn), z], axis=1)
+    cloud = np.concatenate([np.stack([x, y, np.full(x.shape, 3.4)], axis=1), near])
+    found = detect(PointCloud(cloud.astype(np.float32)), DetectionSettings(up=(0.0, 0.0, -1.0)))
+    assert found.notes[0] == "nothing is on the table" and found.notes[1].endswith("it may be a wall")

@@ -1,0 +1,69 @@
+"""Which parts are one thing, for parts whose patches are set down by hand."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from deixis.perception.detection.boundaries import Boundaries
+from deixis.perception.detection.joining import whole_things
+from deixis.perception.detection.parts import Parts
+from deixis.perception.detection.supervoxels import Supervoxels
+
+ROWS, AROUND = 8, 12
+PLAIN = np.zeros(3)
+
+
+def _cup(tint: NDArray[np.float64], mottle: float, handle: int = 0) -> Parts:
+    """The near half of a cup's outside and, behind it, the far half of its inside, on which a handle may be; between
+    the colours of the two is ``tint``, and within each they vary by ``mottle``. The depth jumps where they meet."""
+    turn, z = (axis.ravel() for axis in np.meshgrid(np.linspace(0.1, np.pi - 0.1, AROUND), np.linspace(0, 0.1, ROWS)))
+    out = np.stack([np.cos(turn), -np.sin(turn), np.zeros_like(turn)], axis=1)
+    into = out * (1, -1, 1)
+    grip = np.stack([0.045 + 0.03 * np.ones(handle), np.zeros(handle), np.linspace(0.02, 0.09, handle)], axis=1)
+    middles = np.concatenate([0.04 * out, 0.04 * into, grip])
+    middles[:, 2] += np.concatenate([z, z, np.zeros(handle)])
+    normals = np.concatenate([out, -into, np.tile([1.0, 0.0, 0.0], (handle, 1))])
+    of = np.repeat([0, 1], [len(out), len(into) + handle]).astype(np.int32)
+    colours = of[:, None] * tint + mottle * np.random.default_rng(0).choice([-1.0, 1.0], (len(of), 3)) / np.sqrt(3)
+    ones, number = np.ones(len(of)), np.arange(len(of), dtype=np.int32)
+    patches = Supervoxels(number, ones, middles, normals, colours / (0.35, 1.0, 1.0), 1e-4 * ones)
+    top = np.arange(AROUND) + (ROWS - 1) * AROUND
+    pairs = np.stack([top, len(out) + np.arange(AROUND) + (ROWS // 2) * AROUND], axis=1).astype(np.int64)
+    meeting = Boundaries(pairs, np.ones(AROUND), np.full(AROUND, 1.2), np.ones(AROUND))
+    return Parts(of, patches, meeting)
+
+
+def test_the_inside_of_a_cup_is_the_cup() -> None:
+    assert len(whole_things(_cup(PLAIN, 0.0))) == 1
+
+
+def test_the_inside_of_a_cup_is_the_cup_though_a_handle_is_taken_for_a_part_of_it() -> None:
+    parts = _cup(PLAIN, 0.0, handle=12)
+    assert -0.4 < parts.bulge[1] < -0.1
+    assert len(whole_things(parts)) == 1
+
+
+@pytest.mark.parametrize(("mottle", "count"), [(0.0, 2), (16.0, 1)])
+def test_colours_differ_only_by_more_than_they_vary(mottle: float, count: int) -> None:
+    parts = _cup(np.array([0.0, 0.0, 13.0]), mottle)
+    assert parts.unlike()[0, 1] > 12
+    assert len(whole_things(parts)) == count
+
+
+@pytest.mark.parametrize(("width", "count"), [(0.06, 1), (0.16, 2)])
+def test_a_glass_whose_stem_is_seen_stands_on_its_foot_but_not_on_a_plate(width: float, count: int) -> None:
+    x, y = (axis.ravel() for axis in np.mgrid[-0.5:0.5:8j, -0.5:0.5:8j])
+    stem = np.linspace((0.0, 0.0, 0.025), (0.0, 0.0, 0.09), 10)
+    bowl = np.stack([0.07 * x, 0.07 * y, np.full(x.shape, 0.15)], axis=1)
+    foot = np.stack([width * x, width * y, np.full(x.shape, 0.004)], axis=1)
+    middles = np.concatenate([stem, bowl, foot])
+    ones, of = np.ones(len(middles)), np.repeat([0, 1], [len(stem) + len(bowl), len(foot)]).astype(np.int32)
+    normals = np.tile([0.0, 0.0, 1.0], (len(middles), 1))
+    number = np.arange(len(middles), dtype=np.int32)
+    patches = Supervoxels(number, ones, middles, normals, np.zeros_like(middles), 1e-4 * ones)
+    meeting = Boundaries(np.array([[0, len(stem) + len(bowl) + 27]]), np.ones(1), np.full(1, 1.2), np.ones(1))
+    parts = Parts(of, patches, meeting)
+    assert 0.015 < parts.rise[0, 1] < 0.03
+    assert len(whole_things(parts)) == count
