@@ -8,6 +8,7 @@ within its error of the least. So an exact distance is what the definition gives
 from __future__ import annotations
 
 import numpy as np
+from llvmlite.binding import get_host_cpu_features
 from numba import njit
 
 AXES = 24
@@ -19,9 +20,13 @@ LANES = 32
 EPSILON = 2.0**-24
 """Relative error of a rounding in single precision."""
 
-ONE_THREAD = 2**18
-"""Multiplications up to which OpenBLAS computes a product in one thread (interface/gemm.c: SMP_THRESHOLD_MIN times
-GEMM_MULTITHREAD_THRESHOLD)."""
+ONE_THREAD = 100**3 if get_host_cpu_features().get("avx512vl") else 2**18
+"""Multiplications up to which OpenBLAS computes a product in one thread: with AVX-512 by kernels for small matrices
+(kernel/x86_64/sgemm_small_kernel_permit_skylakex.c), which are also the fastest, and elsewhere as there is little to do
+(interface/gemm.c: SMP_THRESHOLD_MIN times GEMM_MULTITHREAD_THRESHOLD)."""
+
+ROWS = 4
+"""Rows that kernels of OpenBLAS take at a time."""
 
 _NO_NAN = {"nnan", "nsz"}
 _SUMS_IN_ANY_ORDER = {"nnan", "nsz", "reassoc", "contract"}
@@ -102,6 +107,7 @@ def _products(view, columns):  # type: ignore[no-untyped-def]
     """
     products = np.empty((len(view), columns.shape[1]), np.float32)
     rows = max(1, ONE_THREAD // columns.size)
+    rows -= rows % ROWS if rows > ROWS else 0
     for low in range(0, len(view), rows):
         np.dot(view[low : low + rows], columns, products[low : low + rows])
     return products
@@ -117,6 +123,17 @@ def _least_of_columns(products, squares, least):  # type: ignore[no-untyped-def]
             least[t] = min(least[t], squares[k] - np.float32(2.0) * row[t])
 
 
+@njit(cache=True, nogil=True, error_model="numpy", fastmath=_SUMS_IN_ANY_ORDER)
+def _lowest(least, lengths, rough, longest, within):  # type: ignore[no-untyped-def]
+    """The least that D_V times q can be, from each column's least (q,); and ``within`` (q,), what may be the least."""
+    lowest = 0.0
+    for t in range(len(least)):
+        error = rough * (lengths[t] + longest)
+        within[t] = least[t] + error
+        lowest += np.sqrt(max(least[t] + lengths[t] * lengths[t] - error, 0.0))
+    return lowest
+
+
 @njit(cache=True, nogil=True, error_model="numpy")
 def view_distance(target, columns, lengths, view, squares, limit):  # type: ignore[no-untyped-def]
     """D_V (equation 1): the mean over the target's descriptors (q, d) of the least distance to the view's (k, d).
@@ -130,12 +147,7 @@ def view_distance(target, columns, lengths, view, squares, limit):  # type: igno
     longest = np.sqrt(np.float64(squares.max()))
     rough = 4.0 * (target.shape[1] + 4) * EPSILON * longest
     within = np.empty(len(target), np.float32)
-    lowest = 0.0
-    for t in range(len(target)):
-        error = rough * (lengths[t] + longest)
-        within[t] = least[t] + error
-        lowest += np.sqrt(max(least[t] + lengths[t] * lengths[t] - error, 0.0))
-    if lowest > limit * len(target) * (1.0 + EPSILON):
+    if _lowest(least, lengths, rough, longest, within) > limit * len(target) * (1.0 + EPSILON):
         return np.inf
     nearest = np.full(len(target), np.inf)
     for k in range(len(view)):
@@ -146,7 +158,7 @@ def view_distance(target, columns, lengths, view, squares, limit):  # type: igno
     return np.sqrt(nearest).mean()
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(cache=True, nogil=True, error_model="numpy", fastmath=_SUMS_IN_ANY_ORDER)
 def _squared(one, other):  # type: ignore[no-untyped-def]
     total = 0.0
     for axis in range(len(one)):
