@@ -7,8 +7,9 @@ plyvel verifies LevelDB's CRC-32C; Deixis verifies that of what is said of a vie
 arrays. Bare plyvel is also read without. What is compared is a view (arrays, time, metadata) against a string of bytes,
 by the clock, in which a machine's other programs count, and by the CPU time of the thread, in which they count little.
 
-A view is laid out and summed up when it is made, since its arrays are copied then so that nobody changes them. What
-making one takes is printed too, and belongs to neither side: there are no byte strings without it either.
+A view's keys, values and checksums are worked out when it is made, since its arrays are copied then so that nobody
+changes them. What making one takes is printed too, and belongs to neither side: there are no byte strings without it
+either.
 """
 
 from __future__ import annotations

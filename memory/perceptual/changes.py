@@ -12,7 +12,7 @@ from deixis.memory.perceptual.reading import Snapshot
 from deixis.memory.perceptual.records import Batch, CategoryRecord, View, check_name
 
 
-@dataclass
+@dataclass(slots=True)
 class Change:
     """Keys with their values, None to delete.
 
@@ -25,9 +25,9 @@ class Change:
 
     def add(self, view: View) -> None:
         """A view that is not there, or was dropped."""
-        said, arrays = write_view(view)
-        self.pairs += (said, arrays)
-        self.places[view.id] = said[0]
+        key, said, arrays_key, arrays = write_view(view)
+        self.pairs += ((key, said), (arrays_key, arrays))
+        self.places[view.id] = key
         self.views += 1
 
     def move(self, said: About, category: str) -> None:

@@ -18,7 +18,6 @@ from __future__ import annotations
 import zlib
 from collections.abc import Callable
 from functools import cache
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,27 +39,15 @@ def open_small(key: bytes, sealed: bytes) -> bytes | None:
     return value if good and len(sealed) >= _SMALL else None
 
 
-class Summed(NamedTuple):
-    """A value with room for its checksum at its end, which is summed up but for the key."""
-
-    data: bytearray
-    sum: int
-
-
-def summed(data: bytearray) -> Summed:
-    """Sums up a value that has :data:`WIDE` spare bytes at its end."""
-    return Summed(data, _sum(data, len(data) - WIDE))
-
-
-def seal_summed(key: bytes, value: Summed) -> bytearray:
-    """The value with its checksum, in place."""
-    value.data[-WIDE:] = _bound(key, value.sum)
-    return value.data
+def seal_in_place(key: bytes, value: bytearray) -> bytearray:
+    """The value with its checksum in its last :data:`WIDE` bytes, which are spare."""
+    value[-WIDE:] = _bound(key, _sum(value, len(value) - WIDE))
+    return value
 
 
 def seal_wide(key: bytes, *parts: bytes | memoryview) -> bytearray:
     """The parts of a value in one piece, with its checksum."""
-    return seal_summed(key, summed(bytearray().join([*parts, bytes(WIDE)])))
+    return seal_in_place(key, bytearray().join([*parts, bytes(WIDE)]))
 
 
 def open_wide(key: bytes, sealed: bytes | bytearray) -> memoryview | None:

@@ -13,9 +13,7 @@ from deixis.memory.perceptual.checksum import (
     open_small,
     open_wide,
     seal_small,
-    seal_summed,
     seal_wide,
-    summed,
 )
 from deixis.memory.perceptual.errors import DamagedMemoryError
 from deixis.memory.perceptual.records import (
@@ -26,7 +24,8 @@ from deixis.memory.perceptual.records import (
     arrays_by_use,
     json_text,
 )
-from deixis.memory.perceptual.tensors import lay_out, pack, unpack
+from deixis.memory.perceptual.tensors import pack, unpack
+from deixis.memory.perceptual.written import Written, written
 
 _COUNTS = struct.Struct("<3Q")
 
@@ -54,14 +53,12 @@ class About(NamedTuple):
         return self._replace(category=category, key=keys.view_key(keys.VIEW, category, self.id, self.time))
 
 
-def write_view(view: View) -> tuple[tuple[bytes, bytes], tuple[bytes, bytearray]]:
-    """What is said of a new view, and its arrays, each a key and a value."""
-    key = keys.view_key(keys.VIEW, view.category, view.id, keys.microseconds(view.time))
-    arrays_key = keys.ARRAYS + key[1:]
-    packed = view.packed or summed(lay_out(arrays_by_name(view.descriptors, view.points), WIDE)[0])
-    sealed = seal_summed(arrays_key, packed)
-    said = b"%b\0\0%b" % (bytes(sealed[-WIDE:]), json_text(view.metadata).encode())
-    return (key, seal_small(key, said)), (arrays_key, sealed)
+def write_view(view: View) -> Written:
+    """A view as it is written."""
+    if view.written is not None:
+        return view.written
+    arrays = arrays_by_name(view.descriptors, view.points)
+    return written(view.category, view.id, view.time, arrays, json_text(view.metadata))[0]
 
 
 def write_about(said: About) -> tuple[bytes, bytes]:

@@ -38,6 +38,10 @@ OPTIONS = {
     "max_file_size": 32 << 20,
 }
 
+KEPT = 64
+"""Keys up to which a batch is written from memory that the one before was written from: the system gives new memory
+page by page, which for 60 KB takes as long as all else that is done here."""
+
 _handles: dict[Path, Handle] = {}
 _opening = threading.Lock()
 _inherited: list[Any] = []
@@ -55,10 +59,12 @@ class Handle:
         self.writing = threading.RLock()
         self.users = 1
         self._lock, self._tally, self._db = lock, tally, db
+        self._batch = db.write_batch()
         self._guard, self._calls = threading.RLock(), 0
         self._idle = threading.Condition(self._guard)
         self._failed: str | None = None
         self._places: Places | None = None
+        self._sources: set[Any] = set()
 
     def __enter__(self) -> Any:
         with self._guard:
@@ -76,6 +82,21 @@ class Handle:
                 self._idle.notify_all()
         if error is not None:
             raise_told(self.folder, error)
+
+    def keep(self, source: Any) -> Any:
+        """A snapshot or an iterator that outlives a call, until it is let go.
+
+        LevelDB must not be asked to free one while it is being closed, which ends the process: one that nobody has
+        any more by then is freed after it.
+        """
+        self._sources.add(source)
+        return source
+
+    def let_go(self, source: Any) -> None:
+        """Frees what was kept; of a closed database it is free already, or will be."""
+        with contextlib.suppress(MemoryFormatError), self:
+            source.close()
+            self._sources.discard(source)
 
     def places(self) -> dict[str, bytes]:
         """The key of each view by its id; to be called with :attr:`writing` held, and not to be changed.
@@ -110,7 +131,8 @@ class Handle:
             if self._failed is not None:
                 raise MemoryWriteError(f"{self._failed}; close the memory, mend what is wrong, and open it again")
             try:
-                batch = db.write_batch(sync=sync)
+                batch = db.write_batch(sync=sync) if sync or len(change.pairs) > KEPT else self._batch
+                batch.clear()
                 batch.put(keys.COUNT, sealed)  # first: after arrays it would have them copied once more
                 for key, value in change.pairs:
                     batch.delete(key) if value is None else batch.put(key, value)
@@ -140,6 +162,7 @@ class Handle:
             if self._failed is None:
                 db.compact_range(start=b"\xfe", stop=b"\xff")  # empties the log into a table, and touches no other
         db.close()
+        self._sources.clear()
         self._tally.close()
         with contextlib.suppress(OSError):
             if self._failed is None:

@@ -17,7 +17,6 @@ ARRAYS, CATEGORY, COUNT, VIEW = b"a", b"c", b"n", b"v"
 """The ranges: a view's arrays; a category's record; counts; what is said of a view."""
 
 EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
-_MICROSECOND = timedelta(microseconds=1)
 _END, _ZERO = b"\x00\x00", b"\x00\xff"
 _MIDDLE = 1 << 63
 
@@ -61,7 +60,8 @@ def after(prefix: bytes) -> bytes:
 
 def microseconds(time: datetime) -> int:
     """Microseconds since 1970."""
-    return (time - EPOCH) // _MICROSECOND
+    since = time - EPOCH
+    return (since.days * 86_400 + since.seconds) * 1_000_000 + since.microseconds
 
 
 def moment(time: int) -> datetime:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 from collections.abc import Callable, Iterator
 from functools import partial
 from types import TracebackType
@@ -33,7 +32,7 @@ class Snapshot:
         self._handle = handle
         self._then: Places | None = None
         with handle as db:
-            self._source: Any = db.snapshot()
+            self._source: Any = handle.keep(db.snapshot())
 
     def __enter__(self) -> Self:
         return self
@@ -47,8 +46,7 @@ class Snapshot:
         """Lets go of the moment."""
         source, self._source = self._source, None
         if source is not None:
-            with contextlib.suppress(ValueError), self._handle:  # a closed database has closed its snapshots
-                source.close()
+            self._handle.let_go(source)
 
     def __del__(self) -> None:
         if hasattr(self, "_source"):
@@ -77,14 +75,17 @@ class Snapshot:
     def _walk(self, made: Callable[[Any], Any], **what: Any) -> Iterator[Any]:
         """What is made of each item, one call under way at a time."""
         with self._handle:
-            found = self._open.iterator(verify_checksums=True, **what)
-        while True:
-            with self._handle:
-                item = next(found, None)
-                if item is None:
-                    return
-                result = made(item)
-            yield result
+            found = self._handle.keep(self._open.iterator(verify_checksums=True, **what))
+        try:
+            while True:
+                with self._handle:
+                    item = next(found, None)
+                    if item is None:
+                        return
+                    result = made(item)
+                yield result
+        finally:
+            self._handle.let_go(found)
 
     def first_after(self, key: bytes, kind: bytes) -> tuple[bytes, bytes] | None:
         """The first pair of a kind from a key on."""
@@ -132,10 +133,15 @@ class Snapshot:
 
     def views(self, category: str | None = None) -> Iterator[View]:
         """The views, read one by one."""
-        begin = self._beginning(category)
+        return self._views(self._beginning(category))
+
+    def _views(self, begin: bytes) -> Iterator[View]:
         with self._handle:
-            arrays = self._open.iterator(prefix=keys.ARRAYS, fill_cache=False)
-        return self._walk(partial(self._listed, arrays), prefix=begin)
+            arrays = self._handle.keep(self._open.iterator(prefix=keys.ARRAYS, fill_cache=False))
+        try:
+            yield from self._walk(partial(self._listed, arrays), prefix=begin)
+        finally:
+            self._handle.let_go(arrays)
 
     def _listed(self, arrays: Any, pair: tuple[bytes, bytes]) -> View:
         """A view by its place in the order, in which its arrays mostly lie as well."""

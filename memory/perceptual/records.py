@@ -21,9 +21,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.memory.errors import RejectedWriteError
-from deixis.memory.perceptual.checksum import WIDE, Summed, summed
 from deixis.memory.perceptual.errors import RecordError
-from deixis.memory.perceptual.tensors import TYPES, lay_out
+from deixis.memory.perceptual.tensors import TYPES
+from deixis.memory.perceptual.written import Written, written
 
 Json = Mapping[str, Any]
 """An object of JSON: keys are strings; values are None, bools, numbers, strings, lists, and objects again."""
@@ -74,7 +74,7 @@ class View:
     descriptors: Mapping[str, NDArray[np.float32]]
     points: NDArray[np.float32] | None = None
     metadata: Json = field(default_factory=dict)
-    packed: Summed | None = field(default=None, init=False, repr=False)  # the arrays, as they will be written
+    written: Written | None = field(default=None, init=False, repr=False)  # None: read from a memory
 
     def __post_init__(self) -> None:
         check_name("a view's id", self.id)
@@ -86,13 +86,15 @@ class View:
             _check_floats(f"the points of view '{self.id}'", self.points)
             if self.points.shape[1] != 3:
                 raise RecordError(f"the points of view '{self.id}' have shape {self.points.shape}, not (n, 3)")
-        packed, held = lay_out(arrays_by_name(self.descriptors, self.points), WIDE)
-        descriptors, points = arrays_by_use(held)
+        time, metadata = _utc(self.id, self.time), _json(f"the metadata of view '{self.id}'", self.metadata)
+        arrays = arrays_by_name(self.descriptors, self.points)
+        whole, copies = written(self.category, self.id, time, arrays, metadata.text)
+        descriptors, points = arrays_by_use(copies)
         object.__setattr__(self, "descriptors", MappingProxyType(descriptors))
         object.__setattr__(self, "points", points)
-        object.__setattr__(self, "packed", summed(packed))
-        object.__setattr__(self, "time", _utc(self.id, self.time))
-        object.__setattr__(self, "metadata", _json(f"the metadata of view '{self.id}'", self.metadata))
+        object.__setattr__(self, "time", time)
+        object.__setattr__(self, "metadata", metadata)
+        object.__setattr__(self, "written", whole)
 
     @classmethod
     def stored(cls, **values: Any) -> View:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import tempfile
 from collections.abc import Callable, Iterator
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
@@ -14,6 +16,10 @@ from deixis.memory.perceptual.level import LevelMemory
 from deixis.memory.perceptual.protocol import PerceptualMemory, PerceptualReading
 from deixis.memory.perceptual.records import CategoryRecord, View
 from deixis.memory.perceptual.transient import TransientMemory
+
+IN_MEMORY = "/dev/shm"
+"""A folder in memory, where the system has one: what is asked here is what outlives a process, not a machine, and
+waiting for a disk takes most of the time."""
 
 NOON = datetime(2026, 5, 1, 12, tzinfo=UTC)
 
@@ -40,7 +46,7 @@ def _record(name: str, threshold: float = 0.5) -> CategoryRecord:
 
 
 def _said(record: View | CategoryRecord) -> dict[str, Any]:
-    arrays_aside = ("descriptors", "state", "points", "packed")
+    arrays_aside = ("descriptors", "state", "points", "written")
     named = {name: value for name, value in vars(record).items() if name not in arrays_aside}
     arrays: dict[str, Any] = dict(record.descriptors if isinstance(record, View) else record.state)
     if isinstance(record, View) and record.points is not None:
@@ -51,6 +57,22 @@ def _said(record: View | CategoryRecord) -> dict[str, Any]:
 
 def _content(memory: PerceptualReading) -> tuple[list[dict[str, Any]], list[dict[str, Any]]]:
     return [_said(view) for view in memory.views()], [_said(memory.category(name)) for name in memory.categories()]
+
+
+@pytest.fixture(autouse=True, scope="module")
+def _in_memory() -> Iterator[None]:
+    """Temporary folders lie in memory."""
+    with pytest.MonkeyPatch.context() as patched:
+        if os.access(IN_MEMORY, os.W_OK):
+            patched.setattr(tempfile, "tempdir", IN_MEMORY)
+        yield
+
+
+@pytest.fixture
+def tmp_path() -> Iterator[Path]:
+    """A folder of a test's own."""
+    with tempfile.TemporaryDirectory() as folder:
+        yield Path(folder)
 
 
 @pytest.fixture(scope="session")

@@ -56,8 +56,8 @@ def test_any_record_comes_back(
 
 
 @pytest.fixture(scope="module")
-def one_level(tmp_path_factory: pytest.TempPathFactory) -> Any:
-    with LevelMemory.open(tmp_path_factory.mktemp("model") / "m", create=True) as memory:
+def one_level() -> Any:
+    with tempfile.TemporaryDirectory() as folder, LevelMemory.open(folder + "/m", create=True) as memory:
         yield memory
 
 
