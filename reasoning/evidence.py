@@ -1,10 +1,11 @@
 """What grounding goes by: the facts, what labels, sizes and colours say, and how far each stated fact holds of a pair.
 
-What an engine searches is :attr:`Evidence.problem`: facts, labels, sizes and colours as log-likelihood ratios that add
-up, with what leaving an object out costs. Beside it stands the crisp reading, by which an answer says what holds: a
-stated fact holds of a pair to the degree 1 where the pair's exact name is the word itself, 0.5 where the name only
-implies the word in its wide reading, else 0. A choice (``or``) holds as far as its best alternative; a denial holds (1)
-where none of its relations does, even widely. A fact is *satisfied* where its degree is above 0.
+What an engine searches is :attr:`Evidence.placed`: facts, labels, sizes and colours as log-likelihood ratios that add
+up, with what leaving an object out costs, and where it may have been then. Beside it stands the crisp reading, by which
+an answer says what holds: a stated fact holds of a pair to the degree 1 where the pair's exact name is the word itself,
+0.5 where the name only implies the word in its wide reading, else 0. A choice (``or``) holds as far as its best
+alternative; a denial holds (1) where none of its relations does, even widely. A fact is *satisfied* where its degree is
+above 0.
 """
 
 from __future__ import annotations
@@ -26,13 +27,15 @@ from deixis.ontology.sizes import Sizes
 from deixis.reasoning.graded.colours import colour_evidence
 from deixis.reasoning.graded.degrees import log_likelihood_ratio
 from deixis.reasoning.graded.facts import fact_tables, hedged
+from deixis.reasoning.graded.places import places_for
 from deixis.reasoning.graded.shipped import OUTLIERS
 from deixis.reasoning.graded.unary import label_ratios, size_evidence
 from deixis.reasoning.labels import Label, classes
+from deixis.reasoning.matching.placed import Placed, placed
 from deixis.reasoning.matching.problem import UNMATCHED, Problem
 from deixis.reasoning.meaning import SHIPPED, Meaning
 
-RARELY = 0.05
+RARELY = 0.015
 """The odds at most that an object is absent from a scene that has room for all."""
 
 PRESENT = -30.0
@@ -67,15 +70,23 @@ class Evidence:
         return total if self.colours is None else total + self.colours
 
     @cached_property
-    def problem(self) -> Problem:
+    def placed(self) -> Placed:
         """What there is to be searched. A scene without boxes is taken literally, by the names of its pairs."""
         certain = (self.labels > 0) & np.any(~self.allowed, axis=0)[None, :]
         absent = np.where(certain.any(axis=1), PRESENT, absence(*self.labels.shape))
         boxes = self.scene.boxes
         if boxes is None or not self.meaning.graded:
-            return Problem(*self._literal_tables(), self.unary, absent)
-        facts = fact_tables(self.description, boxes, self.meaning.models, unary=self.unary, absent=absent)
-        return Problem(facts.ends, facts.kinds, facts.tables, self.unary, absent)
+            return placed(*self._literal_tables(), self.unary, absent)
+        places = places_for(*self.labels.shape)
+        facts = fact_tables(
+            self.description, boxes, self.meaning.models, unary=self.unary, absent=absent, places=places
+        )
+        return placed(facts.ends, facts.kinds, facts.tables, self.unary, absent)
+
+    @property
+    def problem(self) -> Problem:
+        """The same without places: facts about what is absent say nothing."""
+        return self.placed.bare
 
     def _literal_tables(self) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float32]]:
         """Ends, kinds and tables of the facts in the crisp reading, chance being one pair for each of the names."""
@@ -159,16 +170,18 @@ def absence(objects: int, things: int) -> float:
 
     Whoever leaves an object out says that it is not there, and that one thing more was not described. The odds of
     either are those of Jeffreys' rule, (k + 1/2) / (n - k + 1/2), for the k that there are at least: all but as many
-    as there are on the other side. But a few words about a full table are no sign that what they name is missing: where
-    none has to be absent, its odds are ``RARELY`` at most, and where most things are not described anyway, one more
-    says nothing.
+    as there are on the other side. And of k objects and k things there are k times as many maps that match all as of
+    k - 1 and k - 1, so that each of the former is as many times less likely. But a few words about a full table are no
+    sign that what they name is missing: where none has to be absent, its odds are ``RARELY`` at most, and where most
+    things are not described anyway, one more says nothing.
 
     >>> round(absence(12, 12), 1), round(absence(15, 12), 1), round(absence(2, 300), 1)
-    (-6.4, -4.5, -3.0)
+    (-4.9, -2.0, -4.2)
     """
     absent, extra = max(0, objects - things), max(0, things - objects)
     of_objects = (absent + 0.5) / (objects - absent + 0.5) if absent else min(0.5 / (objects + 0.5), RARELY)
-    return math.log(of_objects) + min(0.0, math.log((extra + 0.5) / (things - extra + 0.5)))
+    of_things = (extra + 0.5) / (things - extra + 0.5) * max(1, min(objects, things))
+    return math.log(of_objects) + min(0.0, math.log(of_things))
 
 
 def exact_names(scene: RelationGraph) -> NDArray[np.int16]:

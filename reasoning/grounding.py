@@ -216,7 +216,7 @@ def _pivotal(
     if alignment.posterior is None or not alignment.proved_best:
         return None
     found, seen = [], 0
-    for dropped in without_each(evidence.problem, alignment.assignment, alignment.posterior.exact, deadline):
+    for dropped in without_each(evidence.placed, alignment.assignment, alignment.posterior.exact, deadline):
         seen += 1
         pivotal = _without(evidence, alignment, matches, dropped)
         if pivotal.changes or pivotal.unsettled or pivotal.settled:

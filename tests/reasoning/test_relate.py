@@ -138,9 +138,9 @@ def test_a_thousand_boxes_take_well_under_a_second(name: str) -> None:
     low = rng.uniform(0, 10, (1000, 3))
     boxes = np.stack([low, low + rng.uniform(0.1, 3, (1000, 3))], axis=1)
     relate(boxes[:2], name, reference=1.0)
-    start = time.perf_counter()
+    start = time.process_time()
     assert relate(boxes, name, reference=1.0).shape == (1000, 1000)
-    assert time.perf_counter() - start < 0.9
+    assert time.process_time() - start < 0.9
 
 
 @pytest.mark.parametrize("name", RELATED)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -71,20 +71,19 @@ def peer(
     name: str, settings: str, solve: Callable[[Problem, float], Answer], *, most: int, lacking: str = ""
 ) -> Contestant:
     """Another solver for the same problem (graded meaning); it gets the seconds that are left."""
-    return Contestant(
-        name,
-        settings,
-        lambda evidence, deadline: solve(evidence.problem, max(0.0, deadline - time.perf_counter())),
-        most,
-        lacking=lacking,
-    )
+
+    def answer(evidence: Evidence, deadline: float) -> Answer:
+        found = solve(evidence.placed.problem, max(0.0, deadline - time.perf_counter()))
+        return replace(found, assignment=evidence.placed.folded(found.assignment))
+
+    return Contestant(name, settings, answer, most, lacking=lacking)
 
 
 def engines() -> list[Contestant]:
     """The shipped engines, the default first, and the default with words taken literally."""
     return [
         engine(EngineName.EXACT, "the default: branch and bound to the time limit, with probabilities"),
-        engine(EngineName.SCALABLE, "annealing by blocks, three starts or fewer, with probabilities"),
+        engine(EngineName.SCALABLE, "annealing from several starts, with probabilities"),
         engine(EngineName.SIMILARITY, "the paper's: equations 5 to 9, the Hungarian method"),
         engine(EngineName.BLONDEL, "Blondel et al. 2004, to convergence or 100 steps", most=300),
         engine(EngineName.HEYMANS_SINGH, "Heymans and Singh 2003, to convergence or 100 steps", most=300),
