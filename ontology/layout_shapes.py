@@ -3,6 +3,7 @@
 A scene conforms to a layout where every role is filled, everything in it fills a role, and every fact holds of what
 fills its roles; facts about an unfilled role are passed over, since the role itself is reported. The focus node of a
 broken fact is the statement itself, which leads to its line. A hedged fact is a warning, an optional one information.
+What fills a role of a stated colour may be of no other.
 """
 
 from __future__ import annotations
@@ -31,6 +32,8 @@ def layout_shapes(layout: LayoutConcept) -> Iterator[ox.Triple]:
     spare = dispensable(layout.facts)
     for role in layout.roles:
         yield from writer.missing(role.name, "Info" if role.name in spare else "Violation")
+        if role.colour is not None:
+            yield from writer.miscoloured(role.name, role.colour)
     for position, fact in enumerate(layout.facts, 1):
         yield from writer.fact(position, fact)
 
@@ -52,6 +55,15 @@ class _Shapes:
         shape.say(SH + "targetNode", iri(role_iri(self._lesson, role)))
         yield from self._path(shape, [self._inverse(DX.FILLS)])
         shape.say(SH + "minCount", typed(1))
+        yield from shape
+
+    def miscoloured(self, role: str, colour: str) -> Iterator[ox.Triple]:
+        shape = self._shape(f"colour-{role}", "Violation", f"{role} is of another colour than is said")
+        shape.say(SH + "targetNode", iri(role_iri(self._lesson, role)))
+        yield from self._path(shape, [self._inverse(DX.FILLS), ([], iri(DX.OF_COLOUR))])
+        triples, head = self._list([iri(colour)])
+        yield from triples
+        shape.say(SH + "in", head)
         yield from shape
 
     def fact(self, position: int, fact: Fact) -> Iterator[ox.Triple]:
@@ -136,11 +148,13 @@ def scene_data(
     things: Iterable[str],
     fills: Mapping[str, str],
     related: Iterable[tuple[str, Relation, str]],
+    coloured: Mapping[str, str],
 ) -> Iterator[ox.Triple]:
     """The data graph of a check: the things of a scene, what role each fills, and the relations that hold of pairs.
 
     ``fills`` is from thing to role; ``related`` holds every relation that is satisfied, in whatever reading it is
-    stated. The layout's statements stand beside them, as the focus nodes of its shapes.
+    stated; ``coloured`` is from thing to the IRI of a colour, where it is of another than is said. The layout's
+    statements stand beside them, as the focus nodes of its shapes.
     """
     scene = learned_iri("checked", layout.lesson)
     yield from _said(scene, (W3C.RDF_TYPE, iri(DX.SCENE)), (W3C.RDF_TYPE, iri(layout_iri(layout.lesson))))
@@ -150,6 +164,8 @@ def scene_data(
         yield from _said(node, (DX.IDENTIFIER, text(thing)))
         if thing in fills:
             yield from _said(node, (DX.FILLS, iri(role_iri(layout.lesson, fills[thing]))))
+        if thing in coloured:
+            yield from _said(node, (DX.OF_COLOUR, iri(coloured[thing])))
     for subject, relation, object in related:
         ends = [iri(learned_iri("checked", layout.lesson, thing)) for thing in (subject, object)]
         yield ox.Triple(ends[0], iri(relation.iri), ends[1])

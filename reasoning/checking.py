@@ -4,6 +4,8 @@ Identity comes from labels. A thing whose label names a role, and which fits the
 but the layout says who is who, its place is *undetermined*, never correct. Two or three labelled things have changed
 places where all that is said of them would hold if they stood in each other's, and more would hold of each. Which end
 of another broken fact is misplaced is settled by how much else is broken about it: the worst share explains the others.
+
+Whatever fills a role that is said to be of a colour, and is plainly of another, is *miscoloured*, misplaced or not.
 """
 
 from __future__ import annotations
@@ -16,10 +18,12 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.ontology.colours import Colour, Colours
 from deixis.ontology.graph import RelationGraph, dispensable
 from deixis.ontology.kinds import Kinds, with_article
 from deixis.reasoning.answer import FactOutcome, Grounding, Outcome
 from deixis.reasoning.evidence import Evidence
+from deixis.reasoning.graded.colours import other_colours
 from deixis.reasoning.labels import Label, named_objects, objects_called
 from deixis.reasoning.matching.problem import UNMATCHED
 
@@ -35,16 +39,26 @@ class Verdict(StrEnum):
 
     CORRECT = "correct"  # its label says that it is there, and what is broken about it is the fault of others
     MISPLACED = "misplaced"  # it is there, and not where it belongs
+    MISCOLOURED = "miscoloured"  # it is where it belongs, and of another colour than it should be
     MISSING = "missing"  # nothing fills it
     ABSENT = "absent"  # nothing fills it, and it is optional
     UNDETERMINED = "undetermined"  # something may fill it, but only the layout says so
+
+
+@dataclass(frozen=True, slots=True)
+class Miscoloured:
+    """The colour that a role's thing should be of, and the one that it plainly is of instead."""
+
+    described: Colour
+    seen: Colour
 
 
 @dataclass(frozen=True)
 class RoleCheck:
     """A role, the thing that fills it, the verdict, and the broken facts that explain it.
 
-    ``in_place_of`` is the role in whose place its thing stands, where two or three have changed places.
+    ``in_place_of`` is the role in whose place its thing stands, where two or three have changed places. What is
+    misplaced may be ``miscoloured`` as well.
     """
 
     role: str
@@ -54,6 +68,7 @@ class RoleCheck:
     confidence: float | None = None  # of the label
     broken: tuple[FactOutcome, ...] = ()
     in_place_of: str | None = None
+    miscoloured: Miscoloured | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,17 +94,29 @@ class TableCheck:
         return tuple(check for check in self.roles if check.verdict is verdict)
 
     @property
+    def miscoloured(self) -> Iterator[tuple[RoleCheck, Miscoloured]]:
+        """The roles whose things are of another colour, those that are misplaced too among them."""
+        return ((check, check.miscoloured) for check in self.roles if check.miscoloured)
+
+    @property
     def well(self) -> bool:
-        """Nothing is missing, misplaced or extra, as far as can be told."""
-        return not (self.of(Verdict.MISSING) or self.of(Verdict.MISPLACED) or self.extra or self.broken)
+        """Nothing is missing, misplaced, of another colour or extra, as far as can be told."""
+        wrong = (self.of(verdict) for verdict in (Verdict.MISSING, Verdict.MISPLACED, Verdict.MISCOLOURED))
+        return not (any(wrong) or self.extra or self.broken)
 
 
 def check_table(
-    evidence: Evidence, labels: Mapping[str, Label | None], kinds: Kinds, grounding: Grounding
+    evidence: Evidence,
+    labels: Mapping[str, Label | None],
+    kinds: Kinds,
+    grounding: Grounding,
+    seen: NDArray[np.float64] | None = None,
+    colours: Colours | None = None,
 ) -> TableCheck:
     """Reads a grounding of a layout in a scene as a verdict on every role and every thing.
 
-    ``evidence`` is what was grounded; ``labels`` has one entry for each thing of its scene.
+    ``evidence`` is what was grounded; ``labels`` has one entry for each thing of its scene. ``seen`` are the n2 things'
+    colours in sRGB, shape (n2, 3), NaN where not known, and ``colours`` the known terms.
     """
     layout = evidence.description
     sure = {thing: _sure_roles(layout, label, kinds) for thing, label in labels.items()}
@@ -98,6 +125,7 @@ def check_table(
     explained = [entry for entry in broken if not exchanged.keys() & {entry.fact.subject, entry.fact.object}]
     misplaced = exchanged.keys() | _blamed(grounding, explained)
     spare = dispensable(layout.facts())
+    otherwise = _miscoloured(evidence, grounding, seen, colours)
     roles = []
     for role in layout.nodes:
         match = grounding.matches.get(role)
@@ -106,6 +134,7 @@ def check_table(
             continue
         label = labels[match.perceived]
         verdict = Verdict.CORRECT if role in sure[match.perceived] else Verdict.UNDETERMINED
+        verdict = Verdict.MISCOLOURED if role in otherwise else verdict
         about = tuple(entry for entry in broken if role in (entry.fact.subject, entry.fact.object))
         roles.append(
             RoleCheck(
@@ -116,10 +145,28 @@ def check_table(
                 confidence=label.confidence if label else None,
                 broken=about,
                 in_place_of=exchanged.get(role),
+                miscoloured=otherwise.get(role),
             )
         )
     unexpected = tuple(entry for entry in grounding.violated if entry.fact.weight < 1)
     return TableCheck(tuple(roles), _extra(labels, grounding, sure), broken, unexpected, grounding)
+
+
+def _miscoloured(
+    evidence: Evidence, grounding: Grounding, seen: NDArray[np.float64] | None, colours: Colours | None
+) -> dict[str, Miscoloured]:
+    """The roles whose things are plainly of another colour than is said of them."""
+    layout = evidence.description
+    if seen is None or colours is None or not layout.colours:
+        return {}
+    said = [layout.colours[layout.index(role)] for role in grounding.matches]
+    things = [evidence.scene.index(match.perceived) for match in grounding.matches.values()]
+    others = other_colours(said, seen[things], colours)
+    return {
+        role: Miscoloured(colours[iri], other)
+        for role, iri, other in zip(grounding.matches, said, others, strict=True)
+        if iri is not None and other is not None
+    }
 
 
 def _exchanged(evidence: Evidence, grounding: Grounding, sure: Mapping[str, frozenset[str]]) -> dict[str, str]:

@@ -8,7 +8,8 @@ of relations). So it is 1 just where everything corresponds, and between two ful
 it is symmetric.
 
 - Objects correspond by kind: half with every kind, itself and broader ones, that only one of the two is. An unlabelled
-  thing corresponds as far as its size is usual for the kind; where nothing is known, nothing counts against it.
+  thing corresponds as far as its size is usual for the kind (:mod:`deixis.reasoning.graded.usual`), in an image beside
+  the others; where nothing is known, nothing counts against it.
 - Relations correspond by the steps between directions (:mod:`deixis.reasoning.closeness`): half with every step
   from the nearest name that the stated relation admits.
 - A layout states few of the relations there are; a scene shows them all. Of the scene's as many are taken to ask for a
@@ -35,6 +36,7 @@ from deixis.ontology.sizes import Sizes
 from deixis.ontology.tbox import Ontology
 from deixis.reasoning.closeness import STEP, Closeness
 from deixis.reasoning.evidence import exact_names
+from deixis.reasoning.graded.usual import usual_sizes
 from deixis.reasoning.matching.problem import UNMATCHED, Problem
 
 Array = NDArray[np.float64]
@@ -42,9 +44,6 @@ Array = NDArray[np.float64]
 OBJECTS_SHARE = 2 / 3
 """Weight of objects in the similarity, the rest being that of relations: it retrieved best among 1/3, 1/2, 3/5 and 2/3
 in ``benchmarks/bench_retrieval.py`` with seed 2."""
-
-SIZE_SPREAD = 0.35
-"""How far (natural logarithm) a length lies outside the usual range where its similarity has fallen to exp(-1/2)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,13 +79,17 @@ class Described:
 
 @dataclass(frozen=True, eq=False)
 class Seen:
-    """A scene made ready: exact names of pairs, labelled kinds (class IRI or None), and extents in metres or None."""
+    """A scene made ready: exact names of pairs, labelled kinds (class IRI or None), and boxes or None.
+
+    ``metric`` says whether the boxes are in metres; otherwise they are in pixels.
+    """
 
     name: str
     ids: tuple[str, ...]  # (n2,)
     names: NDArray[np.int16]  # (n2, n2), -1 on the diagonal
     kinds: tuple[str | None, ...]  # (n2,)
-    extents: Array | None  # (n2, 2): longer and shorter side in the plan
+    boxes: Array | None  # (n2, 2, d)
+    metric: bool = True
 
     @cached_property
     def counts(self) -> NDArray[np.int64]:
@@ -97,11 +100,8 @@ class Seen:
 
 def seen(name: str, scene: RelationGraph, metric: bool = True) -> Seen:
     """Makes a scene ready; ``scene.kinds`` are those of labels. Raises GraphError for one not fully related."""
-    extents = None
-    if metric and scene.boxes is not None:
-        sides = scene.boxes[:, 1, :2] - scene.boxes[:, 0, :2]
-        extents = np.sort(sides, axis=1)[:, ::-1]
-    return Seen(name, scene.nodes, exact_names(scene), scene.kinds or (None,) * len(scene.nodes), extents)
+    kinds = scene.kinds or (None,) * len(scene.nodes)
+    return Seen(name, scene.nodes, exact_names(scene), kinds, scene.boxes, metric)
 
 
 @dataclass(frozen=True, eq=False)
@@ -134,11 +134,12 @@ class Shares:
 class Comparison:
     """Compares layouts with scenes; keeps what it works out for every relation and kind.
 
-    ``learned`` sizes in metres, by class IRI, take the place of the usual ones of the TBox.
+    ``learned`` sizes, by class IRI, take the place of the usual ones of the TBox; those in median lengths of a scene,
+    only where scenes are in pixels.
     """
 
     def __init__(self, ontology: Ontology, learned: Mapping[str, SizeModel] | None = None) -> None:
-        self._learned = {kind: model for kind, model in (learned or {}).items() if not model.relative}
+        self._learned = dict(learned or {})
         self._kinds: Kinds = ontology.kinds
         self._sizes: Sizes = ontology.sizes
         self.closeness = Closeness(ontology.relations)
@@ -191,38 +192,22 @@ class Comparison:
     def objects(self, layout: Described, scene: Seen) -> Array:
         """How far each object corresponds to each thing, shape (n1, n2), 0 to 1."""
         described = layout.graph.kinds or (None,) * len(layout.graph.nodes)
+        kinds = [kind for kind in described if kind is not None]
+        usual: Mapping[str, Array] = {}
+        if scene.boxes is not None and len(scene.boxes):
+            usual = usual_sizes(kinds, scene.boxes, self._sizes, self._learned, scene.metric)
         result = np.ones((len(described), len(scene.kinds)))
-        for kind in dict.fromkeys(described):
-            if kind is not None:
-                rows = [i for i, other in enumerate(described) if other == kind]
-                result[rows] = self._like_kind(kind, scene)
+        for kind in dict.fromkeys(kinds):
+            rows = [i for i, other in enumerate(described) if other == kind]
+            result[rows] = self._like_kind(kind, scene, usual)
         return result
 
-    def _like_kind(self, kind: str, scene: Seen) -> Array:
-        found = np.ones(len(scene.kinds)) if scene.extents is None else self._usual(kind, scene.extents)
+    def _like_kind(self, kind: str, scene: Seen, usual: Mapping[str, Array]) -> Array:
+        found = usual[kind].copy() if kind in usual else np.ones(len(scene.kinds))
         for p, label in enumerate(scene.kinds):
             if label is not None:
                 found[p] = self._kinship(kind, label)
         return found
-
-    def _usual(self, kind: str, extents: Array) -> Array:
-        """How usual extents (n2, 2) are for a kind: 1 within its ranges, falling off as a Gaussian of the logarithm."""
-        least, greatest = self._range(kind)
-        logs = np.log(np.maximum(extents, 1e-9))
-        beyond = np.maximum(0.0, np.maximum(least - logs, logs - greatest))
-        result: Array = np.exp(-(beyond**2).sum(axis=1) / (2 * SIZE_SPREAD**2))
-        return result
-
-    def _range(self, kind: str) -> tuple[Array, Array]:
-        """Least and greatest logarithms of length and width, each (2,): two deviations off where they were learned."""
-        model = self._learned.get(kind)
-        if model is None:
-            usual = self._sizes.of(kind)
-            ranges = usual.length, usual.width
-            return np.log([one.least for one in ranges]), np.log([one.greatest for one in ranges])
-        (length, spread), (aspect, other) = model.length, model.aspect
-        typical, off = np.array([length, length + aspect]), 2 * np.array([spread, math.hypot(spread, other)])
-        return typical - off, typical + off
 
     def _kinship(self, a: str, b: str) -> float:
         """1 for the same kind, times ``STEP`` for every kind, itself and broader ones, that only one of the two is."""

@@ -18,6 +18,9 @@ Array = NDArray[np.float64]
 OUTLIERS = 0.05
 """Share of things seen in any colour, whatever is said of them: by how they are lit, or since they have several."""
 
+OTHER = 0.05
+"""A thing is of another colour where the described one is so much less likely its name than the likeliest, or less."""
+
 TO_XYZ = np.array([[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]])
 """From linear sRGB to CIE XYZ, white point D65 (IEC 61966-2-1)."""
 
@@ -60,6 +63,24 @@ def colour_evidence(described: Sequence[str | None], seen: NDArray[np.float64], 
         if iri is not None:
             evidence[row, known] = ratios[:, column[iri]]
     return evidence
+
+
+def other_colours(described: Sequence[str | None], seen: NDArray[np.float64], colours: Colours) -> list[Colour | None]:
+    """The colours that n things plainly are instead of those in which they are described (IRIs), None for the others.
+
+    ``seen``, shape (n, 3), is as for :func:`colour_evidence`. Between neighbours such as red and orange either word may
+    do: p(seen | described) has to be ``OTHER`` of the greatest density at the most. What others there are says nothing.
+    """
+    found: list[Colour | None] = [None] * len(described)
+    terms = list(colours)
+    column = {term.iri: position for position, term in enumerate(terms)}
+    for place, iri in enumerate(described):
+        if iri is not None and not np.isnan(seen[place]).any():
+            lab = lab_of_srgb(seen[place])[None]
+            densities = np.array([_log_density(lab, term)[0] for term in terms])
+            if densities[column[iri]] - densities.max() <= np.log(OTHER):
+                found[place] = terms[int(densities.argmax())]
+    return found
 
 
 def _shares(densities: Array, things: int) -> Array:

@@ -77,15 +77,27 @@ def size_evidence(
     aside, whichever fits the whole scene. Chance is the scene itself: a thing weighs as much as it fits the kind better
     than the things around do, log n2 at the most, and nothing where all are alike.
     """
-    different = dict.fromkeys(kinds)
-    known = {kind: model for kind in different if (model := (learned or {}).get(kind) or usual_size(kind, sizes))}
+    known = _known(kinds, sizes, learned)
     if not known or not len(boxes):
         return np.zeros((len(kinds), len(boxes)))
     if metric:
         return _ratios(kinds, boxes, {kind: from_above(model) for kind, model in known.items()})
+    return _whichever_view([_ratios(kinds, boxes, looks) for looks in looks_in_image(kinds, sizes, learned)])
+
+
+def looks_in_image(
+    kinds: Sequence[str], sizes: Sizes, learned: Mapping[str, SizeModel] | None = None
+) -> tuple[dict[str, Look], dict[str, Look]]:
+    """How the known ones of some objects' kinds look beside each other: in an image from above, and from aside."""
+    known = _known(kinds, sizes, learned)
     above = {kind: in_image_from_above(model) for kind, model in known.items()}
     aside = {kind: in_image_from_aside(kind, model, sizes) for kind, model in known.items()}
-    return _whichever_view([_ratios(kinds, boxes, beside_each_other(looks, kinds)) for looks in (above, aside)])
+    return beside_each_other(above, kinds), beside_each_other(aside, kinds)
+
+
+def _known(kinds: Sequence[str], sizes: Sizes, learned: Mapping[str, SizeModel] | None) -> dict[str, SizeModel]:
+    different = dict.fromkeys(kinds)
+    return {kind: model for kind in different if (model := (learned or {}).get(kind) or usual_size(kind, sizes))}
 
 
 def _whichever_view(views: Sequence[Array]) -> Array:

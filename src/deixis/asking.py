@@ -14,11 +14,12 @@ from numpy.typing import NDArray
 from deixis.dialogue import AnswerSource, run
 from deixis.grammar.script import Script
 from deixis.perception.scene import Scene
-from deixis.reasoning.answer import Grounding
+from deixis.reasoning.answer import DECIDED, Grounding
 from deixis.reasoning.asking.candidates import Candidates, candidates_of
 from deixis.reasoning.asking.inquiry import Exchange, Inquiry, Outcome, begin
 from deixis.reasoning.asking.questions import ABSENT, NO, YES, QuestionKind
 from deixis.reasoning.asking.situation import Situation, situation_of
+from deixis.reasoning.errors import SettingError
 from deixis.reasoning.evidence import PRESENT, Evidence
 from deixis.reasoning.grounding import DEFAULT_TIME_LIMIT
 from deixis.reasoning.grounding import ground as ground_evidence
@@ -66,16 +67,23 @@ def ask(
     """Grounds, asks what would tell the likeliest groundings apart, and grounds again.
 
     The dialogue is written to ``out``; ``source`` makes who answers, given what there is to be seen. The time limit is
-    for each of the two searches, not for the person.
+    not for the person: half of it is for what to ask, and the whole for grounding after the last answer; together they
+    keep to it where nothing was answered.
     """
+    if not time_limit >= 0:
+        raise SettingError(f"a time limit is 0 or more seconds, not {time_limit}")
+    started = time.perf_counter()
     evidence = evidence_of(script, scene, meaning)
     situation = situation_of(evidence.description, evidence.scene)
-    done = run(begin(situation, _considered(evidence, time_limit)), source(situation), out)
-    return Asked(ground_evidence(_narrowed(evidence, done), ExactEngine(), time_limit), done.exchanges)
+    considered = _considered(evidence, time_limit / 2)
+    left = max(0.0, time_limit - (time.perf_counter() - started))
+    done = run(begin(situation, considered), source(situation), out)
+    limit = time_limit if done.exchanges else left
+    return Asked(ground_evidence(_narrowed(evidence, done), ExactEngine(), limit), done.exchanges)
 
 
 def _considered(evidence: Evidence, time_limit: float) -> Candidates:
-    """The groundings within the widest margin of which all can be listed; half the time is for each."""
+    """The groundings within the widest margin of which all can be listed; half of the time is for each."""
     deadline = time.perf_counter() + time_limit
     wide = candidates_of(evidence.problem, deadline - time_limit / 2, margin=MARGINS[0])
     return wide if wide.complete else candidates_of(evidence.problem, deadline, margin=MARGINS[1])
@@ -129,7 +137,10 @@ def seen_from_anywhere(
     Turned by quarters only, unless ``any_angle``; mirrored where that explains it better. Where no fact compares two
     things that were found, or most of the circle does as well, nothing tells a side, and the scene stays as it is.
     """
-    untold = "the scene was taken as it stands: nothing tells from which side the description speaks"
+    untold = (
+        "the scene was taken as it stands: nothing tells from which side the description speaks, "
+        "and the probabilities of the matches hold as seen from this one"
+    )
     as_it_stands = SeenFrom(scene, None, (untold,))
     evidence = evidence_of(script, scene, meaning)
     if not len(evidence.facts) or len(scene.objects) < 2:
@@ -158,6 +169,8 @@ def _with_boxes(scene: Scene, boxes: NDArray[np.float64]) -> Scene:
 def _notes(found: Viewpoints) -> tuple[str, ...]:
     best = found.best
     notes = [f"the scene was taken {_described(best)}, with probability {best.probability:.2f}"]
+    if best.probability < DECIDED:
+        notes.append("from other sides the matches may be others: their probabilities hold as seen from this one")
     if len(found.ties) > 1:
         others = ", or ".join(_described(view) for view in found.ties if view is not best)
         notes.append(f"the description fits as well {others}")

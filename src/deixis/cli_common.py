@@ -138,8 +138,13 @@ def working(what: str, after: float = 0.0) -> Iterator[None]:
 
 
 def ready_to_ground(engine: str = "exact") -> None:
-    """Has the engine compiled before any time limit begins; the first time after an installation takes long."""
+    """Has the engine compiled before any time limit begins."""
     from deixis.warm import ready_to_ground as ready
 
+    compiled(lambda: ready(engine))
+
+
+def compiled(ready: Callable[[], None]) -> None:
+    """Says so where compiling takes long, as it does the first time after an installation."""
     with working("compiling, once", PATIENCE):
-        ready(engine)
+        ready()

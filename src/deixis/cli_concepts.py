@@ -103,7 +103,7 @@ def check(
     memory: MemoryDir = None,
     as_json: AsJson = False,
 ) -> None:
-    """Say what is missing, misplaced and extra on a table; exit 0 where all is well, 1 where not."""
+    """Say what is missing, misplaced, miscoloured and extra on a table; exit 0 where all is well, 1 where not."""
     from deixis.report import check_to_dict
     from deixis.session import Session, load_scene
     from deixis.show import check_lines

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+import time
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -74,18 +75,20 @@ def ground(
     parsed, seen = read_script(script), load_scene(scene, hide_labels, image)
     meaning = _meaning(literal, no_sizes, memory)
     ready_to_ground(engine)
+    started, left = time.perf_counter(), time_limit
     more: dict[str, Any] = {}
     notes: tuple[str, ...] = ()
     if viewpoint is not ViewpointName.STATED:
-        side = _looked_around(parsed, seen, meaning, viewpoint, time_limit)
+        side = _looked_around(parsed, seen, meaning, viewpoint, time_limit / 2)
+        left = max(0.0, time_limit - (time.perf_counter() - started))
         seen, notes, more = side.scene, side.notes, viewpoints_to_dict(side.viewpoints)
     if ask or oracle is not None:
         _require_asking(engine)
-        asked = _ask(parsed, seen, meaning, oracle, time_limit, as_json)
+        asked = _ask(parsed, seen, meaning, oracle, left, as_json)
         found, more = asked.grounding, more | exchanges_to_dict(asked.exchanges)
     else:
         with working("grounding"):
-            found = run(parsed, seen, engine=engine, time_limit=time_limit, meaning=meaning)
+            found = run(parsed, seen, engine=engine, time_limit=left, meaning=meaning)
     found = found.noting(notes)
     if plot is not None:
         from deixis.plot import plot_grounding

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from deixis.cli_common import NO, UNDECIDED, AsJson, Script, print_json, print_lines, require_scene_name
+from deixis.cli_common import NO, UNDECIDED, AsJson, Script, compiled, print_json, print_lines, require_scene_name
 
 if TYPE_CHECKING:
     from deixis.imagination import Imagination
@@ -29,10 +29,13 @@ def imagine(
     from deixis.grammar.parser import read_script
     from deixis.imagination import imagine as run
     from deixis.show_imagine import imagination_lines, imagination_to_dict
+    from deixis.warm import ready_to_imagine
 
     scenes, pictures = _numbered(out, count), _numbered(plot, count)
     _require_writable(script, scenes, pictures)
-    found = run(read_script(script), any_size=any_size, seed=seed, count=count, time_limit=time_limit)
+    parsed = read_script(script)
+    compiled(ready_to_imagine)
+    found = run(parsed, any_size=any_size, seed=seed, count=count, time_limit=time_limit)
     _write(found, scenes, pictures)
     if as_json:
         print_json(imagination_to_dict(found))

@@ -21,6 +21,7 @@ from deixis.cli_common import (
     TimeLimit,
     print_json,
     print_lines,
+    ready_to_ground,
     working,
 )
 
@@ -61,6 +62,7 @@ def retrieve(
     from deixis.session import is_script_file, load_scene
     from deixis.show_retrieve import retrieved_lines, retrieved_to_dict
 
+    ready_to_ground()
     ontology, deadline = default_ontology(), time.perf_counter() + time_limit
     by_script = is_script_file(query) and not query.endswith(".json")
     compared: Mapping[str, object]

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from deixis.cli_common import NO, UNDECIDED, AsJson, TimeLimit, print_json, progress_bar
+from deixis.cli_common import NO, UNDECIDED, AsJson, TimeLimit, compiled, print_json, progress_bar
 
 if TYPE_CHECKING:
     from deixis.solving import Solved
@@ -29,6 +29,7 @@ def solve(
     from deixis.grammar.network_file import read_networks
     from deixis.ontology.errors import DeixisError
     from deixis.solving import Wish, calculi_named, solve_text
+    from deixis.warm import ready_to_solve
 
     if closure and scenario:
         raise DeixisError("--closure and --scenario exclude each other")
@@ -36,6 +37,7 @@ def solve(
         raise DeixisError("-o writes the network that --closure or --scenario prints; give one of them")
     wish = Wish(closure, scenario, explain, time_limit)
     texts = read_networks(network, calculi_named(calculus))
+    compiled(ready_to_solve)
     with progress_bar("closing") as progress:
         solved = [solve_text(text, wish, progress) for text in texts]
     _report(network, solved, out, as_json)

@@ -1,4 +1,4 @@
-"""A checked table as a picture: what is misplaced, missing, extra and undetermined."""
+"""A checked table as a picture: what is misplaced, miscoloured, missing, extra and undetermined."""
 
 from __future__ import annotations
 
@@ -12,9 +12,10 @@ from deixis.session import Checked
 
 
 def plot_check(checked: Checked, scene: Scene, path: str | Path) -> None:
-    """Draws the table from above: what is misplaced or extra in red, what is undetermined dotted, and the verdict."""
+    """Draws the table from above: what is wrong with a thing in red, what is undetermined dotted, and the verdict."""
     table = checked.table
     wrong = {entry.perceived for entry in table.of(Verdict.MISPLACED) if entry.perceived is not None}
+    wrong |= {entry.perceived for entry, _ in table.miscoloured if entry.perceived is not None}
     wrong |= {entry.perceived for entry in table.extra}
     unsure = {entry.perceived for entry in table.of(Verdict.UNDETERMINED) if entry.perceived is not None}
     title = f"{checked.layout.title or checked.layout.name}: {_summary(checked)}"
@@ -26,6 +27,7 @@ def _summary(checked: Checked) -> str:
     found = [
         _listed("missing", [entry.role for entry in table.of(Verdict.MISSING)]),
         _listed("misplaced", [entry.role for entry in table.of(Verdict.MISPLACED)]),
+        _listed("of another colour", [entry.role for entry, _ in table.miscoloured]),
         _listed("extra", [entry.label or entry.perceived for entry in table.extra]),
     ]
     return "; ".join(part for part in found if part) or "nothing wrong"

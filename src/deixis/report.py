@@ -226,6 +226,15 @@ def check_to_dict(checked: Checked) -> dict[str, Any]:
             }
             for c in table.of(Verdict.MISPLACED)
         ],
+        "miscoloured": [
+            {
+                "object": c.role,
+                "perceived": c.perceived,
+                "described": other.described.label,
+                "seen": other.seen.label,
+            }
+            for c, other in table.miscoloured
+        ],
         "extra": [{"perceived": e.perceived, "label": e.label, "reason": e.reason} for e in table.extra],
         "undetermined": [{"object": c.role, "perceived": c.perceived} for c in table.of(Verdict.UNDETERMINED)],
         "absent": [{"object": c.role} for c in table.of(Verdict.ABSENT)],

@@ -29,7 +29,7 @@ from deixis.reasoning.implications import TIME_LIMIT, Implications
 from deixis.reasoning.labels import Label
 from deixis.reasoning.meaning import SHIPPED, Meaning
 from deixis.version import VERSION
-from deixis.warm import ready_to_ground
+from deixis.warm import ready_to_ground, ready_to_infer
 
 if TYPE_CHECKING:
     from deixis.ontology.concepts import LayoutConcept, Lesson
@@ -53,7 +53,10 @@ def infer(script: Script | str | Path, time_limit: float = TIME_LIMIT) -> Infere
 
     The time limit is for facts that leave a choice; the others need no search.
     """
-    return inference_of(_script(script), time_limit)
+    script = _script(script)
+    if not all(fact.plain for fact in script.facts):
+        ready_to_infer()
+    return inference_of(script, time_limit)
 
 
 def evidence_of(script: Script, scene: Scene, meaning: Meaning = SHIPPED) -> Evidence:
@@ -218,7 +221,7 @@ class Session(PerceptualSession):
         found = ground_evidence(evidence, engine_named("exact"), time_limit)
         kept = tuple(note for note in found.notes if "similarity" not in note)  # a check shows no similarity
         found = replace(found, notes=notes + kept)
-        table = check_table(evidence, labels, self.ontology.kinds, found)
+        table = check_table(evidence, labels, self.ontology.kinds, found, scene.colours, self.ontology.colours)
         return Checked(concept, table, *shacl_report(concept, scene, table, relations))
 
     def _script(self, script: Script | str | Path) -> Script:

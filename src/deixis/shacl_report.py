@@ -21,7 +21,9 @@ def shacl_report(layout: LayoutConcept, scene: Scene, check: TableCheck, relatio
     from pyshacl import validate
 
     fills = {entry.perceived: entry.role for entry in check.roles if entry.perceived is not None}
-    data = scene_data(layout, scene.ids, fills, satisfied_relations(layout, scene, fills, relations))
+    related = satisfied_relations(layout, scene, fills, relations)
+    coloured = {entry.perceived: other.seen.iri for entry, other in check.miscoloured if entry.perceived is not None}
+    data = scene_data(layout, scene.ids, fills, related, coloured)
     graphs = []
     for triples in (data, layout_shapes(layout)):
         graph = rdflib.Graph()

@@ -265,6 +265,8 @@ def check_lines(checked: Checked) -> list[str]:
     for broken in table.broken:
         if not blamed & {broken.fact.subject, broken.fact.object}:
             lines.append(f"broken      {violation_text(broken)}")
+    for entry, other in table.miscoloured:
+        lines.append(f"miscoloured {entry.role} ({entry.perceived}): {other.seen.label}, not {other.described.label}")
     lines += [f"extra       {extra.perceived}: {extra.reason}" for extra in table.extra]
     lines += [f"unexpected  {violation_text(entry)}" for entry in table.unexpected]
     lines += [

@@ -10,12 +10,13 @@ MEANWHILE = 0.2
 
 
 def warm() -> None:
-    """Runs one tiny job of each kind; the compiled code is kept on disk."""
+    """Runs one tiny job of each kind; the compiled code is kept on disk, and so are the reasoners' classes."""
     _ground()
-    _infer()
-    _solve()
+    ready_to_infer()
+    ready_to_solve()
     _tell_time()
-    _imagine()
+    ready_to_imagine()
+    _reason()
     _read_clouds()
     _describe()
 
@@ -62,28 +63,37 @@ def _ground() -> None:
         ready_to_ground(engine)
 
 
-def _infer() -> None:
+@cache
+def ready_to_infer() -> None:
+    """The same for what follows from facts that leave a choice."""
     from deixis.grammar.parser import parse_script
     from deixis.inference import inference_of
     from deixis.reasoning.why_not import why_not
 
     inference = inference_of(parse_script("a left of b\nb left or above c\nc is not right of d\n"))
     inference.inferred()
+    inference.implications.unstated()
+    inference.implications.ntriples()
     relations = inference.implications.vocabulary
     why_not(inference.implications, parse_script("a left of c").facts[0])
     inference.implications.derive(relations["left"], "a", "b")
     inference_of(parse_script("a left of b\nb left of a\n"))
 
 
-def _solve() -> None:
+@cache
+def ready_to_solve() -> None:
+    """The same for constraint networks, of calculi that are plain and of such as are products."""
     from deixis.grammar.network_file import parse_networks
     from deixis.reasoning.calculi.registry import calculus
-    from deixis.reasoning.networks.search import solve
+    from deixis.solving import Wish, solve_text
 
-    for name, text in (("allen", "1 #\n0 1 ( < m )\n.\n"), ("ra", "2 #\n0 1 ( <,m >,< )\n1 2 ( <,< )\n.\n")):
+    wishes = (Wish(scenario=True), Wish(closure=True, explain=(0, 1)))
+    against = "2 #\n0 1 ( < )\n1 2 ( < )\n0 2 ( > )\n.\n"
+    texts = (("allen", "1 #\n0 1 ( < m )\n.\n"), ("ra", "2 #\n0 1 ( <,m >,< )\n1 2 ( <,< )\n.\n"), ("allen", against))
+    for name, text in texts:
         for parsed in parse_networks(text, [calculus(name)], "warm"):
-            for network in parsed.networks:
-                solve(network, scenario=True)
+            for wish in wishes:
+                solve_text(parsed, wish)
 
 
 def _tell_time() -> None:
@@ -99,11 +109,25 @@ def _tell_time() -> None:
     timeline.chronology()
 
 
-def _imagine() -> None:
+@cache
+def ready_to_imagine() -> None:
+    """The same for imagining a table."""
     from deixis.grammar.parser import parse_script
     from deixis.imagination import imagine
 
     imagine(parse_script("fork left of plate\nnapkin on plate\n"))
+
+
+def _reason() -> None:
+    import pyoxigraph as ox
+
+    from deixis.ontology.tbox import tbox_turtle
+    from deixis.reasoning.description_logic import Reasoner, prepare
+
+    triples = (quad.triple for quad in ox.parse(tbox_turtle(), format=ox.RdfFormat.TURTLE))
+    text = (ox.serialize(triples, format=ox.RdfFormat.N_TRIPLES) or b"").decode("utf-8")
+    for reasoner in Reasoner:
+        prepare(reasoner, text)
 
 
 def _read_clouds() -> None:

@@ -12,14 +12,18 @@ import numpy as np
 import pytest
 from commands import deixis
 
-from deixis.asking import _narrowed
+from deixis.asking import _narrowed, _notes
 from deixis.examples_data import example
 from deixis.perception.scene_file import read_scene
+from deixis.reasoning.answer import Grounding
 from deixis.reasoning.asking.candidates import Candidates
 from deixis.reasoning.asking.inquiry import begin
 from deixis.reasoning.asking.questions import questions
 from deixis.reasoning.asking.situation import situation_of
-from deixis.reasoning.viewpoints import turned
+from deixis.reasoning.evidence import Evidence
+from deixis.reasoning.grounding import ground
+from deixis.reasoning.likeliest import ExactEngine
+from deixis.reasoning.viewpoints import Viewpoint, Viewpoints, turned
 from deixis.session import evidence_of, read_script
 
 SCENE = example("place_setting.scene.json")
@@ -138,6 +142,29 @@ def test_without_an_answer_nothing_becomes_certain_where_not_all_groundings_were
     assert all(chance is None or chance < 0.2 for chance in probabilities(out))
 
 
+def test_both_searches_together_keep_to_the_time_limit_where_nothing_was_answered(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    script = layout_file(tmp_path, *(f"a{k} left of a{k + 1}" for k in range(29)))
+    scene = boxes_file(tmp_path, [[0.0, 0.0]] * 30)
+    limits: list[float] = []
+
+    def recorded(evidence: Evidence, engine: ExactEngine, time_limit: float) -> Grounding:
+        limits.append(time_limit)
+        return ground(evidence, engine, time_limit)
+
+    monkeypatch.setattr("deixis.asking.ground_evidence", recorded)
+    monkeypatch.setattr("sys.stdin", io.StringIO(""))
+    deixis("ground", script, scene, "--ask", "--time-limit", 0.4, "--json")
+    assert limits[0] < 0.3  # what to ask took half of it
+    deixis("ground", script, scene, "--ask", "--time-limit", 0.4, "--viewpoint", "quarter", "--json")
+    assert limits[1] < 0.15  # and the side half before that
+    limits.clear()
+    monkeypatch.setattr("sys.stdin", io.StringIO("?\n"))
+    deixis("ground", example("script1.layout"), SCENE, "--ask", "--no-sizes", "--time-limit", 20)
+    assert limits == [20]  # counted from the answer on
+
+
 def test_who_does_not_know_leaves_every_probability_as_it_was(monkeypatch: pytest.MonkeyPatch) -> None:
     arguments = ("ground", example("script2.layout"), SCENE, "--json")
     monkeypatch.setattr("sys.stdin", io.StringIO("?\n" * 50))
@@ -177,6 +204,16 @@ def test_no_side_is_told_where_no_two_things_that_are_compared_were_found(viewpo
     assert matches(out) == {}, err
     (note,) = [note for note in json.loads(out)["notes"] if note.startswith("the scene was taken")]
     assert "nothing tells from which side" in note
+
+
+def test_a_side_that_is_doubtful_is_said_to_be_what_the_probabilities_rest_on() -> None:
+    def notes(probability: float) -> str:
+        sides = [Viewpoint(0.0, False, probability, 0.0, np.zeros(1, np.int64))]
+        sides += [Viewpoint(math.pi, False, 1 - probability, -1.0, np.zeros(1, np.int64))]
+        return "; ".join(_notes(Viewpoints(tuple(sides), exact=True)))
+
+    assert "probabilities hold as seen from this one" in notes(0.6)
+    assert "from this one" not in notes(0.99)
 
 
 def test_no_side_is_told_where_every_angle_does_as_well(tmp_path: Path) -> None:

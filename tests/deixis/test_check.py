@@ -16,6 +16,7 @@ from deixis.perception.scene import PerceivedObject, Scene
 from deixis.perception.scene_file import read_scene
 from deixis.perception.settings import formal_setting
 from deixis.reasoning.checking import Verdict
+from deixis.report import check_to_dict
 from deixis.session import Checked, Session, read_script
 from deixis.show import check_lines
 
@@ -66,6 +67,42 @@ def test_what_is_missing_and_what_is_extra_is_named() -> None:
         "n2": "one napkin too many",
         "v": "the layout has no place left for a vase",
     }
+
+
+def test_a_thing_of_another_colour_is_a_finding_of_its_own() -> None:
+    text = "the red mug left of plate\nnapkin is white; napkin on plate\nknife right of plate; knife is grey"
+    scene = Scene(
+        (
+            PerceivedObject("a", (0.0, 0.05), (0.09, 0.14), label="mug", colour=(30, 58, 110)),
+            PerceivedObject("n", (0.2, 0.1), (0.3, 0.2), label="napkin", colour=(244, 244, 240)),
+            PerceivedObject("p", (0.15, 0.0), (0.4, 0.25), label="plate", colour=(192, 32, 32)),  # no colour is said
+            PerceivedObject("k", (0.45, 0.0), (0.47, 0.22), label="knife"),  # none is seen
+        ),
+        unit="m",
+    )
+    checked = check(scene, text)
+    assert roles(checked, Verdict.MISCOLOURED) == {"red_mug"}
+    assert roles(checked, Verdict.CORRECT) == {"napkin", "plate", "knife"}
+    assert not checked.table.well and not checked.conforms
+    assert "miscoloured red_mug (a): blue, not red" in check_lines(checked)
+    data = check_to_dict(checked)
+    assert data["miscoloured"] == [{"object": "red_mug", "perceived": "a", "described": "red", "seen": "blue"}]
+    report = rdflib.Graph().parse(data=checked.report, format="turtle")
+    assert {str(value).rsplit("#")[-1] for value in report.objects(None, SH.value)} == {"blue"}
+
+
+def test_what_is_misplaced_may_be_of_another_colour_too() -> None:
+    scene = Scene(
+        (
+            PerceivedObject("n", (0.6, 0.1), (0.7, 0.2), label="napkin", colour=(192, 32, 32)),
+            PerceivedObject("p", (0.15, 0.0), (0.4, 0.25), label="plate"),
+        ),
+        unit="m",
+    )
+    checked = check(scene, "napkin is white; napkin left of plate")
+    assert "napkin" in roles(checked, Verdict.MISPLACED)
+    assert [entry.role for entry, _ in checked.table.miscoloured] == ["napkin"]
+    assert {line.split()[0] for line in check_lines(checked)[1:]} >= {"misplaced", "miscoloured"}
 
 
 def test_without_labels_a_place_is_never_called_correct() -> None:

@@ -18,7 +18,7 @@ from deixis.ontology.tbox import default_ontology
 from deixis.perception.settings import formal_setting
 from deixis.reasoning.closeness import Closeness
 from deixis.reasoning.errors import SettingError
-from deixis.reasoning.likeness import Comparison, Described, Likeness, seen
+from deixis.reasoning.likeness import Comparison, Described, Likeness, Seen, seen
 from deixis.reasoning.matching.problem import UNMATCHED
 from deixis.reasoning.rectangle import perceived_graph
 from deixis.reasoning.retrieval import assignment_bound, quick_bound, rank_layouts, rank_scenes
@@ -158,6 +158,39 @@ def test_sizes_speak_where_nothing_is_labelled() -> None:
         layout("dinner_fork left of dinner_plate; dinner_plate left of dinner_knife; napkin on dinner_plate"), scene
     )
     assert plates.objects < setting.objects
+
+
+def in_pixels(scale: float, metric: bool = False) -> Seen:
+    """The formal setting without labels, as an image of it from above shows it."""
+    scene = formal_setting().without_labels().graph(RELATIONS)
+    assert scene.boxes is not None
+    return seen("image", replace(scene, boxes=scene.boxes[:, :, :2] * scale), metric=metric)
+
+
+def test_in_pixels_sizes_speak_beside_each_other_at_any_scale() -> None:
+    plates = layout("9 dinner_plate left of dinner_fork; dinner_fork left of dinner_knife")
+    setting = layout("dinner_fork left of dinner_plate; dinner_plate left of dinner_knife; napkin on dinner_plate")
+    told = {scale: [COMPARISON.likeness(one, in_pixels(scale)) for one in (plates, setting)] for scale in (10.0, 900.0)}
+    for one, other in zip(*told.values(), strict=True):
+        assert one.similarity == pytest.approx(other.similarity, abs=1e-5)
+    without = COMPARISON.likeness(plates, replace(in_pixels(900.0), boxes=None))
+    assert told[900.0][0].objects < without.objects
+    assert told[900.0][1].objects == COMPARISON.likeness(setting, replace(in_pixels(900.0), boxes=None)).objects
+
+
+def test_what_images_taught_of_sizes_counts_in_pixels() -> None:
+    plate = layout("layout x; dinner_plate is a dinner plate")
+    kind = str(plate.graph.kinds[0])
+    scene = perceived_graph(
+        ["a", "b", "c"], np.array([[[0, 0], [9, 9]], [[20, 0], [21, 1]], [[30, 0], [31, 1]]]), RELATIONS
+    )
+    likely = {
+        length: Comparison(ONTOLOGY, {kind: SizeModel((np.log(length), 0.1), (0.0, 0.1), True)})
+        for length in (9.0, 100.0)
+    }
+    unary = {length: one.objects(plate, seen("image", scene, metric=False))[0] for length, one in likely.items()}
+    assert unary[9.0][0] == 1 > unary[9.0][1:].max()
+    assert unary[100.0].max() < 0.01
 
 
 def test_a_scene_of_nothing_is_similar_to_nothing() -> None:

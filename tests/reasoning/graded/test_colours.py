@@ -16,7 +16,7 @@ from deixis.ontology.graph import RelationGraph
 from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.errors import SettingError
 from deixis.reasoning.evidence import evidence_from
-from deixis.reasoning.graded.colours import OUTLIERS, colour_evidence, lab_of_srgb
+from deixis.reasoning.graded.colours import OUTLIERS, colour_evidence, lab_of_srgb, other_colours
 from deixis.reasoning.graded.unary import UnaryWeights
 from deixis.reasoning.meaning import Meaning
 from deixis.reasoning.rectangle import perceived_graph
@@ -68,6 +68,19 @@ def test_most_names_of_the_survey_get_the_word_that_they_end_in() -> None:
     right = [labels[best] == word for best, (word, _) in zip(found.argmax(axis=0), known, strict=True)]
     assert len(right) == 558
     assert np.mean(right) > 0.88
+
+
+def test_a_thing_is_of_another_colour_only_where_its_name_would_hardly_do() -> None:
+    said = [iri("red"), iri("orange"), iri("red"), iri("blue"), None]
+    found = other_colours(said, seen("#c02020", "#f04818", "#1e3a6e", None, "#1e3a6e"), COLOURS)
+    assert [colour and colour.label for colour in found] == [None, None, "blue", None, None]
+
+
+def test_every_prototype_is_of_another_colour_than_all_words_but_its_own() -> None:
+    prototypes = np.array([colour.prototype for colour in COLOURS], dtype=np.float64)
+    for said in COLOURS:
+        found = other_colours([said.iri] * len(prototypes), prototypes, COLOURS)
+        assert found == [None if seen_as == said else seen_as for seen_as in COLOURS]
 
 
 def test_white_things_are_about_as_white_as_each_other_though_none_is_pure() -> None:
