@@ -5,16 +5,15 @@ from __future__ import annotations
 import errno
 import os
 import random
-import signal
 import subprocess
 import sys
-import time
 from collections import Counter
 from collections.abc import Callable
 from pathlib import Path
 from typing import NoReturn
 
 import pytest
+from killing import forks_of
 
 from deixis.memory.errors import MemoryWriteError
 from deixis.memory.exchange import export_memory
@@ -26,50 +25,36 @@ Learn = Callable[..., None]
 KILLS = 50
 
 LEARNER = """
-import random, sys
+import os, random
 import pyoxigraph as ox
 from deixis.memory.graphs import GraphName
 from deixis.memory.semantic import SemanticMemory
 
-folder, seed = sys.argv[1], sys.argv[2]
-rng = random.Random(int(seed))
 p = ox.NamedNode("urn:p")
 
 def triples(lesson, number):
     return [ox.Triple(ox.NamedNode(f"urn:{lesson}:{i}"), p, ox.Literal(str(i))) for i in range(number)]
 
-shared = triples("shared", 5)
-with SemanticMemory.open(folder, create=True) as memory:
-    print("open", flush=True)
+def say(verb, lesson):
+    os.write(1, f"{verb} {lesson}\\n".encode())
+
+def work(folder, seed):
+    rng, shared = random.Random(int(seed)), triples("shared", 5)
+    memory = SemanticMemory.open(folder, create=True)
     for turn in range(10_000):
         known = memory.lessons()
         if known and rng.random() < 0.4:
             lesson = rng.choice(known)
-            print("forgetting", lesson, flush=True)
+            say("forgetting", lesson)
             memory.forget(lesson, triples("inferred", turn % 7))
-            print("forgot", lesson, flush=True)
+            say("forgot", lesson)
         else:
             lesson = f"l{seed}-{turn}"
             said = {GraphName.ASSERTED: triples(lesson, 20) + shared, GraphName.LEARNED: triples(lesson, 30)}
-            print("learning", lesson, flush=True)
+            say("learning", lesson)
             memory.learn(lesson, said, triples("inferred", turn % 7))
-            print("learned", lesson, flush=True)
+            say("learned", lesson)
 """
-
-
-def run_and_kill(folder: Path, seed: int, delay: float) -> list[list[str]]:
-    """Lets a process learn and forget for a while, kills it, and returns what it had said by then."""
-    child = subprocess.Popen(
-        [sys.executable, "-c", LEARNER, str(folder), str(seed)],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-    )
-    time.sleep(delay)
-    child.send_signal(signal.SIGKILL)
-    out, err = child.communicate(timeout=30)
-    assert not err, err
-    return [line.split() for line in out.splitlines() if line.count(" ") == 1 or line == "open"]
 
 
 def check_whole(memory: SemanticMemory) -> None:
@@ -88,32 +73,37 @@ def check_whole(memory: SemanticMemory) -> None:
 
 @pytest.mark.slow
 def test_kills_at_random_moments_lose_no_acknowledged_lesson_and_leave_no_half_one(tmp_path: Path) -> None:
+    """The memory is looked at after every fifth kill; the children between begin where one was killed."""
     rng, folder = random.Random(3), tmp_path / "m"
     certain: set[str] = set()
+    doubtful: set[str] = set()
     moments: Counter[str] = Counter()
-    for seed in range(KILLS):
-        said = run_and_kill(folder, seed, rng.uniform(0.13, 0.55))
-        doubtful: set[str] = set()
-        for verb, *lesson in said:
-            if verb == "learned":
-                certain |= set(lesson)
-            elif verb == "forgetting":
-                certain -= set(lesson)
-                doubtful |= set(lesson)
-            elif verb == "learning":
-                doubtful |= set(lesson)
-            elif verb == "forgot":
-                doubtful -= set(lesson)
-        moments[said[-1][0] if said else "before opening"] += 1
-        if not folder.exists():
-            continue
-        with SemanticMemory.open(folder, create=True) as memory:
-            kept = set(memory.lessons())
-            assert certain <= kept, f"lost: {certain - kept}"
-            assert kept - certain <= doubtful, f"came back: {kept - certain - doubtful}"
-            check_whole(memory)
-            certain = kept
+    with forks_of(LEARNER) as learners:
+        for seed in range(KILLS):
+            lines = learners.kill_after(folder, seed, rng.randrange(9), rng.uniform(0.0, 0.02))
+            moments[lines[-1].split()[0] if lines else "opening"] += 1
+            hear(lines, certain, doubtful)
+            if seed % 5 == 4:
+                with SemanticMemory.open(folder, create=True) as memory:
+                    kept = set(memory.lessons())
+                    assert certain <= kept, f"lost: {certain - kept}"
+                    assert kept - certain <= doubtful, f"came back: {kept - certain - doubtful}"
+                    check_whole(memory)
+                    certain, doubtful = kept, set()
     assert moments["learning"] + moments["forgetting"] >= 5, moments
+
+
+def hear(lines: list[str], certain: set[str], doubtful: set[str]) -> None:
+    """Brings up to date which lessons must be there, and which may, from what a learner said before it was killed."""
+    for line in lines:
+        verb, lesson = line.split()
+        if verb == "learned":
+            certain |= {lesson}
+        if verb in ("learning", "forgetting"):
+            certain -= {lesson}
+            doubtful |= {lesson}
+        else:
+            doubtful -= {lesson}
 
 
 FILLER = """

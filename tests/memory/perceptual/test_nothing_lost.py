@@ -5,15 +5,14 @@ from __future__ import annotations
 import errno
 import os
 import random
-import signal
 import subprocess
 import sys
-import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NoReturn
 
 import pytest
+from killing import forks_of
 
 from deixis.memory.errors import MemoryWriteError
 from deixis.memory.perceptual.level import LevelMemory
@@ -22,7 +21,7 @@ from deixis.memory.perceptual.records import Batch, View
 KILLS = 50
 
 WRITERS = """
-import os, sys
+import os
 from datetime import UTC, datetime
 import numpy as np
 from deixis.memory.perceptual.checksum import seal_wide
@@ -31,7 +30,7 @@ from deixis.memory.perceptual.records import Batch, CategoryRecord, View
 
 seal_wide(b"", b"")  # compiles what every child needs
 
-def write(folder, seed):
+def work(folder, seed):
     category, now = f"c{seed}", datetime(2026, 5, 1, tzinfo=UTC)
     memory = LevelMemory.open(folder, create=True)
     for turn in range(1, 100_000):
@@ -41,32 +40,7 @@ def write(folder, seed):
         gone = [f"{seed}-{old}-{place}" for place in range(old % 5 + 1)] if old > 0 else []
         memory.write(Batch(views, [CategoryRecord(category, {"turn": np.array(turn)})], gone))
         os.write(1, b"acknowledged %d\\n" % turn)
-
-for line in sys.stdin:
-    folder, seed = line.split()
-    child = os.fork()
-    if child == 0:
-        os.write(1, b"child %d\\n" % os.getpid())
-        write(folder, seed)
-        os._exit(0)
-    os.waitpid(child, 0)
-    os.write(1, b"gone\\n")
 """
-
-
-def run_and_kill(writers: subprocess.Popen[str], folder: Path, seed: int, turns: int, delay: float) -> int:
-    """Lets a child write so many turns, kills it a little later, and returns the last turn that was acknowledged."""
-    assert writers.stdin is not None and writers.stdout is not None
-    writers.stdin.write(f"{folder} {seed}\n")
-    writers.stdin.flush()
-    verb, number = writers.stdout.readline().split()
-    assert verb == "child"
-    said = [writers.stdout.readline() for _ in range(turns)]
-    time.sleep(delay)
-    os.kill(int(number), signal.SIGKILL)
-    said += iter(writers.stdout.readline, "gone\n")
-    assert said == [f"acknowledged {turn}\n" for turn in range(1, len(said) + 1)]
-    return len(said)
 
 
 def check(memory: LevelMemory, seed: int, acknowledged: int) -> int:
@@ -88,16 +62,15 @@ def test_kills_in_the_middle_of_writing_lose_no_acknowledged_batch_and_leave_no_
     """The memory is opened after every fifth kill; the children between begin where one was killed."""
     rng, folder = random.Random(3), tmp_path / "m"
     acknowledged, turns = dict[int, int](), dict[int, int]()
-    command = [sys.executable, "-c", WRITERS]
-    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as writers:
+    with forks_of(WRITERS) as writers:
         for seed in range(KILLS):
-            acknowledged[seed] = run_and_kill(writers, folder, seed, rng.randrange(8), rng.uniform(0, 0.02))
+            said = writers.kill_after(folder, seed, rng.randrange(8), rng.uniform(0, 0.02))
+            assert said == [f"acknowledged {turn}" for turn in range(1, len(said) + 1)]
+            acknowledged[seed] = len(said)
             if seed % 5 == 4:
                 with LevelMemory.open(folder, create=True) as memory:
                     turns |= {each: check(memory, each, acknowledged[each]) for each in range(seed - 4, seed + 1)}
                     assert memory.stats().lost == 0
-        assert writers.stdin is not None
-        writers.stdin.close()
     with LevelMemory.open(folder) as memory:
         for seed, turn in turns.items():
             assert check(memory, seed, turn) == turn
