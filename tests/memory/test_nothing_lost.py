@@ -80,7 +80,7 @@ def test_kills_at_random_moments_lose_no_acknowledged_lesson_and_leave_no_half_o
     moments: Counter[str] = Counter()
     with forks_of(LEARNER) as learners:
         for seed in range(KILLS):
-            lines = learners.kill_after(folder, seed, rng.randrange(9), rng.uniform(0.0, 0.02))
+            lines = learners.kill_after(folder, seed, rng.randrange(4), rng.uniform(0.0, 0.02))
             moments[lines[-1].split()[0] if lines else "opening"] += 1
             hear(lines, certain, doubtful)
             if seed % 5 == 4:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shutil
 import tempfile
 from collections.abc import Callable, Iterator
 from datetime import UTC, datetime, timedelta
@@ -20,6 +21,9 @@ from deixis.memory.perceptual.transient import TransientMemory
 IN_MEMORY = "/dev/shm"
 """A folder in memory, where the system has one: what is asked here is what outlives a process, not a machine, and
 waiting for a disk takes most of the time."""
+
+ROOM = 1 << 30
+"""Bytes that there have to be in it; containers often have less."""
 
 NOON = datetime(2026, 5, 1, 12, tzinfo=UTC)
 
@@ -63,7 +67,7 @@ def _content(memory: PerceptualReading) -> tuple[list[dict[str, Any]], list[dict
 def _in_memory() -> Iterator[None]:
     """Temporary folders lie in memory."""
     with pytest.MonkeyPatch.context() as patched:
-        if os.access(IN_MEMORY, os.W_OK):
+        if os.access(IN_MEMORY, os.W_OK) and shutil.disk_usage(IN_MEMORY).free > ROOM:
             patched.setattr(tempfile, "tempdir", IN_MEMORY)
         yield
 
