@@ -8,12 +8,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from functools import cache
 from itertools import groupby
 
 import pyoxigraph as ox
 
 from deixis.memory.prefixes import PREFIXES, turtle_name
-from deixis.ontology.skolem import with_blank_nodes
+from deixis.ontology.skolem import with_blank
 from deixis.ontology.vocabulary import W3C
 
 _STRINGS = {PREFIXES["xsd"] + "string", PREFIXES["rdf"] + "langString", PREFIXES["rdf"] + "dirLangString"}
@@ -40,27 +41,28 @@ def _prefixes() -> Iterator[str]:
 
 
 def _statements(triples: Iterable[ox.Triple], indent: str) -> Iterator[str]:
-    rows = sorted({(_subject(t), _predicate(t), _term(t.object)) for t in with_blank_nodes(triples)})
-    for (_, subject), about in groupby(rows, key=lambda row: row[0]):
-        said = [f"{predicate} {object}" for _, (_, predicate), object in about]
-        yield indent + subject
+    subject, predicate, term = cache(_subject), cache(_predicate), cache(_term)  # most terms stand in many triples
+    rows = sorted({(subject(t.subject), predicate(t.predicate), term(t.object)) for t in triples})
+    for (_, name), about in groupby(rows, key=lambda row: row[0]):
+        said = [f"{verb} {object}" for _, (_, verb), object in about]
+        yield indent + name
         for line in said[:-1]:
             yield f"{indent}    {line} ;"
         yield f"{indent}    {said[-1]} ."
 
 
-def _subject(triple: ox.Triple) -> tuple[bool, str]:
+def _subject(term: ox.NamedNode | ox.BlankNode) -> tuple[bool, str]:
     """Named subjects first."""
-    return isinstance(triple.subject, ox.BlankNode), _term(triple.subject)
+    return isinstance(with_blank(term), ox.BlankNode), _term(term)
 
 
-def _predicate(triple: ox.Triple) -> tuple[bool, str]:
+def _predicate(term: ox.NamedNode) -> tuple[bool, str]:
     """The type first."""
-    iri = triple.predicate.value
-    return iri != W3C.RDF_TYPE, "a" if iri == W3C.RDF_TYPE else turtle_name(iri)
+    return (False, "a") if term.value == W3C.RDF_TYPE else (True, turtle_name(term.value))
 
 
 def _term(term: ox.NamedNode | ox.BlankNode | ox.Literal | ox.Triple) -> str:
+    term = with_blank(term)
     if isinstance(term, ox.NamedNode):
         return turtle_name(term.value)
     if isinstance(term, ox.Literal) and term.datatype.value not in _STRINGS:

@@ -26,7 +26,7 @@ def with_blank_nodes(triples: Iterable[ox.Triple]) -> Iterator[ox.Triple]:
     <BlankNode value=x>
     """
     for triple in triples:
-        yield ox.Triple(_blank(triple.subject), triple.predicate, _blank(triple.object))
+        yield ox.Triple(with_blank(triple.subject), triple.predicate, with_blank(triple.object))
 
 
 def with_names(triples: Iterable[ox.Triple]) -> Iterator[ox.Triple]:
@@ -38,7 +38,8 @@ def with_names(triples: Iterable[ox.Triple]) -> Iterator[ox.Triple]:
 _Term = TypeVar("_Term")
 
 
-def _blank(term: _Term) -> _Term | ox.BlankNode:
+def with_blank(term: _Term) -> _Term | ox.BlankNode:
+    """A term, as a blank node where it is a skolem IRI."""
     if isinstance(term, ox.NamedNode) and term.value.startswith(GENID):
         return ox.BlankNode(term.value.removeprefix(GENID))
     return term

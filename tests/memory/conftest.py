@@ -9,6 +9,7 @@ from pathlib import Path
 import pyoxigraph as ox
 import pytest
 
+from deixis.memory.exchange import export_memory
 from deixis.memory.graphs import GraphName
 from deixis.memory.prefixes import PREFIXES
 from deixis.memory.semantic import SemanticMemory
@@ -142,6 +143,29 @@ def empty_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("empty") / "memory"
     SemanticMemory.open(folder, create=True).close()
     return folder
+
+
+@pytest.fixture(scope="session")
+def kept_folder(empty_folder: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The same with one lesson."""
+    folder = shutil.copytree(empty_folder, tmp_path_factory.mktemp("kept") / "memory")
+    with SemanticMemory.open(folder) as memory:
+        teach(memory, "dinner-1")
+    return folder
+
+
+@pytest.fixture(scope="session")
+def empty_export(empty_folder: Path) -> str:
+    """What an empty memory exports: the package alone."""
+    with SemanticMemory.open(empty_folder) as memory:
+        return export_memory(memory)
+
+
+@pytest.fixture(scope="session")
+def kept_export(kept_folder: Path) -> str:
+    """What the memory of one lesson exports."""
+    with SemanticMemory.open(kept_folder) as memory:
+        return export_memory(memory)
 
 
 @pytest.fixture(scope="session")

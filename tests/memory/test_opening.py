@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+import shutil
 import subprocess
 import sys
 import time
@@ -23,7 +24,6 @@ from deixis.memory.package import packaged
 from deixis.memory.semantic import SemanticMemory
 from deixis.ontology.errors import DeixisError
 
-Learn = Callable[..., None]
 Damage = Callable[[Path], object]
 
 
@@ -35,11 +35,22 @@ def digest(folder: Path) -> dict[str, str]:
 
 
 @pytest.fixture
-def kept(tmp_path: Path, learn: Learn) -> Path:
-    folder = tmp_path / "kept"
-    with SemanticMemory.open(folder, create=True) as memory:
-        learn(memory, "dinner-1")
+def kept(tmp_path: Path, kept_folder: Path) -> Path:
+    """A memory of this test's own that holds a lesson, closed."""
+    return shutil.copytree(kept_folder, tmp_path / "kept")
+
+
+@pytest.fixture(scope="module")
+def kept_old_folder(kept_folder: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The same as version 0 kept it."""
+    folder = shutil.copytree(kept_folder, tmp_path_factory.mktemp("old") / "memory")
+    make_old(folder)
     return folder
+
+
+@pytest.fixture
+def kept_old(tmp_path: Path, kept_old_folder: Path) -> Path:
+    return shutil.copytree(kept_old_folder, tmp_path / "old")
 
 
 def test_a_new_memory_is_made_only_when_asked(tmp_path: Path) -> None:
@@ -154,19 +165,17 @@ def _exported(folder: Path) -> str:
         return export_memory(memory)
 
 
-def test_an_old_memory_is_brought_up_to_date(kept: Path) -> None:
-    before = _exported(kept)
-    make_old(kept)
-    assert _exported(kept) == before
-    assert files.read_mark(kept)["version"] == 1
-    assert sorted(os.listdir(kept)) == ["memory.json", "owner.lock", "semantic"]
+def test_an_old_memory_is_brought_up_to_date(kept_old: Path, kept_export: str) -> None:
+    assert _exported(kept_old) == kept_export
+    assert files.read_mark(kept_old)["version"] == 1
+    assert sorted(os.listdir(kept_old)) == ["memory.json", "owner.lock", "semantic"]
 
 
 @pytest.mark.parametrize("steps", range(6))
-def test_a_crash_while_migrating_loses_nothing(kept: Path, steps: int, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_crash_while_migrating_loses_nothing(
+    kept_old: Path, kept_export: str, steps: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Whatever renaming or removing the crash comes at, the next open goes on from there."""
-    before = _exported(kept)
-    make_old(kept)
     left = [steps]
 
     def crashing(real: Callable[..., None]) -> Callable[..., None]:
@@ -182,8 +191,8 @@ def test_a_crash_while_migrating_loses_nothing(kept: Path, steps: int, monkeypat
         patched.setattr(disk, "rename", crashing(disk.rename))
         patched.setattr(disk, "remove", crashing(disk.remove))
         with pytest.raises(KeyboardInterrupt):
-            SemanticMemory.open(kept)
-    assert _exported(kept) == before
+            SemanticMemory.open(kept_old)
+    assert _exported(kept_old) == kept_export
 
 
 @pytest.mark.parametrize("steps", range(3))

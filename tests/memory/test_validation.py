@@ -107,7 +107,7 @@ def _stored(triples: list[ox.Triple]) -> set[ox.Triple]:
 
 @pytest.mark.parametrize("case", BROKEN)
 def test_what_breaks_a_shape_is_rejected_with_how_to_mend_it(
-    memory: SemanticMemory, make_lesson: MakeLesson, read: Read, case: str
+    memory: SemanticMemory, empty_export: str, make_lesson: MakeLesson, read: Read, case: str
 ) -> None:
     without, instead, told = BROKEN[case]
     said = make_lesson("dinner-1")
@@ -115,10 +115,9 @@ def test_what_breaks_a_shape_is_rejected_with_how_to_mend_it(
     for name in (GraphName.LEARNED, GraphName.ASSERTED, GraphName.EPISODES):
         said[name] = [triple for triple in _stored(said[name]) if triple not in removed]
     said[GraphName.ASSERTED] += read(instead)
-    before = export_memory(memory)
     with pytest.raises(RejectedWriteError, match=told) as caught:
         memory.learn("dinner-1", {name: said[name] for name in said if name is not GraphName.INFERRED}, [])
-    assert export_memory(memory) == before
+    assert export_memory(memory) == empty_export
     results = caught.value.results
     assert results
     assert all(result.severity == "Violation" and result.focus and result.shape for result in results)
