@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.perception.clouds.mesh import Mesh
+from deixis.perception.open3d import open3d
 
 
 def is_closed(mesh: Mesh) -> bool:
@@ -27,8 +28,7 @@ def volume(mesh: Mesh) -> float:
 
 
 def scene_of(mesh: Mesh) -> object:
-    from open3d import core, t
-
+    core, t = open3d().core, open3d().t
     scene = t.geometry.RaycastingScene()
     scene.add_triangles(core.Tensor(mesh.vertices.astype(np.float32)), core.Tensor(mesh.faces.astype(np.uint32)))
     return scene
@@ -36,8 +36,7 @@ def scene_of(mesh: Mesh) -> object:
 
 def inside(points: NDArray[np.floating], mesh: Mesh) -> NDArray[np.bool_]:
     """Which points lie inside a mesh, by Open3D's occupancy (a vote of three rays)."""
-    from open3d import core
-
+    core = open3d().core
     query = core.Tensor(np.ascontiguousarray(points, dtype=np.float32))
     found: NDArray[np.bool_] = scene_of(mesh).compute_occupancy(query, nsamples=3).numpy() > 0.5  # type: ignore[attr-defined]
     return found
@@ -45,8 +44,7 @@ def inside(points: NDArray[np.floating], mesh: Mesh) -> NDArray[np.bool_]:
 
 def distances(points: NDArray[np.floating], mesh: Mesh) -> NDArray[np.float32]:
     """From points to the surface of a mesh, by Open3D."""
-    from open3d import core
-
+    core = open3d().core
     query = core.Tensor(np.ascontiguousarray(points, dtype=np.float32))
     found: NDArray[np.float32] = scene_of(mesh).compute_distance(query).numpy()  # type: ignore[attr-defined]
     return found

@@ -14,6 +14,7 @@ from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.features.describer import finite_points
 from deixis.perception.features.keypoints import voxel_keypoints
 from deixis.perception.features.normals import estimate_normals
+from deixis.perception.open3d import open3d
 
 NEIGHBOURS = 100
 """Neighbours that a histogram looks at, at most; the nearest, where more lie within the radius."""
@@ -55,10 +56,9 @@ class FpfhDescriber:
         if not len(keypoints):
             return np.empty((0, self.size), np.float32)
 
-        import open3d
-
-        seen = open3d.geometry.PointCloud(open3d.utility.Vector3dVector(points))
-        seen.normals = open3d.utility.Vector3dVector(normals.astype(np.float64))
-        search = open3d.geometry.KDTreeSearchParamHybrid(self.radius, NEIGHBOURS)
-        histograms = open3d.pipelines.registration.compute_fpfh_feature(seen, search).data
+        library = open3d()
+        seen = library.geometry.PointCloud(library.utility.Vector3dVector(points))
+        seen.normals = library.utility.Vector3dVector(normals.astype(np.float64))
+        search = library.geometry.KDTreeSearchParamHybrid(self.radius, NEIGHBOURS)
+        histograms = library.pipelines.registration.compute_fpfh_feature(seen, search).data
         return np.ascontiguousarray(histograms.T[keypoints], dtype=np.float32)

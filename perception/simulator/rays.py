@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.perception.clouds.mesh import Mesh
+from deixis.perception.open3d import open3d
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,10 +26,9 @@ class RayCaster:
     """Several meshes, ready to be met by rays; they are numbered as they come."""
 
     def __init__(self, meshes: Sequence[Mesh]) -> None:
-        from open3d import core, t
-
+        core = open3d().core
         self._tensor: Any = core.Tensor
-        self._scene: Any = t.geometry.RaycastingScene()
+        self._scene: Any = open3d().t.geometry.RaycastingScene()
         for mesh in meshes:
             vertices = core.Tensor(np.ascontiguousarray(mesh.vertices, dtype=np.float32))
             self._scene.add_triangles(vertices, core.Tensor(np.ascontiguousarray(mesh.faces, dtype=np.uint32)))

@@ -1,0 +1,35 @@
+"""The compiled part of Open3D alone: the whole of it also imports plotting and learning, which takes seconds."""
+
+from __future__ import annotations
+
+import importlib
+import importlib.util
+import sys
+from functools import cache
+from pathlib import Path
+from types import ModuleType
+
+_NAME = "open3d.cpu.pybind"
+
+
+@cache
+def open3d() -> ModuleType:
+    """``open3d`` with ``core``, ``geometry``, ``pipelines``, ``t`` and ``utility``; whole where it is imported already.
+
+    ``import open3d`` after this finds the same module, and brings the rest.
+    """
+    if _NAME in sys.modules:
+        return sys.modules[_NAME]
+    package = importlib.util.find_spec("open3d")
+    folders = package.submodule_search_locations if package is not None else None
+    library = next((file for folder in folders or () for file in (Path(folder) / "cpu").glob("pybind*")), None)
+    spec = importlib.util.spec_from_file_location(_NAME, library) if library is not None else None
+    if spec is None or spec.loader is None:
+        return importlib.import_module("open3d")
+    try:
+        module = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(module)
+    except ImportError:  # it needs a library that the whole of Open3D would load first
+        return importlib.import_module("open3d")
+    sys.modules[_NAME] = module
+    return module
