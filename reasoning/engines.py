@@ -58,6 +58,7 @@ class Alignment:
     finished: bool = True  # whether the time limit left the search its course
     gap: float = math.inf  # by how much another map may be more likely (log) at most; infinite where nobody knows
     posterior: Posterior | None = None  # of engines that work with likelihoods
+    sides: int = 1  # from so many sides, each by its probability
     margins: NDArray[np.float64] | None = None  # (n1,) what the next best choice for each would lose; nan: not known
     runners_up: NDArray[np.int64] | None = None  # (n1,) that choice, or UNMATCHED
 

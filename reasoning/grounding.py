@@ -215,8 +215,8 @@ def _pivotal(
     """The facts without which something would be otherwise; None where there was no time to look at all."""
     if alignment.posterior is None or not alignment.proved_best:
         return None
-    found, seen = [], 0
-    for dropped in without_each(evidence.placed, alignment.assignment, alignment.posterior.exact, deadline):
+    found, seen, probable = [], 0, alignment.posterior.exact and alignment.sides == 1
+    for dropped in without_each(evidence.placed, alignment.assignment, probable, deadline):
         seen += 1
         pivotal = _without(evidence, alignment, matches, dropped)
         if pivotal.changes or pivotal.unsettled or pivotal.settled:

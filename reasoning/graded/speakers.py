@@ -27,6 +27,9 @@ PRIOR = 0.2
 EFFORT, SIZE = 0.05, 30
 """The scalable search's effort for a judgement, up to so many objects; in larger descriptions, the less for each."""
 
+FEW = 8
+"""Objects up to which proving the best map takes less time than a search."""
+
 MOST_OBJECTS = 60
 """Of larger descriptions a connected part of so many objects is judged."""
 
@@ -79,7 +82,10 @@ def _connected(ends: NDArray[np.int64], order: Order) -> Order:
 
 
 def _best_value(problem: Problem) -> float:
-    """About what the best map is worth, by a short search."""
+    """What the best map is worth; of many objects about, by a short search."""
+    from deixis.reasoning.matching.exact import exact
     from deixis.reasoning.matching.scalable import scalable
 
+    if len(problem.absent) <= FEW:
+        return exact(problem).value
     return scalable(problem, effort=EFFORT * min(1.0, SIZE / len(problem.absent))).value

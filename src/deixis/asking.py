@@ -19,21 +19,26 @@ from deixis.reasoning.asking.candidates import Candidates, candidates_of
 from deixis.reasoning.asking.inquiry import Exchange, Inquiry, Outcome, begin
 from deixis.reasoning.asking.questions import ABSENT, NO, YES, QuestionKind
 from deixis.reasoning.asking.situation import Situation, situation_of
+from deixis.reasoning.engines import engine_named
 from deixis.reasoning.errors import SettingError
 from deixis.reasoning.evidence import PRESENT, Evidence
+from deixis.reasoning.from_sides import FromSides, OtherSide
 from deixis.reasoning.grounding import DEFAULT_TIME_LIMIT
 from deixis.reasoning.grounding import ground as ground_evidence
 from deixis.reasoning.likeliest import ExactEngine
 from deixis.reasoning.matching.problem import UNMATCHED
 from deixis.reasoning.meaning import SHIPPED, Meaning
 from deixis.reasoning.viewpoints import Viewpoint, Viewpoints, recover_viewpoint, turned
-from deixis.session import evidence_of
+from deixis.session import conflict_notes, evidence_of
 
 MARGINS = (6.0, 2.0)
 """How much less likely than the best (in nats) a grounding may be that is still asked about: 400 times.
 
 Rarer ones hardly ever keep a match from being decided. Where so many cannot be listed: seven times.
 """
+
+WORTH_A_LOOK, MOST_SIDES = 0.005, 8
+"""How probable a side is from which matches are looked at, and how many such sides there are at most."""
 
 CONCENTRATED = 0.5
 """Mean resultant length below which angles are no side: that of an even spread over 217 degrees."""
@@ -52,8 +57,16 @@ class SeenFrom:
     """A scene as seen from the side from which a script speaks; ``viewpoints`` None where nothing tells a side."""
 
     scene: Scene
-    viewpoints: Viewpoints | None
-    notes: tuple[str, ...]
+    viewpoints: Viewpoints | None = None
+    notes: tuple[str, ...] = ()
+    others: tuple[tuple[float, Scene], ...] = ()  # as seen from other sides, each with its probability
+
+    @property
+    def doubt(self) -> tuple[str, ...]:
+        """What is to be said of probabilities that hold from the likeliest side alone."""
+        if self.viewpoints is None or self.viewpoints.best.probability >= DECIDED:
+            return ()
+        return ("from other sides the matches may be others: their probabilities hold as seen from this one",)
 
 
 def ask(
@@ -141,7 +154,7 @@ def seen_from_anywhere(
         "the scene was taken as it stands: nothing tells from which side the description speaks, "
         "and the probabilities of the matches hold as seen from this one"
     )
-    as_it_stands = SeenFrom(scene, None, (untold,))
+    as_it_stands = SeenFrom(scene, notes=(untold,))
     evidence = evidence_of(script, scene, meaning)
     if not len(evidence.facts) or len(scene.objects) < 2:
         return as_it_stands
@@ -155,7 +168,26 @@ def seen_from_anywhere(
     placed = (best.assignment[evidence.problem.ends] != UNMATCHED).all(axis=1)
     if not placed.any() or best.concentration < CONCENTRATED:
         return as_it_stands
-    return SeenFrom(_with_boxes(scene, turned(scene.boxes, best.angle, best.mirrored)), found, _notes(found))
+    seen = [
+        _with_boxes(scene, turned(scene.boxes, view.angle, view.mirrored)) for view in found.viewpoints[:MOST_SIDES]
+    ]
+    others = zip((view.probability for view in found.viewpoints[1:]), seen[1:], strict=False)
+    return SeenFrom(seen[0], found, _notes(found), tuple(side for side in others if side[0] >= WORTH_A_LOOK))
+
+
+def ground_from_sides(
+    script: Script, side: SeenFrom, engine: str, meaning: Meaning = SHIPPED, time_limit: float = DEFAULT_TIME_LIMIT
+) -> Grounding:
+    """Grounds as seen from the likeliest side, with the probabilities of matches over all sides that are worth a look.
+
+    Where nothing tells a side, just as the scene stands.
+    """
+    aligning = engine_named(engine)
+    if side.viewpoints is not None:
+        others = tuple(OtherSide(share, evidence_of(script, scene, meaning)) for share, scene in side.others)
+        aligning = FromSides(aligning, side.viewpoints.best.probability, others)
+    evidence = evidence_of(script, side.scene, meaning)
+    return ground_evidence(evidence, aligning, time_limit, conflict_notes(script.graph()))
 
 
 def _with_boxes(scene: Scene, boxes: NDArray[np.float64]) -> Scene:
@@ -169,8 +201,6 @@ def _with_boxes(scene: Scene, boxes: NDArray[np.float64]) -> Scene:
 def _notes(found: Viewpoints) -> tuple[str, ...]:
     best = found.best
     notes = [f"the scene was taken {_described(best)}, with probability {best.probability:.2f}"]
-    if best.probability < DECIDED:
-        notes.append("from other sides the matches may be others: their probabilities hold as seen from this one")
     if len(found.ties) > 1:
         others = ", or ".join(_described(view) for view in found.ties if view is not best)
         notes.append(f"the description fits as well {others}")

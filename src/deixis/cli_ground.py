@@ -77,19 +77,21 @@ def ground(
     ready_to_ground(engine)
     started, left = time.perf_counter(), time_limit
     more: dict[str, Any] = {}
-    notes: tuple[str, ...] = ()
+    side = None
     if viewpoint is not ViewpointName.STATED:
         side = _looked_around(parsed, seen, meaning, viewpoint, time_limit / 2)
         left = max(0.0, time_limit - (time.perf_counter() - started))
-        seen, notes, more = side.scene, side.notes, viewpoints_to_dict(side.viewpoints)
+        seen, more = side.scene, viewpoints_to_dict(side.viewpoints)
     if ask or oracle is not None:
         _require_asking(engine)
         asked = _ask(parsed, seen, meaning, oracle, left, as_json)
         found, more = asked.grounding, more | exchanges_to_dict(asked.exchanges)
+        found = found if side is None else found.noting(side.notes + side.doubt)
+    elif side is not None:
+        found = _from_sides(parsed, side, engine, meaning, left)
     else:
         with working("grounding"):
             found = run(parsed, seen, engine=engine, time_limit=left, meaning=meaning)
-    found = found.noting(notes)
     if plot is not None:
         from deixis.plot import plot_grounding
 
@@ -126,6 +128,15 @@ def _looked_around(
 
     with working("looking from other sides"):
         return seen_from_anywhere(script, scene, meaning, viewpoint is ViewpointName.UNKNOWN, time_limit)
+
+
+def _from_sides(
+    script: ParsedScript, side: SeenFrom, engine: EngineName, meaning: Meaning, time_limit: float
+) -> Grounding:
+    from deixis.asking import ground_from_sides
+
+    with working("grounding"):
+        return ground_from_sides(script, side, engine, meaning, time_limit).noting(side.notes)
 
 
 def _require_asking(engine: EngineName) -> None:

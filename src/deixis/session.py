@@ -97,7 +97,7 @@ def ground(
     """
     script = _script(script)
     scene = scene if isinstance(scene, Scene) else read_scene(scene)
-    notes = _viewpoint_notes(script.viewpoint, scene) + _conflict_notes(script.graph())
+    notes = _viewpoint_notes(script.viewpoint, scene) + conflict_notes(script.graph())
     if not time_limit >= 0:
         raise SettingError(f"a time limit is 0 or more seconds, not {time_limit}")
     if select not in list(Select):
@@ -119,7 +119,7 @@ def _viewpoint_notes(viewpoint: str | None, scene: Scene) -> tuple[str, ...]:
     )
 
 
-def _conflict_notes(graph: RelationGraph) -> tuple[str, ...]:
+def conflict_notes(graph: RelationGraph) -> tuple[str, ...]:
     conflict = find_conflict(Implications(graph))
     if conflict is None:
         return ()
@@ -216,7 +216,7 @@ class Session(PerceptualSession):
         graph, relations = concept.graph(self.ontology.relations), self.ontology.relations
         labels = scene_labels(scene)
         evidence = _evidence(graph, scene, self.ontology, self.meaning())
-        notes = _viewpoint_notes(concept.viewpoint, scene) + _conflict_notes(graph)
+        notes = _viewpoint_notes(concept.viewpoint, scene) + conflict_notes(graph)
         ready_to_ground("exact")
         found = ground_evidence(evidence, engine_named("exact"), time_limit)
         kept = tuple(note for note in found.notes if "similarity" not in note)  # a check shows no similarity

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from commands import deixis
 
-from deixis.asking import _narrowed, _notes
+from deixis.asking import SeenFrom, _narrowed
 from deixis.examples_data import example
 from deixis.perception.scene_file import read_scene
 from deixis.reasoning.answer import Grounding
@@ -206,14 +206,23 @@ def test_no_side_is_told_where_no_two_things_that_are_compared_were_found(viewpo
     assert "nothing tells from which side" in note
 
 
-def test_a_side_that_is_doubtful_is_said_to_be_what_the_probabilities_rest_on() -> None:
-    def notes(probability: float) -> str:
+def test_a_match_is_no_more_probable_than_the_sides_from_which_it_is_seen(tmp_path: Path) -> None:
+    """Two equal things fit from two opposite sides: nobody can know which of them is meant."""
+    script, scene = layout_file(tmp_path, "cup left of mug"), boxes_file(tmp_path, [[0.0, 0.0], [0.4, 0.0]])
+    _, out, err = deixis("ground", script, scene, "--viewpoint", "quarter", "--json")
+    for match in json.loads(out)["matches"]:
+        assert match["probability"] < 0.55 and not match["decided"], err
+    assert any("looked from" in note for note in json.loads(out)["notes"])
+
+
+def test_with_a_dialogue_probabilities_hold_as_seen_from_one_side(tmp_path: Path) -> None:
+    def doubt(probability: float) -> str:
         sides = [Viewpoint(0.0, False, probability, 0.0, np.zeros(1, np.int64))]
         sides += [Viewpoint(math.pi, False, 1 - probability, -1.0, np.zeros(1, np.int64))]
-        return "; ".join(_notes(Viewpoints(tuple(sides), exact=True)))
+        return "; ".join(SeenFrom(read_scene(SCENE), Viewpoints(tuple(sides), exact=True)).doubt)
 
-    assert "probabilities hold as seen from this one" in notes(0.6)
-    assert "from this one" not in notes(0.99)
+    assert "probabilities hold as seen from this one" in doubt(0.6)
+    assert not doubt(0.99)
 
 
 def test_no_side_is_told_where_every_angle_does_as_well(tmp_path: Path) -> None:
