@@ -65,6 +65,6 @@ def _probability(placed: Placed, assignment: NDArray[np.int64], probable: bool, 
     found = posterior(placed.problem, deadline) if probable else None
     if found is None or not found.exact:
         return np.full(len(assignment), np.nan)
-    marginals = placed.folded_marginals(found.marginals)
+    marginals = placed.folded_posterior(found).marginals
     probability: NDArray[np.float64] = marginals[np.arange(len(assignment)), assignment]
     return probability

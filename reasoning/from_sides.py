@@ -54,7 +54,7 @@ class FromSides:
             seen = side.evidence.reordered(*_as_in(evidence, side.evidence)).placed
             there = posterior(seen.problem, now + (deadline - now) / (len(self.others) - number))
             if np.isfinite(there.error):
-                found.append((side.probability, replace(there, marginals=seen.folded_marginals(there.marginals))))
+                found.append((side.probability, seen.folded_posterior(there)))
         return found
 
 

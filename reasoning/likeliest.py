@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,8 +18,7 @@ from deixis.reasoning.assignment import assign
 from deixis.reasoning.engines import Alignment, paper_similarity
 from deixis.reasoning.evidence import Evidence
 from deixis.reasoning.matching.exact import exact
-from deixis.reasoning.matching.placed import Placed
-from deixis.reasoning.matching.posterior import Posterior, posterior
+from deixis.reasoning.matching.posterior import posterior
 from deixis.reasoning.matching.problem import Problem
 from deixis.reasoning.matching.scalable import scalable
 
@@ -94,12 +93,8 @@ def _answer(
         notes=notes,
         finished=finished,
         gap=gap,
-        posterior=_folded(probable, evidence.placed) if known else None,
+        posterior=evidence.placed.folded_posterior(probable) if known else None,
     )
-
-
-def _folded(probable: Posterior, problem: Placed) -> Posterior:
-    return replace(probable, marginals=problem.folded_marginals(probable.marginals))
 
 
 def _similarity(evidence: Evidence, deadline: float) -> tuple[NDArray[np.float64], bool, tuple[str, ...]]:

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.reasoning.matching.posterior import Marginals
+from deixis.reasoning.matching.posterior import Posterior
 from deixis.reasoning.matching.problem import UNMATCHED, Problem
 
 AWAY = 0.1
@@ -39,10 +39,11 @@ class Placed:
         result: NDArray[np.int64] = np.where(assignment < self.bare.unary.shape[1], assignment, UNMATCHED)
         return result
 
-    def folded_marginals(self, marginals: Marginals) -> Marginals:
-        """Probabilities (n1, n2 + 1) of ``bare`` from those of ``problem``: places are summed over."""
-        n2 = self.bare.unary.shape[1]
-        return np.concatenate([marginals[:, :n2], marginals[:, n2:].sum(axis=1, keepdims=True)], axis=1)
+    def folded_posterior(self, found: Posterior) -> Posterior:
+        """The probabilities of ``bare`` from those of ``problem``: places are summed over."""
+        n2, marginals = self.bare.unary.shape[1], found.marginals
+        left_out = marginals[:, n2:].sum(axis=1, keepdims=True)
+        return replace(found, marginals=np.concatenate([marginals[:, :n2], left_out], axis=1))
 
     def best_with(self, assignment: NDArray[np.int64], deadline: float = math.inf) -> float:
         """The highest value of ``problem`` with these matches (n1,), what is left out being anywhere but at a thing."""

@@ -22,7 +22,7 @@ def one_fact(tables: list[list[float]], absent: float = -2.0) -> Placed:
 def test_without_a_fact_an_object_is_absent_as_probably_as_with_no_places() -> None:
     none, kinds = np.zeros((0, 2), np.int64), np.zeros(0, np.int64)
     at = [placed(none, kinds, np.zeros((0, n, n), np.float32), np.zeros((1, 2)), np.full(1, -1.0)) for n in (2, 9)]
-    found = [one.folded_marginals(posterior(one.problem).marginals) for one in at]
+    found = [one.folded_posterior(posterior(one.problem)).marginals for one in at]
     np.testing.assert_allclose(found[0], found[1], atol=1e-9)
     np.testing.assert_allclose(found[0][0, 2], np.exp(-1) / (2 + np.exp(-1)))
 
@@ -34,7 +34,7 @@ def test_a_fact_that_holds_at_a_place_speaks_for_being_absent() -> None:
     tables[2, 0] = 4.0
     with_place = one_fact(tables.tolist())
     without = one_fact(tables[:2, :2].tolist())
-    shares = [one.folded_marginals(posterior(one.problem).marginals)[0, -1] for one in (with_place, without)]
+    shares = [one.folded_posterior(posterior(one.problem)).marginals[0, -1] for one in (with_place, without)]
     assert shares[0] > 0.9 > 0.6 > shares[1]
     best = exact(with_place.problem)
     assert best.assignment.tolist() == [2, 0]
@@ -55,7 +55,7 @@ def test_the_best_value_with_some_matches_is_that_of_the_best_places_for_the_res
 def test_probabilities_of_things_and_of_absence_add_up_to_one(seed: int) -> None:
     table = generate(7, 1.5, missing=1, extra=1, seed=seed)
     evidence = no_unary_evidence(table.description(), table.scene())
-    marginals = evidence.placed.folded_marginals(posterior(evidence.placed.problem).marginals)
+    marginals = evidence.placed.folded_posterior(posterior(evidence.placed.problem)).marginals
     assert marginals.shape == (7, len(table.boxes) + 1)
     np.testing.assert_allclose(marginals.sum(axis=1), 1.0, atol=1e-9)
 
