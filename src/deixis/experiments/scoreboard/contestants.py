@@ -68,12 +68,19 @@ def engine(
 
 
 def peer(
-    name: str, settings: str, solve: Callable[[Problem, float], Answer], *, most: int, lacking: str = ""
+    name: str,
+    settings: str,
+    solve: Callable[[Problem, float], Answer],
+    *,
+    most: int,
+    places: bool = True,
+    lacking: str = "",
 ) -> Contestant:
-    """Another solver for the same problem (graded meaning); it gets the seconds that are left."""
+    """Another solver for the same problem (graded meaning), maybe without places; it gets the seconds that are left."""
 
     def answer(evidence: Evidence, deadline: float) -> Answer:
-        found = solve(evidence.placed.problem, max(0.0, deadline - time.perf_counter()))
+        problem = evidence.placed.problem if places else evidence.problem
+        found = solve(problem, max(0.0, deadline - time.perf_counter()))
         return replace(found, assignment=evidence.placed.folded(found.assignment))
 
     return Contestant(name, settings, answer, most, lacking=lacking)
