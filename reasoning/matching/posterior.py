@@ -36,10 +36,10 @@ PARTS = 8  # of a run, half of which are compared with the other half
 HOTTEST = 0.7  # the least coldness: where facts decide, colder maps are stuck, and hotter ones say little
 RUNGS = (3, 6)  # fewest and most temperatures
 ROUNDS = 4  # proposals for every object in a sweep
-FIRST_SWEEPS = 8  # of a part of the first run
+FIRST_SWEEPS = (8, 32)  # of a part of the first run, fewest and most: a quarter of what there may be
 TOLERANCE = 0.007  # the standard error that is good enough
-PROPOSALS = 3e5  # for each object, in all ladders and temperatures, of at most so many objects:
-MOST_OBJECTS = 80
+PROPOSALS, MOST_PROPOSALS = 6e5, 2.4e7  # for each object, in all ladders and temperatures; and for all objects
+MOST_OBJECTS = 80  # up to which chains begin at maps of their own
 THRESHOLDS_KEPT = 1 << 16
 START_EFFORT = 0.1
 
@@ -130,7 +130,8 @@ def _sampled(
 ) -> Posterior:
     """A short run of ladders, then one as long as the first one's error shows to be needed, and so on.
 
-    Each leaves out all before, as being on the way. All ladders begin at ``start`` (n1,), where there is one.
+    Each leaves out all before, as being on the way. All ladders begin at ``start`` (n1,), where there is one. What
+    happened in no sweep, or in all, may yet be otherwise in the next: one sweep more is taken to have been anything.
     """
     n1, width = compiled.unary.shape
     groups, rng = exchangeable(problem), np.random.default_rng(seed)
@@ -144,14 +145,18 @@ def _sampled(
         ladders.append(ladder(labels, compiled, coldness))
         if time.perf_counter() > deadline:
             break
-    sweeps, one_sweep = FIRST_SWEEPS, LADDERS * PARTS * ROUNDS * n1 * len(coldness)
-    left = int(PROPOSALS * min(n1, MOST_OBJECTS) / one_sweep)
+    left = int(min(PROPOSALS * n1, MOST_PROPOSALS) / (LADDERS * PARTS * ROUNDS * n1 * len(coldness)))
+    sweeps = int(np.clip(left / 4, *FIRST_SWEEPS))
     marginals, error = averaged(np.eye(width)[ladders[0].labels[0]], groups), math.inf
+    unseen = np.column_stack([np.isfinite(problem.unary), np.ones(n1)])
+    unseen /= unseen.sum(axis=1, keepdims=True)
     while True:
         counts = _run(ladders, compiled, sweeps, deadline, thresholds, rng)
         if counts is None:
             break
         marginals, error = _agreement(averaged(counts / sweeps, groups))
+        seen = LADDERS * PARTS * sweeps
+        marginals, error = (seen * marginals + unseen) / (seen + 1), max(error, 1 / seen)
         left -= sweeps
         wanted = max(2 * sweeps, math.ceil(sweeps * (error / TOLERANCE) ** 2))
         if error <= TOLERANCE or left < sweeps:
