@@ -40,10 +40,9 @@ def peers() -> list[Contestant]:
         peer("faq", "Frank-Wolfe (Vogelstein et al. 2015), ten starts", _faq, most=MOST["faq"]),
         peer(
             "cp-sat",
-            f"ortools, {cp_sat.WORKERS} workers, to the time limit; without places, which take it minutes",
+            f"ortools, {cp_sat.WORKERS} workers, to the time limit",
             _cp_sat,
             most=MOST["cp-sat"],
-            places=False,
             lacking=_lacking("ortools"),
         ),
     ]

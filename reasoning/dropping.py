@@ -10,9 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.reasoning.matching.exact import exact
-from deixis.reasoning.matching.placed import Placed
 from deixis.reasoning.matching.posterior import posterior
-from deixis.reasoning.matching.problem import UNMATCHED
+from deixis.reasoning.matching.problem import UNMATCHED, Problem
 
 MOST = 30
 """Objects up to which a problem is solved anew without each fact."""
@@ -33,38 +32,37 @@ class Dropped:
     probability: NDArray[np.float64]
 
 
-def without_each(placed: Placed, assignment: NDArray[np.int64], probable: bool, deadline: float) -> Iterator[Dropped]:
+def without_each(problem: Problem, assignment: NDArray[np.int64], probable: bool, deadline: float) -> Iterator[Dropped]:
     """The likeliest map without each fact in turn, up to ``MOST`` objects, until the deadline (``time.perf_counter``).
 
     Of several as good it is one like the present ``assignment``. Probabilities are worked out where they are
     ``probable`` to be had exactly. The iterator ends early where there is no more time.
 
-    >>> from deixis.reasoning.matching.problem import Problem
     >>> tables = np.array([[[0, 1], [0, 0]]], np.float32)
     >>> problem = Problem(np.array([[0, 1]]), np.array([0]), tables, np.array([[0, 0.5], [0, 0]]), np.full(2, -1.0))
-    >>> [d.assignment.tolist() for d in without_each(Placed(problem, problem), np.array([0, 1]), True, float("inf"))]
+    >>> [d.assignment.tolist() for d in without_each(problem, np.array([0, 1]), True, float("inf"))]
     [[1, 0]]
     """
-    problem = placed.problem
     if len(problem.absent) > MOST:
         return
     matched = np.flatnonzero(assignment != UNMATCHED)
     stay = np.zeros_like(problem.unary)
     stay[matched, assignment[matched]] = STAY
     for fact in range(len(problem.ends)):
-        rest = placed.without(fact)
-        best = exact(replace(rest.problem, unary=problem.unary + stay), deadline)
-        if not best.proved or time.perf_counter() > deadline:
+        kept = np.arange(len(problem.ends)) != fact
+        rest = replace(problem, ends=problem.ends[kept], kinds=problem.kinds[kept])
+        found = exact(replace(rest, unary=rest.unary + stay), deadline)
+        if not found.proved or time.perf_counter() > deadline:
             return
-        found = placed.folded(best.assignment)
-        better = rest.problem.value(best.assignment) > rest.best_with(assignment, deadline) + STAY
-        yield Dropped(fact, found, better, _probability(rest, found, probable, deadline))
+        better = rest.value(found.assignment) > rest.value(assignment) + STAY
+        yield Dropped(fact, found.assignment, better, _probability(rest, found.assignment, probable, deadline))
 
 
-def _probability(placed: Placed, assignment: NDArray[np.int64], probable: bool, deadline: float) -> NDArray[np.float64]:
-    found = posterior(placed.problem, deadline) if probable else None
+def _probability(
+    problem: Problem, assignment: NDArray[np.int64], probable: bool, deadline: float
+) -> NDArray[np.float64]:
+    found = posterior(problem, deadline) if probable else None
     if found is None or not found.exact:
         return np.full(len(assignment), np.nan)
-    marginals = placed.folded_posterior(found).marginals
-    probability: NDArray[np.float64] = marginals[np.arange(len(assignment)), assignment]
+    probability: NDArray[np.float64] = found.marginals[np.arange(len(assignment)), assignment]
     return probability

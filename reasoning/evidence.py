@@ -1,11 +1,10 @@
 """What grounding goes by: the facts, what labels, sizes and colours say, and how far each stated fact holds of a pair.
 
-What an engine searches is :attr:`Evidence.placed`: facts, labels, sizes and colours as log-likelihood ratios that add
-up, with what leaving an object out costs, and where it may have been then. Beside it stands the crisp reading, by which
-an answer says what holds: a stated fact holds of a pair to the degree 1 where the pair's exact name is the word itself,
-0.5 where the name only implies the word in its wide reading, else 0. A choice (``or``) holds as far as its best
-alternative; a denial holds (1) where none of its relations does, even widely. A fact is *satisfied* where its degree is
-above 0.
+What an engine searches is :attr:`Evidence.problem`: facts, labels, sizes and colours as log-likelihood ratios that add
+up, with what leaving an object out costs. Beside it stands the crisp reading, by which an answer says what holds: a
+stated fact holds of a pair to the degree 1 where the pair's exact name is the word itself, 0.5 where the name only
+implies the word in its wide reading, else 0. A choice (``or``) holds as far as its best alternative; a denial holds (1)
+where none of its relations does, even widely. A fact is *satisfied* where its degree is above 0.
 """
 
 from __future__ import annotations
@@ -27,11 +26,9 @@ from deixis.ontology.sizes import Sizes
 from deixis.reasoning.graded.colours import colour_evidence
 from deixis.reasoning.graded.degrees import log_likelihood_ratio
 from deixis.reasoning.graded.facts import fact_tables, hedged
-from deixis.reasoning.graded.places import places_for
 from deixis.reasoning.graded.shipped import OUTLIERS
 from deixis.reasoning.graded.unary import label_ratios, size_evidence
 from deixis.reasoning.labels import Label, classes
-from deixis.reasoning.matching.placed import Placed, placed
 from deixis.reasoning.matching.problem import UNMATCHED, Problem
 from deixis.reasoning.meaning import SHIPPED, Meaning
 
@@ -70,23 +67,15 @@ class Evidence:
         return total if self.colours is None else total + self.colours
 
     @cached_property
-    def placed(self) -> Placed:
+    def problem(self) -> Problem:
         """What there is to be searched. A scene without boxes is taken literally, by the names of its pairs."""
         certain = (self.labels > 0) & np.any(~self.allowed, axis=0)[None, :]
         absent = np.where(certain.any(axis=1), PRESENT, absence(*self.labels.shape))
         boxes = self.scene.boxes
         if boxes is None or not self.meaning.graded:
-            return placed(*self._literal_tables(), self.unary, absent)
-        places = places_for(*self.labels.shape)
-        facts = fact_tables(
-            self.description, boxes, self.meaning.models, unary=self.unary, absent=absent, places=places
-        )
-        return placed(facts.ends, facts.kinds, facts.tables, self.unary, absent)
-
-    @property
-    def problem(self) -> Problem:
-        """The same without places: facts about what is absent say nothing."""
-        return self.placed.bare
+            return Problem(*self._literal_tables(), self.unary, absent)
+        facts = fact_tables(self.description, boxes, self.meaning.models, unary=self.unary, absent=absent)
+        return Problem(facts.ends, facts.kinds, facts.tables, self.unary, absent)
 
     def _literal_tables(self) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float32]]:
         """Ends, kinds and tables of the facts in the crisp reading, chance being one pair for each of the names."""

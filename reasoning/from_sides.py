@@ -51,10 +51,12 @@ class FromSides:
         found = []
         for number, side in enumerate(self.others):
             now = time.perf_counter()
-            seen = side.evidence.reordered(*_as_in(evidence, side.evidence)).placed
-            there = posterior(seen.problem, now + (deadline - now) / (len(self.others) - number))
+            if now > deadline:
+                break
+            seen = side.evidence.reordered(*_as_in(evidence, side.evidence)).problem
+            there = posterior(seen, now + (deadline - now) / (len(self.others) - number))
             if np.isfinite(there.error):
-                found.append((side.probability, seen.folded_posterior(there)))
+                found.append((side.probability, there))
         return found
 
 

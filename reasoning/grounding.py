@@ -216,12 +216,12 @@ def _pivotal(
     if alignment.posterior is None or not alignment.proved_best:
         return None
     found, seen, probable = [], 0, alignment.posterior.exact and alignment.sides == 1
-    for dropped in without_each(evidence.placed, alignment.assignment, probable, deadline):
+    for dropped in without_each(evidence.problem, alignment.assignment, probable, deadline):
         seen += 1
         pivotal = _without(evidence, alignment, matches, dropped)
         if pivotal.changes or pivotal.unsettled or pivotal.settled:
             found.append(pivotal)
-    if seen < len(evidence.problem.ends):
+    if seen < len(evidence.facts):
         return None
     return tuple(sorted(found, key=lambda pivotal: _place(pivotal.fact)))
 

@@ -1,6 +1,6 @@
 """The engines that look for the likeliest map: exact, scalable, and two similarities from the literature beside them.
 
-All of them get the same problem (:attr:`deixis.reasoning.evidence.Evidence.placed`): every fact, label and size says
+All of them get the same problem (:attr:`deixis.reasoning.evidence.Evidence.problem`): every fact, label and size says
 by how much likelier it makes a match than chance does, and leaving an object out has its price.
 """
 
@@ -37,7 +37,7 @@ class ExactEngine:
     """The likeliest map, proved so as far as the time allows."""
 
     def align(self, evidence: Evidence, deadline: float) -> Alignment:
-        problem, now = evidence.placed.problem, time.perf_counter()
+        problem, now = evidence.problem, time.perf_counter()
         found = exact(problem, now + PROOF * (deadline - now))
         notes = () if found.proved else ("the time limit struck before the alignment was proved the best",)
         gap = 0.0 if found.proved else found.gap
@@ -50,7 +50,7 @@ class ScalableEngine:
 
     def align(self, evidence: Evidence, deadline: float) -> Alignment:
         now = time.perf_counter()
-        found = scalable(evidence.placed.problem, now + SEARCH * (deadline - now))
+        found = scalable(evidence.problem, now + SEARCH * (deadline - now))
         notes = () if found.finished else ("the time limit struck before the search came to its end",)
         return _answer("scalable", evidence, found.assignment, deadline, notes, finished=found.finished)
 
@@ -70,7 +70,7 @@ class BaselineEngine:
 def _answer(
     engine: str,
     evidence: Evidence,
-    found: NDArray[np.int64],
+    assignment: NDArray[np.int64],
     deadline: float,
     notes: tuple[str, ...],
     *,
@@ -80,20 +80,20 @@ def _answer(
     """The map with its probability, where the time sufficed for one, and the paper's similarity for comparison."""
     now = time.perf_counter()
     matrix, converged, unknown = _similarity(evidence, now + COMPARISON * (deadline - now))
-    probable = posterior(evidence.placed.problem, deadline, start=found)
+    probable = posterior(evidence.problem, deadline, start=assignment)
     known = math.isfinite(probable.error)
     notes += unknown
     notes += () if known else ("there was no time to find out how probable the matches are",)
     return Alignment(
         engine=engine,
-        assignment=evidence.placed.folded(found),
+        assignment=assignment,
         matrix=matrix,
         converged=converged,
         proved_best=gap == 0,
         notes=notes,
         finished=finished,
         gap=gap,
-        posterior=evidence.placed.folded_posterior(probable) if known else None,
+        posterior=probable if known else None,
     )
 
 

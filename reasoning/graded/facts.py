@@ -27,7 +27,6 @@ from deixis.ontology.relation_models import SAYING, RelationModels
 from deixis.reasoning.errors import SettingError
 from deixis.reasoning.graded.degrees import WordDegrees, log_likelihood_ratio, saying_degree
 from deixis.reasoning.graded.geometry import PairGeometry, pair_geometry
-from deixis.reasoning.graded.places import spread
 from deixis.reasoning.graded.shipped import OUTLIERS, shipped_models
 from deixis.reasoning.graded.speakers import LITERAL, literal_share
 from deixis.reasoning.matching.problem import Problem
@@ -55,7 +54,7 @@ class FactTables:
     edges: NDArray[np.int64]  # (m,)
     ends: NDArray[np.int64]  # (m, 2)
     kinds: NDArray[np.int64]  # (m,)
-    tables: NDArray[np.float32]  # (k, n2, n2), log-likelihood ratios, finite, 0 on the diagonal; with places, larger
+    tables: NDArray[np.float32]  # (k, n2, n2), log-likelihood ratios, finite, 0 on the diagonal
 
 
 def fact_tables(
@@ -67,10 +66,8 @@ def fact_tables(
     literal: float | None = None,
     unary: Array | None = None,
     absent: Array | None = None,
-    places: int = 0,
 ) -> FactTables:
-    """The evidence of every fact for every ordered pair of n2 boxes (n2, 2, d), and of so many ``places`` behind them,
-    where something absent may have been.
+    """The evidence of every fact for every ordered pair of n2 boxes (n2, 2, d).
 
     ``saying`` takes into account which pairs people speak of; without it only the words count. ``literal`` is the share
     of facts that are meant literally; where it is None, it is judged from the description by the shipped models, with
@@ -83,23 +80,21 @@ def fact_tables(
     edges = np.flatnonzero(description.subjects != description.objects).astype(np.int64)
     keys = _statements(description, edges)
     distinct = sorted(set(keys))
-    rows = {key: row for row, key in enumerate(distinct)}
-    kinds = np.array([rows[key] for key in keys], dtype=np.int64)
+    places = {key: place for place, key in enumerate(distinct)}
+    kinds = np.array([places[key] for key in keys], dtype=np.int64)
     ends = _ends(description, edges)
-    order, n2 = _by_place(boxes), len(boxes)
-    anywhere = np.concatenate([boxes[order], spread(boxes[order], places)]).astype(np.float64)
-    names, pairs = box_relations(anywhere, description.vocabulary).names, pair_geometry(anywhere, n2)
+    order = _by_place(boxes)
+    names = box_relations(np.asarray(boxes, dtype=np.float64), description.vocabulary).names[np.ix_(order, order)]
+    pairs = pair_geometry(boxes[order])
     said = _Said(pairs, names, models or shipped_models(), description.vocabulary, saying, distinct)
     if literal is None:
         usual = _Said(pairs, names, shipped_models(), description.vocabulary, saying, distinct) if models else said
-        shape = len(description.nodes), n2
+        shape = len(description.nodes), len(boxes)
         alone = np.zeros(shape) if unary is None else np.ascontiguousarray(unary[:, order])
         away = np.full(shape[0], AWAY) if absent is None else absent
-        tables = (usual.tables(share)[:, :n2, :n2] for share in (0.0, LITERAL))
-        graded, exact = (Problem(ends, kinds, table, alone, away) for table in tables)
+        graded, exact = (Problem(ends, kinds, usual.tables(share), alone, away) for share in (0.0, LITERAL))
         literal = literal_share(graded, exact, np.argsort(np.array(description.nodes, dtype=str)))
-    back = np.append(np.argsort(order), np.arange(n2, len(anywhere)))
-    return FactTables(edges, ends, kinds, said.tables(literal, back))
+    return FactTables(edges, ends, kinds, said.tables(literal, np.argsort(order)))
 
 
 def _statements(description: RelationGraph, edges: NDArray[np.int64]) -> list[tuple[int, bool, float]]:

@@ -31,7 +31,6 @@ class PairGeometry:
     """
 
     boxes: Array  # (n, 2, d)
-    things: int  # so many of them, the first, are there; the others are places where something may have been
 
     def __len__(self) -> int:
         return len(self.boxes)
@@ -123,23 +122,19 @@ class PairGeometry:
     def crowd(self) -> Array:
         """Share of the other things that are nearer to one of the two than its partner is; mean over both, 0 to 1."""
         n = len(self)
-        if self.things < 3:
+        if n < 3:
             return np.zeros((n, n))
         distance = np.round(self.distance, 9)  # what is as far, as any two points are, is not nearer by rounding
         np.fill_diagonal(distance, np.inf)
-        ordered = np.sort(distance[:, : self.things], axis=1)
-        nearer = np.stack([np.searchsorted(ordered[i], distance[i], side="left") for i in range(n)]).reshape(n, n)
-        there = np.arange(n) < self.things
-        nearer = nearer / (self.things - there[:, None].astype(np.intp) - there[None, :])
+        ordered = np.sort(distance, axis=1)
+        nearer = np.stack([np.searchsorted(ordered[i], distance[i], side="left") for i in range(n)]) / (n - 2)
         crowd: Array = (nearer + nearer.T) / 2
         np.fill_diagonal(crowd, 0.0)
         return crowd
 
 
-def pair_geometry(boxes: NDArray[np.float64], things: int | None = None) -> PairGeometry:
+def pair_geometry(boxes: NDArray[np.float64]) -> PairGeometry:
     """Looks at boxes of shape (n, 2, d), least and greatest corner, d = 2 or 3; raises GraphError for any other.
-
-    ``things`` of them, the first, are there (default: all): only these crowd a pair.
 
     >>> fork, plate = [[0.0, 0.0], [0.02, 0.2]], [[0.05, -0.02], [0.32, 0.25]]
     >>> pairs = pair_geometry(np.array([fork, plate]))
@@ -148,7 +143,7 @@ def pair_geometry(boxes: NDArray[np.float64], things: int | None = None) -> Pair
     """
     boxes = np.asarray(boxes, dtype=np.float64)
     require_boxes(boxes)
-    return PairGeometry(boxes, len(boxes) if things is None else things)
+    return PairGeometry(boxes)
 
 
 def _ratio(part: Array, whole: Array) -> Array:

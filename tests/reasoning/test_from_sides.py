@@ -55,7 +55,7 @@ def test_the_order_of_things_in_another_side_does_not_matter() -> None:
 def test_what_was_not_looked_at_adds_nothing() -> None:
     """With no time for the other side a match is at most as probable as the side from which it was seen."""
     problem, other = seen(), OtherSide(0.5, seen(2))
-    other.evidence.placed  # noqa: B018 - so that its tables take no time of the search
+    other.evidence.problem  # noqa: B018 - so that its tables take no time of the search
     found = FromSides(Patient(), 0.5, (other,)).align(problem, time.perf_counter())
     assert found.posterior is not None
     assert (found.posterior.marginals.sum(axis=1) <= 0.5 + 1e-9).all()
@@ -88,3 +88,15 @@ def test_no_match_is_decided_that_is_another_from_a_probable_side(share: float) 
     differing = [match for name, match in found.matches.items() if match.perceived != there[name]]
     assert differing
     assert not any(match.decided for match in differing)
+
+
+def test_past_the_deadline_no_other_side_is_looked_from(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What the facts say of the pairs there, which takes long in large scenes, is not even worked out."""
+
+    def unwanted(*_: object) -> Evidence:
+        raise AssertionError("looked from another side")
+
+    monkeypatch.setattr(Evidence, "reordered", unwanted)
+    others = tuple(OtherSide(0.2, seen(turns)) for turns in (1, 2))
+    found = FromSides(Patient(), 0.6, others).align(seen(), time.perf_counter())
+    assert found.sides == 1

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from itertools import combinations, permutations
 
 import numpy as np
@@ -161,14 +160,6 @@ def evidences(draw: st.DrawFn) -> Evidence:
     return Evidence(description, scene(boxes), labels.reshape(n1, n2), np.zeros((n1, n2)), meaning)
 
 
-@contextmanager
-def two_places() -> Iterator[None]:
-    """Few enough for all maps to be listed."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("deixis.reasoning.evidence.places_for", lambda objects, things: 2 if things else 0)
-        yield
-
-
 def maps(allowed: NDArray[np.bool_]) -> Iterator[NDArray[np.int64]]:
     n1, n2 = allowed.shape
     for count in range(min(n1, n2) + 1):
@@ -183,29 +174,22 @@ def maps(allowed: NDArray[np.bool_]) -> Iterator[NDArray[np.int64]]:
 @settings(max_examples=60, deadline=None)
 @given(evidences())
 def test_the_likeliest_of_all_maps_is_proved_and_the_probabilities_are_those_of_all_maps(evidence: Evidence) -> None:
-    with two_places():
-        found, problem = align(evidence), evidence.placed.problem
-    options = list(maps(~np.isneginf(problem.unary)))
-    values = np.array([problem.value(option) for option in options])
+    found = align(evidence)
+    options = list(maps(evidence.allowed))
+    values = np.array([evidence.problem.value(option) for option in options])
     assert found.proved_best
-    assert evidence.placed.best_with(found.assignment) == pytest.approx(values.max(), abs=1e-5)
+    assert evidence.problem.value(found.assignment) == pytest.approx(values.max(), abs=1e-5)
     assert found.posterior is not None
     weights = np.exp(values - values.max()) / np.exp(values - values.max()).sum()
-    matched = np.array([evidence.placed.folded(option) for option in options])
     for i in range(len(found.assignment)):
         for p in range(UNMATCHED, len(evidence.scene.nodes)):
-            share = weights[matched[:, i] == p].sum()
+            share = sum(w for w, option in zip(weights, options, strict=True) if option[i] == p)
             assert found.posterior.marginals[i, p] == pytest.approx(share, abs=2e-3)
 
 
 @settings(max_examples=40, deadline=None)
 @given(evidences())
 def test_without_a_pivotal_fact_the_answer_is_the_one_foretold(evidence: Evidence) -> None:
-    with two_places():
-        _foretold(evidence)
-
-
-def _foretold(evidence: Evidence) -> None:
     found = ground(evidence, EXACT)
     assert found.pivotal is not None
     facts = [evidence.description.fact(int(edge)) for edge in evidence.facts]
@@ -219,9 +203,8 @@ def _foretold(evidence: Evidence) -> None:
         assignment = np.array(
             [UNMATCHED if p is None else evidence.scene.index(p) for p in foretold.values()], dtype=np.int64
         )
-        problem = then.placed.problem
-        best = max(problem.value(option) for option in maps(~np.isneginf(problem.unary)))
-        assert then.placed.best_with(assignment) == pytest.approx(best, abs=1e-5)
+        best = max(then.problem.value(option) for option in maps(evidence.allowed))
+        assert then.problem.value(assignment) == pytest.approx(best, abs=1e-5)
 
 
 @settings(max_examples=40, deadline=None)

@@ -26,8 +26,6 @@ from deixis.reasoning.meaning import SHIPPED
 
 MEASURES = ("right", "grouped", "facts", "value")
 ALPHA = 0.05
-JUDGED = 0.2
-"""Seconds to find the best places for what a map leaves out, when its value is told."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -160,7 +158,7 @@ def _scores(case: Case, answers: Sequence[_Answered]) -> list[Score]:
     judge, alike = case.evidence(SHIPPED), groups(case.description)
     maps: list[NDArray[np.int64]] = [answer.assignment for _, answer, _ in answers]
     facts = relative([float(satisfied(judge, found)) for found in maps])
-    values = relative([judge.placed.best_with(found, time.perf_counter() + JUDGED) for found in maps])
+    values = relative([judge.problem.value(found) for found in maps])
     return [
         Score(
             setting=case.setting,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -68,22 +68,16 @@ def engine(
 
 
 def peer(
-    name: str,
-    settings: str,
-    solve: Callable[[Problem, float], Answer],
-    *,
-    most: int,
-    places: bool = True,
-    lacking: str = "",
+    name: str, settings: str, solve: Callable[[Problem, float], Answer], *, most: int, lacking: str = ""
 ) -> Contestant:
-    """Another solver for the same problem (graded meaning), maybe without places; it gets the seconds that are left."""
-
-    def answer(evidence: Evidence, deadline: float) -> Answer:
-        problem = evidence.placed.problem if places else evidence.problem
-        found = solve(problem, max(0.0, deadline - time.perf_counter()))
-        return replace(found, assignment=evidence.placed.folded(found.assignment))
-
-    return Contestant(name, settings, answer, most, lacking=lacking)
+    """Another solver for the same problem (graded meaning); it gets the seconds that are left."""
+    return Contestant(
+        name,
+        settings,
+        lambda evidence, deadline: solve(evidence.problem, max(0.0, deadline - time.perf_counter())),
+        most,
+        lacking=lacking,
+    )
 
 
 def engines() -> list[Contestant]:
