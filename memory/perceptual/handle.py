@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import contextlib
 import os
-import shutil
 import threading
 from collections.abc import Iterator
 from pathlib import Path
@@ -17,9 +16,10 @@ from typing import TYPE_CHECKING, Any
 
 import plyvel
 
+from deixis.memory import disk
 from deixis.memory.errors import MemoryFormatError, MemoryWriteError
 from deixis.memory.folder import one_line
-from deixis.memory.lock import OwnerLock
+from deixis.memory.lock import LOCK_FILE, OwnerLock
 from deixis.memory.perceptual import keys, layout
 from deixis.memory.perceptual.codec import Counts, read_counts, write_counts
 from deixis.memory.perceptual.errors import DamagedMemoryError
@@ -240,17 +240,20 @@ def _opened(folder: Path, real: Path, create: bool) -> Handle:
     except OSError as error:
         raise MemoryWriteError(f"the folder {folder} cannot be made: {error.strerror}") from error
     try:
-        return _locked(real)
+        return _locked(real, made)
     except BaseException:
         if made:
-            shutil.rmtree(real, ignore_errors=True)
+            with contextlib.suppress(OSError):  # not empty: somebody else has it by now
+                real.rmdir()
         raise
 
 
-def _locked(folder: Path) -> Handle:
+def _locked(folder: Path, made: bool) -> Handle:
     with contextlib.ExitStack() as undo, told(folder):
         lock = OwnerLock.acquire(folder)
         undo.callback(lock.release, undo=True)
+        if made and layout.version_in(folder) is None:  # looked at by the owner only: two may have found no folder
+            undo.callback(_emptied, folder)
         lock.sign()
         layout.prepare(folder, check_seal)
         tally = Tally(folder)
@@ -260,6 +263,15 @@ def _locked(folder: Path) -> Handle:
         counts = _counted(folder, db, tally)
         undo.pop_all()
     return Handle(folder, lock, tally, db, counts)
+
+
+def _emptied(folder: Path) -> None:
+    """Takes away what a failed opening made, but for the lock, which goes last."""
+    for entry in folder.iterdir():
+        if entry.is_dir():
+            disk.remove(entry)
+        elif entry.name != LOCK_FILE:
+            entry.unlink()
 
 
 def _counted(folder: Path, db: Any, tally: Tally) -> Counts:

@@ -100,9 +100,10 @@ def insides(parts: Parts) -> Pairs:
 
 def bridged(parts: Parts) -> Pairs:
     """Two parts of one surface, parted by something narrow that lies on both."""
-    under = ((parts.rise < -0.0005) & (parts.lengths > 0)).astype(np.float64)
-    pairs = _pairs(np.triu((under @ under.T > 0) & _alike(parts)))
-    return _chosen(pairs, lambda a, b: _continues(parts, a, b))
+    under = (parts.rise < -0.0005) & (parts.lengths > 0)
+    both = under.astype(np.float64) @ under.T.astype(np.float64) > 0
+    pairs = _pairs(np.triu(both & _alike(parts)))
+    return _chosen(pairs, lambda a, b: _continues(parts, a, b, np.flatnonzero(under[a] & under[b])))
 
 
 def on_a_foot(parts: Parts) -> Pairs:
@@ -159,6 +160,15 @@ def _inside(parts: Parts, inner: int, outer: int) -> float:
     return float((plan @ hull[:, :2].T + hull[:, 2] <= 0.004).all(axis=1).mean())
 
 
+def _covered(parts: Parts, cover: int, places: NDArray[np.float64]) -> bool:
+    """Whether most places (k, 3) are within a part's outline, or no farther from it than it is higher: hidden by it."""
+    hull = _hull(parts.patches.middles[parts.members(cover), :2])
+    if hull is None:
+        return True
+    outside = (places[:, :2] @ hull[:, :2].T + hull[:, 2]).max(axis=1)
+    return bool((outside < parts.tops[cover] - places[:, 2]).mean() > 0.5)
+
+
 def _apart(parts: Parts, a: int, b: int) -> float:
     """The least distance between patches of two parts, as seen from above."""
     from scipy.spatial import cKDTree
@@ -180,8 +190,9 @@ def _hull(plan: NDArray[np.float64]) -> NDArray[np.float64] | None:
     return result
 
 
-def _continues(parts: Parts, a: int, b: int) -> bool:
-    """Whether one surface goes on in the other: where they are nearest, their planes are the same."""
+def _continues(parts: Parts, a: int, b: int, over: NDArray[np.intp]) -> bool:
+    """Whether one surface goes on in the other, under a part that is over both: where they are nearest, that part is
+    between them, and their planes are the same."""
     from scipy.spatial import cKDTree
 
     one, two = parts.members(a), parts.members(b)
@@ -191,6 +202,8 @@ def _continues(parts: Parts, a: int, b: int) -> bool:
     if not close.any():
         return False
     p, q = one[close], two[nearest[close]]
+    if not any(_covered(parts, int(part), (middles[p] + middles[q]) / 2) for part in over):
+        return False  # a fork and a knife of one colour, on two sides of a plate
     normal = normals[p] + normals[q]
     normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-9)
     step = np.abs((normal * (middles[p] - middles[q])).sum(axis=1))

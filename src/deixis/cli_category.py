@@ -42,12 +42,13 @@ def rename(
     memory: MemoryDir = None,
 ) -> None:
     """Give a category another name; its views stay."""
-    from deixis.perceptual_session import category_name
+    from deixis.perceptual_session import category_name, new_category_name
     from deixis.session import Session
 
+    name = new_category_name(new)
     with Session(memory) as session:
-        session.views().rename(category_name(old), category_name(new))
-    print(f"'{category_name(old)}' is '{category_name(new)}' now.")
+        session.views().rename(category_name(old), name)
+    print(f"'{category_name(old)}' is '{name}' now.")
 
 
 @category_app.command("merge")

@@ -152,7 +152,7 @@ def recognise(
     require_memory(memory)
     seen = load_scene(scene)
     require_writable([out, plot], [thing.cloud and Path(seen.file).parent / thing.cloud for thing in seen.objects])
-    with Session(memory) as session, progress_bar("calibrating") as progress:
+    with Session(memory) as session, progress_bar("reading what was taught") as progress:
         found = session.recognise(seen, progress, _print_note)
     if out is not None:
         _write_scene(found.scene, out)
@@ -238,14 +238,14 @@ def ask(
 
     Where the word is known, it says which things it takes for one, and asks nothing. Exit 1 without an answer.
     """
-    from deixis.perceptual_session import category_name
+    from deixis.perceptual_session import new_category_name
     from deixis.session import Session, load_scene
 
-    name, seen = category_name(word), load_scene(scene)
+    name, seen = new_category_name(word), load_scene(scene)
     _require_something_to_show(seen)
     with Session(memory) as session:
         if name in session.categories() and points_at is None:
-            with progress_bar("calibrating") as progress:
+            with progress_bar("reading what was taught") as progress:
                 answers = session.recognise(seen.without_labels(), progress, _print_note).answers
             ones = [f"{id} ({answer.probability:.2f})" for id, answer in answers.items() if answer.label == name]
             print(

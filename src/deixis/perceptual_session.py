@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import unicodedata
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from datetime import UTC, datetime
@@ -11,6 +12,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from deixis.memory_session import MemorySession
 from deixis.ontology.kinds import plain_name
+from deixis.perception.errors import SceneError
 from deixis.perception.scene import PerceivedObject, Scene
 from deixis.perception.scene_file import read_scene
 
@@ -22,6 +24,9 @@ if TYPE_CHECKING:
     from deixis.recognising import Recognised, Taught
 
 Done = TypeVar("Done")
+
+UNKNOWN = "unknown"
+"""What is said of a thing that is of no category."""
 
 
 class PerceptualSession(MemorySession):
@@ -59,7 +64,7 @@ class PerceptualSession(MemorySession):
         no cloud of it; SettingError for a name that is none.
         """
         scene = scene if isinstance(scene, Scene) else read_scene(scene)
-        return self.keep_views([_view(scene, object, category_name(category), teacher)])[0]
+        return self.keep_views([_view(scene, object, new_category_name(category), teacher)])[0]
 
     def keep_views(self, views: Sequence[View]) -> tuple[Taught, ...]:
         """Keeps views, all or none. A damaged one in the way teaches nothing, and is mended where it is kept again."""
@@ -91,8 +96,8 @@ class PerceptualSession(MemorySession):
     ) -> Recognised:
         """Names what is known among the things of a scene; without a memory nothing is.
 
-        ``progress`` is told of the calibration, which takes seconds after many views were taught; ``left_out``, in one
-        line, of views that are damaged and teach nothing.
+        ``progress`` is told of reading what was taught, and of the calibration, which take seconds after many views;
+        ``left_out``, in one line, of views that are damaged and teach nothing.
         """
         from deixis.perceiving import cloud_of
         from deixis.perception.recognition.recogniser import Recogniser
@@ -137,12 +142,20 @@ def _counted(memory: LevelMemory) -> dict[str, int]:
 
 
 def views_of_matches(scene: Scene, matches: Iterable[Match]) -> list[View]:
-    """What each decided thing looks like, where the scene has its cloud, under the name of its object."""
-    return [
-        _view(scene, match.perceived, plain_name(match.object), "grounding")
-        for match in matches
-        if match.decided and scene[match.perceived].cloud is not None
-    ]
+    """What each decided thing looks like, where the scene has its cloud, under the name of its object.
+
+    Raises SceneError where two things have the same points.
+    """
+    seen = [match for match in matches if match.decided and scene[match.perceived].cloud is not None]
+    views = [_view(scene, match.perceived, plain_name(match.object), "grounding") for match in seen]
+    first: dict[str, str] = {}
+    for match, view in zip(seen, views, strict=True):
+        if first.setdefault(view.id, match.perceived) != match.perceived:
+            raise SceneError(
+                f"{scene.file}: the clouds of '{first[view.id]}' and '{match.perceived}' are the same points;"
+                " perceive the table again, or name no cloud for one of them"
+            )
+    return views
 
 
 def _view(scene: Scene, object: str, category: str, teacher: str) -> View:
@@ -163,9 +176,20 @@ def category_name(text: str) -> str:
     return name
 
 
-def _thing(scene: Scene, object: str) -> PerceivedObject:
-    from deixis.perception.errors import SceneError
+def new_category_name(text: str) -> str:
+    """The same for what is to be taught; raises SettingError also for what no scene can have as a label, and for the
+    word that says that a thing is of no category."""
+    from deixis.reasoning.errors import SettingError
 
+    name = category_name(text)
+    if any(unicodedata.category(character) == "Cc" for character in name):
+        raise SettingError(f"a category's name, {name!a}, has a control character in it")
+    if name.lower() == UNKNOWN:
+        raise SettingError(f"'{name}' is said of what is of no known category; choose another word")
+    return name
+
+
+def _thing(scene: Scene, object: str) -> PerceivedObject:
     if object not in scene.ids:
         raise SceneError(f"{scene.file}: there is no object '{object}'; there are: {', '.join(scene.ids) or 'none'}")
     return scene[object]

@@ -42,6 +42,9 @@ LEAST_DOT = 1.0
 HEIGHT, MOST_WIDTH = 5.4, 12.5
 """Inches: a panel's height, and how wide the panels may be together."""
 
+LONGEST_NAME = 32
+"""Characters of a name that are drawn."""
+
 LEGEND = "Number: the probability that the name is right; beside 'unknown', that no name known is."
 
 Window = tuple[NDArray[np.float64], NDArray[np.float64]]
@@ -103,8 +106,9 @@ def plot_recognised(found: Recognised, path: str | Path) -> None:
 
 def _answered(id: str, label: str | None, found: Recognised) -> str:
     answer: Recognition | None = found.answers.get(id)
-    said = label if answer is None else f"{answer.label or 'unknown'} {answer.probability:.2f}"
-    return f"{id} {said or 'unknown'}"
+    name = (label if answer is None else answer.label) or "unknown"
+    name = name if len(name) <= LONGEST_NAME else f"{name[: LONGEST_NAME - 1]}…"
+    return f"{id} {name}" if answer is None else f"{id} {name} {answer.probability:.2f}"
 
 
 def window_of(points: NDArray[np.float32], found: Perceived) -> Window:

@@ -197,7 +197,11 @@ def recogniser_of(memory: LevelMemory, frame: str, progress: Progress | None = N
     with memory.exclusive():
         taught = {name: list(memory.views(name)) for name in memory.categories()}
         way = way_of((view for kept in taught.values() for view in kept), ways_in(frame))
-        categories = [instances_of(memory.category(name), kept, way) for name, kept in taught.items()]
+        categories = []
+        for name, kept in taught.items():
+            categories.append(instances_of(memory.category(name), kept, way))
+            if progress is not None:  # what was imported may have no distances yet, and then this takes longest
+                progress(len(categories), len(taught))
         known = Recogniser.of(categories, way.settings)
         views = {(key.category, key.id) for key in memory.listing()}
         calibration = kept_calibration(memory.path, views, str(way))

@@ -94,11 +94,12 @@ def test_the_image_is_cropped_to_its_segments_and_they_are_boxed_in_its_pixels()
 
 
 def test_a_recognised_thing_is_named_with_its_id(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    things = (PerceivedObject("o1", (0, 0, 0), (1, 1, 1), label="cup"), PerceivedObject("o2", (2, 0, 0), (3, 1, 1)))
+    labels = ("cup", None, "a" * 1000)
+    things = tuple(PerceivedObject(f"o{n}", (n, 0, 0), (n + 0.5, 1, 1), label) for n, label in enumerate(labels, 1))
     written: list[str | None] = []
     monkeypatch.setattr(plot_seen, "write_names", lambda _f, _a, named: written.extend(one.label for one in named))
     plot_seen.plot_recognised(Recognised(Scene(things), {}), tmp_path / "seen.png")
-    assert written == ["o1 cup", "o2 unknown"]
+    assert written == ["o1 cup", "o2 unknown", f"o3 {'a' * 31}…"]
 
 
 def test_perceive_says_where_the_picture_is_and_prints_nothing_but_the_scene_where_it_prints_one(

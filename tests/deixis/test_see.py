@@ -401,7 +401,32 @@ def test_names_that_go_nowhere_are_told(tables: Path, tmp_path: Path) -> None:
         (("merge", "Gäbel_🍴", "Gäbel_🍴"), "cannot be merged into itself"),
         (("rename", "Gäbel_🍴", "x" * 1001), "too long"),
         (("rename", "\udcff", "fork"), "half a character"),
+        (("rename", "Gäbel_🍴", "\x1b[31mred"), "has a control character"),
     ):
         code, out, err = deixis("category", *arguments, *memory)
         assert (code, out) == (2, ""), arguments
         assert message in err
+
+
+@pytest.mark.parametrize(
+    ("word", "message"), [("\x1b[31mred", "a control character"), ("Unknown", "choose another word")]
+)
+def test_a_word_that_could_not_be_said_of_a_thing_is_not_taught(
+    tables: Path, tmp_path: Path, word: str, message: str
+) -> None:
+    scene, memory = tables / "7.scene.json", ("--memory", tmp_path / "memory")
+    for arguments in (("teach", scene, "o1", word), ("ask", word, scene)):
+        code, out, err = deixis(*arguments, *memory)
+        assert (code, out) == (2, ""), arguments
+        assert message in err
+    assert not (tmp_path / "memory").exists()
+
+
+def test_two_things_with_the_same_points_are_named_before_anything_is_learned(tables: Path, tmp_path: Path) -> None:
+    scene, twice = json.loads((tables / "7.scene.json").read_text()), tables / "twice.scene.json"
+    scene["objects"][3]["cloud"] = scene["objects"][2]["cloud"]
+    twice.write_text(json.dumps(scene))
+    code, out, err = deixis("learn", FULL, twice, "--memory", tmp_path / "memory")
+    assert (code, out) == (2, "")
+    assert "twice.scene.json: the clouds of" in err and "are the same points" in err
+    assert json.loads(deixis("category", "list", "--json", "--memory", tmp_path / "memory")[1]) == {}

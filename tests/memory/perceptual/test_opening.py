@@ -15,7 +15,8 @@ import plyvel
 import pytest
 
 from deixis.memory import disk
-from deixis.memory.errors import MemoryBusyError, MemoryFormatError
+from deixis.memory.errors import MemoryBusyError, MemoryFormatError, MemoryWriteError
+from deixis.memory.lock import OwnerLock
 from deixis.memory.perceptual import keys, layout
 from deixis.memory.perceptual.errors import DamagedMemoryError
 from deixis.memory.perceptual.level import LevelMemory
@@ -171,6 +172,45 @@ def test_a_second_process_is_told_who_holds_it_and_a_dead_owner_does_not_block(k
         if holder.stdout:
             holder.stdout.close()
     assert content_of(kept, content) == before
+
+
+def test_of_two_that_find_no_memory_the_one_that_is_too_late_leaves_the_others_alone(
+    kept: Path, tmp_path: Path, content: Content, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    before, place = content_of(kept, content), tmp_path / "new"
+
+    def too_late(folder: Path) -> None:
+        shutil.copytree(kept, folder, dirs_exist_ok=True)
+        raise MemoryBusyError("in use by process 1")
+
+    with monkeypatch.context() as patched:
+        patched.setattr("deixis.memory.lock.OwnerLock.acquire", too_late)
+        with pytest.raises(MemoryBusyError):
+            LevelMemory.open(place, create=True)
+    assert content_of(place, content) == before
+
+
+@pytest.mark.parametrize("there", [False, True])
+def test_an_opening_that_fails_takes_away_what_it_made_and_nothing_else(
+    kept: Path, tmp_path: Path, content: Content, monkeypatch: pytest.MonkeyPatch, there: bool
+) -> None:
+    before, place, acquire = content_of(kept, content), tmp_path / "new", OwnerLock.acquire
+
+    def after_another(folder: Path) -> OwnerLock:
+        if there:
+            shutil.copytree(kept, folder, dirs_exist_ok=True)
+        return acquire(folder)
+
+    def full(*rest: object) -> None:
+        raise OSError("no space left on device")
+
+    with monkeypatch.context() as patched:
+        patched.setattr("deixis.memory.lock.OwnerLock.acquire", after_another)
+        patched.setattr("deixis.memory.perceptual.handle._counted", full)
+        with pytest.raises(MemoryWriteError):
+            LevelMemory.open(place, create=True)
+    assert place.exists() == there
+    assert not there or content_of(place, content) == before
 
 
 @pytest.mark.parametrize("name", ["MANIFEST", "CURRENT", "000"])

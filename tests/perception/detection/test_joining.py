@@ -7,7 +7,7 @@ import pytest
 from numpy.typing import NDArray
 
 from deixis.perception.detection.boundaries import Boundaries
-from deixis.perception.detection.joining import whole_things
+from deixis.perception.detection.joining import bridged, whole_things
 from deixis.perception.detection.parts import Parts
 from deixis.perception.detection.supervoxels import Supervoxels
 
@@ -67,3 +67,35 @@ def test_a_glass_whose_stem_is_seen_stands_on_its_foot_but_not_on_a_plate(width:
     parts = Parts(of, patches, meeting)
     assert 0.015 < parts.rise[0, 1] < 0.03
     assert len(whole_things(parts)) == count
+
+
+def _grid(x: tuple[float, float], y: tuple[float, float], z: float) -> NDArray[np.float64]:
+    """Patches a centimetre apart."""
+    plan = np.mgrid[x[0] : x[1] + 0.005 : 0.01, y[0] : y[1] + 0.005 : 0.01].reshape(2, -1).T
+    return np.column_stack([plan, np.full(len(plan), z)])
+
+
+def _below(cover: NDArray[np.float64], one: NDArray[np.float64], other: NDArray[np.float64]) -> Parts:
+    """Level parts of one colour; the first meets both others, and is higher."""
+    middles = np.concatenate([cover, one, other])
+    ones, number = np.ones(len(middles)), np.arange(len(middles), dtype=np.int32)
+    of = np.repeat([0, 1, 2], [len(cover), len(one), len(other)]).astype(np.int32)
+    normals, colours = np.tile([0.0, 0.0, 1.0], (len(middles), 1)), np.zeros((len(middles), 3))
+    patches = Supervoxels(number, ones, middles, normals, colours, 1e-4 * ones)
+    pairs = np.array([[0, len(cover)], [0, len(cover) + len(one)]])
+    return Parts(of, patches, Boundaries(pairs, np.ones(2), np.full(2, 1.2), np.ones(2)))
+
+
+def test_a_surface_goes_on_below_what_lies_between_its_parts() -> None:
+    knife, halves = (
+        _grid((-0.01, 0.01), (-0.1, 0.1), 0.02),
+        [_grid((side, side + 0.06), (-0.1, 0.1), 0.01) for side in (-0.08, 0.02)],
+    )
+    assert bridged(_below(knife, *halves)).tolist() == [[1, 2]]
+
+
+def test_cutlery_on_two_sides_of_a_plate_is_not_one_thing_below_it() -> None:
+    plate = _grid((-0.1, 0.1), (-0.1, 0.1), 0.03)
+    plate = plate[np.linalg.norm(plate[:, :2], axis=1) < 0.105]
+    fork, knife = _grid((-0.08, 0.09), (0.11, 0.12), 0.004), _grid((0.11, 0.12), (-0.1, 0.09), 0.004)
+    assert not len(bridged(_below(plate, fork, knife)))
