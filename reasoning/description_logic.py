@@ -17,7 +17,7 @@ from enum import StrEnum
 from importlib.util import find_spec
 from pathlib import Path
 
-from deixis.reasoning.errors import InconsistencyError, LimitError, ReasonerError, SettingError
+from deixis.reasoning.errors import InconsistencyError, LimitError, ReasonerError, SettingError, require_time_limit
 from deixis.reasoning.owl.axioms import split_axioms
 from deixis.reasoning.owl.java_classes import class_options, keep_classes
 from deixis.reasoning.owl.ntriples import Triple, read_ntriples, write_ntriples
@@ -141,8 +141,7 @@ def _ontology(triples: list[Triple]) -> str:
 
 
 def _run(reasoner: Reasoner, options: tuple[str, ...], ontologies: list[str], time_limit: float) -> _Said:
-    if not time_limit >= 0:
-        raise SettingError(f"a time limit is 0 or more seconds, not {time_limit}")
+    require_time_limit(time_limit)
     with tempfile.TemporaryDirectory(prefix="deixis-") as scratch:
         files = [Path(scratch) / f"{number}.nt" for number in range(len(ontologies))]
         for file, text in zip(files, ontologies, strict=True):

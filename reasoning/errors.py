@@ -17,6 +17,12 @@ class SettingError(DeixisError, ValueError):
     """A setting of a call that it cannot have."""
 
 
+def require_time_limit(seconds: float) -> None:
+    """Raises SettingError for what is no time limit, not a number among them."""
+    if not seconds >= 0:
+        raise SettingError(f"a time limit is 0 or more seconds, not {seconds}")
+
+
 class NothingFoundError(DeixisError, LookupError):
     """A script of which a scene shows nothing."""
 

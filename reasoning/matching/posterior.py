@@ -130,8 +130,7 @@ def _sampled(
 ) -> Posterior:
     """A short run of ladders, then one as long as the first one's error shows to be needed, and so on.
 
-    Each leaves out all before, as being on the way. All ladders begin at ``start`` (n1,), where there is one. What
-    happened in no sweep, or in all, may yet be otherwise in the next: one sweep more is taken to have been anything.
+    Each leaves out all before, as being on the way. All ladders begin at ``start`` (n1,), where there is one.
     """
     n1, width = compiled.unary.shape
     groups, rng = exchangeable(problem), np.random.default_rng(seed)
@@ -148,15 +147,12 @@ def _sampled(
     left = int(min(PROPOSALS * n1, MOST_PROPOSALS) / (LADDERS * PARTS * ROUNDS * n1 * len(coldness)))
     sweeps = int(np.clip(left / 4, *FIRST_SWEEPS))
     marginals, error = averaged(np.eye(width)[ladders[0].labels[0]], groups), math.inf
-    unseen = np.column_stack([np.isfinite(problem.unary), np.ones(n1)])
-    unseen /= unseen.sum(axis=1, keepdims=True)
+    allowed = np.column_stack([np.isfinite(problem.unary), np.ones(n1)])
     while True:
         counts = _run(ladders, compiled, sweeps, deadline, thresholds, rng)
         if counts is None:
             break
-        marginals, error = _agreement(averaged(counts / sweeps, groups))
-        seen = LADDERS * PARTS * sweeps
-        marginals, error = (seen * marginals + unseen) / (seen + 1), max(error, 1 / seen)
+        marginals, error = _agreement(averaged(counts / sweeps, groups), allowed, LADDERS * PARTS * sweeps)
         left -= sweeps
         wanted = max(2 * sweeps, math.ceil(sweeps * (error / TOLERANCE) ** 2))
         if error <= TOLERANCE or left < sweeps:
@@ -185,7 +181,13 @@ def _run(
     return counts / (PARTS // 2)
 
 
-def _agreement(shares: NDArray[np.float64]) -> tuple[Marginals, float]:
-    """The mean of all halves, and the largest standard error of a marginal, halves taken as independent runs."""
+def _agreement(shares: NDArray[np.float64], allowed: NDArray[np.float64], sweeps: int) -> tuple[Marginals, float]:
+    """The mean of all halves, and the largest standard error of a marginal, halves taken as independent runs.
+
+    What happened in none of the ``sweeps``, or in all, may yet be otherwise in the next: one sweep more is taken to
+    have been anything that is ``allowed`` (n1, n2 + 1), and no error is smaller than the share of one.
+    """
     halves = shares.reshape(-1, *shares.shape[2:])
-    return halves.mean(axis=0), float(halves.std(axis=0, ddof=1).max() / math.sqrt(len(halves)))
+    error = float(halves.std(axis=0, ddof=1).max() / math.sqrt(len(halves)))
+    anything = allowed / allowed.sum(axis=1, keepdims=True)
+    return (sweeps * halves.mean(axis=0) + anything) / (sweeps + 1), max(error, 1 / sweeps)

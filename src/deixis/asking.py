@@ -20,7 +20,7 @@ from deixis.reasoning.asking.inquiry import Exchange, Inquiry, Outcome, begin
 from deixis.reasoning.asking.questions import ABSENT, NO, YES, QuestionKind
 from deixis.reasoning.asking.situation import Situation, situation_of
 from deixis.reasoning.engines import engine_named
-from deixis.reasoning.errors import SettingError
+from deixis.reasoning.errors import require_time_limit
 from deixis.reasoning.evidence import PRESENT, Evidence
 from deixis.reasoning.from_sides import FromSides, OtherSide
 from deixis.reasoning.grounding import DEFAULT_TIME_LIMIT
@@ -83,8 +83,7 @@ def ask(
     not for the person: half of it is for what to ask, and the whole for grounding after the last answer; together they
     keep to it where nothing was answered.
     """
-    if not time_limit >= 0:
-        raise SettingError(f"a time limit is 0 or more seconds, not {time_limit}")
+    require_time_limit(time_limit)
     started = time.perf_counter()
     evidence = evidence_of(script, scene, meaning)
     situation = situation_of(evidence.description, evidence.scene)
@@ -168,11 +167,9 @@ def seen_from_anywhere(
     placed = (best.assignment[evidence.problem.ends] != UNMATCHED).all(axis=1)
     if not placed.any() or best.concentration < CONCENTRATED:
         return as_it_stands
-    seen = [
-        _with_boxes(scene, turned(scene.boxes, view.angle, view.mirrored)) for view in found.viewpoints[:MOST_SIDES]
-    ]
-    others = zip((view.probability for view in found.viewpoints[1:]), seen[1:], strict=False)
-    return SeenFrom(seen[0], found, _notes(found), tuple(side for side in others if side[0] >= WORTH_A_LOOK))
+    worth = [view for view in found.viewpoints[1:MOST_SIDES] if view.probability >= WORTH_A_LOOK]
+    others = tuple((view.probability, _seen_from(scene, view)) for view in worth)
+    return SeenFrom(_seen_from(scene, best), found, _notes(found), others)
 
 
 def ground_from_sides(
@@ -188,6 +185,10 @@ def ground_from_sides(
         aligning = FromSides(aligning, side.viewpoints.best.probability, others)
     evidence = evidence_of(script, side.scene, meaning)
     return ground_evidence(evidence, aligning, time_limit, conflict_notes(script.graph()))
+
+
+def _seen_from(scene: Scene, view: Viewpoint) -> Scene:
+    return _with_boxes(scene, turned(scene.boxes, view.angle, view.mirrored))
 
 
 def _with_boxes(scene: Scene, boxes: NDArray[np.float64]) -> Scene:

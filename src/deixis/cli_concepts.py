@@ -11,6 +11,8 @@ import typer
 
 from deixis.cli_common import (
     ENGINE_HELP,
+    NO,
+    UNDECIDED,
     AsJson,
     HideLabels,
     Image,
@@ -64,7 +66,7 @@ def learn(
                 learned = session.learn(script, seen, engine, time_limit)
         except NothingFoundError as error:
             print(f"deixis: {error}", file=sys.stderr)
-            raise typer.Exit(1) from error
+            raise typer.Exit(NO) from error
         where = session.path
     if as_json:
         print_json(learned_to_dict(learned))
@@ -129,9 +131,9 @@ def check(
         if plot is not None:
             print(f"\nThe picture is in {plot}.")
     if not checked.table.grounding.proved_best:
-        raise typer.Exit(3)
+        raise typer.Exit(UNDECIDED)
     if not checked.table.well:
-        raise typer.Exit(1)
+        raise typer.Exit(NO)
 
 
 def query(
@@ -160,7 +162,7 @@ def query(
         else:
             print_lines(result.to_table())
         if result.boolean is False:
-            raise typer.Exit(1)
+            raise typer.Exit(NO)
 
 
 def _text(file: Path) -> str:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from deixis.cli_common import (
+    NO,
     AsJson,
     MemoryDir,
     print_json,
@@ -147,7 +148,7 @@ def verify(memory: MemoryDir = None, as_json: AsJson = False) -> None:
     else:
         print_lines(_verified_lines(found))
     if found.findings:
-        raise typer.Exit(1)
+        raise typer.Exit(NO)
 
 
 def _verified_lines(found: Verified) -> Iterator[str]:

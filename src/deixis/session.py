@@ -21,7 +21,7 @@ from deixis.perceptual_session import PerceptualSession, views_of_matches
 from deixis.reasoning.answer import Grounding
 from deixis.reasoning.conflict import find_conflict
 from deixis.reasoning.engines import Select, engine_named
-from deixis.reasoning.errors import InconsistencyError, NothingFoundError, SettingError
+from deixis.reasoning.errors import InconsistencyError, NothingFoundError, SettingError, require_time_limit
 from deixis.reasoning.evidence import Evidence, evidence_from
 from deixis.reasoning.grounding import DEFAULT_TIME_LIMIT
 from deixis.reasoning.grounding import ground as ground_evidence
@@ -98,8 +98,7 @@ def ground(
     script = _script(script)
     scene = scene if isinstance(scene, Scene) else read_scene(scene)
     notes = _viewpoint_notes(script.viewpoint, scene) + conflict_notes(script.graph())
-    if not time_limit >= 0:
-        raise SettingError(f"a time limit is 0 or more seconds, not {time_limit}")
+    require_time_limit(time_limit)
     if select not in list(Select):
         raise SettingError(f"select is one of {', '.join(Select)}, not '{select}'")
     ready_to_ground(engine)
@@ -120,6 +119,7 @@ def _viewpoint_notes(viewpoint: str | None, scene: Scene) -> tuple[str, ...]:
 
 
 def conflict_notes(graph: RelationGraph) -> tuple[str, ...]:
+    """What is to be said with an answer where a script contradicts itself."""
     conflict = find_conflict(Implications(graph))
     if conflict is None:
         return ()
