@@ -46,7 +46,7 @@ class ExactEngine:
 
 @dataclass(frozen=True)
 class ScalableEngine:
-    """The likeliest map that annealing finds; it proves nothing."""
+    """The likeliest map that annealing and belief propagation find; it proves nothing."""
 
     def align(self, evidence: Evidence, deadline: float) -> Alignment:
         now = time.perf_counter()

@@ -16,7 +16,7 @@ NOISE = 1 << 13  # Gumbel numbers in a table, read from random places on
 BETTER = 1e-4  # what a map has to be better by: more than the error of gains in single precision
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def anneal(state, best, ahead, problem, sweeps, temperature, noise, seed):  # type: ignore[no-untyped-def]
     """So many sweeps over all objects, from a map that is worth ``ahead`` more than ``best`` (n1,).
 

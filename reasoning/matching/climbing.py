@@ -6,7 +6,7 @@ import numpy as np
 from numba import njit
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def climb(labels, problem):  # type: ignore[no-untyped-def]
     """Moves and swaps of one object after another, each the best there is, until none helps."""
     out = problem.unary.shape[1] - 1

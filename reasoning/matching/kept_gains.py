@@ -31,7 +31,7 @@ def keep(labels: NDArray[np.int64], problem: Compiled) -> KeptMap:
     return state
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def refresh(state, problem):  # type: ignore[no-untyped-def]
     """Computes all but the labels anew."""
     labels, gains, holder = state.labels, state.gains, state.holder

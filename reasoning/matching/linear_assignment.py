@@ -11,7 +11,7 @@ import numpy as np
 from numba import njit
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def solve_assignment(gain, column_of, price, profit):  # type: ignore[no-untyped-def]
     """Fills in each row's column, the prices (c,) and the profits (r,), and returns the value.
 

@@ -16,7 +16,7 @@ from deixis.reasoning.matching.linear_assignment import solve_assignment
 BETTER = 1e-6  # what a map has to be better by
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def reassign(labels, problem, patience, seed):  # type: ignore[no-untyped-def]
     """One random set of objects after another, until ``patience`` in a row do not help; returns what that gained."""
     np.random.seed(seed)

@@ -11,7 +11,7 @@ import numpy as np
 from numba import njit
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def combine(labels, other, problem):  # type: ignore[no-untyped-def]
     """Takes into ``labels`` (n1,) each part of the other map that is worth more there; returns what that gained."""
     part = _parts(labels, other, problem)

@@ -1,20 +1,24 @@
 """The scalable engine: annealing from several starts, the best reheated, then moves and swaps until none helps.
 
-It proves nothing, and is for any size: its work for a step grows with the things and the facts of an object, and it
-holds little more than the tables. What it finds does not depend on the clock, unless the deadline cuts it short, nor in
-quality on the order of the objects.
+Of many objects, a second search anneals what belief propagation finds, and the best parts of both are taken. It proves
+nothing, and is for any size: its work for a step grows with the things and the facts of an object, and it holds little
+more than the tables. What it finds does not depend on the clock, unless the deadline cuts it short, nor in quality on
+the order of the objects.
 """
 
 from __future__ import annotations
 
 import math
 import time
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from threadpoolctl import threadpool_limits
 
 from deixis.reasoning.matching.annealing import NOISE, anneal
+from deixis.reasoning.matching.belief_propagation import propagate
 from deixis.reasoning.matching.climbing import climb
 from deixis.reasoning.matching.compiled import Compiled, to_assignment, to_labels
 from deixis.reasoning.matching.kept_gains import keep
@@ -32,6 +36,9 @@ MOST_TURNS, TURN_CELLS = 13, 11_700  # many short turns for few objects, one lon
 FRESH = 0.3  # the share of turns that start anew; the others reheat the best map
 PATIENCE = 20  # reassignments in a row that do not help, at the end
 LAST_SWEEPS = 3  # without noise, where the deadline struck
+PROPAGATED, ANNEALED = 50, 400  # objects from which on, and up to which, there is the one search, and the other
+BESIDE, AFTERWARDS = 0.8, 0.4  # of the sweeps, where there are both: to anneal from nothing, and what the other finds
+LEAST_EFFORT = 0.2  # below, belief propagation has too few steps
 HURRY = 1.25  # times its equal share of the time left that a temperature may take
 PART = 2e6  # cells of the sweeps between two looks at the clock
 
@@ -77,7 +84,28 @@ def scalable(
 def search_from(
     labels: NDArray[np.int64], compiled: Compiled, deadline: float, seed: int, effort: float, most: int
 ) -> tuple[NDArray[np.int64], bool]:
-    """The best of at most ``most`` turns, the first from ``labels`` (n1,), and whether all came to their end."""
+    """The best map found from ``labels`` (n1,) on, and whether the search came to its end.
+
+    There are at most ``most`` turns of annealing. Of many objects, it and belief propagation have a thread each; of
+    very many it is of little use beside it.
+    """
+    if len(labels) < PROPAGATED or effort < LEAST_EFFORT:
+        return _annealed(labels, compiled, deadline, seed, effort, most)
+    if len(labels) > ANNEALED:
+        return _propagated(labels, compiled, deadline, seed, effort, most)
+    with threadpool_limits(1, "blas"), ThreadPoolExecutor(1) as pool:
+        beside = pool.submit(_annealed, labels, compiled, deadline, seed, BESIDE * effort, most)
+        best, finished = _propagated(labels, compiled, deadline, seed, effort, most)
+        other, finished_too = beside.result()
+    if combine(best, other, compiled) > 0.0:
+        climb(best, compiled)
+    return best, finished and finished_too
+
+
+def _annealed(
+    labels: NDArray[np.int64], compiled: Compiled, deadline: float, seed: int, effort: float, most: int
+) -> tuple[NDArray[np.int64], bool]:
+    """At most ``most`` turns, the first from ``labels`` (n1,)."""
     rng = np.random.default_rng(seed)
     n1, width = compiled.unary.shape
     noise = rng.gumbel(size=NOISE + width).astype(np.float32)
@@ -96,6 +124,20 @@ def search_from(
     if reassign(best, compiled, PATIENCE, seed) > 0.0:
         climb(best, compiled)
     return best, True
+
+
+def _propagated(
+    labels: NDArray[np.int64], compiled: Compiled, deadline: float, seed: int, effort: float, most: int
+) -> tuple[NDArray[np.int64], bool]:
+    """A shorter annealing of what belief propagation finds, where there is time for it, else a whole one."""
+    half = time.perf_counter() + (deadline - time.perf_counter()) / 2
+    found = propagate(compiled, mean_range(compiled), half, effort=effort, seed=seed)
+    if found is None:
+        return _annealed(labels, compiled, deadline, seed + 1, effort, most)
+    climb(found, compiled)
+    best = labels.copy()
+    combine(best, found, compiled)
+    return _annealed(best, compiled, deadline, seed + 1, AFTERWARDS * effort, most)
 
 
 def turns_and_sweeps(objects: int, width: int) -> tuple[list[tuple[float, int]], int]:

@@ -84,7 +84,7 @@ def engines() -> list[Contestant]:
     """The shipped engines, the default first, and the default with words taken literally."""
     return [
         engine(EngineName.EXACT, "the default: branch and bound to the time limit, with probabilities"),
-        engine(EngineName.SCALABLE, "annealing from several starts, with probabilities"),
+        engine(EngineName.SCALABLE, "annealing and belief propagation, with probabilities"),
         engine(EngineName.SIMILARITY, "the paper's: equations 5 to 9, the Hungarian method"),
         engine(EngineName.BLONDEL, "Blondel et al. 2004, to convergence or 100 steps", most=300),
         engine(EngineName.HEYMANS_SINGH, "Heymans and Singh 2003, to convergence or 100 steps", most=300),
