@@ -10,7 +10,7 @@ import json
 import os
 import re
 import zipfile
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from datetime import datetime
 from pathlib import Path
 from typing import Any
@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from deixis.memory.errors import ImportFormatError, MemoryWriteError
 from deixis.memory.perceptual.errors import RecordError
-from deixis.memory.perceptual.protocol import PerceptualReading
+from deixis.memory.perceptual.protocol import PerceptualReading, Progress
 from deixis.memory.perceptual.records import CategoryRecord, View, arrays_by_name, arrays_by_use
 from deixis.memory.perceptual.tensors import pack
 
@@ -39,12 +39,12 @@ def is_archive(file: Path) -> bool:
         return False
 
 
-def write_archive(memory: PerceptualReading, file: Path) -> None:
+def write_archive(memory: PerceptualReading, file: Path, progress: Progress | None = None) -> None:
     """Writes all that a memory keeps; the file is there whole, or not at all. Raises MemoryWriteError."""
     new = file.with_name(file.name + ".new")
     try:
         with new.open("wb") as out, zipfile.ZipFile(out, "w", zipfile.ZIP_STORED) as archive:
-            _fill(archive, memory)
+            _fill(archive, memory, progress)
         os.replace(new, file)
     except OSError as error:
         if isinstance(error, MemoryWriteError):
@@ -54,15 +54,23 @@ def write_archive(memory: PerceptualReading, file: Path) -> None:
         new.unlink(missing_ok=True)
 
 
-def _fill(archive: zipfile.ZipFile, memory: PerceptualReading) -> None:
+def _fill(archive: zipfile.ZipFile, memory: PerceptualReading, progress: Progress | None) -> None:
     names = memory.categories()
     views = sum(1 for _ in memory.listing())
     head = {"format": FORMAT, "version": VERSION, "categories": len(names), "views": views}
     _add(archive, _HEAD, json.dumps(head, indent=2).encode() + b"\n")
     for number, name in enumerate(names):
         _add(archive, f"categories/{number:09}.safetensors", category_file(memory.category(name)))
-    for number, view in enumerate(memory.views()):
+    for number, view in enumerate(counted(memory.views(), views, progress)):
         _add(archive, f"views/{number:09}.safetensors", view_file(view))
+
+
+def counted(views: Iterable[View], total: int, progress: Progress | None, before: int = 0) -> Iterator[View]:
+    """The same views; ``progress`` is told of each, ``before`` so many having been seen to, of ``total``."""
+    for done, view in enumerate(views, start=before + 1):
+        yield view
+        if progress is not None:
+            progress(done, total)
 
 
 def _add(archive: zipfile.ZipFile, name: str, content: bytes) -> None:
@@ -109,6 +117,10 @@ class Archive:
     def __exit__(self, *_: object) -> None:
         self._zip.close()
 
+    def __len__(self) -> int:
+        """How many views there are."""
+        return self._views
+
     def records(self) -> Iterator[CategoryRecord]:
         """What learners left, one by one."""
         for name, said, arrays in self._entries("categories/"):
@@ -132,6 +144,7 @@ class Archive:
             names = [name for name in self._zip.namelist() if name != _HEAD]
             if len(names) != head["views"] + head["categories"] or len(set(names)) < len(names):
                 raise ValueError(f"it says {head['views']} views and {head['categories']} categories; others are there")
+            self._views: int = head["views"]
             foreign = [name for name in names if not _ENTRY.fullmatch(name)]
             if foreign:
                 raise ValueError(f"{foreign[0][:60]!r} has no place in an archive of views")

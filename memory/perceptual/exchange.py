@@ -11,12 +11,13 @@ Imported(views=0, categories=0, relearn=())
 from __future__ import annotations
 
 from collections import defaultdict
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
 from deixis.memory.errors import RejectedWriteError
-from deixis.memory.perceptual.archive import Archive, view_file, write_archive
-from deixis.memory.perceptual.protocol import PerceptualMemory
+from deixis.memory.perceptual.archive import Archive, counted, view_file, write_archive
+from deixis.memory.perceptual.protocol import PerceptualMemory, Progress
 from deixis.memory.perceptual.records import Batch, CategoryRecord, View
 
 _STEP = 64 << 20  # bytes of arrays that are written in one step
@@ -31,13 +32,13 @@ class Imported:
     relearn: tuple[str, ...]
 
 
-def export_views(memory: PerceptualMemory, file: str | Path) -> None:
+def export_views(memory: PerceptualMemory, file: str | Path, progress: Progress | None = None) -> None:
     """Writes everything as it is now into one file, the same bytes for the same content. Raises MemoryWriteError."""
     with memory.snapshot() as now:
-        write_archive(now, Path(file))
+        write_archive(now, Path(file), progress)
 
 
-def import_views(file: str | Path, memory: PerceptualMemory) -> Imported:
+def import_views(file: str | Path, memory: PerceptualMemory, progress: Progress | None = None) -> Imported:
     """Takes in what :func:`export_views` wrote; what is there stays.
 
     All is read and compared before anything is written. Up to 64 MB go in in one step; a larger file in several, and
@@ -49,7 +50,7 @@ def import_views(file: str | Path, memory: PerceptualMemory) -> Imported:
     with Archive(Path(file)) as archive, memory.exclusive():
         there = {key.id: key.category for key in memory.listing()}
         coming: dict[str, set[str]] = defaultdict(set)
-        for view in archive.views():
+        for view in counted(archive.views(), 2 * len(archive), progress):
             if view.id in there and view_file(memory.view(view.id)) != view_file(view):
                 raise RejectedWriteError(
                     f"{file}: its view '{view.id}' differs from the one in the memory; forget that one first, or "
@@ -57,7 +58,8 @@ def import_views(file: str | Path, memory: PerceptualMemory) -> Imported:
                 )
             coming[view.category].add(view.id)
         records, relearn = _records(archive, memory, there, coming)
-        new = _write(archive, memory, set(there), records)
+        views = counted(archive.views(), 2 * len(archive), progress, len(archive))
+        new = _write(views, memory, set(there), records)
     return Imported(new, len(records), relearn)
 
 
@@ -83,11 +85,11 @@ def _records(
     return records, tuple(relearn)
 
 
-def _write(archive: Archive, memory: PerceptualMemory, known: set[str], records: list[CategoryRecord]) -> int:
+def _write(views: Iterable[View], memory: PerceptualMemory, known: set[str], records: list[CategoryRecord]) -> int:
     """Writes the views that are new, and the records with the last of them."""
     waiting: list[View] = []
     size = written = 0
-    for view in archive.views():
+    for view in views:
         if view.id in known:
             continue
         waiting.append(view)

@@ -13,7 +13,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from deixis.memory.folder import inspect
-from deixis.memory.perceptual.archive import is_archive
+from deixis.memory.perceptual.archive import Archive, is_archive
 from deixis.memory.perceptual.exchange import Imported, export_views, import_views
 from deixis.memory.perceptual.layout import FOLDER, version_in
 from deixis.memory.perceptual.level import LevelMemory
@@ -68,13 +68,15 @@ def verify_views(memory: Path, progress: Progress | None = None) -> tuple[Findin
         return views.verify(progress)
 
 
-def export_all(memory: Path, file: Path) -> None:
+def export_all(memory: Path, file: Path, progress: Progress | None = None) -> None:
     """Writes all views and categories into one file; raises MemoryFormatError where nothing was taught."""
     with open_in(memory) as views:
-        export_views(views, file)
+        export_views(views, file, progress)
 
 
-def import_all(file: Path, memory: Path) -> Imported:
+def import_all(file: Path, memory: Path, progress: Progress | None = None) -> Imported:
     """Takes in what :func:`export_all` wrote, for files of which :func:`is_archive` is true."""
+    with Archive(file):
+        pass  # what is no archive of views makes no memory
     with open_in(memory, create=True) as views:
-        return import_views(file, views)
+        return import_views(file, views, progress)

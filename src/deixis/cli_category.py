@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from deixis.cli_common import BAD_INPUT, AsJson, MemoryDir, print_json, print_lines
+from deixis.cli_common import BAD_INPUT, AsJson, MemoryDir, print_json, print_lines, require_memory
 
 category_app = typer.Typer(help="List, rename, merge or forget what was taught.", no_args_is_help=True)
 
@@ -22,6 +22,7 @@ def list_categories(memory: MemoryDir = None, as_json: AsJson = False) -> None:
     """What was taught, with the number of views; exit 2 where damaged ones are left out."""
     from deixis.session import Session
 
+    require_memory(memory)
     left_out: list[str] = []
     with Session(memory) as session:
         known = session.categories(left_out.append)

@@ -40,6 +40,13 @@ def print_lines(lines: Iterable[str]) -> None:
         print(line)
 
 
+def print_written(*files: Path | None, aside: bool = False) -> None:
+    """Says where files are, those that were wanted; ``aside``: on standard error, where output is the answer alone."""
+    for file in files:
+        if file is not None:
+            print(f"Written: {file}", file=sys.stderr if aside else sys.stdout)
+
+
 def require_writable(written: Iterable[Path | None], read: Iterable[str | Path | None]) -> None:
     """Raises DeixisError, before any work, where a file cannot be written, or is read or written for something else."""
     from deixis.ontology.errors import DeixisError

@@ -22,6 +22,7 @@ from deixis.cli_common import (
     TimeLimit,
     print_json,
     print_lines,
+    print_written,
     ready_to_ground,
     require_plot,
     working,
@@ -128,8 +129,7 @@ def check(
         print_json(check_to_dict(checked))
     else:
         print_lines(check_lines(checked))
-        if plot is not None:
-            print(f"\nThe picture is in {plot}.")
+        print_written(report, plot)
     if not checked.table.grounding.proved_best:
         raise typer.Exit(UNDECIDED)
     if not checked.table.well:

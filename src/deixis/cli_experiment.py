@@ -10,7 +10,7 @@ from typing import Annotated
 
 import typer
 
-from deixis.cli_common import AsJson, print_json, print_lines, require_plot
+from deixis.cli_common import AsJson, print_json, print_lines, print_written, require_plot
 
 experiment = typer.Typer(
     help="Run an experiment, of the paper or of our own.", no_args_is_help=True, rich_markup_mode=None
@@ -67,6 +67,7 @@ def scoreboard(
         print_json(to_dict(found))
     else:
         print_lines(lines(found))
+        print_written(plot)
 
 
 @experiment.command("open-ended")
@@ -95,6 +96,7 @@ def open_ended(
         print_json(to_dict(found))
     else:
         print_lines(lines(found))
+        print_written(plot)
 
 
 @contextmanager

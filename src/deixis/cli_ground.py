@@ -22,6 +22,7 @@ from deixis.cli_common import (
     TimeLimit,
     print_json,
     print_lines,
+    print_written,
     ready_to_ground,
     require_plot,
     working,
@@ -100,8 +101,7 @@ def ground(
         print_json(grounding_to_dict(found) | more)
     else:
         print_lines(grounding_lines(found))
-        if plot is not None:
-            print(f"\nThe picture is in {plot}.")
+        print_written(plot)
     raise typer.Exit(_verdict(found))
 
 

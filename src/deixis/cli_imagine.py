@@ -7,7 +7,17 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from deixis.cli_common import NO, UNDECIDED, AsJson, Script, compiled, print_json, print_lines, require_scene_name
+from deixis.cli_common import (
+    NO,
+    UNDECIDED,
+    AsJson,
+    Script,
+    compiled,
+    print_json,
+    print_lines,
+    print_written,
+    require_scene_name,
+)
 
 if TYPE_CHECKING:
     from deixis.imagination import Imagination
@@ -41,8 +51,7 @@ def imagine(
         print_json(imagination_to_dict(found))
     else:
         print_lines(imagination_lines(found))
-        for file in (*scenes[: len(found.tables)], *pictures[: len(found.tables)]):
-            print(f"Written: {file}")
+        print_written(*scenes[: len(found.tables)], *pictures[: len(found.tables)])
     raise typer.Exit(_verdict(found))
 
 

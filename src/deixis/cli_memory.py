@@ -16,6 +16,7 @@ from deixis.cli_common import (
     MemoryDir,
     print_json,
     print_lines,
+    print_written,
     progress_bar,
     require_ending,
     require_memory,
@@ -53,7 +54,9 @@ def export(
         if out is None:
             raise DeixisError("views are no text: name a file with -o")
         require_ending(out, (".zip",), "an archive of views")
-        export_all(where, out)
+        with progress_bar("exporting") as progress:
+            export_all(where, out, progress)
+        print_written(out)
         return
     if out is not None:
         require_ending(out, _ENDINGS[format], f"an export as {format}")
@@ -81,6 +84,7 @@ def _export_concepts(memory: Path, out: Path | None, format: DumpFormat) -> None
         sys.stdout.write(text)
     else:
         out.write_text(text, encoding="utf-8")
+        print_written(out)
     if views:
         print(f"deixis: the memory has views as well, which are not in this export: {_VIEWS_TOO}", file=sys.stderr)
 
@@ -100,7 +104,8 @@ def import_(
         raise DeixisError(f"{dump}: there is no such file")
     if is_archive(dump):
         where = memory or default_memory()
-        done = import_all(dump, where)
+        with progress_bar("importing") as progress:
+            done = import_all(dump, where, progress)
         print(f"{dump} is in the memory {where}.")
         if done.relearn:
             print(f"Categories to be learned anew from their views: {', '.join(done.relearn)}.")

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from deixis.cli_common import AsJson, MemoryDir, NoMemory, print_json, print_lines, require_plot
+from deixis.cli_common import AsJson, MemoryDir, NoMemory, print_json, print_lines, print_written, require_plot
 
 if TYPE_CHECKING:
     from deixis.grammar.script import Script
@@ -53,7 +53,7 @@ def relation(
 
         plot_relation(found, known, plot)
         if not as_json:
-            print(f"Written: {plot}")
+            print_written(plot)
 
 
 def _in_force(memory: Path | None, no_memory: bool) -> RelationModels:

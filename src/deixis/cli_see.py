@@ -14,6 +14,7 @@ from deixis.cli_common import (
     MemoryDir,
     print_json,
     print_lines,
+    print_written,
     progress_bar,
     require_memory,
     require_plot,
@@ -79,9 +80,9 @@ def perceive(
     else:
         print_lines(_scene_lines(scene))
         print_lines(f"Note: {note}." for note in found.detection.notes)
-        print(f"The scene is in {out}, its clouds beside it.")
-    if plot is not None and not as_json:  # on standard error where the scene is what is printed
-        print(f"The picture is in {plot}.", file=sys.stderr if out is None else sys.stdout)
+        print_written(out)
+    if not as_json:
+        print_written(labels, plot, aside=out is None)
     if not scene.objects:
         raise typer.Exit(NO)
 
@@ -166,8 +167,7 @@ def recognise(
         print_lines(_answer_line(id, answer) for id, answer in found.answers.items())
         if not found.answers:
             print("Nothing in this scene has a cloud: only what perceive -o wrote can be recognised.")
-        if plot is not None:
-            print(f"The picture is in {plot}.")
+        print_written(out, plot)
     if not any(answer.label for answer in found.answers.values()):
         raise typer.Exit(NO)
 

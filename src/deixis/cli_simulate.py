@@ -28,7 +28,7 @@ def simulate(
         Path | None, typer.Option(metavar="FILE", help="Write what is true as a scene (.scene.json).")
     ] = None,
     seed: Annotated[int, typer.Option(min=0, help="Another seed draws other things, places and noise.")] = 0,
-    random: Annotated[int | None, typer.Option(min=0, max=300, help="So many things at random, no layout.")] = None,
+    random: Annotated[int | None, typer.Option(metavar="N", help="1 to 300 things at random, no layout.")] = None,
     mesh: Annotated[
         list[str] | None, typer.Option(metavar="NAME=FILE", help="A mesh (.ply, .obj, .stl; z up) for an object.")
     ] = None,

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from deixis.cli_common import NO, UNDECIDED, AsJson, TimeLimit, compiled, print_json, progress_bar
+from deixis.cli_common import NO, UNDECIDED, AsJson, TimeLimit, compiled, print_json, print_written, progress_bar
 
 if TYPE_CHECKING:
     from deixis.solving import Solved
@@ -58,6 +58,7 @@ def _report(file: str, solved: list[Solved], out: Path | None, as_json: bool) ->
     said = [line for each in solved for line in solved_lines(each)]
     # what is printed as a network can be read again: the verdict is a comment beside it
     print("\n".join([f"# {line}" for line in said] + shown if shown and out is None else said))
+    print_written(out)
 
 
 def _code(solved: list[Solved]) -> int:

@@ -96,7 +96,7 @@ def test_the_picture_is_written(tmp_path: Path, ending: str) -> None:
     path = tmp_path / "new" / f"found.{ending}"
     code, out, err = deixis("ground", SCRIPT1, SCENE, "--plot", path)
     assert (code, err) == (0, "")
-    assert f"The picture is in {path}." in out
+    assert f"Written: {path}" in out
     data = path.read_bytes()
     assert data.startswith(MAGIC[ending])
     assert 5_000 < len(data) < 2_000_000

@@ -76,10 +76,11 @@ def test_a_memory_of_views_alone_is_not_called_empty(views: Path, tmp_path: Path
 
 def test_an_export_says_that_it_leaves_views_behind(concepts: Path, tmp_path: Path) -> None:
     arguments = ("memory", "export", "-o", tmp_path / "all.trig", "--memory", concepts)
-    assert deixis(*arguments) == (0, "", "")
+    written = f"Written: {tmp_path / 'all.trig'}\n"
+    assert deixis(*arguments) == (0, written, "")
     open_in(concepts, create=True).close()
     code, out, err = deixis(*arguments)
-    assert (code, out, len(err.splitlines())) == (0, "", 1)
+    assert (code, out, len(err.splitlines())) == (0, written, 1)
     assert "'--format views -o FILE' writes them" in err
 
 
@@ -125,3 +126,16 @@ def test_pixels_are_told_as_pixels(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     image = scene(tmp_path / "image.scene.json", unit="px", objects=[{**BOX, "cloud": "o1.pcd"}])
     out = deixis("ask", "cup", image, "--memory", tmp_path / "memory")[1]
     assert out.splitlines()[0].split() == ["o1", "30", "x", "40", "px", "at", "25,", "40"]
+
+
+def test_what_is_no_archive_makes_no_memory(tmp_path: Path) -> None:
+    (tmp_path / "views.zip").write_bytes(b"PK\x03\x04 and nothing more")
+    code, out, err = deixis("memory", "import", tmp_path / "views.zip", "--memory", tmp_path / "new")
+    assert (code, out, len(err.splitlines())) == (2, "", 1)
+    assert not (tmp_path / "new").exists()
+
+
+def test_a_named_memory_that_is_not_there_has_no_categories_to_list(tmp_path: Path) -> None:
+    code, out, err = deixis("category", "list", "--memory", tmp_path / "mistyped")
+    assert (code, out) == (2, "")
+    assert "there is no memory" in err

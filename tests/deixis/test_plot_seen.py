@@ -107,9 +107,9 @@ def test_perceive_says_where_the_picture_is_and_prints_nothing_but_the_scene_whe
 ) -> None:
     cloud, scene, picture = tmp_path / "two.pcd", tmp_path / "two.scene.json", tmp_path / "two.svg"
     write_cloud(cloud, PointCloud(np.array([[0.0, 0.0, 1.0], [9.0, 9.0, 9.0]], np.float32)))
-    assert f"The picture is in {picture}." in deixis("perceive", cloud, "-o", scene, "--plot", picture)[1]
+    assert f"Written: {picture}" in deixis("perceive", cloud, "-o", scene, "--plot", picture)[1]
     _, out, err = deixis("perceive", cloud, "--plot", picture)
-    assert json.loads(out)["objects"] == [] and f"The picture is in {picture}." in err
+    assert json.loads(out)["objects"] == [] and f"Written: {picture}" in err
     assert "picture" not in "".join(deixis("perceive", cloud, "--json", "--plot", picture)[1:])
 
 

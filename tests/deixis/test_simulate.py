@@ -208,6 +208,8 @@ def test_a_layout_without_a_table_is_an_answer_of_no(tmp_path: Path) -> None:
         ((), "a layout, or --random"),
         (("x.layout", "--random", 3), "a layout, or --random"),
         (("--random", 0), "1 to 300 things"),
+        (("--random", 301), "1 to 300 things"),
+        (("--random", -1), "1 to 300 things"),
         (("--random", 1, "--noise", "nan"), "noise is 0 or more"),
         (("--random", 1, "--missing", "2"), "share of missing points"),
         (("--random", 1, "--camera-height", "-1"), "above the table"),

@@ -33,6 +33,16 @@ def file(kept: Path, tmp_path: Path) -> Path:
     return tmp_path / "views.zip"
 
 
+def test_progress_is_told_of_every_view(kept: Path, memory: PerceptualMemory, tmp_path: Path) -> None:
+    exported: list[tuple[int, int]] = []
+    imported: list[tuple[int, int]] = []
+    with LevelMemory.open(kept) as original:
+        export_views(original, tmp_path / "v.zip", lambda *so_far: exported.append(so_far))
+    import_views(tmp_path / "v.zip", memory, lambda *so_far: imported.append(so_far))
+    assert exported == [(done, 10) for done in range(1, 11)]
+    assert imported == [(done, 20) for done in range(1, 21)]  # each is read twice: compared, then written
+
+
 def test_what_is_exported_comes_back(memory: PerceptualMemory, file: Path, kept: Path, content: Content) -> None:
     assert import_views(file, memory) == Imported(views=10, categories=3, relearn=())
     with LevelMemory.open(kept) as original:
