@@ -25,7 +25,8 @@ if TYPE_CHECKING:
 class Fact:
     """The subject stands in one of the relations to the object, or, where not ``positive``, in none of them.
 
-    ``weight`` is above 0 and at most 1; an ``optional`` fact need not hold. ``source`` is where it was written.
+    ``weight`` is above 0 and at most 1, below one half where it is rarely so; an ``optional`` fact need not hold.
+    ``source`` is where it was written.
 
     >>> from deixis.ontology.tbox import default_ontology
     >>> r = default_ontology().relations
@@ -43,12 +44,18 @@ class Fact:
 
     def __str__(self) -> str:
         names = " or ".join(relation.name for relation in self.relations)
-        return f"{'' if self.positive else 'not '}{names}({self.subject}, {self.object})"
+        rarely = "rarely " if self.weight < 0.5 else ""
+        return f"{rarely}{'' if self.positive else 'not '}{names}({self.subject}, {self.object})"
+
+    @property
+    def affirmed_weight(self) -> float:
+        """The weight of what it affirms: what is rarely so (0.2) is not so by 0.8."""
+        return max(self.weight, 1 - self.weight)
 
     @property
     def plain(self) -> bool:
         """One relation that is affirmed: what Definition 1 and equations 5-9 can see."""
-        return self.positive and len(self.relations) == 1
+        return self.positive and self.weight >= 0.5 and len(self.relations) == 1
 
     @property
     def relation_set(self) -> int:
@@ -113,8 +120,20 @@ class RelationGraph:
 
     @property
     def net_weights(self) -> NDArray[np.float64]:
-        """By what each edge counts (m,): its weight, and half of it where it is optional."""
-        return self.weights * np.where(self.optional, OPTIONAL_WEIGHT, 1.0)
+        """By what each edge counts (m,): the weight of what it affirms, half of it where it is optional."""
+        return self.affirmed_weights * np.where(self.optional, OPTIONAL_WEIGHT, 1.0)
+
+    @property
+    def affirmed_weights(self) -> NDArray[np.float64]:
+        """The weight of what each edge affirms (m,): what is rarely so (0.2) is not so by 0.8."""
+        weights: NDArray[np.float64] = np.maximum(self.weights, 1 - self.weights)
+        return weights
+
+    @property
+    def affirmed(self) -> NDArray[np.bool_]:
+        """Which edges say that a relation holds (m,): what is rarely so is mostly not so."""
+        affirmed: NDArray[np.bool_] = self.positive == (self.weights >= 0.5)
+        return affirmed
 
     @classmethod
     def from_facts(

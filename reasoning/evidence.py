@@ -114,7 +114,7 @@ class Evidence:
         member = (sets[:, None] >> np.arange(len(degrees))[None, :] & 1).astype(bool)
         best = np.where(member[:, :, None], degrees[None, :, :], 0.0).max(axis=1, initial=0.0)
         denied = np.where(best > 0, 0.0, 1.0)
-        table = np.where(self.description.positive[self.facts][:, None], best, denied)
+        table = np.where(self.description.affirmed[self.facts][:, None], best, denied)
         return np.concatenate([table, np.zeros((len(table), 1))], axis=1)
 
     def degrees(self, assignment: NDArray[np.int64]) -> NDArray[np.float64]:
@@ -136,7 +136,7 @@ class Evidence:
     def totals(self, assignments: NDArray[np.int64]) -> NDArray[np.float64]:
         """The total of each of k assignments (k, n1)."""
         matched = assignments != UNMATCHED
-        totals: NDArray[np.float64] = self.degrees(assignments) @ self.description.weights[self.facts]
+        totals: NDArray[np.float64] = self.degrees(assignments) @ self.description.affirmed_weights[self.facts]
         if self.labels.size:
             said = self.labels[np.arange(assignments.shape[1]), np.where(matched, assignments, 0)]
             totals += np.where(matched, said, 0.0).sum(axis=1)

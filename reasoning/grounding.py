@@ -144,8 +144,8 @@ def _matches(
     for entry in outcomes:
         if entry.outcome in (Outcome.SATISFIED, Outcome.VIOLATED):
             for name in (entry.fact.subject, entry.fact.object):
-                said[name] += entry.fact.weight
-                held[name] += entry.fact.weight * entry.degree
+                said[name] += entry.fact.affirmed_weight
+                held[name] += entry.fact.affirmed_weight * entry.degree
     matches = {}
     for i in np.flatnonzero(alignment.assignment != UNMATCHED):
         name, p = evidence.description.nodes[i], int(alignment.assignment[i])
@@ -254,6 +254,14 @@ def _named(nodes: tuple[str, ...], chosen: NDArray[np.bool_]) -> tuple[str, ...]
     return tuple(nodes[i] for i in np.flatnonzero(chosen))
 
 
+def _any_of_many(evidence: Evidence, alignment: Alignment) -> tuple[str, ...]:
+    """The objects that are matched to something, though no thing is probable enough to be worth naming."""
+    if alignment.posterior is None:
+        return ()
+    least = alignment.posterior.marginals.max(axis=1, initial=0.0) < WORTH_NAMING
+    return _named(evidence.description.nodes, least & (alignment.assignment != UNMATCHED))
+
+
 def _left_out_objects(evidence: Evidence, alignment: Alignment, names: tuple[str, ...]) -> tuple[LeftOut, ...]:
     reasons = {}
     for i in np.flatnonzero(alignment.assignment == UNMATCHED):
@@ -261,7 +269,7 @@ def _left_out_objects(evidence: Evidence, alignment: Alignment, names: tuple[str
             reason = "nothing was perceived"
         elif not evidence.allowed[i].any():
             reason = "the labels of the scene leave it nothing that it could be"
-        elif len(evidence.description.nodes) > len(evidence.scene.nodes):
+        elif len(evidence.description.nodes) > len(evidence.scene.nodes) and (alignment.assignment != UNMATCHED).any():
             reason = "the description names more than was perceived, and the rest explains the scene best without it"
         else:
             reason = "what is said of it fits nothing perceived as well as its not being there"
@@ -272,7 +280,7 @@ def _left_out_objects(evidence: Evidence, alignment: Alignment, names: tuple[str
 
 
 def _left_out_things(evidence: Evidence, alignment: Alignment, ids: tuple[str, ...]) -> tuple[LeftOut, ...]:
-    taken = set(alignment.assignment.tolist())
+    taken = set(alignment.assignment.tolist()) - {UNMATCHED}
     reasons = {}
     for p, thing in enumerate(evidence.scene.nodes):
         if p in taken:
@@ -281,8 +289,10 @@ def _left_out_things(evidence: Evidence, alignment: Alignment, ids: tuple[str, .
             reason = "the description names nothing"
         elif not evidence.allowed[:, p].any():
             reason = "its label names nothing in the description"
+        elif len(evidence.description.nodes) < len(evidence.scene.nodes) and taken:
+            reason = "the description names fewer things than were perceived, and fits the others at least as well"
         else:
-            reason = "the description names fewer things than were perceived, and fits the others better"
+            reason = "nothing that is described fits it better than its not being described"
         reasons[thing] = reason
     return tuple(LeftOut(thing, reasons[thing]) for thing in ids if thing in reasons)
 
@@ -293,7 +303,10 @@ def _notes(evidence: Evidence, alignment: Alignment) -> tuple[str, ...]:
     if not alignment.converged and not nothing:
         notes.append("the similarity did not converge; its figures are those of the last iteration")
     if alignment.converged and nothing:
-        notes.append("the similarity collapsed to zero: the description and the scene have no relation in common")
+        notes.append("the paper's similarity is zero: no exact name of the description is one of the scene's")
+    vague = _any_of_many(evidence, alignment)
+    if vague:
+        notes.append(f"any of many things is about as likely, and none of them likely, to be: {', '.join(vague)}")
     hidden = [str(fact) for fact in evidence.description.facts() if not fact.plain]
     if hidden:
         notes.append("not seen by the similarity, being no single affirmed relation: " + "; ".join(hidden))

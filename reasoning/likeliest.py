@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from deixis.reasoning.assignment import assign
 from deixis.reasoning.engines import Alignment, paper_similarity
 from deixis.reasoning.evidence import Evidence
+from deixis.reasoning.matching.baselines import NodeSimilarity
 from deixis.reasoning.matching.exact import exact
 from deixis.reasoning.matching.posterior import posterior
 from deixis.reasoning.matching.problem import Problem
@@ -60,11 +61,19 @@ class BaselineEngine:
     """A node similarity from the literature, made a map by the Hungarian method."""
 
     name: str
-    similarity: Callable[[Problem], NDArray[np.float64]]
+    similarity: Callable[[Problem, float], NodeSimilarity]
 
     def align(self, evidence: Evidence, deadline: float) -> Alignment:
-        matrix = self.similarity(evidence.problem)
-        return Alignment(self.name, assign(matrix, evidence.allowed), matrix, converged=True, proved_best=False)
+        found = self.similarity(evidence.problem, deadline)
+        return Alignment(
+            self.name,
+            assign(found.matrix, evidence.allowed),
+            found.matrix,
+            converged=True,
+            proved_best=False,
+            notes=() if found.finished else ("the time limit struck before the similarity came to its end",),
+            finished=found.finished,
+        )
 
 
 def _answer(

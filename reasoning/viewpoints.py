@@ -130,7 +130,8 @@ def recover_viewpoint(
 ) -> Viewpoints:
     """The posterior over viewpoints, quarter turns or (``any_angle``) any, until ``deadline`` (``time.perf_counter``).
 
-    The scene is first looked at as it stands, deadline or not, then quarter turned, then from the other sides.
+    The scene is first looked at as it stands, deadline or not, then quarter turned, then from the other sides. Sides
+    for which there was no time are taken to be as likely, but for the prior, as the best that was looked from.
 
     ``problem_of`` builds the matching problem from boxes (n2, 2, d) as seen from a viewpoint; its values have to be
     log-likelihood ratios, comparable between viewpoints. Raises GraphError for boxes that are none.
@@ -142,13 +143,16 @@ def recover_viewpoint(
     tried.sort(key=lambda one: one.angle % (math.pi / 2) > 1e-9)
     look = _Looker(boxes, problem_of, deadline)
     looked = look.at(tried)
-    everywhere = len(looked) == len(tried)
+    not_looked = tried[len(looked) :]
+    everywhere = not not_looked
     if any_angle:
         looked, closely = look.closer(looked)
         everywhere = everywhere and closely
     modes = _modes(looked) if any_angle else [[one] for one in looked]
     found = [_viewpoint(mode, mirror) for mode in modes]
-    total = _log_sum([score for _, score in found])
+    unseen = [math.log(_prior(one.mirrored, mirror) * one.share) for one in not_looked]
+    best = max(view.log_evidence for view, _ in found)
+    total = _log_sum([score for _, score in found] + [best + prior for prior in unseen])
     views = [replace(view, probability=math.exp(score - total)) for view, score in found]
     views.sort(key=lambda view: (-round(view.probability, 9), view.mirrored, view.angle))
     return Viewpoints(tuple(views), everywhere and all(one.complete for one in looked), everywhere)
@@ -260,13 +264,18 @@ def _homes(ring: list[_Looked]) -> list[int]:
 
 def _viewpoint(mode: list[_Looked], mirror: bool) -> tuple[Viewpoint, float]:
     """A peak as one viewpoint at its mean angle, and the logarithm of its prior times its evidence."""
-    prior = (MIRROR_PRIOR if mode[0].tried.mirrored else 1 - MIRROR_PRIOR) if mirror else 1.0
+    prior = _prior(mode[0].tried.mirrored, mirror)
     peak = max(mode, key=lambda one: (round(one.log_evidence, 9), -one.tried.angle))
     shares = [one.log_evidence + math.log(one.tried.share) for one in mode]
     score = _log_sum(shares) + math.log(prior)
     angle, concentration = _mean_angle(mode)
     view = Viewpoint(angle, peak.tried.mirrored, 0.0, peak.log_evidence, peak.assignment, concentration)
     return view, score
+
+
+def _prior(mirrored: bool, mirror: bool) -> float:
+    """Of a side of the mirror, where ``mirror`` leaves the choice."""
+    return (MIRROR_PRIOR if mirrored else 1 - MIRROR_PRIOR) if mirror else 1.0
 
 
 def _mean_angle(mode: list[_Looked]) -> tuple[float, float]:

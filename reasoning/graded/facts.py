@@ -4,11 +4,13 @@ A saying model gives the probability that a fact is said of a pair, up to a cons
 
 - a word: outliers + (1 - outliers) * s * d, with d the word's degree and s how readily the pair is spoken of;
 - a choice (``or``): the mixture of its words, each as likely as the next: d is the mean of theirs;
-- a denial (``not``): d is the product of the complements 1 - d of its words;
+- a denial (``not``): d is the product of the complements 1 - d of its words, where a word that holds widely of a pair
+  counts as fitting, however far apart the two are: what is far to the left is no less left, only said less often;
 - a fact that is meant literally is said of any pair, near or far, as readily as its name fits: 1 where the name is the
   word, ``IMPLIED`` where it only implies it, else 0; by chance one name in ten fits. The share of such facts is judged
   from the whole description (:mod:`deixis.reasoning.graded.speakers`);
 - a hedge of weight w: it holds with probability w, else it says nothing: log(w exp(l) + 1 - w), with l its evidence;
+  below one half (*rarely*) it is the opposite that is said, with the weight 1 - w;
 - ``optional``: a fact that need not hold is one that holds every other time: w is halved.
 """
 
@@ -99,7 +101,7 @@ def fact_tables(
 
 def _statements(description: RelationGraph, edges: NDArray[np.int64]) -> list[tuple[int, bool, float]]:
     """What each fact says: its relations, whether it is stated or denied, and its weight."""
-    columns = (description.relation_sets, description.positive, description.net_weights)
+    columns = (description.relation_sets, description.affirmed, description.net_weights)
     return list(zip(*(column[edges].tolist() for column in columns), strict=True))
 
 
@@ -156,9 +158,14 @@ class _Said:
         """By pair, shape (n2, n2)."""
         outliers = float(np.mean([self.models.of(relation).outliers for relation in relations]))
         chances = np.array([self.models.of(relation).chance for relation in relations])
+        fitting = [self.degrees.of(relation) for relation in relations]
+        if not positive:
+            holds = [np.append(self.vocabulary.degrees[relation.index] > 0, False) for relation in relations]
+            chances = np.maximum(chances, [LITERAL_CHANCE * names.sum() for names in holds])
+            fitting = [np.maximum(degree, names[self.names]) for degree, names in zip(fitting, holds, strict=True)]
         chance = float(combined(chances, positive)) * self.spoken_by_chance
         by_chance = outliers + (1 - outliers) * chance
-        degrees = combined([self.degrees.of(relation) for relation in relations], positive)
+        degrees = combined(fitting, positive)
         ratio: NDArray[np.float32] = degrees.astype(np.float32)
         ratio *= self.spoken
         ratio *= np.float32((1 - outliers) / by_chance)
@@ -224,8 +231,8 @@ def crisp_tables(description: RelationGraph, names: NDArray[np.int16]) -> FactTa
     tables = np.zeros((len(edges), *names.shape), dtype=np.float32)
     for row, edge in enumerate(edges.tolist()):
         relations = vocabulary.members(int(description.relation_sets[edge]))
-        degree = literal_degree(relations, bool(description.positive[edge]), names, vocabulary)
-        tables[row] = degree * description.weights[edge]
+        degree = literal_degree(relations, bool(description.affirmed[edge]), names, vocabulary)
+        tables[row] = degree * description.affirmed_weights[edge]
     kinds = np.arange(len(edges), dtype=np.int64)
     return FactTables(edges.astype(np.int64), _ends(description, edges), kinds, tables)
 

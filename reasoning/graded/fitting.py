@@ -46,8 +46,10 @@ class FitSettings:
     iterations: int = 100
 
     def __post_init__(self) -> None:
-        if not self.strength > 0 or not self.word_contrast >= 0 or self.iterations < 1:
-            raise SettingError("strength is above 0, word_contrast at least 0, iterations at least 1")
+        if not 0 < self.strength < np.inf:
+            raise SettingError(f"the strength of what is shipped is a number above 0, not {self.strength:g}")
+        if not self.word_contrast >= 0 or self.iterations < 1:
+            raise SettingError("word_contrast is at least 0, iterations at least 1")
 
 
 def learn_relations(

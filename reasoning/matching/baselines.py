@@ -3,12 +3,16 @@
 Both see graphs with weights: the description has an edge for every fact, the scene one for every pair that a fact's
 table says something for (the table over its largest entry; what speaks against a pair counts as nothing). Facts of
 several kinds are several such pairs of graphs, whose updates are added. Neither knows of unary terms but those that
-rule a match out. As engines, with the Hungarian method: :class:`deixis.reasoning.likeliest.BaselineEngine`.
+rule a match out. An iteration ends at a deadline (``time.perf_counter``) where there is one. As engines, with the
+Hungarian method: :class:`deixis.reasoning.likeliest.BaselineEngine`.
 """
 
 from __future__ import annotations
 
+import math
+import time
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,8 +25,16 @@ ITERATIONS = 100
 TOLERANCE = 1e-8
 
 
-def blondel_similarity(problem: Problem) -> Matrix:
-    """Shape (n1, n2), Frobenius norm 1: the limit of the even iterates of S <- B S A' + B' S A from ones.
+@dataclass(frozen=True, eq=False)
+class NodeSimilarity:
+    """How alike every object and every thing are (n1, n2), and whether the iteration came to its end."""
+
+    matrix: Matrix
+    finished: bool
+
+
+def blondel_similarity(problem: Problem, deadline: float = math.inf) -> NodeSimilarity:
+    """Frobenius norm 1: the limit of the even iterates of S <- B S A' + B' S A from ones.
 
     Blondel, Gajardo, Heymans, Senellart and Van Dooren, "A measure of similarity between graph vertices", SIAM Review
     46 (2004); here summed over the kinds of facts.
@@ -34,11 +46,11 @@ def blondel_similarity(problem: Problem) -> Matrix:
             total += a @ s @ b.T + a.T @ s @ b
         return total
 
-    return _iterate(lambda s: _normalised(update(_normalised(update(s)))), problem)
+    return _iterate(lambda s: _normalised(update(_normalised(update(s)))), problem, deadline)
 
 
-def heymans_singh_similarity(problem: Problem) -> Matrix:
-    """Shape (n1, n2), Frobenius norm 1: what neighbours have in common, less what sets them apart.
+def heymans_singh_similarity(problem: Problem, deadline: float = math.inf) -> NodeSimilarity:
+    """Frobenius norm 1: what neighbours have in common, less what sets them apart.
 
     Heymans and Singh, "Deriving phylogenetic trees from the similarity analysis of metabolic pathways",
     Bioinformatics 19 (2003): S <- (A1 + A2 + A3 + A4 - D1 - D2 - D3 - D4) / 4. A1 and A2 are the mean similarity of
@@ -56,7 +68,7 @@ def heymans_singh_similarity(problem: Problem) -> Matrix:
                 total -= _mean(one, s, apart_two) + _mean(apart_one, s, two)  # D2 and D4; turned round, D1 and D3
         return total / 4
 
-    return _iterate(lambda s: _normalised(update(s)), problem)
+    return _iterate(lambda s: _normalised(update(s)), problem, deadline)
 
 
 def _allowed(problem: Problem) -> NDArray[np.bool_]:
@@ -95,16 +107,18 @@ def _alike(one: Matrix, s: Matrix, two: Matrix) -> Matrix:
     return alike
 
 
-def _iterate(step: Callable[[Matrix], Matrix], problem: Problem) -> Matrix:
-    """Repeats a step from a matrix of ones, where nothing is ruled out, until nothing changes."""
+def _iterate(step: Callable[[Matrix], Matrix], problem: Problem, deadline: float) -> NodeSimilarity:
+    """Repeats a step from a matrix of ones, where nothing is ruled out, until nothing changes, or it is too late."""
     allowed = _allowed(problem)
     s = _normalised(allowed.astype(np.float64))
     for _ in range(ITERATIONS):
+        if time.perf_counter() > deadline:
+            return NodeSimilarity(s, finished=False)
         following = _normalised(step(s) * allowed) if s.size else s
         if np.abs(following - s).max(initial=0.0) <= TOLERANCE:
-            return following
+            return NodeSimilarity(following, finished=True)
         s = following
-    return s
+    return NodeSimilarity(s, finished=True)
 
 
 def _normalised(matrix: Matrix) -> Matrix:

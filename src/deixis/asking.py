@@ -26,7 +26,7 @@ from deixis.reasoning.from_sides import FromSides, OtherSide
 from deixis.reasoning.grounding import DEFAULT_TIME_LIMIT
 from deixis.reasoning.grounding import ground as ground_evidence
 from deixis.reasoning.likeliest import ExactEngine
-from deixis.reasoning.matching.problem import UNMATCHED
+from deixis.reasoning.matching.problem import UNMATCHED, Problem
 from deixis.reasoning.meaning import SHIPPED, Meaning
 from deixis.reasoning.viewpoints import Viewpoint, Viewpoints, recover_viewpoint, turned
 from deixis.session import conflict_notes, evidence_of
@@ -60,11 +60,12 @@ class SeenFrom:
     viewpoints: Viewpoints | None = None
     notes: tuple[str, ...] = ()
     others: tuple[tuple[float, Scene], ...] = ()  # as seen from other sides, each with its probability
+    share: float = 1.0  # how probable this side is
 
     @property
     def doubt(self) -> tuple[str, ...]:
         """What is to be said of probabilities that hold from the likeliest side alone."""
-        if self.viewpoints is None or self.viewpoints.best.probability >= DECIDED:
+        if self.share >= DECIDED:
             return ()
         return ("from other sides the matches may be others: their probabilities hold as seen from this one",)
 
@@ -91,14 +92,15 @@ def ask(
     left = max(0.0, time_limit - (time.perf_counter() - started))
     done = run(begin(situation, considered), source(situation), out)
     limit = time_limit if done.exchanges else left
-    return Asked(ground_evidence(_narrowed(evidence, done), ExactEngine(), limit), done.exchanges)
+    notes = conflict_notes(script.graph())
+    return Asked(ground_evidence(_narrowed(evidence, done), ExactEngine(), limit, notes), done.exchanges)
 
 
 def _considered(evidence: Evidence, time_limit: float) -> Candidates:
     """The groundings within the widest margin of which all can be listed; half of the time is for each."""
-    deadline = time.perf_counter() + time_limit
-    wide = candidates_of(evidence.problem, deadline - time_limit / 2, margin=MARGINS[0])
-    return wide if wide.complete else candidates_of(evidence.problem, deadline, margin=MARGINS[1])
+    started = time.perf_counter()
+    wide = candidates_of(evidence.problem, started + time_limit / 2, margin=MARGINS[0])
+    return wide if wide.complete else candidates_of(evidence.problem, started + time_limit, margin=MARGINS[1])
 
 
 def _narrowed(evidence: Evidence, done: Inquiry) -> Evidence:
@@ -149,27 +151,40 @@ def seen_from_anywhere(
     Turned by quarters only, unless ``any_angle``; mirrored where that explains it better. Where no fact compares two
     things that were found, or most of the circle does as well, nothing tells a side, and the scene stays as it is.
     """
-    untold = (
-        "the scene was taken as it stands: nothing tells from which side the description speaks, "
-        "and the probabilities of the matches hold as seen from this one"
-    )
-    as_it_stands = SeenFrom(scene, notes=(untold,))
+    deadline = time.perf_counter() + time_limit
     evidence = evidence_of(script, scene, meaning)
     if not len(evidence.facts) or len(scene.objects) < 2:
-        return as_it_stands
+        return SeenFrom(scene, notes=(f"{_UNTOLD}, and it makes no difference",))
+    present = scene.boxes
 
-    def problem(boxes: NDArray[np.float64]):  # type: ignore[no-untyped-def]
-        return evidence_of(script, _with_boxes(scene, boxes), meaning).problem
+    def problem(boxes: NDArray[np.float64]) -> Problem:
+        seen = evidence if np.array_equal(boxes, present) else evidence_of(script, _with_boxes(scene, boxes), meaning)
+        return seen.problem
 
-    deadline = time.perf_counter() + time_limit
-    found = recover_viewpoint(scene.boxes, problem, any_angle=any_angle, deadline=deadline)
+    found = recover_viewpoint(present, problem, any_angle=any_angle, deadline=deadline)
     best = found.best
     placed = (best.assignment[evidence.problem.ends] != UNMATCHED).all(axis=1)
-    if not placed.any() or best.concentration < CONCENTRATED:
-        return as_it_stands
+    if not placed.any():
+        return SeenFrom(scene, notes=(f"{_UNTOLD}, and it makes no difference",))
+    if best.concentration < CONCENTRATED:
+        return _from_all_quarters(scene, recover_viewpoint(present, problem, deadline=deadline))
+    return SeenFrom(_seen_from(scene, best), found, _notes(found), _others(scene, found), best.probability)
+
+
+_UNTOLD = "the scene was taken as it stands: nothing tells from which side the description speaks"
+
+
+def _from_all_quarters(scene: Scene, found: Viewpoints) -> SeenFrom:
+    """As it stands, with the other quarter turns for the whole circle, of which no part is likelier than another."""
+    upright = next(view for view in found.viewpoints if not view.angle and not view.mirrored)
+    rest = replace(found, viewpoints=(upright, *(view for view in found.viewpoints if view is not upright)))
+    return SeenFrom(scene, None, (_UNTOLD,), _others(scene, rest), upright.probability)
+
+
+def _others(scene: Scene, found: Viewpoints) -> tuple[tuple[float, Scene], ...]:
+    """What is seen from the sides after the first, with how probable they are, where that is worth a look."""
     worth = [view for view in found.viewpoints[1:MOST_SIDES] if view.probability >= WORTH_A_LOOK]
-    others = tuple((view.probability, _seen_from(scene, view)) for view in worth)
-    return SeenFrom(_seen_from(scene, best), found, _notes(found), others)
+    return tuple((view.probability, _seen_from(scene, view)) for view in worth)
 
 
 def ground_from_sides(
@@ -177,12 +192,10 @@ def ground_from_sides(
 ) -> Grounding:
     """Grounds as seen from the likeliest side, with the probabilities of matches over all sides that are worth a look.
 
-    Where nothing tells a side, just as the scene stands.
+    Where nothing tells a side, the map is that of the scene as it stands, with the probabilities from all around.
     """
-    aligning = engine_named(engine)
-    if side.viewpoints is not None:
-        others = tuple(OtherSide(share, evidence_of(script, scene, meaning)) for share, scene in side.others)
-        aligning = FromSides(aligning, side.viewpoints.best.probability, others)
+    others = tuple(OtherSide(share, evidence_of(script, scene, meaning)) for share, scene in side.others)
+    aligning = FromSides(engine_named(engine), side.share, others) if others else engine_named(engine)
     evidence = evidence_of(script, side.scene, meaning)
     return ground_evidence(evidence, aligning, time_limit, conflict_notes(script.graph()))
 

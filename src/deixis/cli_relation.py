@@ -8,7 +8,17 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from deixis.cli_common import AsJson, MemoryDir, NoMemory, print_json, print_lines, print_written, require_plot
+from deixis.cli_common import (
+    AsJson,
+    MemoryDir,
+    NoMemory,
+    print_json,
+    print_lines,
+    print_written,
+    require_ending,
+    require_plot,
+    require_writable,
+)
 
 if TYPE_CHECKING:
     from deixis.grammar.script import Script
@@ -90,6 +100,9 @@ def learn_relation(
     from deixis.show_relation import learned_words_lines, learned_words_to_dict
 
     _require_fitting(files, out, models, reset, no_memory)
+    if out is not None:
+        require_ending(out, (".ttl",), "what words mean, as Turtle,")
+        require_writable([out], [*(files or []), models])
     with Session(memory) as session:
         if reset:
             session.forget_relations()

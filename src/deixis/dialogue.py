@@ -74,7 +74,7 @@ def closing_lines(inquiry: Inquiry) -> list[str]:
     if inquiry.start.count == 1 and not left.complete:
         lines = ["One grounding was considered, so that there was nothing to ask."]
     elif left.count == 1:
-        lines = [f"One {'grounding' if left.complete else 'of those considered'} is left after {asked}."]
+        lines = [f"Of the groundings considered one is left after {asked}."]
     else:
         open_ = ", ".join(spoken(names[i]) for i in left.undecided)
         lines = [f"{left.count} groundings are left after {asked}; undecided: {open_}."]
@@ -108,9 +108,15 @@ class Terminal:
 def hint(question: Question, situation: Situation) -> str:
     """What may be answered; of things the likeliest ones are listed with their places."""
     if question.kind is not QuestionKind.POINTING:
-        return "(yes, no, ?)"
+        third = ", none: one of them is not there" if _may_be_absent(question) else ""
+        return f"(yes, no{third}, ?)"
     listed = [_listed(answer, situation) for answer, _ in question.answers if answer != ABSENT][:12]
     return f"({', '.join(listed)}; none, ?)"
+
+
+def _may_be_absent(question: Question) -> bool:
+    """Whether what is asked about is missing in some grounding that is considered."""
+    return ABSENT in dict(question.answers)
 
 
 def _listed(id: str, situation: Situation) -> str:
@@ -120,7 +126,9 @@ def _listed(id: str, situation: Situation) -> str:
 
 def _allowed(question: Question, situation: Situation) -> dict[str, str]:
     """What can be typed, and what it means; the id of a thing goes before a word that looks like it."""
-    meant = (DONT_KNOW, ABSENT) if question.kind is QuestionKind.POINTING else (YES, NO, DONT_KNOW, ABSENT)
+    meant = [DONT_KNOW] if question.kind is QuestionKind.POINTING else [YES, NO, DONT_KNOW]
+    if question.kind is QuestionKind.POINTING or _may_be_absent(question):
+        meant.append(ABSENT)
     allowed = {word: meaning for meaning in meant for word in _WORDS[meaning]}
     if question.kind is QuestionKind.POINTING:
         allowed |= {id: id for id in situation.things}

@@ -149,9 +149,9 @@ def test_both_searches_together_keep_to_the_time_limit_where_nothing_was_answere
     scene = boxes_file(tmp_path, [[0.0, 0.0]] * 30)
     limits: list[float] = []
 
-    def recorded(evidence: Evidence, engine: ExactEngine, time_limit: float) -> Grounding:
+    def recorded(evidence: Evidence, engine: ExactEngine, time_limit: float, notes: tuple[str, ...]) -> Grounding:
         limits.append(time_limit)
-        return ground(evidence, engine, time_limit)
+        return ground(evidence, engine, time_limit, notes)
 
     monkeypatch.setattr("deixis.asking.ground_evidence", recorded)
     monkeypatch.setattr("sys.stdin", io.StringIO(""))
@@ -219,7 +219,7 @@ def test_with_a_dialogue_probabilities_hold_as_seen_from_one_side(tmp_path: Path
     def doubt(probability: float) -> str:
         sides = [Viewpoint(0.0, False, probability, 0.0, np.zeros(1, np.int64))]
         sides += [Viewpoint(math.pi, False, 1 - probability, -1.0, np.zeros(1, np.int64))]
-        return "; ".join(SeenFrom(read_scene(SCENE), Viewpoints(tuple(sides), exact=True)).doubt)
+        return "; ".join(SeenFrom(read_scene(SCENE), Viewpoints(tuple(sides), exact=True), share=probability).doubt)
 
     assert "probabilities hold as seen from this one" in doubt(0.6)
     assert not doubt(0.99)

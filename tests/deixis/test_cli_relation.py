@@ -151,7 +151,10 @@ def test_what_learning_refuses(lesson: list[str], tmp_path: Path, memory: Path) 
     out = tmp_path / "m.ttl"
     assert "come in pairs" in refused("learn-relation", lesson[0], "-o", out)
     assert "strength" in refused("learn-relation", *lesson, "-o", out, "--strength", "0")
-    assert "cannot be written" in refused("learn-relation", *lesson, "-o", tmp_path)
+    folder = tmp_path / "folder.ttl"
+    folder.mkdir()
+    assert "a folder" in refused("learn-relation", *lesson, "-o", folder)
+    assert "ends in .ttl" in refused("learn-relation", *lesson, "-o", lesson[0])
     bare = tmp_path / "bare.scene.json"
     bare.write_text('{"objects": [{"id": "a", "min": [0, 0], "max": [1, 1]}]}', encoding="utf-8")
     assert "nothing to learn" in refused("learn-relation", lesson[0], bare, "-o", out)

@@ -40,7 +40,7 @@ def test_answers_at_the_terminal_lead_to_one_grounding() -> None:
     done, text = typed(three_cups(QuestionKind.RELATION), "YES", "y", "n", "no")
     assert done.candidates.count == 1
     assert text.startswith("1. Is the big cup left of the cup?   [1.00 bits]\n   (yes, no, ?) ")
-    assert text.endswith("One grounding is left after 2 questions.\n")
+    assert text.endswith("Of the groundings considered one is left after 2 questions.\n")
 
 
 def test_what_is_no_answer_is_asked_again() -> None:
@@ -147,4 +147,4 @@ def test_a_list_that_is_not_complete_is_not_said_to_leave_one_grounding() -> Non
         "Not all groundings could be considered; others may fit as well.\n"
     )
     cut = begin(several.situation, Candidates(several.start.assignments, np.ones(4), complete=False), several.kinds)
-    assert "One of those considered is left after 1 question.\n" in typed(cut, "o3", "o1")[1]
+    assert "Of the groundings considered one is left after 1 question.\n" in typed(cut, "o3", "o1")[1]

@@ -147,7 +147,7 @@ def test_lessons_that_cannot_be_are_refused(
         said_pairs(graph, np.zeros((2, 2, 2)), things, confidence)
 
 
-@pytest.mark.parametrize("wrong", [{"strength": 0.0}, {"word_contrast": -1.0}, {"iterations": 0}])
+@pytest.mark.parametrize("wrong", [{"strength": 0.0}, {"strength": np.inf}, {"word_contrast": -1.0}, {"iterations": 0}])
 def test_settings_that_cannot_be_are_refused(wrong: dict[str, float]) -> None:
-    with pytest.raises(SettingError, match="strength"):
+    with pytest.raises(SettingError, match=r"strength|word_contrast"):
         FitSettings(**wrong)  # type: ignore[arg-type]

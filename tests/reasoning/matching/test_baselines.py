@@ -14,11 +14,11 @@ from deixis.reasoning.matching.problem import Problem
 
 
 def blondel(problem: Problem) -> NDArray[np.int64]:
-    return assign(blondel_similarity(problem), ~np.isneginf(problem.unary))
+    return assign(blondel_similarity(problem).matrix, ~np.isneginf(problem.unary))
 
 
 def heymans_singh(problem: Problem) -> NDArray[np.int64]:
-    return assign(heymans_singh_similarity(problem), ~np.isneginf(problem.unary))
+    return assign(heymans_singh_similarity(problem).matrix, ~np.isneginf(problem.unary))
 
 
 def path(n1: int, n2: int) -> Problem:
@@ -36,13 +36,13 @@ def test_blondels_limit_is_the_projection_of_ones_on_the_leading_eigenvectors(n1
     squares, vectors = np.linalg.eigh(matrix @ matrix)
     leading = vectors[:, squares > squares.max() - 1e-9]
     limit = (leading @ (leading.T @ np.ones(n1 * n2))).reshape(n1, n2)
-    np.testing.assert_allclose(blondel_similarity(path(n1, n2)), limit / np.linalg.norm(limit), atol=1e-6)
+    np.testing.assert_allclose(blondel_similarity(path(n1, n2)).matrix, limit / np.linalg.norm(limit), atol=1e-6)
 
 
 def test_the_ends_of_an_arrow_are_told_apart_by_what_they_lack() -> None:
     """By hand: with a where the ends agree and x where not, a <- (3a + x) / 4 and x <- -x / 2, so that x vanishes."""
     half = np.sqrt(0.5)
-    np.testing.assert_allclose(heymans_singh_similarity(path(2, 2)), [[half, 0.0], [0.0, half]], atol=1e-6)
+    np.testing.assert_allclose(heymans_singh_similarity(path(2, 2)).matrix, [[half, 0.0], [0.0, half]], atol=1e-6)
 
 
 def test_an_arrow_is_matched_to_an_arrow() -> None:
@@ -56,4 +56,4 @@ def test_what_comes_out_is_a_map_and_the_similarity_is_finite(problem: Problem) 
     for engine in (blondel, heymans_singh):
         problem.require_map(engine(problem))
     for similarity in (blondel_similarity, heymans_singh_similarity):
-        assert np.isfinite(similarity(problem)).all()
+        assert np.isfinite(similarity(problem).matrix).all()
