@@ -49,6 +49,8 @@ def read_script(path: str | Path, ontology: Ontology | None = None) -> Script:
     """
     ontology = ontology or default_ontology()
     text = read_text(Path(path), str(path))
+    if text.lstrip("\ufeff \t\r\n").startswith("{"):
+        raise ScriptFileError(f"{path}:1:1: this is JSON, and no layout script; is it a scene? The script comes first")
     real = Path(path).resolve()
     includes = Includes(real.parent, [real])
     return _script(FileReader(text, str(path), Draft(ontology), language_of(ontology), includes))

@@ -56,7 +56,9 @@ def _parsed(path: Path) -> Any:
     except OSError as error:
         raise SceneError(f"{path}: cannot be read: {error.strerror}") from error
     except UnicodeDecodeError as error:
-        raise SceneError(f"{path}: the file is not UTF-8 (byte {error.start})") from error
+        raise SceneError(
+            f"{path}: the file is not UTF-8 (byte {error.start}), as a scene is; of a cloud 'deixis perceive' makes one"
+        ) from error
     except ValueError as error:
         raise SceneError(f"{path}: cannot be read: {error}") from error
     return parse_json(content, str(path), SceneError, no_number=None)

@@ -22,6 +22,7 @@ import plyvel
 from deixis.memory import disk
 from deixis.memory.errors import MemoryFormatError
 from deixis.memory.lock import LOCK_FILE
+from deixis.memory.perceptual.errors import DamagedMemoryError
 
 FOLDER = "perceptual"
 """Where a perceptual memory lies in the folder of a memory."""
@@ -42,7 +43,8 @@ def store(folder: Path, version: int | None = None) -> Path:
 def version_in(folder: Path) -> int | None:
     """The version of what is in a folder, by looking only; None where there is no memory yet.
 
-    Raises MemoryFormatError for a folder of other things, and for a version that this program does not know.
+    Raises MemoryFormatError for a folder of other things, and for a version that this program does not know;
+    DamagedMemoryError where a store was closed and is not there.
     """
     if folder.is_symlink() and not folder.exists():
         raise MemoryFormatError(f"{folder} is a link that leads nowhere; remove it or mend it")
@@ -58,6 +60,11 @@ def version_in(folder: Path) -> int | None:
             f"{folder} is no perceptual memory: it holds other things ({', '.join(foreign[:3])}); name another folder"
         )
     versions = [int(name.removeprefix("store-")) for name in names if not name.endswith(".new")]
+    if not versions and (folder / SEAL).exists():
+        raise DamagedMemoryError(
+            f"the views at {folder} are gone: {SEAL} says what the store held, and there is none; restore the folder "
+            "from a copy, or remove it to begin anew"
+        )
     return _known(folder, max(versions)) if versions else None
 
 

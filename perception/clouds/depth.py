@@ -67,7 +67,7 @@ def _png(content: Content) -> NDArray[np.generic]:
     width, height = int.from_bytes(head[8:12], "big"), int.from_bytes(head[12:16], "big")
     if len(head) < 25 or head[4:8] != b"IHDR":
         raise CloudError(f"{content.name}: byte 8: a PNG begins with its header; get the whole file")
-    if head[17] != 0 or head[16] not in (8, 16) or head[20] != 0:
+    if head[17] != 0 or head[16] != 16 or head[20] != 0:
         raise CloudError(
             f"{content.name}: byte 24: no plain greyscale PNG of 16 bits; save depth as one, not interlaced"
         )

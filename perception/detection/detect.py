@@ -25,8 +25,8 @@ NONE = -1
 ON_TABLE = 0.01
 """Metres from the plane within which a point is the table's, as far as its outline goes."""
 
-WIDEST = 20.0
-"""Metres from the middle of a cloud: where half the points are farther away, the unit is another."""
+WIDEST, NARROWEST = 20.0, 0.002
+"""Metres from the middle of a cloud: where half the points are farther away, or nearer, the unit is another."""
 
 LEAST_TABLE = 0.3
 """Metres: what is shorter in both directions is hardly a table."""
@@ -71,8 +71,8 @@ class Detection:
 def detect(cloud: PointCloud, settings: DetectionSettings | None = None) -> Detection:
     """The table of a cloud and the things on it; labels that a cloud bears are not looked at.
 
-    Raises CloudError for a cloud without one finite point, or so wide that it is not in metres. A cloud without a
-    table, and a table with nothing on it, give an answer that says so.
+    Raises CloudError for a cloud without one finite point, or so wide or narrow that it is not in metres. A cloud
+    without a table, and a table with nothing on it, give an answer that says so.
 
     >>> x, y = (axis.ravel() for axis in np.mgrid[-0.5:0.5:0.01, 0.5:1.5:0.01])
     >>> table = np.stack([x, y, np.full(x.shape, -0.7)], axis=1)
@@ -115,6 +115,11 @@ def _require_metres(points: NDArray[np.float64]) -> None:
         raise CloudError(
             f"half of the points are more than {spread:.0f} m from the middle, too far for a table;"
             " coordinates are metres: if these are millimetres, divide them by 1000"
+        )
+    if len(few) > 100 and spread < NARROWEST:
+        raise CloudError(
+            f"half of the points are within {1000 * spread:.2g} mm of the middle, too near for a table;"
+            " coordinates are metres: is the unit, or the depth_scale of the intrinsics, another?"
         )
 
 

@@ -102,7 +102,7 @@ def bridged(parts: Parts) -> Pairs:
     """Two parts of one surface, parted by something narrow that lies on both."""
     under = (parts.rise < -0.0005) & (parts.lengths > 0)
     both = under.astype(np.float64) @ under.T.astype(np.float64) > 0
-    pairs = _pairs(np.triu(both & _alike(parts)))
+    pairs = _pairs(np.triu(both & _alike(parts) & (parts.gaps < GAP)))
     return _chosen(pairs, lambda a, b: _continues(parts, a, b, np.flatnonzero(under[a] & under[b])))
 
 
@@ -123,7 +123,7 @@ def handles(parts: Parts) -> Pairs:
     )
     clear = parts.bottoms[:, None] > parts.bottoms[None] + CLEAR
     as_high = parts.tops[:, None] < parts.tops[None] + LEVEL
-    pairs = _pairs(small & clear & as_high & ~_differ(parts))
+    pairs = _pairs(small & clear & as_high & ~_differ(parts) & (parts.gaps < REACH))
     return _chosen(
         pairs, lambda handle, body: _apart(parts, handle, body) < REACH and _inside(parts, handle, body) < BESIDE
     )
@@ -153,11 +153,15 @@ def _pairs(which: NDArray[np.bool_]) -> Pairs:
 
 def _inside(parts: Parts, inner: int, outer: int) -> float:
     """The share of a part's patches that lie within the convex outline of another, as seen from above."""
-    hull = _hull(parts.patches.middles[parts.members(outer), :2])
+    return parts.once(_share_inside, inner, outer)
+
+
+def _share_inside(parts: Parts, inner: NDArray[np.intp], outer: NDArray[np.intp]) -> float:
+    plan = parts.patches.middles[:, :2]
+    hull = _hull(plan[outer])
     if hull is None:
         return 0.0
-    plan = parts.patches.middles[parts.members(inner), :2]
-    return float((plan @ hull[:, :2].T + hull[:, 2] <= 0.004).all(axis=1).mean())
+    return float((plan[inner] @ hull[:, :2].T + hull[:, 2] <= 0.004).all(axis=1).mean())
 
 
 def _covered(parts: Parts, cover: int, places: NDArray[np.float64]) -> bool:
@@ -171,10 +175,14 @@ def _covered(parts: Parts, cover: int, places: NDArray[np.float64]) -> bool:
 
 def _apart(parts: Parts, a: int, b: int) -> float:
     """The least distance between patches of two parts, as seen from above."""
+    return parts.once(_least_distance, a, b)
+
+
+def _least_distance(parts: Parts, one: NDArray[np.intp], two: NDArray[np.intp]) -> float:
     from scipy.spatial import cKDTree
 
-    one, two = (parts.patches.middles[parts.members(part), :2] for part in (a, b))
-    return float(cKDTree(two).query(one)[0].min())
+    plan = parts.patches.middles[:, :2]
+    return float(cKDTree(plan[two]).query(plan[one])[0].min())
 
 
 def _hull(plan: NDArray[np.float64]) -> NDArray[np.float64] | None:
@@ -193,19 +201,31 @@ def _hull(plan: NDArray[np.float64]) -> NDArray[np.float64] | None:
 def _continues(parts: Parts, a: int, b: int, over: NDArray[np.intp]) -> bool:
     """Whether one surface goes on in the other, under a part that is over both: where they are nearest, that part is
     between them, and their planes are the same."""
-    from scipy.spatial import cKDTree
-
-    one, two = parts.members(a), parts.members(b)
-    middles, normals = parts.patches.middles, parts.patches.normals
-    distance, nearest = cKDTree(middles[two]).query(middles[one])
-    close = (distance < GAP) & (distance < distance.min() + ALONG)
-    if not close.any():
+    if parts.once(_share_of_one_plane, a, b) <= 0.5:
         return False
-    p, q = one[close], two[nearest[close]]
-    if not any(_covered(parts, int(part), (middles[p] + middles[q]) / 2) for part in over):
-        return False  # a fork and a knife of one colour, on two sides of a plate
+    p, q = _nearest(parts, parts.members(a), parts.members(b))
+    between = (parts.patches.middles[p] + parts.patches.middles[q]) / 2
+    return any(_covered(parts, int(part), between) for part in over)  # else a fork and a knife beside a plate
+
+
+def _share_of_one_plane(parts: Parts, one: NDArray[np.intp], two: NDArray[np.intp]) -> float:
+    """Of the nearest patches of two parts, the share that lie in one plane."""
+    p, q = _nearest(parts, one, two)
+    if not len(p):
+        return 0.0
+    middles, normals = parts.patches.middles, parts.patches.normals
     normal = normals[p] + normals[q]
     normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-9)
     step = np.abs((normal * (middles[p] - middles[q])).sum(axis=1))
     same = (step < 0.004) & ((normals[p] * normals[q]).sum(axis=1) > np.cos(np.deg2rad(25.0)))
-    return bool(same.mean() > 0.5)
+    return float(same.mean())
+
+
+def _nearest(parts: Parts, one: NDArray[np.intp], two: NDArray[np.intp]) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Patches of two parts where these are nearest, and not too far apart: of the first, and of the second."""
+    from scipy.spatial import cKDTree
+
+    middles = parts.patches.middles
+    distance, nearest = cKDTree(middles[two]).query(middles[one])
+    close = (distance < GAP) & (distance < distance.min() + ALONG)
+    return one[close], two[nearest[close]]

@@ -6,7 +6,8 @@ there, whether their colours are alike.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -19,6 +20,9 @@ SHADE = 0.35
 """How much lightness counts in a difference of colour: a shadow on one thing is mostly that."""
 
 
+Measure = Callable[["Parts", NDArray[np.intp], NDArray[np.intp]], float]
+
+
 @dataclass(frozen=True, eq=False)
 class Parts:
     """``of`` (s,) is the part, 0 to p - 1, that each patch belongs to. Heights are those above the table."""
@@ -26,6 +30,7 @@ class Parts:
     of: NDArray[np.int32]
     patches: Supervoxels
     meeting: Boundaries
+    known: dict[tuple[object, ...], float] = field(default_factory=dict, repr=False)
 
     def __len__(self) -> int:
         return int(self.of.max()) + 1 if len(self.of) else 0
@@ -33,6 +38,19 @@ class Parts:
     def members(self, part: int) -> NDArray[np.intp]:
         """Its patches."""
         return np.flatnonzero(self.of == part)
+
+    def once(self, measure: Measure, a: int, b: int) -> float:
+        """What a function of the patches of two parts gives, worked out once: joining others does not change it."""
+        key = (measure, *self._marks[a], *self._marks[b])
+        if key not in self.known:
+            self.known[key] = measure(self, self.members(a), self.members(b))
+        return self.known[key]
+
+    @cached_property
+    def _marks(self) -> list[tuple[int, int]]:
+        """The first patch of each part and how many it has: parts only grow, so that these tell one from all others."""
+        _, first, count = np.unique(self.of, return_index=True, return_counts=True)
+        return list(zip(first.tolist(), count.tolist(), strict=True))
 
     @cached_property
     def areas(self) -> NDArray[np.float64]:
@@ -59,12 +77,25 @@ class Parts:
         return means(self.of, self.patches.middles, self.patches.sizes)[:, 2]
 
     @cached_property
-    def widths(self) -> NDArray[np.float64]:
-        """The longer side of the box around a part as seen from above, (p,)."""
+    def plans(self) -> NDArray[np.float64]:
+        """The least and the greatest corner of the box around a part as seen from above, (2, p, 2)."""
         low, high = np.full((len(self), 2), np.inf), np.full((len(self), 2), -np.inf)
         np.minimum.at(low, self.of, self.patches.middles[:, :2])
         np.maximum.at(high, self.of, self.patches.middles[:, :2])
-        result: NDArray[np.float64] = (high - low).max(axis=1)
+        return np.stack([low, high])
+
+    @cached_property
+    def widths(self) -> NDArray[np.float64]:
+        """The longer side of that box, (p,)."""
+        result: NDArray[np.float64] = (self.plans[1] - self.plans[0]).max(axis=1)
+        return result
+
+    @cached_property
+    def gaps(self) -> NDArray[np.float64]:
+        """How far those boxes are apart, (p, p): no patches of two parts are nearer, as seen from above."""
+        low, high = self.plans
+        apart = np.maximum(low[:, None] - high[None], low[None] - high[:, None]).clip(0.0)
+        result: NDArray[np.float64] = np.linalg.norm(apart, axis=2)
         return result
 
     @cached_property
@@ -121,9 +152,8 @@ class Parts:
 
         count = len(self)
         links = coo_array((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(count, count))
-        return Parts(
-            connected_components(links, directed=False)[1][self.of].astype(np.int32), self.patches, self.meeting
-        )
+        of = connected_components(links, directed=False)[1][self.of].astype(np.int32)
+        return replace(self, of=of)
 
     @property
     def _heavy(self) -> NDArray[np.float64]:

@@ -26,6 +26,9 @@ LEAST_SHARE = 0.04
 STANDING = (0.008, 0.35)
 """Metres above a plane between which things stand on it."""
 
+TABLE_HEIGHT, LEAST_STANDING = 0.4, 0.002
+"""Metres that a floor lies below a table at the least, and the share of all points that stand on what is no floor."""
+
 
 @dataclass(frozen=True, eq=False)
 class Plane:
@@ -71,18 +74,39 @@ def table_plane(points: NDArray[np.float64], outlook: Outlook, seed: int) -> Pla
     rng = np.random.default_rng(seed)
     sample = points if len(points) <= SAMPLE else points[np.sort(rng.choice(len(points), SAMPLE, replace=False))]
     tolerance = _tolerance(sample, outlook)
-    planes = _planes(sample, tolerance, outlook, rng)
+    found = _planes(sample, tolerance, outlook, rng)
+    planes = [plane for plane in found if outlook.could_be_table(plane.normal)]
     if not planes:
         return None
     free = np.ones(len(sample), dtype=np.bool_)
-    for plane in planes:
+    for plane in found:  # a wall is nothing that stands on the floor
         free &= np.abs(plane.heights(sample)) > tolerance
+    planes = _without_floors(planes, sample, tolerance, sample[free])
     # What stands on a table tells its upper side, should the sensor seem to be below: the origin may be a mere default.
     planes += [turned for turned in (plane.turned() for plane in planes) if outlook.could_be_table(turned.normal)]
     bearing = [_bearing(plane, sample, tolerance, sample[free]) for plane in planes]
     best = planes[int(np.argmax(bearing))]
     chosen = points[:: max(1, len(points) // MOST_REFINED)]
     return refined(best, chosen, _tolerance(chosen, outlook))
+
+
+def _without_floors(
+    planes: list[Plane], sample: NDArray[np.float64], tolerance: NDArray[np.float64], free: NDArray[np.float64]
+) -> list[Plane]:
+    """All but those that lie a table's height below one on which something stands, however large they are."""
+    on = [sample[np.abs(plane.heights(sample)) <= tolerance] for plane in planes]
+    bears = [
+        _standing(plane, points, free) >= LEAST_STANDING * len(sample) for plane, points in zip(planes, on, strict=True)
+    ]
+
+    def floor(lower: Plane) -> bool:
+        return any(
+            bearing and upper.normal @ lower.normal > 0.95 and np.median(lower.heights(points)) > TABLE_HEIGHT
+            for upper, points, bearing in zip(planes, on, bears, strict=True)
+            if upper is not lower
+        )
+
+    return [plane for plane in planes if not floor(plane)]
 
 
 def _tolerance(points: NDArray[np.float64], outlook: Outlook) -> NDArray[np.float64]:
@@ -94,7 +118,7 @@ def _tolerance(points: NDArray[np.float64], outlook: Outlook) -> NDArray[np.floa
 def _planes(
     sample: NDArray[np.float64], tolerance: NDArray[np.float64], outlook: Outlook, rng: np.random.Generator
 ) -> list[Plane]:
-    """Those that could be a table, the one with most points first."""
+    """The large ones, the one with most points first."""
     found = []
     left = np.ones(len(sample), dtype=np.bool_)
     for _ in range(MOST_PLANES):
@@ -107,8 +131,7 @@ def _planes(
         on = np.abs(plane.heights(sample)) <= 1.5 * tolerance
         if (on & left).sum() < max(3, LEAST_SHARE * len(sample)):
             break
-        if outlook.could_be_table(plane.normal):
-            found.append(plane)
+        found.append(plane)
         left &= ~on
     return found
 
@@ -165,10 +188,15 @@ def _bearing(
 ) -> float:
     """How much stands on a plane: its own area, and ten times that of things above its box, as a number of points."""
     on = sample[np.abs(plane.heights(sample)) <= tolerance]
+    return float(len(on) + 10 * _standing(plane, on, free))
+
+
+def _standing(plane: Plane, on: NDArray[np.float64], free: NDArray[np.float64]) -> int:
+    """How many of the ``free`` points are above the box around those that are ``on`` the plane, not far up."""
     if len(on) < 3:
-        return 0.0
+        return 0
     across = np.linalg.svd(plane.normal[None])[2][1:]
     low, high = np.percentile(on @ across.T, (1, 99), axis=0)
     heights, plan = plane.heights(free), free @ across.T
     above = (heights > STANDING[0]) & (heights < STANDING[1]) & ((plan >= low) & (plan <= high)).all(axis=1)
-    return float(len(on) + 10 * above.sum())
+    return int(above.sum())

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+import shutil
 from pathlib import Path
 
 import pytest
@@ -139,3 +140,11 @@ def test_a_named_memory_that_is_not_there_has_no_categories_to_list(tmp_path: Pa
     code, out, err = deixis("category", "list", "--memory", tmp_path / "mistyped")
     assert (code, out) == (2, "")
     assert "there is no memory" in err
+
+
+def test_a_store_that_is_gone_is_told_and_nothing_is_begun_anew(views: Path) -> None:
+    shutil.rmtree(views / "perceptual" / "store-1")
+    for arguments in (("memory", "verify"), ("category", "list"), ("memory", "stats")):
+        code, out, err = deixis(*arguments, "--memory", views)
+        assert (code, out) == (2, ""), arguments
+        assert "are gone" in err

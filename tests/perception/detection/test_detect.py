@@ -191,3 +191,11 @@ def test_a_wall_that_was_taken_for_a_table_is_noted() -> None:
     cloud = np.concatenate([np.stack([x, y, np.full(x.shape, 3.4)], axis=1), near])
     found = detect(PointCloud(cloud.astype(np.float32)), DetectionSettings(up=(0.0, 0.0, -1.0)))
     assert found.notes[0] == "nothing is on the table" and found.notes[1].endswith("it may be a wall")
+
+
+@pytest.mark.parametrize(("scale", "hint"), [(1000.0, "divide them by 1000"), (0.001, "depth_scale")])
+def test_a_cloud_in_another_unit_is_refused_with_a_hint(scale: float, hint: str) -> None:
+    x, y = (axis.ravel() for axis in np.mgrid[-0.5:0.5:0.01, 0.5:1.5:0.01])
+    points = scale * np.stack([x, y, np.full(x.shape, -0.7)], axis=1)
+    with pytest.raises(CloudError, match=hint):
+        detect(PointCloud(points.astype(np.float32)))

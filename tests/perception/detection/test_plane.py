@@ -52,6 +52,18 @@ def test_the_table_is_found_although_the_floor_is_larger() -> None:
     assert plane is not None and abs(plane.offset) < 0.005
 
 
+@pytest.mark.parametrize("wall", [False, True])
+def test_a_table_with_little_on_it_is_preferred_to_a_much_larger_floor_with_a_wall_on_it(wall: bool) -> None:
+    rng = np.random.default_rng(4)
+    things = rng.uniform((-0.1, -0.1, 0.02), (0.0, 0.0, 0.1), (150, 3))
+    floor = rng.uniform((-3, 0.6, 0), (3, 3, 0), (20_000, 3)) - [0.0, 0.0, 0.75]
+    behind = rng.uniform((-3, 3, -0.75), (3, 3, 1.5), (20_000, 3))
+    points = np.concatenate([_table(rng), things, floor, *([behind] if wall else [])])
+    camera = Outlook(np.array([0.0, -0.7, 0.8]), up=np.array([0.0, 0.5, 0.85]), right=np.array([1.0, 0.0, 0.0]))
+    found = table_plane(points, camera, seed=0)
+    assert found is not None and abs(found.offset) < 0.01
+
+
 def test_a_wall_is_no_table_to_a_camera_held_upright() -> None:
     rng = np.random.default_rng(1)
     wall = np.column_stack([rng.uniform(-1.5, 1.5, 9000), np.full(9000, 0.6), rng.uniform(0, 1.5, 9000)])
