@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 from contextlib import redirect_stdout
+from pathlib import Path
 
 import pytest
 from consoles import ROOT, Shown, blocks, shown
@@ -20,16 +21,24 @@ def test_there_is_something_to_run() -> None:
     assert PYTHON
 
 
+@pytest.fixture(scope="module")
+def place(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with the examples, as the reader's is, but not the reader's."""
+    folder = tmp_path_factory.mktemp("readme")
+    (folder / "examples").symlink_to(ROOT / "examples")
+    return folder
+
+
 @pytest.mark.parametrize("text", PYTHON)
-def test_python(text: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(ROOT)
+def test_python(text: str, place: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(place)
     with redirect_stdout(io.StringIO()):
         exec(compile(text, str(README), "exec"), {})
 
 
 @pytest.mark.parametrize("entry", COMMANDS, ids=lambda entry: entry.command)
-def test_console(entry: Shown, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(ROOT)
+def test_console(entry: Shown, place: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(place)
     code, out, _ = entry.run()
     assert code == 0
     assert out
