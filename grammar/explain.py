@@ -16,6 +16,8 @@ from deixis.ontology.source import Source
 A_RELATION = "expected a relation such as 'left of', or 'is a'"
 SMART_QUOTES = "“”„‟«»‘’"
 QUOTE = "if it belongs to a name, quote the name"
+NEARNESS = {"near", "nearer", "next", "close", "closer", "beside", "besides", "between", "by", "far", "farther"}
+NO_NEARNESS = "no relation says how near things are; say on which side: left of, right of, above, below, on"
 PARTED = "';' parts two statements on one line"
 ONE_QUALITY = "an object is of one kind and one colour: say the one that it mostly is"
 NAMES = ("NAME", "STRING")
@@ -131,7 +133,8 @@ def _no_relation(tokens: list[Token], at: int, accepts: set[str], draft: Draft) 
         parts = [str(t) for t in tokens[at - 1 : at + 2] if t.type in ("NAME", "FUNCTION")]
         hint = f"if it belongs to a name, write {shortened('_'.join(parts))} or quote the name"
         return Refusal(source_of(token), f"{A_RELATION}, not '{shown}'", hint)
-    return Refusal(source_of(token), f"expected a name, and '{shown}' cannot be in one unquoted")
+    hint = NO_NEARNESS if str(token).casefold() in NEARNESS else None
+    return Refusal(source_of(token), f"expected a name, and '{shown}' cannot be in one unquoted", hint)
 
 
 def _meant(tokens: list[Token], at: int, draft: Draft) -> tuple[str, Source, str] | None:
