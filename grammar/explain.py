@@ -133,8 +133,8 @@ def _no_relation(tokens: list[Token], at: int, accepts: set[str], draft: Draft) 
         parts = [str(t) for t in tokens[at - 1 : at + 2] if t.type in ("NAME", "FUNCTION")]
         hint = f"if it belongs to a name, write {shortened('_'.join(parts))} or quote the name"
         return Refusal(source_of(token), f"{A_RELATION}, not '{shown}'", hint)
-    hint = NO_NEARNESS if str(token).casefold() in NEARNESS else None
-    return Refusal(source_of(token), f"expected a name, and '{shown}' cannot be in one unquoted", hint)
+    nearness = NO_NEARNESS if str(token).casefold() in NEARNESS else None
+    return Refusal(source_of(token), f"expected a name, and '{shown}' cannot be in one unquoted", nearness)
 
 
 def _meant(tokens: list[Token], at: int, draft: Draft) -> tuple[str, Source, str] | None:

@@ -61,6 +61,7 @@ class SeenFrom:
     notes: tuple[str, ...] = ()
     others: tuple[tuple[float, Scene], ...] = ()  # as seen from other sides, each with its probability
     share: float = 1.0  # how probable this side is
+    evidence: Evidence | None = None  # as seen from this side, where it was worked out already
 
     @property
     def doubt(self) -> tuple[str, ...]:
@@ -154,7 +155,7 @@ def seen_from_anywhere(
     deadline = time.perf_counter() + time_limit
     evidence = evidence_of(script, scene, meaning)
     if not len(evidence.facts) or len(scene.objects) < 2:
-        return SeenFrom(scene, notes=(f"{_UNTOLD}, and it makes no difference",))
+        return SeenFrom(scene, notes=(f"{_UNTOLD}, and it makes no difference",), evidence=evidence)
     present = scene.boxes
 
     def problem(boxes: NDArray[np.float64]) -> Problem:
@@ -165,10 +166,12 @@ def seen_from_anywhere(
     best = found.best
     placed = (best.assignment[evidence.problem.ends] != UNMATCHED).all(axis=1)
     if not placed.any():
-        return SeenFrom(scene, notes=(f"{_UNTOLD}, and it makes no difference",))
+        return SeenFrom(scene, notes=(f"{_UNTOLD}, and it makes no difference",), evidence=evidence)
     if best.concentration < CONCENTRATED:
-        return _from_all_quarters(scene, recover_viewpoint(present, problem, deadline=deadline))
-    return SeenFrom(_seen_from(scene, best), found, _notes(found), _others(scene, found), best.probability)
+        quarters = _from_all_quarters(scene, recover_viewpoint(present, problem, deadline=deadline))
+        return replace(quarters, evidence=evidence)
+    known = evidence if not best.angle and not best.mirrored else None
+    return SeenFrom(_seen_from(scene, best), found, _notes(found), _others(scene, found), best.probability, known)
 
 
 _UNTOLD = "the scene was taken as it stands: nothing tells from which side the description speaks"
@@ -196,7 +199,7 @@ def ground_from_sides(
     """
     others = tuple(OtherSide(share, evidence_of(script, scene, meaning)) for share, scene in side.others)
     aligning = FromSides(engine_named(engine), side.share, others) if others else engine_named(engine)
-    evidence = evidence_of(script, side.scene, meaning)
+    evidence = side.evidence or evidence_of(script, side.scene, meaning)
     return ground_evidence(evidence, aligning, time_limit, conflict_notes(script.graph()))
 
 
