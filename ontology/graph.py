@@ -7,7 +7,7 @@ one edge as an object. :class:`PaperGraph` is the paper's Definition 1: a direct
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -134,6 +134,10 @@ class RelationGraph:
         """Which edges say that a relation holds (m,): what is rarely so is mostly not so."""
         affirmed: NDArray[np.bool_] = self.positive == (self.weights >= 0.5)
         return affirmed
+
+    def affirming(self) -> RelationGraph:
+        """The same in other words: what is rarely so is mostly not so, so that no edge weighs less than one half."""
+        return replace(self, positive=self.affirmed, weights=self.affirmed_weights)
 
     @classmethod
     def from_facts(

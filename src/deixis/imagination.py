@@ -103,7 +103,7 @@ def imagine(
         raise SettingError(
             f"count is 1 or more, seed and time limit are 0 or more, not {count}, {seed} and {time_limit:g}"
         )
-    graph = script.graph()
+    graph = script.graph().affirming()
     objects = sized_objects(script, graph)
     tables: list[Table] = []
     for found in _pictures(graph, objects, any_size, seed, count, time_limit, script.ontology.kinds):

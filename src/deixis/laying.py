@@ -97,7 +97,7 @@ def lay_script(
     no such table, TimeIsUpError where that stayed open, SimulationError for a mesh that stands for nothing.
     """
     meshes = _checked(meshes or {})
-    graph = script.graph()
+    graph = script.graph().affirming()
     unknown = sorted(set(meshes) - set(graph.nodes))
     if unknown:
         raise SimulationError(

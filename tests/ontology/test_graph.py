@@ -263,3 +263,10 @@ def test_the_histograms_are_the_degrees_of_the_adjacency(stated: list[Fact]) -> 
     matrices, counts = view.adjacency(), view.histograms()
     np.testing.assert_array_equal(counts[:, 0], matrices.sum(axis=1).T)
     np.testing.assert_array_equal(counts[:, 1], matrices.sum(axis=2).T)
+
+
+def test_what_is_rarely_so_is_in_other_words_mostly_not_so() -> None:
+    rarely, usually = fact("left", "a", "b", weight=0.2), fact("on", "a", "b", weight=0.8)
+    words = RelationGraph.from_facts(R, ["a", "b"], [rarely, usually]).affirming()
+    assert [(one.positive, one.weight) for one in words.facts()] == [(False, 0.8), (True, 0.8)]
+    assert str(rarely) == "rarely left(a, b)"
