@@ -216,7 +216,7 @@ class SemanticMemory:
         if lesson not in known:
             near = nearest(lesson, list(known))
             hint = (
-                f"did you mean '{near}'?" if near else f"it holds: {', '.join(known[-5:])}" if known else "there are no lessons in it"
+                f"did you mean '{near}'?" if near else f"it holds: {', '.join(known[-5:])}" if known else "it has none"
             )
             raise UnknownLessonError(f"no lesson '{lesson}' in the memory at {self.path}; {hint}")
 
