@@ -55,7 +55,7 @@ class Fact:
     @property
     def plain(self) -> bool:
         """One relation that is affirmed: what Definition 1 and equations 5-9 can see."""
-        return self.positive and self.weight >= 0.5 and len(self.relations) == 1
+        return self.positive and len(self.relations) == 1
 
     @property
     def relation_set(self) -> int:

@@ -187,7 +187,7 @@ class Comparison:
 
     def _facts(self, layout: Described) -> tuple[list[int], list[bool], list[float]]:
         graph, edges = layout.graph, layout.edges
-        return graph.relation_sets[edges].tolist(), graph.positive[edges].tolist(), layout.weights.tolist()
+        return graph.relation_sets[edges].tolist(), graph.affirmed[edges].tolist(), layout.weights.tolist()
 
     def objects(self, layout: Described, scene: Seen) -> Array:
         """How far each object corresponds to each thing, shape (n1, n2), 0 to 1."""

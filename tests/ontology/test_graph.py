@@ -71,8 +71,7 @@ def test_a_fact_is_written_as_the_paper_writes_it() -> None:
 
 
 def test_only_one_affirmed_relation_is_plain() -> None:
-    assert fact("left", "a", "b", optional=True, weight=0.5).plain
-    assert not fact("left", "a", "b", weight=0.2).plain  # rarely so is mostly not so
+    assert fact("left", "a", "b", optional=True, weight=0.2).plain
     assert not fact("left", "a", "b", positive=False).plain
     assert not fact("left or right", "a", "b").plain
 

@@ -140,6 +140,16 @@ def test_a_denied_relation_corresponds_to_every_other() -> None:
     assert close[RELATIONS["exactly_left"].index] == 0.25
 
 
+def test_what_is_rarely_so_makes_the_opposite_arrangement_the_more_similar_one() -> None:
+    right, left = ([[x, 0.1], [x + 0.08, 0.18]] for x in (0.5, -0.3))
+    scenes = [
+        perceived_graph(["o1", "o2"], np.array([[[0.0, 0.0], [0.27, 0.27]], glass]), RELATIONS)
+        for glass in (right, left)
+    ]
+    opposite, said = (likeness(layout("rarely water_glass left of dinner_plate"), scene).similarity for scene in scenes)
+    assert opposite > said
+
+
 def test_a_neighbouring_arrangement_is_more_similar_than_the_opposite_one() -> None:
     description = layout("water_glass left of dinner_plate")
     plate = [[0.0, 0.0], [0.27, 0.27]]
