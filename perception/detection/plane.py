@@ -81,32 +81,47 @@ def table_plane(points: NDArray[np.float64], outlook: Outlook, seed: int) -> Pla
     free = np.ones(len(sample), dtype=np.bool_)
     for plane in found:  # a wall is nothing that stands on the floor
         free &= np.abs(plane.heights(sample)) > tolerance
-    planes = _without_floors(planes, sample, tolerance, sample[free])
+    levels = _without_floors([_level(plane, sample, tolerance, sample[free]) for plane in planes], len(sample))
     # What stands on a table tells its upper side, should the sensor seem to be below: the origin may be a mere default.
-    planes += [turned for turned in (plane.turned() for plane in planes) if outlook.could_be_table(turned.normal)]
-    bearing = [_bearing(plane, sample, tolerance, sample[free]) for plane in planes]
-    best = planes[int(np.argmax(bearing))]
+    turned = [level.plane.turned() for level in levels]
+    levels += [
+        _level(plane, sample, tolerance, sample[free]) for plane in turned if outlook.could_be_table(plane.normal)
+    ]
+    best = max(levels, key=lambda level: level.bearing).plane
     chosen = points[:: max(1, len(points) // MOST_REFINED)]
     return refined(best, chosen, _tolerance(chosen, outlook))
 
 
-def _without_floors(
-    planes: list[Plane], sample: NDArray[np.float64], tolerance: NDArray[np.float64], free: NDArray[np.float64]
-) -> list[Plane]:
+@dataclass(frozen=True, eq=False)
+class _Level:
+    """A plane, the points on it (k, 3), and how many stand on it."""
+
+    plane: Plane
+    points: NDArray[np.float64]
+    standing: int
+
+    @property
+    def bearing(self) -> int:
+        """How much is on it: its own area, and ten times that of what stands on it, as a number of points."""
+        return len(self.points) + 10 * self.standing
+
+    def is_floor_below(self, other: _Level) -> bool:
+        """Whether it lies a table's height below another level one."""
+        level = other.plane.normal @ self.plane.normal > 0.95
+        return bool(level and np.median(self.plane.heights(other.points)) > TABLE_HEIGHT)
+
+
+def _level(
+    plane: Plane, sample: NDArray[np.float64], tolerance: NDArray[np.float64], free: NDArray[np.float64]
+) -> _Level:
+    on = sample[np.abs(plane.heights(sample)) <= tolerance]
+    return _Level(plane, on, _standing(plane, on, free))
+
+
+def _without_floors(levels: list[_Level], total: int) -> list[_Level]:
     """All but those that lie a table's height below one on which something stands, however large they are."""
-    on = [sample[np.abs(plane.heights(sample)) <= tolerance] for plane in planes]
-    bears = [
-        _standing(plane, points, free) >= LEAST_STANDING * len(sample) for plane, points in zip(planes, on, strict=True)
-    ]
-
-    def floor(lower: Plane) -> bool:
-        return any(
-            bearing and upper.normal @ lower.normal > 0.95 and np.median(lower.heights(points)) > TABLE_HEIGHT
-            for upper, points, bearing in zip(planes, on, bears, strict=True)
-            if upper is not lower
-        )
-
-    return [plane for plane in planes if not floor(plane)]
+    tables = [level for level in levels if level.standing >= LEAST_STANDING * total]
+    return [level for level in levels if not any(level.is_floor_below(table) for table in tables)]
 
 
 def _tolerance(points: NDArray[np.float64], outlook: Outlook) -> NDArray[np.float64]:
@@ -181,14 +196,6 @@ def _towards(plane: Plane, outlook: Outlook, points: NDArray[np.float64]) -> Pla
         heights = plane.heights(points)
         side = float((heights > STANDING[0]).sum() - (heights < -STANDING[0]).sum())
     return plane if side >= 0 else plane.turned()
-
-
-def _bearing(
-    plane: Plane, sample: NDArray[np.float64], tolerance: NDArray[np.float64], free: NDArray[np.float64]
-) -> float:
-    """How much stands on a plane: its own area, and ten times that of things above its box, as a number of points."""
-    on = sample[np.abs(plane.heights(sample)) <= tolerance]
-    return float(len(on) + 10 * _standing(plane, on, free))
 
 
 def _standing(plane: Plane, on: NDArray[np.float64], free: NDArray[np.float64]) -> int:

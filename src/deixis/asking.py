@@ -43,6 +43,8 @@ WORTH_A_LOOK, MOST_SIDES = 0.005, 8
 CONCENTRATED = 0.5
 """Mean resultant length below which angles are no side: that of an even spread over 217 degrees."""
 
+_UNTOLD = "the scene was taken as it stands: nothing tells from which side the description speaks"
+
 
 @dataclass(frozen=True, slots=True)
 class Asked:
@@ -154,8 +156,9 @@ def seen_from_anywhere(
     """
     deadline = time.perf_counter() + time_limit
     evidence = evidence_of(script, scene, meaning)
+    indifferent = SeenFrom(scene, notes=(f"{_UNTOLD}, and it makes no difference",), evidence=evidence)
     if not len(evidence.facts) or len(scene.objects) < 2:
-        return SeenFrom(scene, notes=(f"{_UNTOLD}, and it makes no difference",), evidence=evidence)
+        return indifferent
     present = scene.boxes
 
     def problem(boxes: NDArray[np.float64]) -> Problem:
@@ -166,15 +169,12 @@ def seen_from_anywhere(
     best = found.best
     placed = (best.assignment[evidence.problem.ends] != UNMATCHED).all(axis=1)
     if not placed.any():
-        return SeenFrom(scene, notes=(f"{_UNTOLD}, and it makes no difference",), evidence=evidence)
+        return indifferent
     if best.concentration < CONCENTRATED:
         quarters = _from_all_quarters(scene, recover_viewpoint(present, problem, deadline=deadline))
         return replace(quarters, evidence=evidence)
     known = evidence if not best.angle and not best.mirrored else None
     return SeenFrom(_seen_from(scene, best), found, _notes(found), _others(scene, found), best.probability, known)
-
-
-_UNTOLD = "the scene was taken as it stands: nothing tells from which side the description speaks"
 
 
 def _from_all_quarters(scene: Scene, found: Viewpoints) -> SeenFrom:

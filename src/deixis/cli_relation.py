@@ -118,7 +118,9 @@ def learn_relation(
     if as_json:
         print_json(learned_words_to_dict(learned, str(where)))
     else:
-        print_lines(learned_words_lines(learned, str(where), out is None))
+        print_lines(learned_words_lines(learned))
+        print_lines([f"In force in {where}."] if out is None else [])
+        print_written(out)
 
 
 def _require_fitting(

@@ -9,7 +9,16 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from deixis.cli_common import NO, AsJson, print_json, print_lines, require_scene_name, require_writable, working
+from deixis.cli_common import (
+    NO,
+    AsJson,
+    print_json,
+    print_lines,
+    print_written,
+    require_scene_name,
+    require_writable,
+    working,
+)
 
 if TYPE_CHECKING:
     from deixis.laying import LaidScript
@@ -82,7 +91,8 @@ def simulate(
     if as_json:
         print_json(simulation_to_dict(found, view, seed))
     else:
-        print_lines(_lines(found, [file for file in (out, truth) if file is not None]))
+        print_lines(_lines(found))
+        print_written(out, truth)
 
 
 def _laid(layout: str | None, random: int | None, seed: int, meshes: dict[str, Mesh], cloth: bool) -> LaidScript:
@@ -118,7 +128,7 @@ def _meshes(given: list[str], unit: str) -> dict[str, Mesh]:
     return meshes
 
 
-def _lines(found: Simulation, written: list[Path]) -> Iterator[str]:
+def _lines(found: Simulation) -> Iterator[str]:
     things = zip(found.truth.objects, found.laid.table.things, found.points.tolist(), strict=True)
     for seen, thing, points in things:
         middle = [(low + high) / 2 for low, high in zip(seen.minimum, seen.maximum, strict=True)]
@@ -132,7 +142,6 @@ def _lines(found: Simulation, written: list[Path]) -> Iterator[str]:
     yield f"Camera at {100 * x:.1f}, {100 * y:.1f}, {100 * z:.1f} cm; {measured} of {len(found.cloud)} points measured."
     for fact in found.laid.missed:
         yield f"Does not hold: {fact}"
-    yield from (f"Written: {file}" for file in written)
 
 
 def simulation_to_dict(found: Simulation, view: View, seed: int) -> dict[str, Any]:

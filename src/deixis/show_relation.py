@@ -62,13 +62,13 @@ def model_to_dict(model: RelationModel) -> dict[str, Any]:
     }
 
 
-def learned_words_lines(learned: LearnedWords, where: str, kept: bool) -> list[str]:
-    """What was learned of which words, from what, what taught nothing and why, and where it is."""
+def learned_words_lines(learned: LearnedWords) -> list[str]:
+    """What was learned of which words, from what, and what taught nothing and why."""
     lines = [f"{model.name:<11} learned from {_facts(model)}" for model in learned.changed]
     for word, ids in (("lessons", learned.lessons), ("kept as", learned.kept)):
         lines += [f"{word:<11} {', '.join(ids)}"] if ids else []
     lines += [f"left out    {why}" for why in learned.left_out]
-    return [*lines, f"In force in {where}." if kept else f"Written: {where}"]
+    return lines
 
 
 def learned_words_to_dict(learned: LearnedWords, where: str) -> dict[str, Any]:

@@ -86,8 +86,8 @@ def engines() -> list[Contestant]:
         engine(EngineName.EXACT, "the default: branch and bound to the time limit, with probabilities"),
         engine(EngineName.SCALABLE, "annealing and belief propagation, with probabilities"),
         engine(EngineName.SIMILARITY, "the paper's: equations 5 to 9, the Hungarian method"),
-        engine(EngineName.BLONDEL, "Blondel et al. 2004, to convergence or 100 steps", most=300),
-        engine(EngineName.HEYMANS_SINGH, "Heymans and Singh 2003, to convergence or 100 steps", most=300),
+        engine(EngineName.BLONDEL, "Blondel et al. 2004, to convergence, 100 steps or the limit", most=300),
+        engine(EngineName.HEYMANS_SINGH, "Heymans and Singh 2003, to convergence, 100 steps or the limit", most=300),
         engine(EngineName.EXACT, "ablation: words literally", called="graded off", meaning=LITERAL, ablation=True),
     ]
 
