@@ -10,8 +10,9 @@ from enum import StrEnum
 from deixis.ontology.graph import Fact
 from deixis.ontology.relation import Relation
 
-DECIDED = 0.975
-"""Probability from which a match is called decided: where things are missing, somewhat less is right than was said."""
+DECIDED = 0.99
+"""Probability from which a match is called decided: where things are missing, somewhat less is right than was said, for
+an extra thing may fit all that is said of what is absent (docs/scoreboard.md)."""
 
 
 class Standing(StrEnum):

@@ -169,10 +169,10 @@ def test_holm_never_lowers_a_p_nor_changes_their_order(ps: list[float]) -> None:
 
 
 def test_calibration_by_hand() -> None:
-    said, right = np.array([0.05, 0.55, 0.55, 0.98]), np.array([False, True, False, True])
+    said, right = np.array([0.05, 0.55, 0.55, 0.99]), np.array([False, True, False, True])
     found = calibration([Forecasts("exact", Group(4, 0.0), said, right)])
     assert [one.count for one in found.bins] == [1, 0, 0, 0, 0, 2, 0, 0, 0, 1]
-    assert found.error == pytest.approx((0.05 + 2 * 0.05 + 0.02) / 4)
+    assert found.error == pytest.approx((0.05 + 2 * 0.05 + 0.01) / 4)
     assert (found.decided, found.precision) == (0.25, 1.0)
     assert np.isnan(calibration([]).error)
 
