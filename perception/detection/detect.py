@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from itertools import islice
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,8 +14,9 @@ from deixis.perception.detection.frame import moved, outlook_of, table_frame
 from deixis.perception.detection.heights import Raised, raised
 from deixis.perception.detection.neighbours import neighbour_table
 from deixis.perception.detection.outline import above_outline
-from deixis.perception.detection.plane import Outlook, Plane, table_plane
+from deixis.perception.detection.plane import Outlook, Plane
 from deixis.perception.detection.settings import DetectionSettings
+from deixis.perception.detection.tables import LEAST_TABLE, ON_TABLE, Table, tables
 from deixis.perception.detection.viewpoint import checked_outlook
 from deixis.perception.errors import CloudError
 from deixis.perception.scene import PerceivedObject, Scene
@@ -22,14 +24,8 @@ from deixis.perception.scene import PerceivedObject, Scene
 NONE = -1
 """The label of a point that belongs to no thing."""
 
-ON_TABLE = 0.01
-"""Metres from the plane within which a point is the table's, as far as its outline goes."""
-
 WIDEST, NARROWEST = 20.0, 0.002
 """Metres from the middle of a cloud: where half the points are farther away, or nearer, the unit is another."""
-
-LEAST_TABLE = 0.3
-"""Metres: what is shorter in both directions is hardly a table."""
 
 LONGEST_ALONE = 0.4
 """Metres: a cloud that is no longer, and in its other directions shorter than a table, shows one thing alone."""
@@ -69,10 +65,10 @@ class Detection:
 
 
 def detect(cloud: PointCloud, settings: DetectionSettings | None = None) -> Detection:
-    """The table of a cloud and the things on it; labels that a cloud bears are not looked at.
+    """A table of a cloud and the things on it; labels that a cloud bears are not looked at.
 
     Raises CloudError for a cloud without one finite point, or so wide or narrow that it is not in metres. A cloud
-    without a table, and a table with nothing on it, give an answer that says so.
+    without a table, and a table with nothing on it, give an answer that says so; so does one with another table.
 
     >>> x, y = (axis.ravel() for axis in np.mgrid[-0.5:0.5:0.01, 0.5:1.5:0.01])
     >>> table = np.stack([x, y, np.full(x.shape, -0.7)], axis=1)
@@ -89,23 +85,42 @@ def detect(cloud: PointCloud, settings: DetectionSettings | None = None) -> Dete
     outlook = outlook_of(cloud, settings)
     if len(points) >= settings.least_points and _is_alone(points, settings):
         return _alone(cloud, kept, points, outlook, settings)
-    plane, outlook = _table(points, outlook, settings.seed)
-    if plane is None:
-        return _nothing(len(cloud), None, np.eye(4), "no table was found: no large level surface is in view")
-    view = _view(points, plane, outlook, settings)
-    neighbours = neighbour_table(points, kept, cloud.organised, outlook.eye if outlook.known else None)
+    seen = list(islice(tables(points, outlook, settings.seed), settings.table + 1))
+    if len(seen) < settings.table:
+        return _nothing(len(cloud), None, np.eye(4), _no_table(settings.table, len(seen)))
+    table = seen[settings.table - 1]
+    found = _on_table(cloud, kept[table.points], points[table.points], table, settings)
+    return found if len(seen) == settings.table else replace(found, notes=(*found.notes, _more(settings.table)))
+
+
+def _no_table(number: int, found: int) -> str:
+    if not found:
+        return "no table was found: no large level surface is in view"
+    return f"there is no table {number}: {'one table was' if found == 1 else f'{found} tables were'} found"
+
+
+def _more(number: int) -> str:
+    return f"another table is in view, on which something stands: perceive --table {number + 1} looks at that one"
+
+
+def _on_table(
+    cloud: PointCloud, kept: NDArray[np.intp], points: NDArray[np.float64], table: Table, settings: DetectionSettings
+) -> Detection:
+    """The things on one table, among the points (n, 3) of those numbers in the cloud."""
+    view = _view(points, table.plane, table.outlook, settings)
+    neighbours = neighbour_table(points, kept, cloud.organised, table.outlook.eye if table.outlook.known else None)
     rising = raised(view.heights, view.distance, neighbours, settings)
     colours = None if cloud.colours is None else cloud.colours[kept]
     found = _things(view, rising, neighbours, colours, settings)
     if not found.max(initial=NONE) >= 0:
         why = ("nothing is on the table", *_too_small(view), *_a_wall(view, settings))
-        return _nothing(len(cloud), plane, view.frame, *why)
+        return _nothing(len(cloud), table.plane, view.frame, *why)
     numbers = _left_to_right(view.points, found)
     labels = np.full(len(cloud), NONE, np.int32)
     labels[kept] = numbers
     members = [view.points[numbers == k] for k in range(int(numbers.max()) + 1)]
     boxes = np.stack([upright_box(thing) for thing in members])
-    return Detection(plane, view.frame, labels, boxes, tuple(map(oriented_box, members)), _too_small(view))
+    return Detection(table.plane, view.frame, labels, boxes, tuple(map(oriented_box, members)), _too_small(view))
 
 
 def _require_metres(points: NDArray[np.float64]) -> None:
@@ -151,15 +166,6 @@ def _alone(
     sides = " by ".join(f"{100 * side:.0f}" for side in (box[1] - box[0]).tolist())
     note = f"no table was found: all there is, {sides} cm, was taken for one thing seen alone"
     return Detection(None, frame, labels, box[None], (oriented_box(thing),), (note,))
-
-
-def _table(points: NDArray[np.float64], outlook: Outlook, seed: int) -> tuple[Plane | None, Outlook]:
-    """The table's plane, for a camera that is held upright, else upside down; and from where it was seen."""
-    plane = table_plane(points, outlook, seed)
-    if plane is None and outlook.up is not None and outlook.right is not None:
-        outlook = replace(outlook, up=-outlook.up, right=-outlook.right)
-        plane = table_plane(points, outlook, seed)
-    return plane, outlook if plane is None else checked_outlook(outlook, points, plane, seed)
 
 
 @dataclass(frozen=True, eq=False)

@@ -16,13 +16,13 @@ SLACK = 0.02
 
 
 def above_outline(table: NDArray[np.float64], points: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Which of the points (n, 3) are above the convex hull of the table's points (m, 3), shape (n,).
+    """Which of the points (n, 3) are above or below the convex hull of the table's points (m, 3), shape (n,).
 
     Only the largest connected piece of the table counts, so that what is level elsewhere in the room is left out.
     """
     from scipy.spatial import ConvexHull, QhullError
 
-    piece = _largest_piece(table[:: max(1, len(table) // ENOUGH), :2])
+    piece = largest_piece(table[:: max(1, len(table) // ENOUGH), :2])
     if len(piece) < 3:
         return np.zeros(len(points), dtype=np.bool_)
     try:
@@ -33,7 +33,8 @@ def above_outline(table: NDArray[np.float64], points: NDArray[np.float64]) -> ND
     return inside
 
 
-def _largest_piece(plan: NDArray[np.float64]) -> NDArray[np.float64]:
+def largest_piece(plan: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Of points (n, 2), those of the connected piece that has most of them."""
     from scipy.ndimage import label
 
     if not len(plan):

@@ -42,6 +42,12 @@ class Plane:
         result: NDArray[np.float64] = points @ self.normal - self.offset
         return result
 
+    @property
+    def across(self) -> NDArray[np.float64]:
+        """Two unit vectors along the plane, at right angles, shape (2, 3)."""
+        along: NDArray[np.float64] = np.linalg.svd(self.normal[None])[2][1:]
+        return along
+
     def turned(self) -> Plane:
         """The same plane, with its normal to the other side."""
         return Plane(-self.normal, -self.offset)
@@ -73,7 +79,7 @@ def table_plane(points: NDArray[np.float64], outlook: Outlook, seed: int) -> Pla
     """The plane of the table under points (n, 3), all finite; None where there is none."""
     rng = np.random.default_rng(seed)
     sample = points if len(points) <= SAMPLE else points[np.sort(rng.choice(len(points), SAMPLE, replace=False))]
-    tolerance = _tolerance(sample, outlook)
+    tolerance = tolerance_at(sample, outlook)
     found = _planes(sample, tolerance, outlook, rng)
     planes = [plane for plane in found if outlook.could_be_table(plane.normal)]
     if not planes:
@@ -89,7 +95,7 @@ def table_plane(points: NDArray[np.float64], outlook: Outlook, seed: int) -> Pla
     ]
     best = max(levels, key=lambda level: level.bearing).plane
     chosen = points[:: max(1, len(points) // MOST_REFINED)]
-    return refined(best, chosen, _tolerance(chosen, outlook))
+    return refined(best, chosen, tolerance_at(chosen, outlook))
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,7 +121,7 @@ def _level(
     plane: Plane, sample: NDArray[np.float64], tolerance: NDArray[np.float64], free: NDArray[np.float64]
 ) -> _Level:
     on = sample[np.abs(plane.heights(sample)) <= tolerance]
-    return _Level(plane, on, _standing(plane, on, free))
+    return _Level(plane, on, standing(plane, on, free))
 
 
 def _without_floors(levels: list[_Level], total: int) -> list[_Level]:
@@ -124,7 +130,7 @@ def _without_floors(levels: list[_Level], total: int) -> list[_Level]:
     return [level for level in levels if not any(level.is_floor_below(table) for table in tables)]
 
 
-def _tolerance(points: NDArray[np.float64], outlook: Outlook) -> NDArray[np.float64]:
+def tolerance_at(points: NDArray[np.float64], outlook: Outlook) -> NDArray[np.float64]:
     """Metres from a plane, (n,), within which points (n, 3) may be on it."""
     near: NDArray[np.float64] = NEAR * np.maximum(((points - outlook.eye) ** 2).sum(axis=1), 0.25)
     return near
@@ -198,11 +204,11 @@ def _towards(plane: Plane, outlook: Outlook, points: NDArray[np.float64]) -> Pla
     return plane if side >= 0 else plane.turned()
 
 
-def _standing(plane: Plane, on: NDArray[np.float64], free: NDArray[np.float64]) -> int:
+def standing(plane: Plane, on: NDArray[np.float64], free: NDArray[np.float64]) -> int:
     """How many of the ``free`` points are above the box around those that are ``on`` the plane, not far up."""
     if len(on) < 3:
         return 0
-    across = np.linalg.svd(plane.normal[None])[2][1:]
+    across = plane.across
     low, high = np.percentile(on @ across.T, (1, 99), axis=0)
     heights, plan = plane.heights(free), free @ across.T
     above = (heights > STANDING[0]) & (heights < STANDING[1]) & ((plan >= low) & (plan <= high)).all(axis=1)

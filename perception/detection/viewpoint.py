@@ -45,9 +45,8 @@ def checked_outlook(outlook: Outlook, points: NDArray[np.float64], plane: Plane,
 
 
 def _places_around(middle: NDArray[np.float64], plane: Plane) -> list[NDArray[np.float64]]:
-    across = np.linalg.svd(plane.normal[None])[2][1:]
     turns = np.arange(ROUND) * 2 * np.pi / ROUND
-    level = np.column_stack([np.cos(turns), np.sin(turns)]) @ across
+    level = np.column_stack([np.cos(turns), np.sin(turns)]) @ plane.across
     aslant = np.cos(ELEVATION) * level + np.sin(ELEVATION) * plane.normal
     return [middle + AWAY * direction for direction in (plane.normal, *aslant)]
 

@@ -50,6 +50,11 @@ def perceive(
         Path | None, typer.Option(metavar="FILE", help="The camera's intrinsics (.json) of a depth image.")
     ] = None,
     viewpoint: Annotated[str, typer.Option(help="What the camera's side is called.")] = "chair",
+    table: Annotated[int, typer.Option(metavar="N", min=1, help="Which table, should there be several.")] = 1,
+    up: Annotated[
+        tuple[float, float, float] | None,
+        typer.Option(metavar="X Y Z", help="Upwards in the cloud's frame, should it not be upright."),
+    ] = None,
     plot: Picture = None,
     as_json: AsJson = False,
 ) -> None:
@@ -57,6 +62,7 @@ def perceive(
     from deixis.ontology.errors import DeixisError
     from deixis.perceiving import perceive as run
     from deixis.perceiving import write_perceived
+    from deixis.perception.detection.settings import DetectionSettings
     from deixis.perception.scene_file import scene_to_dict
 
     require_plot(plot)
@@ -65,7 +71,7 @@ def perceive(
     require_scene_name(out)
     require_writable([out, labels, plot], [cloud, intrinsics])
     with working("looking for the table"):
-        found = run(cloud, intrinsics, viewpoint)
+        found = run(cloud, intrinsics, viewpoint, DetectionSettings(table=table, up=up))
     scene = write_perceived(found, out) if out is not None else found.scene
     if labels is not None:
         _write_labels(labels, found.detection.labels)

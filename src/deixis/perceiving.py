@@ -19,6 +19,7 @@ from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.clouds.cloud_file import read_cloud, write_cloud
 from deixis.perception.detection.detect import Detection, detect
 from deixis.perception.detection.frame import moved
+from deixis.perception.detection.settings import DetectionSettings
 from deixis.perception.errors import CloudError, SceneError
 from deixis.perception.scene import PerceivedObject, Scene
 from deixis.perception.scene_file import write_scene
@@ -40,9 +41,12 @@ class Perceived:
 
 
 def perceive(
-    cloud: PointCloud | str | Path, intrinsics: str | Path | None = None, viewpoint: str = "chair"
+    cloud: PointCloud | str | Path,
+    intrinsics: str | Path | None = None,
+    viewpoint: str = "chair",
+    settings: DetectionSettings | None = None,
 ) -> Perceived:
-    """Finds the table and the things on it.
+    """Finds the table and the things on it; ``settings`` tell which table, and what is known of the cloud's frame.
 
     Raises CloudError for a file that is no cloud, or one without a point; SceneError for a viewpoint that is no word.
     """
@@ -50,7 +54,7 @@ def perceive(
         raise SceneError(f"a viewpoint is a word such as 'chair', not {viewpoint!r}")
     seen = cloud if isinstance(cloud, PointCloud) else read_cloud(cloud, intrinsics)
     try:
-        found = detect(seen)
+        found = detect(seen, settings)
     except CloudError as error:
         raise error if isinstance(cloud, PointCloud) else CloudError(f"{cloud}: {error}") from error
     return Perceived(seen, found, found.scene(viewpoint))

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.perception.detection.detect import ON_TABLE
+from deixis.perception.detection.tables import ON_TABLE
 from deixis.plot import INK, dress_table, new_figure, save
 from deixis.plot_camera import MARGIN, Camera, camera_of, colours_of, draw_camera
 from deixis.plot_names import write_names

@@ -258,6 +258,17 @@ def test_a_table_with_nothing_on_it_is_an_answer(tmp_path: Path) -> None:
     assert "nothing is on the table" in err
 
 
+def test_which_table_and_which_way_is_up_can_be_told(tables: Path, tmp_path: Path) -> None:
+    code, out, err = deixis("perceive", tables / "7.pcd", "--table", "2")
+    assert code == 1 and json.loads(out)["objects"] == [] and "there is no table 2: one table was found" in err
+    found = perceive(tables / "7.pcd")
+    turn = np.array([[0, 1, 0], [-1, 0, 0], [0, 0, 1]], np.float32)  # a quarter turn of the camera
+    np.savez(tmp_path / "aside.npz", points=found.cloud.points.reshape(480, 640, 3)[::-1].swapaxes(0, 1) @ turn)
+    up = [f"{number:.3f}" for number in found.detection.frame[2, :3] @ turn]
+    code, out, _ = deixis("perceive", tmp_path / "aside.npz", "--up", *up)
+    assert code == 0 and len(json.loads(out)["objects"]) == len(found.scene.objects) == 12
+
+
 @pytest.fixture(scope="module")
 def seen(tables: Path) -> tuple[Perceived, Perceived]:
     """The two tables again, not yet written."""

@@ -1,0 +1,62 @@
+"""Several tables in one cloud: each is found, told of, and looked at alone."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from deixis.perception.clouds.cloud import PointCloud
+from deixis.perception.detection.detect import Detection, detect
+from deixis.perception.detection.settings import DetectionSettings
+from deixis.perception.errors import CloudError
+
+Look = Callable[..., PointCloud]
+
+CUBE, PLANK = ((-0.12, -0.1, 0.0), (-0.04, -0.02, 0.08)), ((0.02, -0.15, 0.0), (0.06, 0.1, 0.01))
+
+
+def beside(height: float) -> list[tuple[tuple[float, float, float], tuple[float, float, float]]]:
+    """Another table, so much higher than the first, and a cube on it."""
+    table = ((0.32, -0.2, height - 0.03), (0.67, 0.2, height))
+    return [table, ((0.4, -0.05, height), (0.47, 0.02, height + 0.07))]
+
+
+def of_thing(found: Detection, cloud: PointCloud, number: int, truth: int) -> float:
+    assert cloud.labels is not None
+    found_one, true_one = found.labels == number, cloud.labels == truth
+    return float((found_one & true_one).sum() / (found_one | true_one).sum())
+
+
+@pytest.mark.parametrize("height", [-0.15, 0.0, 0.1])
+def test_a_second_table_is_told_of_and_can_be_looked_at(boxes_seen: Look, height: float) -> None:
+    cloud = boxes_seen([CUBE, PLANK, *beside(height)], half=0.2)
+    first, second = (detect(cloud, DetectionSettings(table=number)) for number in (1, 2))
+    assert len(first.boxes) == 2 and first.notes[-1].endswith("perceive --table 2 looks at that one")
+    assert min(of_thing(first, cloud, 0, 1), of_thing(first, cloud, 1, 2)) > 0.8
+    assert len(second.boxes) == 1 and second.notes == ()
+    assert of_thing(second, cloud, 0, 4) > 0.8
+    assert first.table is not None and second.table is not None
+    step = first.table.heights(-second.table.normal[None] * -second.table.offset)[0]
+    assert step == pytest.approx(height, abs=0.01)
+    third = detect(cloud, DetectionSettings(table=3))
+    assert third.table is None and third.notes == ("there is no table 3: 2 tables were found",)
+
+
+@pytest.mark.parametrize("things", [[CUBE, PLANK], [CUBE, PLANK, beside(0.0)[0]], [CUBE, PLANK, *beside(-0.45)]])
+def test_what_is_bare_or_as_low_as_a_floor_is_no_second_table(boxes_seen: Look, things: list[object]) -> None:
+    cloud = boxes_seen(things, half=0.2)
+    assert detect(cloud).notes == ()
+    assert detect(cloud, DetectionSettings(table=2)).notes == ("there is no table 2: one table was found",)
+
+
+def test_tables_are_numbered_from_one() -> None:
+    with pytest.raises(CloudError, match="numbered from 1"):
+        DetectionSettings(table=0)
+
+
+def test_where_there_is_no_table_there_is_no_second_one() -> None:
+    scattered = np.random.default_rng(0).uniform(-1, 1, (500, 3)).astype(np.float32)
+    found = detect(PointCloud(scattered), DetectionSettings(table=2))
+    assert found.table is None and found.notes[0].startswith("no table was found")
