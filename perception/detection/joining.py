@@ -47,13 +47,22 @@ REACH = 0.02
 SMALLER = 0.6
 """A handle is so much narrower than what it is on, at the most, and of so much less surface."""
 
+LOW, NARROW, LONG = 0.03, 0.045, 3.0
+"""Cutlery is no higher and no wider (metres, between the middles of patches), and so many times as long as wide."""
+
+THIN = 0.01
+"""Metres: what is narrower than a patch is taken to be as wide."""
+
+NECK, OVERLAP = 0.03, 0.3
+"""Metres of its neck that may not be seen, and the share of the shorter piece by which two pieces overlap at most."""
+
 Pairs = NDArray[np.intp]
 
 
 def whole_things(parts: Parts) -> Parts:
     """Parts joined until they are things, rule by rule."""
     parts = _without_fragments(parts)
-    for rule in (of_one_colour, enclosed, bridged, enclosed, of_one_colour, insides, on_a_foot, handles):
+    for rule in (of_one_colour, enclosed, bridged, enclosed, of_one_colour, insides, on_a_foot, handles, end_to_end):
         parts = _applied(rule, parts)
     return parts
 
@@ -127,6 +136,26 @@ def handles(parts: Parts) -> Pairs:
     return _chosen(
         pairs, lambda handle, body: _apart(parts, handle, body) < REACH and _inside(parts, handle, body) < BESIDE
     )
+
+
+def end_to_end(parts: Parts) -> Pairs:
+    """Two low pieces of one colour in a line, together long and narrow: the head and the handle of a spoon."""
+    low = parts.tops < LOW
+    pairs = _pairs(np.triu(low[:, None] & low[None] & (parts.gaps < NECK) & ~_differ(parts)))
+    return _chosen(pairs, lambda a, b: parts.once(_line, a, b) > LONG)
+
+
+def _line(parts: Parts, one: NDArray[np.intp], two: NDArray[np.intp]) -> float:
+    """How often as long as wide two parts together are, if one begins where the other ends; else 0."""
+    plan = parts.patches.middles[np.concatenate([one, two]), :2]
+    along = np.linalg.svd(plan - plan.mean(axis=0), full_matrices=False)[2]
+    turned = plan @ along.T
+    length, width = np.ptp(turned, axis=0).tolist()
+    ends = turned[: len(one), 0], turned[len(one) :, 0]
+    shared = min(end.max() for end in ends) - max(end.min() for end in ends)
+    if width > NARROW or not -NECK < shared < OVERLAP * min(np.ptp(end) for end in ends):
+        return 0.0
+    return float(length / max(width, THIN))
 
 
 def _chosen(pairs: Pairs, belong: Callable[[int, int], bool]) -> Pairs:
