@@ -35,7 +35,7 @@ GAP, ALONG = 0.11, 0.015
 """Metres of a surface of one colour that something on it hides: a napkin on a plate. It goes on where it is nearest, or
 so much farther away."""
 
-FOOT, STEM = 0.022, 0.015
+FOOT, STEM = 0.022, 0.006
 """Most of the foot of a glass is lower than the first, and what meets or hides it higher above it than the second."""
 
 CLEAR, BESIDE = 0.012, 0.5
