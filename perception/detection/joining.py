@@ -62,7 +62,18 @@ Pairs = NDArray[np.intp]
 def whole_things(parts: Parts) -> Parts:
     """Parts joined until they are things, rule by rule."""
     parts = _without_fragments(parts)
-    for rule in (of_one_colour, enclosed, bridged, enclosed, of_one_colour, insides, on_a_foot, handles, end_to_end):
+    for rule in (
+        of_one_colour,
+        enclosed,
+        bridged,
+        enclosed,
+        of_one_colour,
+        insides,
+        on_a_foot,
+        handles,
+        end_to_end,
+        sides,
+    ):
         parts = _applied(rule, parts)
     return parts
 
@@ -145,17 +156,42 @@ def end_to_end(parts: Parts) -> Pairs:
     return _chosen(pairs, lambda a, b: parts.once(_line, a, b) > LONG)
 
 
+def sides(parts: Parts) -> Pairs:
+    """A thin upright piece, and the thing of its colour whose side it is: seen so aslant that the edge is a jump."""
+    beside = (parts.gaps < REACH) & (parts.tops[:, None] < parts.tops[None] + LIES_ON) & ~_differ(parts)
+    pairs = _pairs(beside & (parts.areas[:, None] < parts.areas[None]))
+    return _chosen(pairs, lambda side, thing: _apart(parts, side, thing) < REACH and _is_sheet(parts, side))
+
+
+def _is_sheet(parts: Parts, part: int) -> bool:
+    patches = parts.members(part)
+    normal = parts.patches.normals[patches].mean(axis=0)
+    upright = abs(normal[2]) < 0.5 * np.linalg.norm(normal)
+    return bool(upright and _sides(parts.patches.middles[patches, :2])[1] < THIN)
+
+
 def _line(parts: Parts, one: NDArray[np.intp], two: NDArray[np.intp]) -> float:
-    """How often as long as wide two parts together are, if one begins where the other ends; else 0."""
-    plan = parts.patches.middles[np.concatenate([one, two]), :2]
-    along = np.linalg.svd(plan - plan.mean(axis=0), full_matrices=False)[2]
-    turned = plan @ along.T
-    length, width = np.ptp(turned, axis=0).tolist()
-    ends = turned[: len(one), 0], turned[len(one) :, 0]
-    shared = min(end.max() for end in ends) - max(end.min() for end in ends)
-    if width > NARROW or not -NECK < shared < OVERLAP * min(np.ptp(end) for end in ends):
+    """How often as long as wide two parts are together, if the one begins where the other, longer one ends; else 0."""
+    plans = [parts.patches.middles[part, :2] for part in (one, two)]
+    longer = max(plans, key=lambda plan: _sides(plan)[0])
+    turned = [plan @ _axes(longer) for plan in plans]
+    low, high = (np.array([end(plan, axis=0) for plan in turned]) for end in (np.min, np.max))
+    (length, width), (along, across) = high.max(axis=0) - low.min(axis=0), high.min(axis=0) - low.max(axis=0)
+    if width > NARROW or across < 0 or not -NECK < along < OVERLAP * (high - low)[:, 0].min():
         return 0.0
     return float(length / max(width, THIN))
+
+
+def _axes(plan: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The principal axes of places (n, 2), the longer first, as columns (2, 2)."""
+    axes: NDArray[np.float64] = np.linalg.svd(plan - plan.mean(axis=0))[2].T
+    return axes
+
+
+def _sides(plan: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Length and width (2,) of places (n, 2) along their principal axes."""
+    sides: NDArray[np.float64] = np.ptp(plan @ _axes(plan), axis=0)
+    return sides
 
 
 def _chosen(pairs: Pairs, belong: Callable[[int, int], bool]) -> Pairs:

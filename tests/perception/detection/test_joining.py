@@ -99,3 +99,45 @@ def test_cutlery_on_two_sides_of_a_plate_is_not_one_thing_below_it() -> None:
     plate = plate[np.linalg.norm(plate[:, :2], axis=1) < 0.105]
     fork, knife = _grid((-0.08, 0.09), (0.11, 0.12), 0.004), _grid((0.11, 0.12), (-0.1, 0.09), 0.004)
     assert not len(bridged(_below(plate, fork, knife)))
+
+
+def _apart(*pieces: NDArray[np.float64], normals: tuple[float, float, float] = (0.0, 0.0, 1.0)) -> Parts:
+    """Parts that do not meet, of one colour; the last one's ``normals`` can be told."""
+    middles = np.concatenate(pieces)
+    ones, number = np.ones(len(middles)), np.arange(len(middles), dtype=np.int32)
+    of = np.repeat(np.arange(len(pieces)), [len(piece) for piece in pieces]).astype(np.int32)
+    facing = np.where((of == of.max())[:, None], normals, (0.0, 0.0, 1.0))
+    patches = Supervoxels(number, ones, middles, facing, np.zeros_like(middles), 1e-4 * ones)
+    none = np.zeros(0)
+    return Parts(of, patches, Boundaries(np.zeros((0, 2), np.int64), none, none, none))
+
+
+HANDLE = _grid((0.0, 0.01), (0.0, 0.12), 0.004)
+
+
+@pytest.mark.parametrize(
+    ("other", "count"),
+    [
+        (_grid((-0.01, 0.02), (0.14, 0.18), 0.006), 1),  # the head, behind a neck that is not seen
+        (_grid((-0.01, 0.02), (0.17, 0.21), 0.006), 2),  # too far away
+        (_grid((0.03, 0.04), (0.0, 0.12), 0.004), 2),  # another handle beside it
+        (_grid((0.03, 0.04), (0.13, 0.2), 0.004), 2),  # not in a line
+        (_grid((-0.01, 0.02), (0.14, 0.18), 0.05), 2),  # something high
+        (_grid((-0.05, 0.06), (0.14, 0.2), 0.006), 2),  # something wide
+    ],
+)
+def test_the_head_of_a_spoon_goes_on_in_its_handle(other: NDArray[np.float64], count: int) -> None:
+    assert len(whole_things(_apart(HANDLE, other))) == count
+    assert len(whole_things(_apart(other, HANDLE))) == count
+
+
+@pytest.mark.parametrize(
+    ("normal", "top", "count"),
+    [((1.0, 0.0, 0.1), 0.06, 1), ((0.0, 0.0, 1.0), 0.06, 2), ((1.0, 0.0, 0.1), 0.12, 2)],
+)
+def test_a_thin_upright_piece_is_the_side_of_what_is_as_high(
+    normal: tuple[float, float, float], top: float, count: int
+) -> None:
+    box = _grid((0.0, 0.08), (0.0, 0.08), 0.08)
+    side = np.concatenate([_grid((0.09, 0.09), (0.0, 0.08), z) for z in np.arange(0.0, top + 0.005, 0.01)])
+    assert len(whole_things(_apart(box, side, normals=normal))) == count
