@@ -5,32 +5,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator
 
 from deixis.ontology.allen import SYMBOLS
+from deixis.ontology.document_terms import DCTERMS, OWL, RDFS, Term, Terms, read_terms, union
 from deixis.ontology.errors import OntologyError
 from deixis.ontology.vocabulary import BASE, DX, ONTOLOGY_IRI, W3C
 
-_OWL = "http://www.w3.org/2002/07/owl#"
-_RDFS = "http://www.w3.org/2000/01/rdf-schema#"
-_RDF = "http://www.w3.org/1999/02/22-rdf-syntax-ns#"
-_DCTERMS = "http://purl.org/dc/terms/"
 _PREFIXES = {
     BASE: "dx:",
-    _OWL: "owl:",
+    OWL: "owl:",
     "http://www.w3.org/ns/prov#": "prov:",
     "http://www.w3.org/2001/XMLSchema#": "xsd:",
     "http://www.w3.org/2004/02/skos/core#": "skos:",
-    _DCTERMS: "dcterms:",
+    DCTERMS: "dcterms:",
     "http://purl.org/vocab/vann/": "vann:",
     "http://qudt.org/schema/qudt/": "qudt:",
     "http://qudt.org/vocab/unit/": "unit:",
 }
 _PROPERTIES = {
-    "Object properties": _OWL + "ObjectProperty",
-    "Datatype properties": _OWL + "DatatypeProperty",
-    "Annotation properties": _OWL + "AnnotationProperty",
+    "Object properties": OWL + "ObjectProperty",
+    "Datatype properties": OWL + "DatatypeProperty",
+    "Annotation properties": OWL + "AnnotationProperty",
 }
 _CHARACTERISTICS = ("Functional", "InverseFunctional", "Transitive", "Symmetric", "Asymmetric", "Irreflexive")
 
@@ -74,33 +70,6 @@ What people call by a word: the middle of it in sRGB, and the covariance around 
 white point D65)."""
 
 
-@dataclass(frozen=True, slots=True)
-class Term:
-    """What the TBox says of one subject: values by predicate, both as strings, in the order of the file."""
-
-    iri: str
-    said: Mapping[str, tuple[str, ...]]
-
-    def values(self, predicate: str) -> tuple[str, ...]:
-        return self.said.get(predicate, ())
-
-    def value(self, predicate: str) -> str:
-        """The first value, or an empty text."""
-        return next(iter(self.values(predicate)), "")
-
-    def is_a(self, kind: str) -> bool:
-        return kind in self.values(W3C.RDF_TYPE)
-
-    @property
-    def words(self) -> tuple[str, ...]:
-        """Label, phrase and synonyms, each once."""
-        given = (self.value(W3C.RDFS_LABEL), self.value(DX.PHRASE), *self.values(W3C.SKOS_ALT_LABEL))
-        return tuple(word for word in dict.fromkeys(given) if word)
-
-
-Terms = Mapping[str, Term]
-
-
 def term_document(turtle: str) -> str:
     """The page, in Markdown, of an ontology in Turtle that is built as the shipped TBox is.
 
@@ -111,7 +80,7 @@ def term_document(turtle: str) -> str:
 
     Raises OntologyError where the text is no Turtle, or has no header.
     """
-    terms = _terms(turtle)
+    terms = read_terms(turtle)
     if ONTOLOGY_IRI not in terms:
         raise OntologyError(f"the ontology has no header: nothing is said of <{ONTOLOGY_IRI}>")
     own = [term for iri, term in terms.items() if iri.startswith(BASE)]
@@ -136,25 +105,12 @@ def term_document(turtle: str) -> str:
     return "\n\n".join(parts) + "\n"
 
 
-def _terms(turtle: str) -> Terms:
-    import pyoxigraph as ox
-
-    said: dict[str, dict[str, list[str]]] = {}
-    try:
-        for quad in ox.parse(turtle, format=ox.RdfFormat.TURTLE):
-            subject, value = (getattr(node, "value", str(node)) for node in (quad.subject, quad.object))
-            said.setdefault(subject, {}).setdefault(quad.predicate.value, []).append(value)
-    except SyntaxError as error:
-        raise OntologyError(f"the ontology is no valid Turtle: {error}") from error
-    return {iri: Term(iri, {p: tuple(values) for p, values in about.items()}) for iri, about in said.items()}
-
-
 def _introduction(header: Term) -> str:
     return _INTRODUCTION.format(
         title=header.value(W3C.DCTERMS_TITLE),
-        version=header.value(_OWL + "versionInfo"),
-        description=header.value(_DCTERMS + "description"),
-        license=header.value(_DCTERMS + "license"),
+        version=header.value(OWL + "versionInfo"),
+        description=header.value(DCTERMS + "description"),
+        license=header.value(DCTERMS + "license"),
         iri=header.iri,
         base=BASE,
     )
@@ -162,7 +118,7 @@ def _introduction(header: Term) -> str:
 
 def _relation(term: Term, terms: Terms) -> str:
     facts = [f"inverse {', '.join(map(_code, _inverses(term, terms)))}"]
-    if term.is_a(_OWL + "TransitiveProperty"):
+    if term.is_a(OWL + "TransitiveProperty"):
         facts.append("transitive")
     facts.append(f"under {', '.join(map(_code, term.values(W3C.RDFS_SUB_PROPERTY_OF)))}")
     axes = [("x", DX.ADMITS_ON_X), ("y", DX.ADMITS_ON_Y), ("z, where heights are known", DX.DECIDED_ON_Z)]
@@ -191,7 +147,7 @@ def _atoms(relations: Iterable[str], terms: Terms) -> str:
 
 def _allen_relations(own: Iterable[Term]) -> str:
     rows = [
-        (f"`{term.value(DX.ALLEN_SYMBOL)}`", term.value(W3C.RDFS_LABEL), _code(term.iri), _definition(term))
+        (f"`{term.value(DX.ALLEN_SYMBOL)}`", term.value(W3C.RDFS_LABEL), _code(term.iri), term.definition)
         for term in own
         if term.is_a(DX.ALLEN_RELATION)
     ]
@@ -212,7 +168,7 @@ def _tree(iri: str, own: list[Term], above: tuple[str, ...] = ()) -> Iterator[st
 def _entry(term: Term) -> str:
     label, *others = term.words or (_code(term.iri),)
     also = f" Also: {', '.join(others)}." if others else ""
-    return f"**{label}** ({_code(term.iri)}): {_definition(term)}{also}"
+    return f"**{label}** ({_code(term.iri)}): {term.definition}{also}"
 
 
 def _sizes(own: Iterable[Term]) -> str:
@@ -237,7 +193,7 @@ def _source(term: Term) -> str:
 
 def _hedges(own: Iterable[Term]) -> str:
     rows = [
-        (term.value(DX.HEDGE_WEIGHT), ", ".join(term.words), _code(term.iri), _definition(term))
+        (term.value(DX.HEDGE_WEIGHT), ", ".join(term.words), _code(term.iri), term.definition)
         for term in own
         if term.is_a(DX.HEDGE)
     ]
@@ -247,7 +203,7 @@ def _hedges(own: Iterable[Term]) -> str:
 def _colours(own: Iterable[Term]) -> str:
     rows = [
         (
-            *(", ".join(term.words), _code(term.iri), _definition(term)),
+            *(", ".join(term.words), _code(term.iri), term.definition),
             *(term.value(DX.PROTOTYPE), term.value(DX.SPREAD), _source(term)),
         )
         for term in own
@@ -263,7 +219,7 @@ def _other_classes(own: list[Term]) -> str:
     for term in own:
         if term.is_a(W3C.OWL_CLASS) and f"({_code(term.iri)})" not in shown:
             broader = ", ".join(_code(value) for value in term.values(W3C.RDFS_SUB_CLASS_OF) if _is_iri(value))
-            rows.append((term.value(W3C.RDFS_LABEL), _code(term.iri), broader, _definition(term)))
+            rows.append((term.value(W3C.RDFS_LABEL), _code(term.iri), broader, term.definition))
     return "## Other classes\n\n" + _table(("class", "term", "under", "definition"), rows)
 
 
@@ -271,35 +227,24 @@ def _properties(title: str, kind: str, own: Iterable[Term], terms: Terms) -> str
     rows = []
     for term in own:
         if term.is_a(kind) and not term.values(DX.READING):
-            notes = [name.lower() for name in _CHARACTERISTICS if term.is_a(f"{_OWL}{name}Property")]
+            notes = [name.lower() for name in _CHARACTERISTICS if term.is_a(f"{OWL}{name}Property")]
             notes += [f"inverse of {_code(other)}" for other in _inverses(term, terms)]
             notes += [f"under {_code(other)}" for other in term.values(W3C.RDFS_SUB_PROPERTY_OF)]
-            domain, range_ = (_classes(term.values(_RDFS + end), terms) for end in ("domain", "range"))
-            rows.append((", ".join(term.words), _code(term.iri), domain, range_, ", ".join(notes), _definition(term)))
+            domain, range_ = (_classes(term.values(RDFS + end), terms) for end in ("domain", "range"))
+            rows.append((", ".join(term.words), _code(term.iri), domain, range_, ", ".join(notes), term.definition))
     return f"## {title}\n\n" + _table(("property", "term", "domain", "range", "", "definition"), rows)
 
 
 def _classes(values: Iterable[str], terms: Terms) -> str:
-    return ", ".join(" or ".join(map(_code, _union(value, terms))) for value in values)
-
-
-def _union(value: str, terms: Terms) -> list[str]:
-    """The members where ``value`` is the name of a union, else ``value`` alone."""
-    if value not in terms or not terms[value].values(_OWL + "unionOf"):
-        return [value]
-    members, node = [], terms[value].value(_OWL + "unionOf")
-    while node in terms:
-        members.append(terms[node].value(_RDF + "first"))
-        node = terms[node].value(_RDF + "rest")
-    return members
+    return ", ".join(" or ".join(map(_code, union(value, terms))) for value in values)
 
 
 def _individuals(own: Iterable[Term]) -> str:
     rows, shown_above = [], (DX.ALLEN_RELATION, DX.HEDGE, DX.COLOUR)
     for term in own:
-        if term.is_a(_OWL + "NamedIndividual") and not any(map(term.is_a, shown_above)):
+        if term.is_a(OWL + "NamedIndividual") and not any(map(term.is_a, shown_above)):
             kinds = [kind for kind in term.values(W3C.RDF_TYPE) if kind.startswith(BASE)]
-            rows.append((", ".join(term.words), _code(term.iri), ", ".join(map(_code, kinds)), _definition(term)))
+            rows.append((", ".join(term.words), _code(term.iri), ", ".join(map(_code, kinds)), term.definition))
     return "## Other individuals\n\n" + _table(("individual", "term", "of class", "definition"), rows)
 
 
@@ -311,10 +256,6 @@ def _of_others(terms: Terms) -> str:
 def _is_iri(value: str) -> bool:
     """Blank nodes have names without a colon."""
     return ":" in value
-
-
-def _definition(term: Term) -> str:
-    return term.value(W3C.SKOS_DEFINITION)
 
 
 def _code(iri: str) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import time
 from dataclasses import replace
 from types import MappingProxyType
@@ -11,12 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.ontology.graph import Fact
+from deixis.reasoning.alternatives import WORTH_NAMING, alternatives, left_out_objects, left_out_things
 from deixis.reasoning.answer import (
     DECIDED,
-    Alternative,
     FactOutcome,
     Grounding,
-    LeftOut,
     Match,
     Outcome,
     Pivotal,
@@ -34,12 +32,6 @@ DROPPING = 0.1
 """Share of the time limit for finding out what would change without each fact."""
 
 NO_TIME = "there was no time to find out what rests on which fact"
-
-WORTH_NAMING = 0.01
-"""Probability from which an alternative is named."""
-
-MANY_FELLOWS = 100
-"""Interchangeable objects up to which each lists the others' things: of k that would be k * k."""
 
 
 def ground(
@@ -66,8 +58,8 @@ def ground(
     return Grounding(
         engine=alignment.engine,
         matches=MappingProxyType({name: matches[name] for name in names if name in matches}),
-        unmatched_objects=_left_out_objects(in_order, alignment, names),
-        unmatched_perceived=_left_out_things(in_order, alignment, evidence.scene.nodes),
+        unmatched_objects=left_out_objects(in_order, alignment, names),
+        unmatched_perceived=left_out_things(in_order, alignment, evidence.scene.nodes),
         interchangeable=groups,
         graph_similarity=alignment.graph_similarity,
         outcomes=outcomes,
@@ -149,7 +141,6 @@ def _matches(
     matches = {}
     for i in np.flatnonzero(alignment.assignment != UNMATCHED):
         name, p = evidence.description.nodes[i], int(alignment.assignment[i])
-        alternatives = _alternatives(evidence, alignment, int(i), groups)
         probability = None if alignment.posterior is None else float(alignment.posterior.marginals[i, p])
         matches[name] = Match(
             object=name,
@@ -157,7 +148,7 @@ def _matches(
             score=held[name] / said[name] if said[name] else 1.0,
             similarity=float(alignment.matrix[i, p]),
             decided=_decided(evidence, alignment, int(i), name in grouped),
-            alternatives=alternatives,
+            alternatives=alternatives(evidence, alignment, int(i), groups),
             probability=probability,
         )
     return matches
@@ -169,44 +160,6 @@ def _decided(evidence: Evidence, alignment: Alignment, i: int, grouped: bool) ->
         similar = alignment.margins is not None and bool(alignment.margins[i] > 1e-9)
         return bool(evidence.allowed[i].sum() == 1) or (similar and not grouped)
     return bool(alignment.posterior.marginals[i, alignment.assignment[i]] >= DECIDED)
-
-
-def _alternatives(
-    evidence: Evidence, alignment: Alignment, i: int, groups: tuple[tuple[str, ...], ...]
-) -> tuple[Alternative, ...]:
-    """What else an object could be, the best first: by probability, else by similarity."""
-    found = (
-        _similar(evidence, alignment, i, groups) if alignment.posterior is None else _probable(evidence, alignment, i)
-    )
-    return tuple(sorted(found, key=lambda other: (other.cost, other.perceived is None, other.perceived)))
-
-
-def _probable(evidence: Evidence, alignment: Alignment, i: int) -> list[Alternative]:
-    assert alignment.posterior is not None
-    row, chosen = alignment.posterior.marginals[i], int(alignment.assignment[i])
-    own = max(float(row[chosen]), 1e-300)  # of what is left out the last column is its own, as UNMATCHED is
-    found = []
-    for p in np.flatnonzero(row >= WORTH_NAMING).tolist():
-        if p != chosen % len(row):
-            perceived = evidence.scene.nodes[p] if p < len(evidence.scene.nodes) else None
-            found.append(Alternative(perceived, max(0.0, round(math.log(own / row[p]), 9)), float(row[p])))
-    return found
-
-
-def _similar(
-    evidence: Evidence, alignment: Alignment, i: int, groups: tuple[tuple[str, ...], ...]
-) -> list[Alternative]:
-    """Interchangeable fellows' things, which cost nothing, if not too many; and the engine's next best choice."""
-    name = evidence.description.nodes[i]
-    found: dict[str, float] = {}
-    for group in groups:
-        if name in group and len(group) <= MANY_FELLOWS:
-            fellows = (evidence.description.index(other) for other in group if other != name)
-            matched = (alignment.assignment[j] for j in fellows if alignment.assignment[j] != UNMATCHED)
-            found |= {evidence.scene.nodes[p]: 0.0 for p in matched}
-    if alignment.runners_up is not None and alignment.margins is not None and alignment.runners_up[i] != UNMATCHED:
-        found.setdefault(evidence.scene.nodes[alignment.runners_up[i]], max(float(alignment.margins[i]), 0.0))
-    return [Alternative(p, cost) for p, cost in found.items()]
 
 
 def _pivotal(
@@ -260,41 +213,6 @@ def _any_of_many(evidence: Evidence, alignment: Alignment) -> tuple[str, ...]:
         return ()
     least = alignment.posterior.marginals.max(axis=1, initial=0.0) < WORTH_NAMING
     return _named(evidence.description.nodes, least & (alignment.assignment != UNMATCHED))
-
-
-def _left_out_objects(evidence: Evidence, alignment: Alignment, names: tuple[str, ...]) -> tuple[LeftOut, ...]:
-    reasons = {}
-    for i in np.flatnonzero(alignment.assignment == UNMATCHED):
-        if not len(evidence.scene.nodes):
-            reason = "nothing was perceived"
-        elif not evidence.allowed[i].any():
-            reason = "the labels of the scene leave it nothing that it could be"
-        elif len(evidence.description.nodes) > len(evidence.scene.nodes) and (alignment.assignment != UNMATCHED).any():
-            reason = "the description names more than was perceived, and the rest explains the scene best without it"
-        else:
-            reason = "what is said of it fits nothing perceived as well as its not being there"
-        reasons[evidence.description.nodes[i]] = LeftOut(
-            evidence.description.nodes[i], reason, _alternatives(evidence, alignment, int(i), ())
-        )
-    return tuple(reasons[name] for name in names if name in reasons)
-
-
-def _left_out_things(evidence: Evidence, alignment: Alignment, ids: tuple[str, ...]) -> tuple[LeftOut, ...]:
-    taken = set(alignment.assignment.tolist()) - {UNMATCHED}
-    reasons = {}
-    for p, thing in enumerate(evidence.scene.nodes):
-        if p in taken:
-            continue
-        if not len(evidence.description.nodes):
-            reason = "the description names nothing"
-        elif not evidence.allowed[:, p].any():
-            reason = "its label names nothing in the description"
-        elif len(evidence.description.nodes) < len(evidence.scene.nodes) and taken:
-            reason = "the description names fewer things than were perceived, and fits the others at least as well"
-        else:
-            reason = "nothing that is described fits it better than its not being described"
-        reasons[thing] = reason
-    return tuple(LeftOut(thing, reasons[thing]) for thing in ids if thing in reasons)
 
 
 def _notes(evidence: Evidence, alignment: Alignment) -> tuple[str, ...]:

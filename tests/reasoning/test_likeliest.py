@@ -260,7 +260,7 @@ def test_many_objects_are_answered_soon_after_a_short_time_limit() -> None:
 
 
 def test_a_thousand_alike_do_not_list_each_other() -> None:
-    from deixis.reasoning.grounding import MANY_FELLOWS
+    from deixis.reasoning.alternatives import MANY_FELLOWS
 
     boxes = np.tile(np.array([[0.0, 0.0], [0.1, 0.1]]), (MANY_FELLOWS + 2, 1, 1))
     names = [f"a{i}" for i in range(MANY_FELLOWS + 2)]
