@@ -17,7 +17,7 @@ from deixis.perception.detection.outline import above_outline
 from deixis.perception.detection.plane import Outlook, Plane
 from deixis.perception.detection.settings import DetectionSettings
 from deixis.perception.detection.tables import LEAST_TABLE, ON_TABLE, Table, tables
-from deixis.perception.detection.viewpoint import checked_outlook
+from deixis.perception.detection.viewpoint import believed, likely
 from deixis.perception.errors import CloudError
 from deixis.perception.scene import PerceivedObject, Scene
 
@@ -82,7 +82,7 @@ def detect(cloud: PointCloud, settings: DetectionSettings | None = None) -> Dete
         raise CloudError("a cloud without one finite point shows nothing; is its depth image empty?")
     points = cloud.points[kept].astype(np.float64)
     _require_metres(points)
-    outlook = outlook_of(cloud, settings)
+    outlook = believed(outlook_of(cloud, settings), points, settings.seed)
     if len(points) >= settings.least_points and _is_alone(points, settings):
         return _alone(cloud, kept, points, outlook, settings)
     seen = list(islice(tables(points, outlook, settings.seed), settings.table + 1))
@@ -157,7 +157,7 @@ def _alone(
     ups = (outlook.upwards, outlook.up, np.array([0.0, 0.0, 1.0]))
     up = next(direction for direction in ups if direction is not None)
     below = Plane(up, float(np.percentile(points @ up, FEW)))
-    outlook = checked_outlook(outlook, points, below, settings.seed)
+    outlook = likely(outlook, points, below, settings.seed)
     frame = table_frame(below, points, outlook, settings.viewer)
     thing = moved(points, frame)
     labels = np.full(len(cloud), NONE, np.int32)

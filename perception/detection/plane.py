@@ -19,6 +19,9 @@ NEAR = 0.01
 """Metres within which a point lies on a plane at first, at one metre from the sensor; it grows with the square, as
 noise does."""
 
+FARTHEST = 2.5
+"""Metres up to which noise is reckoned with: what seems farther may have been moved."""
+
 MOST_PLANES = 5
 LEAST_SHARE = 0.04
 """A plane that could be the table holds at least this share of the points."""
@@ -132,7 +135,7 @@ def _without_floors(levels: list[_Level], total: int) -> list[_Level]:
 
 def tolerance_at(points: NDArray[np.float64], outlook: Outlook) -> NDArray[np.float64]:
     """Metres from a plane, (n,), within which points (n, 3) may be on it."""
-    near: NDArray[np.float64] = NEAR * np.maximum(((points - outlook.eye) ** 2).sum(axis=1), 0.25)
+    near: NDArray[np.float64] = NEAR * np.clip(((points - outlook.eye) ** 2).sum(axis=1), 0.25, FARTHEST**2)
     return near
 
 

@@ -19,7 +19,7 @@ from deixis.perception.detection.plane import (
     table_plane,
     tolerance_at,
 )
-from deixis.perception.detection.viewpoint import checked_outlook
+from deixis.perception.detection.viewpoint import likely
 
 ON_TABLE = 0.01
 """Metres from the plane within which a point is the table's, as far as its outline goes."""
@@ -59,7 +59,7 @@ def _first(points: NDArray[np.float64], outlook: Outlook, seed: int) -> tuple[Pl
     if plane is None and outlook.up is not None and outlook.right is not None:
         outlook = replace(outlook, up=-outlook.up, right=-outlook.right)
         plane = table_plane(points, outlook, seed)
-    return plane, outlook if plane is None else checked_outlook(outlook, points, plane, seed)
+    return plane, outlook if plane is None else likely(outlook, points, plane, seed)
 
 
 def _beside(plane: Plane, points: NDArray[np.float64]) -> NDArray[np.bool_]:

@@ -33,10 +33,19 @@ ROUND, ELEVATION = 8, np.deg2rad(45.0)
 so many places around it, at one elevation."""
 
 
-def checked_outlook(outlook: Outlook, points: NDArray[np.float64], plane: Plane, seed: int) -> Outlook:
-    """The outlook on the points (n, 3), if they were seen from there; else a likely one, marked as not known."""
+def believed(outlook: Outlook, points: NDArray[np.float64], seed: int) -> Outlook:
+    """The outlook on the points (n, 3), if they may have been seen from there; else one from above, as not known."""
     few = _sample(points, seed)
-    if plane.heights(outlook.eye[None])[0] > LEAST_HEIGHT and apart(few, outlook.eye) < MOST_APART:
+    if outlook.known and apart(few, outlook.eye) < MOST_APART:
+        return outlook
+    above = np.median(few, axis=0) + np.array([0.0, 0.0, AWAY])
+    return Outlook(above, upwards=outlook.upwards, known=False)
+
+
+def likely(outlook: Outlook, points: NDArray[np.float64], plane: Plane, seed: int) -> Outlook:
+    """The outlook, if it is known and above the table; else from where the points (n, 3) look most as if seen."""
+    few = _sample(points, seed)
+    if outlook.known and plane.heights(outlook.eye[None])[0] > LEAST_HEIGHT:
         return outlook
     on = few[np.abs(plane.heights(few)) < 0.01]
     places = _places_around((on if len(on) else few).mean(axis=0), plane)

@@ -62,7 +62,7 @@ def test_points_seen_from_elsewhere_have_neighbours_that_are_apart(boxes_seen: L
     assert apart(to_table(points), np.zeros(3)) > 2 * MOST_APART
 
 
-@pytest.mark.parametrize("shift", [(0.0, 0.0, 0.0), (0.8, 0.1, 0.75)])
+@pytest.mark.parametrize("shift", [(0.0, 0.0, 0.0), (0.8, 0.1, 0.75), (3.0, 2.0, 1.0)])
 @pytest.mark.parametrize("organised", [True, False])
 def test_a_cloud_whose_origin_is_no_viewpoint_keeps_its_own_y_axis(
     boxes_seen: Look, to_table: ToTable, shift: tuple[float, float, float], organised: bool
@@ -73,6 +73,17 @@ def test_a_cloud_whose_origin_is_no_viewpoint_keeps_its_own_y_axis(
     assert found.frame[:3, :3] == pytest.approx(np.eye(3), abs=0.01)
     assert len(found.boxes) == 2
     assert (centres(found) - shift)[:, :2] == pytest.approx(np.array(CENTRES), abs=0.008)
+
+
+@pytest.mark.parametrize("organised", [True, False])
+def test_a_cloud_that_was_moved_aside_shows_the_same_things(boxes_seen: Look, organised: bool) -> None:
+    cloud = boxes_seen([CUBE, PLANK])
+    cloud = cloud if organised else no_image(cloud)
+    one, other = detect(cloud), detect(replace(cloud, points=cloud.points + np.array([5, 0, 0], np.float32)))
+    assert one.table is not None and other.table is not None
+    assert float(one.table.normal @ other.table.normal) > 0.999
+    assert len(other.boxes) == len(one.boxes) == 2
+    assert ((other.labels >= 0) == (one.labels >= 0)).mean() > (0.99 if organised else 0.95)
 
 
 def test_a_camera_held_upside_down_sees_the_same_table(boxes_seen: Look) -> None:
