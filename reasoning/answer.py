@@ -7,12 +7,29 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from enum import StrEnum
 
+import numpy as np
+from numpy.typing import NDArray
+
 from deixis.ontology.graph import Fact
 from deixis.ontology.relation import Relation
 
 DECIDED = 0.99
 """Probability from which a match is called decided: where things are missing, somewhat less is right than was said, for
 an extra thing may fit all that is said of what is absent (docs/scoreboard.md)."""
+
+
+FIRMLY = 0.975
+"""What is decided is as probable even if it is off by the error of its probability."""
+
+
+def is_decided(probability: NDArray[np.float64], error: float) -> NDArray[np.bool_]:
+    """Which of these probabilities (…,) are high enough, and known well enough, to call a match decided.
+
+    >>> is_decided(np.array([0.98, 0.995]), 0.01).tolist(), is_decided(np.array([0.995]), 0.05).tolist()
+    ([False, True], [False])
+    """
+    decided: NDArray[np.bool_] = (probability >= DECIDED) & (probability - error >= FIRMLY)
+    return decided
 
 
 class Standing(StrEnum):
@@ -50,7 +67,8 @@ class Match:
 
     ``score`` is the share of what is said of the object and can be compared that holds (by degree and weight; 1 where
     there is nothing), ``similarity`` the paper's, ``probability`` that of the match given all the evidence (None where
-    the engine gives none). ``decided`` says that it is at least ``DECIDED``, or that nothing else is as similar.
+    the engine gives none). ``decided`` says that it is high enough (:func:`is_decided`), or that nothing else is as
+    similar.
     """
 
     object: str

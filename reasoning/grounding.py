@@ -19,6 +19,7 @@ from deixis.reasoning.answer import (
     Outcome,
     Pivotal,
     Standing,
+    is_decided,
 )
 from deixis.reasoning.dropping import Dropped, without_each
 from deixis.reasoning.engines import Alignment, Engine
@@ -159,7 +160,8 @@ def _decided(evidence: Evidence, alignment: Alignment, i: int, grouped: bool) ->
     if alignment.posterior is None:
         similar = alignment.margins is not None and bool(alignment.margins[i] > 1e-9)
         return bool(evidence.allowed[i].sum() == 1) or (similar and not grouped)
-    return bool(alignment.posterior.marginals[i, alignment.assignment[i]] >= DECIDED)
+    probability = alignment.posterior.marginals[i, alignment.assignment[i]]
+    return bool(is_decided(probability, alignment.posterior.error))
 
 
 def _pivotal(

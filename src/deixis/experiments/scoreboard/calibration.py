@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from deixis.experiments.scoreboard.cases import Case, Group
 from deixis.experiments.scoreboard.contestants import Answer
-from deixis.reasoning.answer import DECIDED
+from deixis.reasoning.answer import is_decided
 from deixis.reasoning.matching.problem import UNMATCHED
 
 BINS = 10
@@ -24,6 +24,7 @@ class Forecasts:
     group: Group
     probability: NDArray[np.float64]  # (k,)
     right: NDArray[np.bool_]  # (k,)
+    error: float = 0.0  # by how much the probabilities may be off
 
     @classmethod
     def of(cls, contestant: str, case: Case, answer: Answer) -> Forecasts:
@@ -32,7 +33,8 @@ class Forecasts:
             raise ValueError(f"{contestant} gives no probabilities")
         matched = np.flatnonzero(answer.assignment != UNMATCHED)
         given = answer.assignment[matched]
-        return cls(contestant, case.setting.group, answer.marginals[matched, given], given == case.truth[matched])
+        right = given == case.truth[matched]
+        return cls(contestant, case.setting.group, answer.marginals[matched, given], right, answer.error)
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,7 +74,7 @@ def calibration(forecasts: Sequence[Forecasts]) -> Calibration:
     number = np.clip((said * BINS).astype(int), 0, BINS - 1)
     bins = tuple(_bin(b, said[number == b], right[number == b]) for b in range(BINS))
     off = sum(b.count * abs(b.right - b.probability) for b in bins if b.count)
-    sure = said >= DECIDED
+    sure = np.concatenate([np.zeros(0, bool), *(is_decided(one.probability, one.error) for one in forecasts)])
     return Calibration(
         bins,
         len(said),

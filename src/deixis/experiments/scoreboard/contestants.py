@@ -27,6 +27,7 @@ class Answer:
     assignment: NDArray[np.int64]
     proved: bool = False
     marginals: NDArray[np.float64] | None = None
+    error: float = 0.0  # by how much these may be off
 
 
 @dataclass(frozen=True)
@@ -61,8 +62,9 @@ def engine(
 
     def solve(evidence: Evidence, deadline: float) -> Answer:
         found = engine_named(name).align(evidence, deadline)
-        marginals = None if found.posterior is None else found.posterior.marginals
-        return Answer(found.assignment, found.proved_best, marginals)
+        if found.posterior is None:
+            return Answer(found.assignment, found.proved_best)
+        return Answer(found.assignment, found.proved_best, found.posterior.marginals, found.posterior.error)
 
     return Contestant(called or name, settings, solve, most, meaning, ablation, learned)
 
