@@ -45,7 +45,7 @@ def read_quads(file: Path) -> Iterator[ox.Quad]:
     """The statements of a file. Raises ImportFormatError, with the place where it is malformed."""
     format = FORMATS.get(file.suffix.lower())
     if format is None:
-        raise ImportFormatError(f"{file}: of no known format; it must end in {', '.join(FORMATS)}")
+        raise ImportFormatError(f"{file}: of no known format; it must end in {', '.join(FORMATS)}; views in .zip")
     content = _bytes(file)
     text = _xml(file, content) if format is ox.RdfFormat.RDF_XML else content
     try:

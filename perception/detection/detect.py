@@ -13,7 +13,7 @@ from deixis.perception.detection.boxes import OrientedBox, oriented_box, upright
 from deixis.perception.detection.frame import moved, outlook_of, table_frame
 from deixis.perception.detection.heights import Raised, raised
 from deixis.perception.detection.neighbours import neighbour_table
-from deixis.perception.detection.outline import above_outline
+from deixis.perception.detection.outline import above_outline, in_largest_piece
 from deixis.perception.detection.plane import Outlook, Plane
 from deixis.perception.detection.settings import DetectionSettings
 from deixis.perception.detection.tables import LEAST_TABLE, ON_TABLE, Table, tables
@@ -87,16 +87,18 @@ def detect(cloud: PointCloud, settings: DetectionSettings | None = None) -> Dete
         return _alone(cloud, kept, points, outlook, settings)
     seen = list(islice(tables(points, outlook, settings.seed), settings.table + 1))
     if len(seen) < settings.table:
-        return _nothing(len(cloud), None, np.eye(4), _no_table(settings.table, len(seen)))
+        return _nothing(len(cloud), None, np.eye(4), _no_table(settings, len(seen)))
     table = seen[settings.table - 1]
     found = _on_table(cloud, kept[table.points], points[table.points], table, settings)
     return found if len(seen) == settings.table else replace(found, notes=(*found.notes, _more(settings.table)))
 
 
-def _no_table(number: int, found: int) -> str:
-    if not found:
-        return "no table was found: no large level surface is in view"
-    return f"there is no table {number}: {'one table was' if found == 1 else f'{found} tables were'} found"
+def _no_table(settings: DetectionSettings, found: int) -> str:
+    if found:
+        return f"there is no table {settings.table}: {'one table was' if found == 1 else f'{found} tables were'} found"
+    if settings.up is not None:
+        return "no table was found: no large surface in view is level, within 45 degrees of what was told to be up"
+    return "no table was found: no large level surface is in view"
 
 
 def _more(number: int) -> str:
@@ -184,6 +186,7 @@ class _View:
 
 def _view(points: NDArray[np.float64], plane: Plane, outlook: Outlook, settings: DetectionSettings) -> _View:
     on = points[np.abs(plane.heights(points)) < ON_TABLE]
+    on = on[in_largest_piece(on @ plane.across.T)]
     frame = table_frame(plane, on if len(on) else points, outlook, settings.viewer)
     eye = moved(outlook.eye[None], frame)[0]
     at = np.ascontiguousarray(moved(points, frame))
@@ -193,6 +196,7 @@ def _view(points: NDArray[np.float64], plane: Plane, outlook: Outlook, settings:
 def _too_small(view: _View) -> tuple[str, ...]:
     """A note where the table is too small for one."""
     on = view.points[np.abs(view.heights) < ON_TABLE, :2]
+    on = on[in_largest_piece(on)]
     across, deep = np.ptp(on, axis=0).tolist() if len(on) else (0.0, 0.0)
     if max(across, deep) >= LEAST_TABLE:
         return ()

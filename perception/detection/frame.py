@@ -15,7 +15,7 @@ from where images were taken, 0.3 and more from 30 cm beside it. Noise is along 
 
 
 LINES = 100
-"""Rows and columns of an image that are looked at for that."""
+"""Rows and columns of an image that are looked at."""
 
 
 def outlook_of(cloud: PointCloud, settings: DetectionSettings) -> Outlook:
@@ -32,7 +32,7 @@ def outlook_of(cloud: PointCloud, settings: DetectionSettings) -> Outlook:
         rays = rays / np.linalg.norm(rays, axis=2, keepdims=True)
         if max(_uneven(rays), _uneven(rays.swapaxes(0, 1))) > UNEVEN:
             return Outlook(eye, upwards=upwards, known=False)
-    down, right = (_mean_direction(np.diff(rays, axis=axis)) for axis in (0, 1))
+    down, right = _direction(rays), _direction(rays.swapaxes(0, 1))
     if down is None or right is None:
         return Outlook(eye, upwards=upwards)
     return Outlook(eye, -down, right, upwards)
@@ -47,12 +47,20 @@ def _uneven(rays: NDArray[np.float64]) -> float:
     return float(np.quantile(change[np.isfinite(change)], MOST)) if np.isfinite(change).any() else 0.0
 
 
-def _mean_direction(steps: NDArray[np.float64]) -> NDArray[np.float64] | None:
-    steps = steps.reshape(-1, 3)
-    steps = steps[np.isfinite(steps).all(axis=1)]
-    mean = steps.mean(axis=0) if len(steps) else np.zeros(3)
-    length = float(np.linalg.norm(mean))
-    return mean / length if length > 1e-9 else None
+def _direction(rays: NDArray[np.float64]) -> NDArray[np.float64] | None:
+    """Where the first axis of an image leads, from rays (r, c, 3): the direction that is in the planes of all columns.
+
+    The mean step from ray to ray is aslant where more of one side of the image is seen.
+    """
+    rays = rays[:, :: max(1, rays.shape[1] // LINES)]
+    one, other = rays[:-1].reshape(-1, 3), rays[1:].reshape(-1, 3)
+    both = np.isfinite(one + other).all(axis=1)
+    if both.sum() < 2:
+        return None
+    across = np.cross(one[both], other[both])
+    along: NDArray[np.float64] = np.linalg.eigh(across.T @ across)[1][:, 0]
+    step = (other[both] - one[both]).mean(axis=0) @ along
+    return along * np.sign(step) if abs(step) > 0 else None
 
 
 def table_frame(

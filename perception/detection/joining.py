@@ -144,8 +144,9 @@ def handles(parts: Parts) -> Pairs:
     clear = parts.bottoms[:, None] > parts.bottoms[None] + CLEAR
     as_high = parts.tops[:, None] < parts.tops[None] + LEVEL
     pairs = _pairs(small & clear & as_high & ~_differ(parts) & (parts.gaps < REACH))
+    most = np.where(parts.areas < FRAGMENT, 1.0, BESIDE)  # of a fragment all: the body may be seen around it
     return _chosen(
-        pairs, lambda handle, body: _apart(parts, handle, body) < REACH and _inside(parts, handle, body) < BESIDE
+        pairs, lambda handle, body: _apart(parts, handle, body) < REACH and _inside(parts, handle, body) <= most[handle]
     )
 
 

@@ -22,7 +22,8 @@ def above_outline(table: NDArray[np.float64], points: NDArray[np.float64]) -> ND
     """
     from scipy.spatial import ConvexHull, QhullError
 
-    piece = largest_piece(table[:: max(1, len(table) // ENOUGH), :2])
+    plan = table[:: max(1, len(table) // ENOUGH), :2]
+    piece = plan[in_largest_piece(plan)]
     if len(piece) < 3:
         return np.zeros(len(points), dtype=np.bool_)
     try:
@@ -33,16 +34,16 @@ def above_outline(table: NDArray[np.float64], points: NDArray[np.float64]) -> ND
     return inside
 
 
-def largest_piece(plan: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Of points (n, 2), those of the connected piece that has most of them."""
+def in_largest_piece(plan: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Which of points (n, 2) are in the connected piece that has most of them, shape (n,)."""
     from scipy.ndimage import label
 
     if not len(plan):
-        return plan
+        return np.zeros(0, dtype=np.bool_)
     cell = np.floor((plan - plan.min(axis=0)) / max(CELL, float(np.ptp(plan, axis=0).max()) / 1000)).astype(np.int64)
     grid = np.zeros(cell.max(axis=0) + 1, dtype=np.bool_)
     grid[cell[:, 0], cell[:, 1]] = True
     pieces, _ = label(grid, np.ones((3, 3)))
     of = pieces[cell[:, 0], cell[:, 1]]
-    result: NDArray[np.float64] = plan[of == np.bincount(of).argmax()]
-    return result
+    largest: NDArray[np.bool_] = of == np.bincount(of).argmax()
+    return largest

@@ -13,10 +13,10 @@ class DetectionSettings:
     """The defaults fit things of a few millimetres to half a metre on a table, seen from half a metre to two metres.
 
     ``viewer`` is where the one stands whose left and right are meant, in the cloud's frame; None: the camera. ``up``
-    points roughly upwards in the cloud's frame, where that is known. ``table`` is the table that is looked at, from 1
-    for the one with most on it. ``height`` is the least that things rise above
-    the table, ``reach`` the highest that is looked at, ``least_points`` and ``least_length`` what a thing has at least.
-    ``concavity`` is the angle between two surfaces, and ``step`` the height between them, at which they are two things.
+    points upwards in the cloud's frame, within 45 degrees, where that is known. ``table`` is the table that is looked
+    at, from 1 for the one with most on it. ``height`` is the least that things rise above the table, ``reach`` the
+    highest that is looked at, ``least_points`` and ``least_length`` what a thing has at least. ``concavity`` is the
+    angle between two surfaces, and ``step`` the height between them, at which they are two things.
     """
 
     seed: int = 0

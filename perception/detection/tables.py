@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.perception.detection.outline import above_outline, largest_piece
+from deixis.perception.detection.outline import above_outline, in_largest_piece
 from deixis.perception.detection.plane import (
     LEAST_SHARE,
     LEAST_STANDING,
@@ -81,5 +81,6 @@ def _another(points: NDArray[np.float64], plane: Plane, outlook: Outlook, seed: 
     on, free = few[heights <= near], few[heights > near]
     if len(on) < LEAST_SHARE * len(few) or standing(other, on, free) < LEAST_STANDING * len(few):
         return None
-    long = np.ptp(largest_piece(on @ other.across.T), axis=0).max()
+    plan = on @ other.across.T
+    long = np.ptp(plan[in_largest_piece(plan)], axis=0).max()
     return other if long >= LEAST_TABLE and abs(np.median(plane.heights(on))) < TABLE_HEIGHT else None

@@ -53,12 +53,12 @@ def perceive(
     table: Annotated[int, typer.Option(metavar="N", min=1, help="Which table, should there be several.")] = 1,
     up: Annotated[
         tuple[float, float, float] | None,
-        typer.Option(metavar="X Y Z", help="Upwards in the cloud's frame, should it not be upright."),
+        typer.Option(metavar="X Y Z", help="Roughly upwards (within 45 degrees) in the cloud's frame."),
     ] = None,
     plot: Picture = None,
     as_json: AsJson = False,
 ) -> None:
-    """Find the table in a point cloud, and the things on it."""
+    """Find the table in a point cloud, and the things on it. Without a table no scene is written."""
     from deixis.ontology.errors import DeixisError
     from deixis.perceiving import perceive as run
     from deixis.perceiving import write_perceived
@@ -72,7 +72,8 @@ def perceive(
     require_writable([out, labels, plot], [cloud, intrinsics])
     with working("looking for the table"):
         found = run(cloud, intrinsics, viewpoint, DetectionSettings(table=table, up=up))
-    scene = write_perceived(found, out) if out is not None else found.scene
+    seen = bool(found.detection.table is not None or found.scene.objects)
+    scene = write_perceived(found, out) if out is not None and seen else found.scene
     if labels is not None:
         _write_labels(labels, found.detection.labels)
     if plot is not None:
@@ -86,7 +87,7 @@ def perceive(
     else:
         print_lines(_scene_lines(scene))
         print_lines(f"Note: {note}." for note in found.detection.notes)
-        print_written(out)
+        print_written(out if seen else None)
     if not as_json:
         print_written(labels, plot, aside=out is None)
     if not scene.objects:

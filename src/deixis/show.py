@@ -168,8 +168,12 @@ def _thing(other: Alternative) -> str:
 
 
 def _probability(value: float) -> str:
-    """Two digits, and never 1 for what is not certain."""
-    return "1   " if value > 1 - 1e-6 else f"{min(value, 0.99):.2f}"
+    """Two digits, never 1 for what is not certain, and what is not called decided looks so."""
+    from deixis.reasoning.answer import DECIDED
+
+    if value < DECIDED:
+        return f"{min(value, DECIDED - 0.01):.2f}"
+    return "1   " if value > 1 - 1e-6 else "0.99"
 
 
 MORE = 0.02

@@ -38,6 +38,9 @@ def test_a_second_table_is_told_of_and_can_be_looked_at(boxes_seen: Look, height
     assert len(second.boxes) == 1 and second.notes == ()
     assert of_thing(second, cloud, 0, 4) > 0.8
     assert first.table is not None and second.table is not None
+    assert first.frame[:2, :3] @ second.frame[:2, :3].T == pytest.approx(np.eye(2), abs=0.02)
+    plan = np.concatenate([first.boxes[:, 0, :2], first.boxes[:, 1, :2]])
+    assert (np.abs(plan) < 0.22).all()  # from the middle of this table, not of both
     step = first.table.heights(-second.table.normal[None] * -second.table.offset)[0]
     assert step == pytest.approx(height, abs=0.01)
     third = detect(cloud, DetectionSettings(table=3))
