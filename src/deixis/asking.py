@@ -37,6 +37,9 @@ MARGINS = (6.0, 2.0)
 Rarer ones hardly ever keep a match from being decided. Where so many cannot be listed: seven times.
 """
 
+MOST_ANSWERED = 100
+"""Ways in which those asked about may be what they are now, of which all are looked at."""
+
 WORTH_A_LOOK, MOST_SIDES = 0.005, 8
 """How probable a side is from which matches are looked at, and how many such sides there are at most."""
 
@@ -109,12 +112,14 @@ def _considered(evidence: Evidence, time_limit: float) -> Candidates:
 def _narrowed(evidence: Evidence, done: Inquiry) -> Evidence:
     """The evidence and what was answered; what was never considered stays as likely as it was.
 
-    Ruled out is what an object was in some candidate before the dialogue and is in none after it. A list that was cut
-    off at any place says nothing about the maps that are not in it: there only what was said of a single object counts.
+    Ruled out is what an object was in some candidate before the dialogue and is in none after it, nor in one of before
+    in which those asked about are what they are now. A list that was cut off at any place says nothing about the maps
+    that are not in it: there only what was said of a single object counts.
     """
     labels, out = evidence.labels.copy(), np.zeros(evidence.labels.shape, dtype=bool)
     if done.start.complete or done.start.groups:
-        out = _possible(done.start, labels.shape) & ~_possible(done.candidates, labels.shape)
+        left = _possible(done.candidates, labels.shape) | _possible_beside(done, labels.shape)
+        out = _possible(done.start, labels.shape) & ~left
     for exchange in done.exchanges:
         question, answer = exchange.question, exchange.answer
         if exchange.outcome is not Outcome.RESOLVED or question.kind is QuestionKind.RELATION:
@@ -139,6 +144,26 @@ def _possible(candidates: Candidates, shape: tuple[int, ...]) -> NDArray[np.bool
     found[objects, candidates.assignments[rows, objects]] = True
     for group in candidates.groups:
         found[list(group)] = found[list(group)].any(axis=0)
+    return found
+
+
+def _possible_beside(done: Inquiry, shape: tuple[int, ...]) -> NDArray[np.bool_]:
+    """The same in the candidates of before, with those asked about being what they are in some candidate of now.
+
+    Such a map agrees with the answers, though it may be too unlikely to have been listed: which fork is which says
+    nothing of the knives.
+    """
+    resolved = [exchange.question.about for exchange in done.exchanges if exchange.outcome is Outcome.RESOLVED]
+    asked = sorted({i for about in resolved for i in about})
+    found = np.zeros(shape, dtype=bool)
+    for now in np.unique(done.candidates.assignments[:, asked], axis=0)[:MOST_ANSWERED]:
+        rows = done.start.assignments.copy()
+        rows[:, asked] = now
+        ordered = np.sort(rows, axis=1)
+        twice = (ordered[:, 1:] == ordered[:, :-1]) & (ordered[:, 1:] != UNMATCHED)
+        kept = rows[~twice.any(axis=1)]
+        row, objects = np.nonzero(kept != UNMATCHED)
+        found[objects, kept[row, objects]] = True
     return found
 
 

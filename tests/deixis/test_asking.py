@@ -253,6 +253,19 @@ def test_what_an_answer_rules_out_does_not_make_an_uncertain_label_certain(tmp_p
     assert narrowed.problem.absent.tolist() == evidence.problem.absent.tolist()
 
 
+def test_an_answer_about_forks_says_nothing_of_the_knives(monkeypatch: pytest.MonkeyPatch) -> None:
+    script, scene = example("script1.layout"), example("place_setting.scene.json")
+    before = json.loads(deixis("ground", script, scene, "--json")[1])
+    monkeypatch.setattr("sys.stdin", io.StringIO("yes\n"))
+    code, out, err = deixis("ground", script, scene, "--ask", "--json")
+    assert code == 0 and "Is the dinner fork left of the salad fork?" in err
+    was, now = ({match["object"]: match for match in found["matches"]} for found in (before, json.loads(out)))
+    assert now["dinner_fork"]["decided"] and not was["dinner_fork"]["decided"]
+    for knife in ("dinner_knife", "fish_knife"):
+        assert not now[knife]["decided"]
+        assert now[knife]["probability"] == pytest.approx(was[knife]["probability"], abs=0.01)
+
+
 @pytest.mark.parametrize("truth", ["o3", None])
 def test_of_a_single_object_the_answer_is_believed(truth: str | None, tmp_path: Path) -> None:
     script = layout_file(tmp_path, "cup is a Cup")
