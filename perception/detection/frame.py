@@ -13,7 +13,6 @@ UNEVEN, MOST = 0.05, 0.9
 """The share by which the angle from pixel to pixel changes to the next, for most of them: 0.002 to 0.014 was measured
 from where images were taken, 0.3 and more from 30 cm beside it. Noise is along the rays, and from elsewhere across."""
 
-
 LINES = 100
 """Rows and columns of an image that are looked at."""
 

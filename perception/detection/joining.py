@@ -185,7 +185,8 @@ def _line(parts: Parts, one: NDArray[np.intp], two: NDArray[np.intp]) -> float:
 
 def _axes(plan: NDArray[np.float64]) -> NDArray[np.float64]:
     """The principal axes of places (n, 2), the longer first, as columns (2, 2)."""
-    axes: NDArray[np.float64] = np.linalg.svd(plan - plan.mean(axis=0))[2].T
+    apart = plan - plan.mean(axis=0)
+    axes: NDArray[np.float64] = np.linalg.eigh(apart.T @ apart)[1][:, ::-1]
     return axes
 
 
