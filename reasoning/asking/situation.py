@@ -22,6 +22,9 @@ PLACES = (
     ("farthest from the viewer", 1, 1),
 )
 
+PLAINLY = 0.02
+"""The share of all that is seen by which something reaches farther than all else."""
+
 
 @dataclass(frozen=True, eq=False)
 class Situation:
@@ -61,7 +64,7 @@ def situation_of(description: RelationGraph, scene: RelationGraph) -> Situation:
     degrees = np.stack([table[relation.index][names] for relation in relations])
     centres = scene.boxes.mean(axis=1)[:, :2]
     settled = _settled(description, relations)
-    return Situation(description.nodes, scene.nodes, relations, degrees, settled, centres, _places(centres))
+    return Situation(description.nodes, scene.nodes, relations, degrees, settled, centres, _places(scene.boxes))
 
 
 def _settled(description: RelationGraph, relations: tuple[Relation, ...]) -> NDArray[np.bool_]:
@@ -95,14 +98,15 @@ def _exclude(a: Relation, b: Relation) -> bool:
     return a.x_atoms & b.x_atoms == 0 or a.y_atoms & b.y_atoms == 0
 
 
-def _places(centres: NDArray[np.float64]) -> tuple[str | None, ...]:
-    """The one thing that lies farthest each way; a thing that is so in two ways is told by the first."""
-    found: list[str | None] = [None] * len(centres)
+def _places(boxes: NDArray[np.float64]) -> tuple[str | None, ...]:
+    """The one of boxes (n, 2, d) that reaches farthest each way, and plainly so; one that does in two ways is told by
+    the first."""
+    found: list[str | None] = [None] * len(boxes)
     for words, axis, side in PLACES:
-        along = side * centres[:, axis]
-        if len(along) > 1:
-            order = np.argsort(-along, kind="stable")
-            if along[order[0]] - along[order[1]] > 1e-9 and found[order[0]] is None:
+        reach = side * boxes[:, (1 + side) // 2, axis]
+        if len(reach) > 1:
+            order = np.argsort(-reach, kind="stable")
+            if reach[order[0]] - reach[order[1]] > PLAINLY * np.ptp(boxes[:, :, axis]) and found[order[0]] is None:
                 found[order[0]] = words
     return tuple(found)
 
