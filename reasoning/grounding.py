@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 from deixis.ontology.graph import Fact
 from deixis.reasoning.alternatives import WORTH_NAMING, alternatives, left_out_objects, left_out_things
 from deixis.reasoning.answer import (
-    DECIDED,
     FactOutcome,
     Grounding,
     Match,
@@ -191,7 +190,7 @@ def _without(evidence: Evidence, alignment: Alignment, matches: dict[str, Match]
     other = dropped.assignment != alignment.assignment
     if not dropped.better:
         other[:] = False
-    sure = dropped.probability >= DECIDED
+    sure = is_decided(dropped.probability, 0.0)
     decided = np.array([name in matches and matches[name].decided for name in nodes], dtype=bool)
     known = ~np.isnan(dropped.probability) & ~other & (alignment.assignment != UNMATCHED)
     targets = zip(nodes, dropped.assignment.tolist(), strict=True)

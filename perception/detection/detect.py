@@ -172,12 +172,13 @@ def _alone(
 
 @dataclass(frozen=True, eq=False)
 class _View:
-    """The finite points in the table's frame, their distances from the sensor, and where that stands."""
+    """The finite points in the table's frame, how far from the sensor they are and where it stands, and the table's."""
 
     frame: NDArray[np.float64]  # (4, 4)
     points: NDArray[np.float64]  # (n, 3)
     distance: NDArray[np.float64]  # (n,)
     eye: NDArray[np.float64]  # (3,)
+    top: NDArray[np.intp]  # (m,) the points of the connected piece that is the table
 
     @property
     def heights(self) -> NDArray[np.float64]:
@@ -185,19 +186,17 @@ class _View:
 
 
 def _view(points: NDArray[np.float64], plane: Plane, outlook: Outlook, settings: DetectionSettings) -> _View:
-    on = points[np.abs(plane.heights(points)) < ON_TABLE]
-    on = on[in_largest_piece(on @ plane.across.T)]
-    frame = table_frame(plane, on if len(on) else points, outlook, settings.viewer)
+    level = np.flatnonzero(np.abs(plane.heights(points)) < ON_TABLE)
+    top = level[in_largest_piece(points[level] @ plane.across.T)]
+    frame = table_frame(plane, points[top] if len(top) else points, outlook, settings.viewer)
     eye = moved(outlook.eye[None], frame)[0]
     at = np.ascontiguousarray(moved(points, frame))
-    return _View(frame, at, np.linalg.norm(at - eye, axis=1), eye)
+    return _View(frame, at, np.linalg.norm(at - eye, axis=1), eye, top)
 
 
 def _too_small(view: _View) -> tuple[str, ...]:
     """A note where the table is too small for one."""
-    on = view.points[np.abs(view.heights) < ON_TABLE, :2]
-    on = on[in_largest_piece(on)]
-    across, deep = np.ptp(on, axis=0).tolist() if len(on) else (0.0, 0.0)
+    across, deep = np.ptp(view.points[view.top, :2], axis=0).tolist() if len(view.top) else (0.0, 0.0)
     if max(across, deep) >= LEAST_TABLE:
         return ()
     size = f"{100 * across:.0f} by {100 * deep:.0f} cm"

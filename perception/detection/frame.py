@@ -26,23 +26,31 @@ def outlook_of(cloud: PointCloud, settings: DetectionSettings) -> Outlook:
         upwards = upwards / np.linalg.norm(upwards)
     if cloud.organised is None or min(cloud.organised) < 2:
         return Outlook(eye, upwards=upwards)
-    rays = cloud.points.reshape(*cloud.organised, 3) - eye
-    with np.errstate(invalid="ignore", divide="ignore"):
-        rays = rays / np.linalg.norm(rays, axis=2, keepdims=True)
-        if max(_uneven(rays), _uneven(rays.swapaxes(0, 1))) > UNEVEN:
-            return Outlook(eye, upwards=upwards, known=False)
-    down, right = _direction(rays), _direction(rays.swapaxes(0, 1))
+    image = cloud.points.reshape(*cloud.organised, 3)
+    columns, rows = _rays(image, eye), _rays(image.swapaxes(0, 1), eye)
+    if max(_uneven(columns), _uneven(rows)) > UNEVEN:
+        return Outlook(eye, upwards=upwards, known=False)
+    down, right = _direction(columns), _direction(rows)
     if down is None or right is None:
         return Outlook(eye, upwards=upwards)
     return Outlook(eye, -down, right, upwards)
 
 
+def _rays(image: NDArray[np.float32], eye: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Unit vectors from the eye to the pixels of an image (r, c, 3), in about ``LINES`` of its columns."""
+    rays = image[:, :: max(1, image.shape[1] // LINES)] - eye
+    with np.errstate(invalid="ignore", divide="ignore"):
+        unit: NDArray[np.float64] = rays / np.linalg.norm(rays, axis=2, keepdims=True)
+    return unit
+
+
 def _uneven(rays: NDArray[np.float64]) -> float:
     """By what share most steps from ray to ray along the first axis of (r, c, 3) change to the next, at most, beyond
     what those of a pinhole camera do: up to 45 degrees aside, twice the step's angle."""
-    steps = np.diff(rays[:, :: max(1, rays.shape[1] // LINES)], axis=0)
+    steps = np.diff(rays, axis=0)
     angles = np.linalg.norm(steps[1:], axis=2)
-    change = np.linalg.norm(np.diff(steps, axis=0), axis=2) / angles - 2 * angles
+    with np.errstate(invalid="ignore", divide="ignore"):
+        change = np.linalg.norm(np.diff(steps, axis=0), axis=2) / angles - 2 * angles
     return float(np.quantile(change[np.isfinite(change)], MOST)) if np.isfinite(change).any() else 0.0
 
 
@@ -51,7 +59,6 @@ def _direction(rays: NDArray[np.float64]) -> NDArray[np.float64] | None:
 
     The mean step from ray to ray is aslant where more of one side of the image is seen.
     """
-    rays = rays[:, :: max(1, rays.shape[1] // LINES)]
     one, other = rays[:-1].reshape(-1, 3), rays[1:].reshape(-1, 3)
     both = np.isfinite(one + other).all(axis=1)
     if both.sum() < 2:

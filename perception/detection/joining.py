@@ -160,21 +160,22 @@ def end_to_end(parts: Parts) -> Pairs:
 def sides(parts: Parts) -> Pairs:
     """A thin upright piece, and the thing of its colour whose side it is: seen so aslant that the edge is a jump."""
     beside = (parts.gaps < REACH) & (parts.tops[:, None] < parts.tops[None] + LIES_ON) & ~_differ(parts)
-    pairs = _pairs(beside & (parts.areas[:, None] < parts.areas[None]))
-    return _chosen(pairs, lambda side, thing: _apart(parts, side, thing) < REACH and _is_sheet(parts, side))
+    sheets = np.array([_is_sheet(parts, part) for part in range(len(parts))], dtype=np.bool_)
+    pairs = _pairs(sheets[:, None] & beside & (parts.areas[:, None] < parts.areas[None]))
+    return _chosen(pairs, lambda side, thing: _apart(parts, side, thing) < REACH)
 
 
 def _is_sheet(parts: Parts, part: int) -> bool:
     patches = parts.members(part)
     normal = parts.patches.normals[patches].mean(axis=0)
     upright = abs(normal[2]) < 0.5 * np.linalg.norm(normal)
-    return bool(upright and _sides(parts.patches.middles[patches, :2])[1] < THIN)
+    return bool(upright and _extents(parts.patches.middles[patches, :2])[1] < THIN)
 
 
 def _line(parts: Parts, one: NDArray[np.intp], two: NDArray[np.intp]) -> float:
     """How often as long as wide two parts are together, if the one begins where the other, longer one ends; else 0."""
     plans = [parts.patches.middles[part, :2] for part in (one, two)]
-    longer = max(plans, key=lambda plan: _sides(plan)[0])
+    longer = max(plans, key=lambda plan: _extents(plan)[0])
     turned = [plan @ _axes(longer) for plan in plans]
     low, high = (np.array([end(plan, axis=0) for plan in turned]) for end in (np.min, np.max))
     (length, width), (along, across) = high.max(axis=0) - low.min(axis=0), high.min(axis=0) - low.max(axis=0)
@@ -190,10 +191,10 @@ def _axes(plan: NDArray[np.float64]) -> NDArray[np.float64]:
     return axes
 
 
-def _sides(plan: NDArray[np.float64]) -> NDArray[np.float64]:
+def _extents(plan: NDArray[np.float64]) -> NDArray[np.float64]:
     """Length and width (2,) of places (n, 2) along their principal axes."""
-    sides: NDArray[np.float64] = np.ptp(plan @ _axes(plan), axis=0)
-    return sides
+    extents: NDArray[np.float64] = np.ptp(plan @ _axes(plan), axis=0)
+    return extents
 
 
 def _chosen(pairs: Pairs, belong: Callable[[int, int], bool]) -> Pairs:

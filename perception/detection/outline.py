@@ -30,7 +30,9 @@ def above_outline(table: NDArray[np.float64], points: NDArray[np.float64]) -> ND
         sides = ConvexHull(piece).equations
     except QhullError:
         return np.zeros(len(points), dtype=np.bool_)
-    inside: NDArray[np.bool_] = (points[:, :2] @ sides[:, :2].T + sides[:, 2] <= SLACK).all(axis=1)
+    inside = np.ones(len(points), dtype=np.bool_)
+    for a, b, c in sides.tolist():  # all at once would be tens of numbers for each point of the cloud
+        inside &= a * points[:, 0] + b * points[:, 1] + c <= SLACK
     return inside
 
 

@@ -32,6 +32,9 @@ STANDING = (0.008, 0.35)
 TABLE_HEIGHT, LEAST_STANDING = 0.4, 0.002
 """Metres that a floor lies below a table at the least, and the share of all points that stand on what is no floor."""
 
+ALONG = 0.95
+"""The cosine between the normals of two planes that are as level is greater."""
+
 
 @dataclass(frozen=True, eq=False)
 class Plane:
@@ -50,6 +53,10 @@ class Plane:
         """Two unit vectors along the plane, at right angles, shape (2, 3)."""
         along: NDArray[np.float64] = np.linalg.svd(self.normal[None])[2][1:]
         return along
+
+    def is_along(self, other: Plane) -> bool:
+        """Whether both are as level, their normals to the same side."""
+        return bool(self.normal @ other.normal > ALONG)
 
     def turned(self) -> Plane:
         """The same plane, with its normal to the other side."""
@@ -90,11 +97,11 @@ def table_plane(points: NDArray[np.float64], outlook: Outlook, seed: int) -> Pla
     free = np.ones(len(sample), dtype=np.bool_)
     for plane in found:  # a wall is nothing that stands on the floor
         free &= np.abs(plane.heights(sample)) > tolerance
-    levels = _without_floors([_level(plane, sample, tolerance, sample[free]) for plane in planes], len(sample))
+    levels = _without_floors([level_of(plane, sample, tolerance, sample[free]) for plane in planes], len(sample))
     # What stands on a table tells its upper side, should the sensor seem to be below: the origin may be a mere default.
     turned = [level.plane.turned() for level in levels]
     levels += [
-        _level(plane, sample, tolerance, sample[free]) for plane in turned if outlook.could_be_table(plane.normal)
+        level_of(plane, sample, tolerance, sample[free]) for plane in turned if outlook.could_be_table(plane.normal)
     ]
     best = max(levels, key=lambda level: level.bearing).plane
     chosen = points[:: max(1, len(points) // MOST_REFINED)]
@@ -102,7 +109,7 @@ def table_plane(points: NDArray[np.float64], outlook: Outlook, seed: int) -> Pla
 
 
 @dataclass(frozen=True, eq=False)
-class _Level:
+class Level:
     """A plane, the points on it (k, 3), and how many stand on it."""
 
     plane: Plane
@@ -114,22 +121,26 @@ class _Level:
         """How much is on it: its own area, and ten times that of what stands on it, as a number of points."""
         return len(self.points) + 10 * self.standing
 
-    def is_floor_below(self, other: _Level) -> bool:
+    def bears(self, total: int) -> bool:
+        """Whether enough of a ``total`` of points stand on it to be things."""
+        return self.standing >= LEAST_STANDING * total
+
+    def is_floor_below(self, other: Level) -> bool:
         """Whether it lies a table's height below another level one."""
-        level = other.plane.normal @ self.plane.normal > 0.95
-        return bool(level and np.median(self.plane.heights(other.points)) > TABLE_HEIGHT)
+        return self.plane.is_along(other.plane) and bool(np.median(self.plane.heights(other.points)) > TABLE_HEIGHT)
 
 
-def _level(
+def level_of(
     plane: Plane, sample: NDArray[np.float64], tolerance: NDArray[np.float64], free: NDArray[np.float64]
-) -> _Level:
+) -> Level:
+    """What of a sample (n, 3) is on a plane within a tolerance (n,), and what of the ``free`` points stands on it."""
     on = sample[np.abs(plane.heights(sample)) <= tolerance]
-    return _Level(plane, on, standing(plane, on, free))
+    return Level(plane, on, _standing(plane, on, free))
 
 
-def _without_floors(levels: list[_Level], total: int) -> list[_Level]:
+def _without_floors(levels: list[Level], total: int) -> list[Level]:
     """All but those that lie a table's height below one on which something stands, however large they are."""
-    tables = [level for level in levels if level.standing >= LEAST_STANDING * total]
+    tables = [level for level in levels if level.bears(total)]
     return [level for level in levels if not any(level.is_floor_below(table) for table in tables)]
 
 
@@ -207,7 +218,7 @@ def _towards(plane: Plane, outlook: Outlook, points: NDArray[np.float64]) -> Pla
     return plane if side >= 0 else plane.turned()
 
 
-def standing(plane: Plane, on: NDArray[np.float64], free: NDArray[np.float64]) -> int:
+def _standing(plane: Plane, on: NDArray[np.float64], free: NDArray[np.float64]) -> int:
     """How many of the ``free`` points are above the box around those that are ``on`` the plane, not far up."""
     if len(on) < 3:
         return 0

@@ -11,11 +11,10 @@ from numpy.typing import NDArray
 from deixis.perception.detection.outline import above_outline, in_largest_piece
 from deixis.perception.detection.plane import (
     LEAST_SHARE,
-    LEAST_STANDING,
     TABLE_HEIGHT,
     Outlook,
     Plane,
-    standing,
+    level_of,
     table_plane,
     tolerance_at,
 )
@@ -26,9 +25,6 @@ ON_TABLE = 0.01
 
 LEAST_TABLE = 0.3
 """Metres: what is shorter in both directions is hardly a table."""
-
-LEVEL = 0.95
-"""Cosine of the angle between two tables at the least."""
 
 ENOUGH = 30_000
 """Points by which another table is judged."""
@@ -75,12 +71,12 @@ def _another(points: NDArray[np.float64], plane: Plane, outlook: Outlook, seed: 
     """
     few = points[:: max(1, len(points) // ENOUGH)]
     other = table_plane(points, replace(outlook, upwards=plane.normal), seed)
-    if other is None or other.normal @ plane.normal < LEVEL:
+    if other is None or not other.is_along(plane):
         return None
-    near, heights = tolerance_at(few, outlook), np.abs(other.heights(few))
-    on, free = few[heights <= near], few[heights > near]
-    if len(on) < LEAST_SHARE * len(few) or standing(other, on, free) < LEAST_STANDING * len(few):
+    near = tolerance_at(few, outlook)
+    level = level_of(other, few, near, few[np.abs(other.heights(few)) > near])
+    if len(level.points) < LEAST_SHARE * len(few) or not level.bears(len(few)):
         return None
-    plan = on @ other.across.T
+    plan = level.points @ other.across.T
     long = np.ptp(plan[in_largest_piece(plan)], axis=0).max()
-    return other if long >= LEAST_TABLE and abs(np.median(plane.heights(on))) < TABLE_HEIGHT else None
+    return other if long >= LEAST_TABLE and abs(np.median(plane.heights(level.points))) < TABLE_HEIGHT else None

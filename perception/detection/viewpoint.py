@@ -44,9 +44,9 @@ def believed(outlook: Outlook, points: NDArray[np.float64], seed: int) -> Outloo
 
 def likely(outlook: Outlook, points: NDArray[np.float64], plane: Plane, seed: int) -> Outlook:
     """The outlook, if it is known and above the table; else from where the points (n, 3) look most as if seen."""
-    few = _sample(points, seed)
     if outlook.known and plane.heights(outlook.eye[None])[0] > LEAST_HEIGHT:
         return outlook
+    few = _sample(points, seed)
     on = few[np.abs(plane.heights(few)) < 0.01]
     places = _places_around((on if len(on) else few).mean(axis=0), plane)
     eye = min(places, key=lambda place: apart(few, place))

@@ -139,11 +139,17 @@ def _narrowed(evidence: Evidence, done: Inquiry) -> Evidence:
 
 def _possible(candidates: Candidates, shape: tuple[int, ...]) -> NDArray[np.bool_]:
     """Which object is which thing in some candidate, shape (n1, n2); the members of a group share their things."""
-    found = np.zeros(shape, dtype=bool)
-    rows, objects = np.nonzero(candidates.assignments != UNMATCHED)
-    found[objects, candidates.assignments[rows, objects]] = True
+    found = _matched(candidates.assignments, shape)
     for group in candidates.groups:
         found[list(group)] = found[list(group)].any(axis=0)
+    return found
+
+
+def _matched(assignments: NDArray[np.int64], shape: tuple[int, ...]) -> NDArray[np.bool_]:
+    """Which object is which thing in some of k maps (k, n1), shape (n1, n2)."""
+    found = np.zeros(shape, dtype=bool)
+    rows, objects = np.nonzero(assignments != UNMATCHED)
+    found[objects, assignments[rows, objects]] = True
     return found
 
 
@@ -161,9 +167,7 @@ def _possible_beside(done: Inquiry, shape: tuple[int, ...]) -> NDArray[np.bool_]
         rows[:, asked] = now
         ordered = np.sort(rows, axis=1)
         twice = (ordered[:, 1:] == ordered[:, :-1]) & (ordered[:, 1:] != UNMATCHED)
-        kept = rows[~twice.any(axis=1)]
-        row, objects = np.nonzero(kept != UNMATCHED)
-        found[objects, kept[row, objects]] = True
+        found |= _matched(rows[~twice.any(axis=1)], shape)
     return found
 
 
