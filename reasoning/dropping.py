@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.reasoning.matching.exact import exact
-from deixis.reasoning.matching.posterior import posterior
+from deixis.reasoning.matching.posterior import added_up
 from deixis.reasoning.matching.problem import UNMATCHED, Problem
 
 MOST = 30
@@ -61,8 +61,8 @@ def without_each(problem: Problem, assignment: NDArray[np.int64], probable: bool
 def _probability(
     problem: Problem, assignment: NDArray[np.int64], probable: bool, deadline: float
 ) -> NDArray[np.float64]:
-    found = posterior(problem, deadline) if probable else None
-    if found is None or not found.exact:
+    found = added_up(problem, deadline) if probable else None
+    if found is None:
         return np.full(len(assignment), np.nan)
     probability: NDArray[np.float64] = found.marginals[np.arange(len(assignment)), assignment]
     return probability

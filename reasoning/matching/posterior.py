@@ -29,7 +29,7 @@ Groups = tuple[tuple[int, ...], ...]
 THRESHOLDS = (1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12)  # of the best map's weight: less is left out of a sum
 GROWTH, FALL = 5.0, 15.0  # of the nodes, and of the error, from one threshold to the next, about
 SMALL = 100  # a search of so much fewer nodes than there may be is no sign of one that takes too long
-SUM_CELLS, FACTOR_CELLS = 6e6, 4e6  # work for sums, and room for facts; beyond, maps are sampled
+SUM_CELLS, FACTOR_CELLS = 6e7, 4e6  # work for sums, and room for facts; beyond, maps are sampled
 
 LADDERS = 4
 PARTS = 8  # of a run, half of which are compared with the other half
@@ -87,25 +87,31 @@ def posterior(
     >>> found.marginals.round(3).tolist(), found.exact
     ([[0.75, 0.25]], True)
     """
+    if start is not None:
+        problem.require_map(start)
+    exact = added_up(problem, deadline, mass=mass, seed=seed)
+    if exact is not None:
+        return exact
+    n1, n2 = problem.unary.shape
+    if time.perf_counter() > deadline:
+        labels = np.full(n1, n2) if start is None else to_labels(start, n2)
+        return Posterior((labels[:, None] == np.arange(n2 + 1)).astype(np.float64), False, math.inf)
+    begin = None if start is None or n1 <= MOST_OBJECTS else to_labels(start, n2)
+    return _sampled(problem, problem.compiled, deadline, seed, begin)
+
+
+def added_up(problem: Problem, deadline: float = math.inf, *, mass: float = 1e-3, seed: int = 0) -> Posterior | None:
+    """The exact posterior but for ``mass``, or None where that would take long, or longer than until the deadline.
+
+    Raises MatchingError for a mass that is not between 0 and 1.
+    """
     if not 0 < mass < 1:
         raise MatchingError(f"the mass that may be missing lies between 0 and 1, not at {mass}")
     n1, n2 = problem.unary.shape
     if n1 == 0 or n2 == 0:
         return Posterior(np.ones((n1, 1)) if n2 == 0 else np.zeros((0, n2 + 1)), True, 0.0)
-    if start is not None:
-        problem.require_map(start)
-    if time.perf_counter() > deadline:
-        labels = np.full(n1, n2) if start is None else to_labels(start, n2)
-        return Posterior((labels[:, None] == np.arange(n2 + 1)).astype(np.float64), False, math.inf)
-    compiled = problem.compiled
-    begin = None if start is None or n1 <= MOST_OBJECTS else to_labels(start, n2)
-    return _added_up(problem, compiled, deadline, mass, seed) or _sampled(problem, compiled, deadline, seed, begin)
-
-
-def _added_up(problem: Problem, compiled: Compiled, deadline: float, mass: float, seed: int) -> Posterior | None:
-    """The sum over maps, or None where it would take too long."""
-    n1, width = compiled.unary.shape
-    if len(compiled.kind) * width * width > FACTOR_CELLS:
+    compiled, width = problem.compiled, n2 + 1
+    if len(compiled.kind) * width * width > FACTOR_CELLS or time.perf_counter() > deadline:
         return None
     best, _ = search_from(np.full(n1, width - 1), compiled, deadline, seed, START_EFFORT, 2)
     parts = factors(compiled)

@@ -22,19 +22,6 @@ PASSES = 30  # of messages
 NOTHING = -1e12  # a value that every map has: no match is dropped for being worth less
 
 
-class Sum(NamedTuple):
-    """The search's state by depth (n1 + 1), and what it found."""
-
-    weights: NDArray[np.float64]  # (depth, n1, n2 + 1): odds of each thing against the object's best; 0 where taken
-    sums: NDArray[np.float64]  # (depth, n1): of the weights, of objects that are left; 1 of others
-    chosen: NDArray[np.int64]  # (depth,): the object that a node branches on
-    position: NDArray[np.int64]  # (depth,): the next thing to try for it
-    prefix: NDArray[np.float64]  # (depth,): the weight of the partial map
-    below: NDArray[np.float64]  # (depth,): what was found below the node so far
-    labels: NDArray[np.int64]  # (n1,): -1 for what is left
-    marginals: NDArray[np.float64]  # (n1, n2 + 1): weights of the maps found, by match
-
-
 class Factors(NamedTuple):
     """The posterior as a product: of an odds for every match, and of a number up to 1 for every fact's pair."""
 
@@ -68,124 +55,118 @@ def add_up(
     Returns the weights of the maps found, by match (n1, n2 + 1), and (3,): the sum of them all, a bound on what is
     missing (inf where the nodes did not suffice), and the number of nodes.
     """
-    n1, width = parts.weights.shape
-    state = Sum(
-        np.zeros((n1 + 1, n1, width)),
-        np.ones((n1 + 1, n1)),
-        np.zeros(n1 + 1, dtype=np.int64),
-        np.zeros(n1 + 1, dtype=np.int64),
-        np.ones(n1 + 1),
-        np.zeros(n1 + 1),
-        np.full(n1, -1),
-        np.zeros((n1, width)),
-    )
-    state.weights[0] = parts.weights
-    state.sums[0] = parts.weights.sum(axis=1)
-    counts = np.zeros(3)
-    _search(problem, parts, state, threshold, nodes, counts)
-    return state.marginals, counts
+    marginals, counts = np.zeros_like(parts.weights), np.zeros(3)
+    _search(parts.weights, parts.idle, parts.facts, problem.first, problem.other, threshold, nodes, marginals, counts)
+    return marginals, counts
+
+
+# The arrays of the search are local to it, and handed to what it calls one by one: as fields of a tuple, each use of
+# one would count references to it, which took most of the time.
 
 
 @njit(cache=True)
-def _search(problem, parts, state, threshold, nodes, counts):  # type: ignore[no-untyped-def]
-    depth, n1, width = 0, len(state.labels), state.marginals.shape[1]
-    state.chosen[0] = _next_object(0, state)
+def _search(root, idle, facts, first, other, threshold, nodes, marginals, counts):  # type: ignore[no-untyped-def]
+    n1, width = root.shape
+    weights = np.zeros((n1 + 1, n1, width))  # by depth: odds of each thing against the object's best; 0 where taken
+    sums, most = np.ones((n1 + 1, n1)), np.ones((n1 + 1, n1))  # of the weights, of objects that are left; 1 of others
+    chosen, position = np.zeros(n1 + 1, np.int64), np.zeros(n1 + 1, np.int64)  # who is branched on, its next thing
+    prefix, rest = np.ones(n1 + 1), np.ones(n1 + 1)  # of the partial map; product of the other objects' sums
+    below = np.zeros(n1 + 1)  # what was found below the node so far
+    labels, used = np.full(n1, -1), np.zeros(width, np.bool_)  # -1 for what is left
+    weights[0] = root
+    for i in range(n1):
+        sums[0, i], most[0, i] = root[i].sum(), root[i].max()
+    _open(0, labels, sums, most, chosen, rest)
+    depth = 0
     while depth >= 0:
-        if state.position[depth] == width:
+        i, p = chosen[depth], position[depth]
+        if p == width:
             depth -= 1
-            if depth >= 0:
-                _add(depth, state.below[depth + 1], state)
+            if depth >= 0:  # what was found goes to the match and to the node; the match is taken back
+                i = chosen[depth]
+                marginals[i, labels[i]] += below[depth + 1]
+                below[depth] += below[depth + 1]
+                used[labels[i]], labels[i] = False, -1
             continue
-        p = state.position[depth]
-        state.position[depth] += 1
-        below = _child(depth, p, problem, parts, state, threshold, counts)
-        if counts[2] > nodes:
-            counts[1] = np.inf
-            return
-        if below <= threshold:
-            counts[1] += below
-            state.labels[state.chosen[depth]] = -1
-        elif depth + 1 == n1:
-            _add(depth, state.prefix[depth + 1] * _idle(parts, state), state)
-        else:
-            depth += 1
-            state.chosen[depth], state.position[depth], state.below[depth] = _next_object(depth, state), 0, 0.0
-    counts[0] = state.below[0]
+        position[depth] += 1
+        weight = prefix[depth] * weights[depth, i, p]
+        bound = weight * rest[depth]
+        if bound > threshold:  # which is loose, and costs little
+            counts[2] += 1
+            if counts[2] > nodes:
+                counts[1] = np.inf
+                return
+            if depth + 1 == n1:
+                found = weight * _idle(p, used, idle)
+                marginals[i, p] += found
+                below[depth] += found
+                continue
+            labels[i] = p
+            _assign(depth, i, p, labels, weights, sums, most, facts, first, other)
+            bound = weight * _product(sums[depth + 1], -1)
+        if bound <= threshold:
+            counts[1] += bound
+            labels[i] = -1
+            continue
+        used[p] = True
+        depth += 1
+        _open(depth, labels, sums, most, chosen, rest)
+        prefix[depth], position[depth], below[depth] = weight, 0, 0.0
+    counts[0] = below[0]
 
 
 @njit(cache=True)
-def _child(depth, p, problem, parts, state, threshold, counts):  # type: ignore[no-untyped-def]
-    """A bound on the sum over the maps below a child, which is worked out only where a looser one does not do."""
-    i = state.chosen[depth]
-    weight = state.prefix[depth] * state.weights[depth, i, p]
-    below = weight * _product(depth, i, state)
-    if below <= threshold:
-        return below
-    counts[2] += 1
-    _assign(depth, i, p, weight, problem, parts, state)
-    return weight * _product(depth + 1, -1, state)
-
-
-@njit(cache=True)
-def _idle(parts, state):  # type: ignore[no-untyped-def]
-    """The factor for the things that nobody is."""
-    product, used = 1.0, np.zeros(len(parts.idle), np.bool_)
-    used[state.labels] = True
-    for p in range(len(parts.idle)):
-        if not used[p]:
-            product *= parts.idle[p]
+def _idle(last, used, idle):  # type: ignore[no-untyped-def]
+    """The factor for the things that nobody is, the last object being ``last``."""
+    product = 1.0
+    for p in range(len(idle)):
+        if not used[p] and p != last:
+            product *= idle[p]
     return product
 
 
 @njit(cache=True)
-def _add(depth, found, state):  # type: ignore[no-untyped-def]
-    """What was found below a child, to its match and to the node; takes the match back."""
-    i = state.chosen[depth]
-    state.marginals[i, state.labels[i]] += found
-    state.below[depth] += found
-    state.labels[i] = -1
-
-
-@njit(cache=True)
-def _next_object(depth, state):  # type: ignore[no-untyped-def]
-    """The object that is left with the fewest things in effect: the least sum over the largest weight."""
-    chosen, fewest = -1, np.inf
-    for i in range(len(state.labels)):
-        if state.labels[i] < 0:
-            most = 0.0
-            for p in range(state.weights.shape[2]):
-                most = max(most, state.weights[depth, i, p])
-            few = state.sums[depth, i] / max(most, 1e-300)
+def _open(depth, labels, sums, most, chosen, rest):  # type: ignore[no-untyped-def]
+    """Branches on the object left with the fewest things in effect: the least sum over the largest weight."""
+    fewest = np.inf
+    for i in range(len(labels)):
+        if labels[i] < 0:
+            few = sums[depth, i] / max(most[depth, i], 1e-300)
             if few < fewest:
-                chosen, fewest = i, few
-    return chosen
+                chosen[depth], fewest = i, few
+    rest[depth] = _product(sums[depth], chosen[depth])
 
 
 @njit(cache=True)
-def _product(depth, but, state):  # type: ignore[no-untyped-def]
+def _product(sums, but):  # type: ignore[no-untyped-def]
     """Of the sums of the objects that are left, but one."""
     product = 1.0
-    for i in range(len(state.labels)):
+    for i in range(len(sums)):
         if i != but:
-            product *= state.sums[depth, i]
+            product *= sums[i]
     return product
 
 
 @njit(cache=True)
-def _assign(depth, i, p, weight, problem, parts, state):  # type: ignore[no-untyped-def]
+def _assign(depth, i, p, labels, weights, sums, most, facts, first, other):  # type: ignore[no-untyped-def]
     """The node one deeper, in which object i is p: others may not be p, and its facts weigh on their ends."""
-    width = state.marginals.shape[1]
-    state.labels[i] = p
-    state.prefix[depth + 1] = weight
-    before, after = state.weights[depth], state.weights[depth + 1]
-    for j in range(len(state.labels)):
-        if state.labels[j] < 0:
-            after[j] = before[j]
+    n1, width = weights.shape[1], weights.shape[2]
+    for j in range(n1):
+        if labels[j] < 0:
+            for q in range(width):
+                weights[depth + 1, j, q] = weights[depth, j, q]
             if p < width - 1:
-                after[j, p] = 0.0
-    for slot in range(problem.first[i], problem.first[i + 1]):
-        j = problem.other[slot]
-        if state.labels[j] < 0:
-            after[j] *= parts.facts[slot, p]
-    for j in range(len(state.labels)):
-        state.sums[depth + 1, j] = after[j].sum() if state.labels[j] < 0 else 1.0
+                weights[depth + 1, j, p] = 0.0
+    for slot in range(first[i], first[i + 1]):
+        j = other[slot]
+        if labels[j] < 0:
+            for q in range(width):
+                weights[depth + 1, j, q] *= facts[slot, p, q]
+    for j in range(n1):
+        total, greatest = 1.0, 1.0
+        if labels[j] < 0:
+            total, greatest = 0.0, 0.0
+            for q in range(width):
+                total += weights[depth + 1, j, q]
+                greatest = max(greatest, weights[depth + 1, j, q])
+        sums[depth + 1, j], most[depth + 1, j] = total, greatest
