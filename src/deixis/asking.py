@@ -11,12 +11,12 @@ from typing import TextIO
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.dialogue import AnswerSource, run
+from deixis.dialogue import AnswerSource, closing_lines, run
 from deixis.grammar.script import Script
 from deixis.perception.scene import Scene
 from deixis.reasoning.answer import DECIDED, Grounding
 from deixis.reasoning.asking.candidates import Candidates, candidates_of
-from deixis.reasoning.asking.inquiry import Exchange, Inquiry, Outcome, begin
+from deixis.reasoning.asking.inquiry import ContradictionError, Exchange, Inquiry, Outcome, begin, update
 from deixis.reasoning.asking.questions import ABSENT, NO, YES, QuestionKind
 from deixis.reasoning.asking.situation import Situation, situation_of
 from deixis.reasoning.engines import engine_named
@@ -86,20 +86,42 @@ def ask(
 ) -> Asked:
     """Grounds, asks what would tell the likeliest groundings apart, and grounds again.
 
-    The dialogue is written to ``out``; ``source`` makes who answers, given what there is to be seen. The time limit is
-    not for the person: half of it is for what to ask, and the whole for grounding after the last answer; together they
-    keep to it where nothing was answered.
+    What the answers make likely is listed and asked about in turn. The dialogue is written to ``out``; ``source`` makes
+    who answers, given what there is to be seen. The time limit is not for the person: half of it is for what to ask,
+    each time, and the whole for grounding after the last answer; together they keep to it where nothing was answered.
     """
     require_time_limit(time_limit)
     started = time.perf_counter()
     evidence = evidence_of(script, scene, meaning)
     situation = situation_of(evidence.description, evidence.scene)
-    considered = _considered(evidence, time_limit / 2)
+    inquiry: Inquiry | None = begin(situation, _considered(evidence, time_limit / 2))
     left = max(0.0, time_limit - (time.perf_counter() - started))
-    done = run(begin(situation, considered), source(situation), out)
-    limit = time_limit if done.exchanges else left
+    answers = source(situation)
+    while inquiry is not None:
+        done = run(inquiry, answers, out)
+        replied = time.perf_counter()
+        evidence = _narrowed(evidence, done)
+        inquiry = _listed_again(evidence, done, time_limit / 2)
+    print(*closing_lines(done), sep="\n", file=out)
+    if done.exchanges:
+        left = max(0.0, time_limit - (time.perf_counter() - replied))
     notes = conflict_notes(script.graph())
-    return Asked(ground_evidence(_narrowed(evidence, done), ExactEngine(), limit, notes), done.exchanges)
+    return Asked(ground_evidence(evidence, ExactEngine(), left, notes), done.exchanges)
+
+
+def _listed_again(evidence: Evidence, done: Inquiry, time_limit: float) -> Inquiry | None:
+    """The dialogue over what the answers have made likely, or None where that leaves nothing to ask."""
+    if not done.exchanges or done.next_question() is not None:  # nobody answers, or not any longer
+        return None
+    candidates = _considered(evidence, time_limit)
+    for exchange in done.exchanges:
+        if exchange.outcome is Outcome.RESOLVED:
+            try:
+                candidates = update(done.situation, candidates, exchange.question, exchange.answer)
+            except ContradictionError:  # of what is likeliest now, nothing agrees with all answers
+                return None
+    again = replace(done, start=candidates, candidates=candidates)
+    return again if again.next_question() is not None else None
 
 
 def _considered(evidence: Evidence, time_limit: float) -> Candidates:

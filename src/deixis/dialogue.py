@@ -40,7 +40,7 @@ class AnswerSource(Protocol):
 
 
 def run(inquiry: Inquiry, source: AnswerSource, out: TextIO) -> Inquiry:
-    """Holds the dialogue and tells on ``out`` what was asked, what contradicts what, and what is left."""
+    """Holds the dialogue, and tells on ``out`` what was asked and what contradicts what."""
     while (question := inquiry.next_question()) is not None:
         number = len(inquiry.exchanges) + 1
         print(f"{number}. {question.text}   [{question.bits:.2f} bits]", file=out, flush=True)
@@ -50,7 +50,6 @@ def run(inquiry: Inquiry, source: AnswerSource, out: TextIO) -> Inquiry:
             break
         inquiry = inquiry.answered(question, answer)
         _remark(inquiry, out)
-    print(*closing_lines(inquiry), sep="\n", file=out)
     return inquiry
 
 

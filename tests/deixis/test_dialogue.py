@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from deixis.dialogue import Oracle, OracleError, Terminal, read_oracle, run
+from deixis.dialogue import Oracle, OracleError, Terminal, closing_lines, read_oracle, run
 from deixis.ontology.graph import RelationGraph
 from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.asking.candidates import Candidates
@@ -33,7 +33,7 @@ def three_cups(*kinds: QuestionKind) -> Inquiry:
 def typed(inquiry: Inquiry, *lines: str) -> tuple[Inquiry, str]:
     out = io.StringIO()
     done = run(inquiry, Terminal(io.StringIO("".join(f"{line}\n" for line in lines)), out), out)
-    return done, out.getvalue()
+    return done, out.getvalue() + "\n".join(closing_lines(done)) + "\n"
 
 
 def test_answers_at_the_terminal_lead_to_one_grounding() -> None:
