@@ -139,8 +139,8 @@ def _engines(n1: int, n2: int) -> dict[str, Callable[[Problem], NDArray[np.int64
     if n1 <= 30:
         engines["exact, two seconds"] = lambda p: exact(p, time.perf_counter() + REFERENCE_LIMIT).assignment
     if n1 * n2 <= graph_matching.MOST_CELLS:
-        for name in graph_matching.SOLVERS:
-            engines[name] = partial(graph_matching.solve, solver=name)
+        for settings in graph_matching.BEST:
+            engines[settings.solver] = partial(graph_matching.solve, settings=settings)
     return engines
 
 

@@ -1,9 +1,9 @@
 """The scoreboard of ``deixis experiment scoreboard`` with other people's solvers beside the engines.
 
 The peers get the same problem as the engines (log-likelihood ratios of graded meaning) and are run at the settings that
-the table states; those that are not installed, and sizes that are too large for them, are skipped with a word. ``pip
-install ortools pygmtools`` gets them. Options as for the command: ``--quick``, ``--cases``, ``--seed``,
-``--time-limit``, ``--plot``, ``--json``.
+the table states, their best in ``bench_peers.py``; those that are not installed, and sizes that are too large for them,
+are skipped with a word. ``pip install ortools pygmtools`` gets them. Options as for the command: ``--quick``,
+``--cases``, ``--seed``, ``--time-limit``, ``--plot``, ``--json``.
 """
 
 from __future__ import annotations
@@ -46,17 +46,17 @@ def peers() -> list[Contestant]:
             lacking=_lacking("ortools"),
         ),
     ]
-    settings = {
+    papers = {
         "sm": "Leordeanu and Hebert 2005",
         "rrwm": "Cho et al. 2010",
         "ipfp": "Leordeanu et al. 2009",
     }
-    for solver in graph_matching.SOLVERS:
+    for settings in graph_matching.BEST:
         found.append(
             peer(
-                solver,
-                f"pygmtools at its defaults ({settings[solver]})",
-                partial(_graph_matching, solver=solver),
+                settings.solver,
+                f"pygmtools ({papers[settings.solver]}), {settings}",
+                partial(_graph_matching, settings=settings),
                 most=MOST["pygmtools"],
                 lacking=_lacking("pygmtools"),
             )
@@ -81,8 +81,8 @@ def _cp_sat(problem: Problem, seconds: float) -> Answer:
     return Answer(solved.assignment, solved.proved)
 
 
-def _graph_matching(problem: Problem, seconds: float, solver: str) -> Answer:
-    return Answer(graph_matching.solve(problem, solver))
+def _graph_matching(problem: Problem, seconds: float, settings: graph_matching.Settings) -> Answer:
+    return Answer(graph_matching.solve(problem, settings))
 
 
 def main(arguments: Sequence[str] | None = None) -> None:

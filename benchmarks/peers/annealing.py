@@ -10,7 +10,7 @@ from deixis.reasoning.matching.compiled import Compiled, compile_problem, to_ass
 from deixis.reasoning.matching.problem import Problem
 from deixis.reasoning.matching.scalable import mean_range
 
-HOT, COLD = 1.0, 0.1  # in units of the mean range of a table; chosen by hand, not tuned
+HOT, COLD = 1.0, 0.1  # in units of the mean range of a table; see bench_peers.py
 
 
 def proposals(objects: int) -> int:
@@ -18,7 +18,9 @@ def proposals(objects: int) -> int:
     return int(np.interp(np.log(objects), np.log([30, 100, 1000]), [1e6, 2.5e6, 4e7]))
 
 
-def solve(problem: Problem, *, steps: int | None = None, seed: int = 0) -> NDArray[np.int64]:
+def solve(
+    problem: Problem, *, steps: int | None = None, seed: int = 0, hot: float = HOT, cold: float = COLD
+) -> NDArray[np.int64]:
     """The best map seen, from a random one on."""
     compiled: Compiled = compile_problem(problem)
     n1, n2 = problem.unary.shape
@@ -28,7 +30,7 @@ def solve(problem: Problem, *, steps: int | None = None, seed: int = 0) -> NDArr
     labels[rng.permutation(n1)[:matched]] = rng.permutation(n2)[:matched]
     labels = np.where(np.isneginf(compiled.unary[np.arange(n1), labels]), n2, labels)
     scale = mean_range(compiled)
-    best = _anneal(labels, compiled, steps or proposals(n1), HOT * scale, COLD * scale, seed)
+    best = _anneal(labels, compiled, steps or proposals(n1), hot * scale, cold * scale, seed)
     return to_assignment(best, n2)
 
 

@@ -13,10 +13,11 @@ from numpy.typing import NDArray
 from deixis.reasoning.matching.problem import UNMATCHED, Problem
 
 ITERATIONS = 30  # scipy's default
+STARTS = 10
 RULED_OUT = -1e6
 
 
-def solve(problem: Problem, *, starts: int = 10, seed: int = 0) -> NDArray[np.int64]:
+def solve(problem: Problem, *, starts: int = STARTS, seed: int = 0) -> NDArray[np.int64]:
     """The best of so many starts, the first of them the barycentre."""
     from scipy.optimize import linear_sum_assignment
 

@@ -1,6 +1,8 @@
-"""SM, RRWM and IPFP of pygmtools at their defaults, on the affinity of all pairs of matches (small problems only)."""
+"""SM, RRWM and IPFP of pygmtools, on the affinity of all pairs of matches (small problems only)."""
 
 from __future__ import annotations
+
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -8,26 +10,48 @@ from numpy.typing import NDArray
 from deixis.reasoning.assignment import assign
 from deixis.reasoning.matching.problem import Problem
 
-SOLVERS = ("sm", "rrwm", "ipfp")
 MOST_CELLS = 2_000  # matches; the affinity has the square of it
 
 
-def solve(problem: Problem, solver: str) -> NDArray[np.int64]:
+@dataclass(frozen=True)
+class Settings:
+    """How a solver is run.
+
+    The solvers want affinities of at least 0: what is below is taken as 0, or, ``shifted``, each fact's table is raised
+    until nothing is.
+    """
+
+    solver: str
+    shifted: bool = False
+    options: tuple[tuple[str, float], ...] = ()  # to the function of pygmtools
+
+    def __str__(self) -> str:
+        how = "affinities shifted" if self.shifted else "affinities clipped"
+        return ", ".join([how, *(f"{name} {value:g}" for name, value in self.options), "else defaults"])
+
+
+BEST = (Settings("sm"), Settings("rrwm", shifted=True, options=(("alpha", 0.4),)), Settings("ipfp", shifted=True))
+"""The settings that name most objects right in ``bench_peers.py``."""
+
+
+def solve(problem: Problem, settings: Settings) -> NDArray[np.int64]:
     """One solver's map; raises ImportError where pygmtools is not installed.
 
-    The solvers want affinities of at least 0 and match as many objects as they can: tables and unary terms are raised
-    to 0 for them, and nothing is left out that need not be.
+    The solvers match as many objects as they can: nothing is left out that need not be.
     """
     import pygmtools  # type: ignore[import-not-found, unused-ignore]
 
     n1, n2 = problem.unary.shape
     allowed = ~np.isneginf(problem.unary)
     affinity = np.zeros((n2, n1, n2, n1))  # pygmtools lists matches by thing, then by object
-    tables = np.maximum(problem.tables, 0.0)
+    lowest = problem.tables.min(axis=(1, 2), keepdims=True, initial=0.0)
+    tables = problem.tables - lowest if settings.shifted else np.maximum(problem.tables, 0.0)
     for (s, o), kind in zip(problem.ends.tolist(), problem.kinds.tolist(), strict=True):
         affinity[:, s, :, o] += tables[kind]
         affinity[:, o, :, s] += tables[kind].T
     matches = affinity.reshape(n1 * n2, n1 * n2)
     np.fill_diagonal(matches, np.maximum(np.where(allowed, problem.unary, 0.0), 0.0).T.ravel())
-    soft = getattr(pygmtools, solver)(matches.astype(np.float32), n1=n1, n2=n2, backend="numpy")
+    solver = getattr(pygmtools, settings.solver)
+    with np.errstate(divide="ignore", invalid="ignore"):  # IPFP divides by 0 where a step gains nothing
+        soft = solver(matches.astype(np.float32), n1=n1, n2=n2, backend="numpy", **dict(settings.options))
     return assign(np.asarray(soft, dtype=np.float64), allowed)
