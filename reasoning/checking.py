@@ -288,7 +288,9 @@ def _extra(
     for thing, label in labels.items():
         if thing in taken:
             continue
-        if label is None:
+        if label is None and grounding.unmatched_objects:
+            reason = "it fits no place that is left in the layout"
+        elif label is None:
             reason = "there are more things than the layout has places"
         elif sure[thing]:
             reason = f"one {label.text} too many"

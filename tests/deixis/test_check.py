@@ -69,6 +69,14 @@ def test_what_is_missing_and_what_is_extra_is_named() -> None:
     }
 
 
+def test_a_thing_without_a_name_is_extra_for_want_of_a_place_or_for_fitting_none() -> None:
+    scene = Scene((PerceivedObject("p", (0.0, 0.0), (0.27, 0.27)), PerceivedObject("q", (2.0, 2.0), (2.01, 2.01))))
+    (extra,) = check(scene, "plate is a DinnerPlate").table.extra
+    assert (extra.perceived, extra.reason) == ("q", "there are more things than the layout has places")
+    (extra,) = check(Scene(scene.objects[:1]), "dinner_fork left of dinner_knife").table.extra
+    assert (extra.perceived, extra.reason) == ("p", "it fits no place that is left in the layout")
+
+
 def test_a_thing_of_another_colour_is_a_finding_of_its_own() -> None:
     text = "the red mug left of plate\nnapkin is white; napkin on plate\nknife right of plate; knife is grey"
     scene = Scene(
