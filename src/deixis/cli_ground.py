@@ -70,7 +70,7 @@ def ground(
     from deixis.report import exchanges_to_dict, grounding_to_dict, viewpoints_to_dict
     from deixis.session import ground as run
     from deixis.session import load_scene, read_script
-    from deixis.show import grounding_lines
+    from deixis.show_ground import grounding_lines
 
     require_plot(plot)
     parsed, seen = read_script(script), load_scene(scene, hide_labels, image)

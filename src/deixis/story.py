@@ -17,7 +17,8 @@ from deixis.reasoning.answer import Grounding
 from deixis.reasoning.graded.unary import UnaryWeights
 from deixis.reasoning.meaning import Meaning
 from deixis.session import Session, ground, infer, read_script
-from deixis.show import check_lines, grounding_lines, inference_lines, learned_lines, script_lines
+from deixis.show import check_lines, inference_lines, learned_lines, script_lines
+from deixis.show_ground import grounding_lines
 
 if TYPE_CHECKING:
     from rich.console import Console

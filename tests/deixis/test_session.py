@@ -14,7 +14,7 @@ import deixis
 from deixis.examples_data import example
 from deixis.perception.scene import Scene
 from deixis.reasoning.answer import Grounding
-from deixis.show import grounding_lines
+from deixis.show_ground import grounding_lines
 
 SCRIPT1 = deixis.read_script(example("script1.layout"))
 SCENE = deixis.read_scene(example("place_setting.scene.json"))
