@@ -169,6 +169,8 @@ def _pivotal(
     """The facts without which something would be otherwise; None where there was no time to look at all."""
     if alignment.posterior is None or not alignment.proved_best:
         return None
+    if (alignment.assignment == UNMATCHED).all():
+        return ()
     found, seen, probable = [], 0, alignment.posterior.exact and alignment.sides == 1
     for dropped in without_each(evidence.problem, alignment.assignment, probable, deadline):
         seen += 1

@@ -19,8 +19,9 @@ from deixis.reasoning.engines import Alignment, paper_similarity
 from deixis.reasoning.evidence import Evidence
 from deixis.reasoning.matching.baselines import NodeSimilarity
 from deixis.reasoning.matching.exact import exact
+from deixis.reasoning.matching.marginal_likelihood import log_marginal_likelihood
 from deixis.reasoning.matching.posterior import posterior
-from deixis.reasoning.matching.problem import Problem
+from deixis.reasoning.matching.problem import UNMATCHED, Problem
 from deixis.reasoning.matching.scalable import scalable
 
 PROOF, SEARCH = 0.5, 0.8
@@ -31,6 +32,13 @@ COMPARISON = 0.3
 
 CELLS, GRACE = 2e7, 0.1
 """Pairs of things by relation that the similarity looks at in a second before its first step; it may be so late."""
+
+UNRELATED = 0.02
+"""How often a description is of another scene, where all is as chance has it."""
+
+OF_ANOTHER = (
+    "the description, with how large such things usually are, fits so little that it is probably of another scene"
+)
 
 
 @dataclass(frozen=True)
@@ -92,6 +100,10 @@ def _answer(
     probable = posterior(evidence.problem, deadline, start=assignment)
     known = math.isfinite(probable.error)
     notes += unknown
+    unrelated = _of_another_scene(evidence)
+    if unrelated > 0.5 and (assignment != UNMATCHED).any():
+        assignment, probable = np.full_like(assignment, UNMATCHED), probable.or_nobody(unrelated)
+        notes += (OF_ANOTHER,)
     notes += () if known else ("there was no time to find out how probable the matches are",)
     return Alignment(
         engine=engine,
@@ -104,6 +116,16 @@ def _answer(
         gap=gap,
         posterior=probable if known else None,
     )
+
+
+def _of_another_scene(evidence: Evidence) -> float:
+    """How probable it is that the description has nothing to do with the scene; 0 where that is not known.
+
+    Labels say themselves what is there, whatever is wrong on the table.
+    """
+    if evidence.labels.any():
+        return 0.0
+    return UNRELATED / (UNRELATED + math.exp(min(log_marginal_likelihood(evidence.problem), 100.0)))
 
 
 def _similarity(evidence: Evidence, deadline: float) -> tuple[NDArray[np.float64], bool, tuple[str, ...]]:

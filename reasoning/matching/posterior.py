@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -63,6 +63,12 @@ class Posterior:
         logs = np.log(p, out=np.zeros_like(p), where=p > 0)
         entropy: Marginals = np.maximum(0.0, -(p * logs).sum(axis=1))
         return entropy
+
+    def or_nobody(self, probability: float) -> Posterior:
+        """The same, where with some probability nobody is anything."""
+        marginals = (1 - probability) * self.marginals
+        marginals[:, -1] += probability
+        return replace(self, marginals=marginals)
 
 
 def posterior(

@@ -199,3 +199,17 @@ def test_who_is_likelier_something_else_taken_alone_is_told() -> None:
     likelier = re.findall(r"^(\w+) +o\d+ +(0\.\d+) +or o\d+ (0\.\d+)", out, re.MULTILINE)
     assert told.endswith(f"{', '.join(name for name, own, other in likelier if float(other) > float(own) + 0.05)}.")
     assert "taken alone" not in deixis("ground", *arguments)[1]
+
+
+@pytest.mark.parametrize("said", ["car left of bus", "dinner_plate left of bread_plate"])
+def test_a_script_about_nothing_in_the_scene_is_told_so(said: str, tmp_path: Path) -> None:
+    script, scene = tmp_path / "other.layout", tmp_path / "cutlery.scene.json"
+    script.write_text(said + "\n", encoding="utf-8")
+    boxes = {"s": ([0, 0], [0.03, 0.2]), "k": ([0.1, 0], [0.12, 0.22])}
+    things = [{"id": name, "min": low, "max": high} for name, (low, high) in boxes.items()]
+    scene.write_text(json.dumps({"unit": "m", "objects": things}), encoding="utf-8")
+    code, out, _ = deixis("ground", script, scene, "--json")
+    assert code == 1
+    found = json.loads(out)
+    assert not found["matches"] and len(found["unmatched_objects"]) == 2 and not found["pivotal"]
+    assert any("another scene" in note for note in found["notes"])

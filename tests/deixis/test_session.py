@@ -37,7 +37,7 @@ SEEN = {"red_mug": "#b01c24", "blue_mug": "#2040a0", "green_mug": "green", "plat
 def mugs(colours: Mapping[str, Any]) -> dict[str, Any]:
     """Three mugs that nothing but their colours tells apart, and a plate."""
     at = {"green_mug": 0.0, "red_mug": 1.5, "blue_mug": 3.0, "plate": 6.0}
-    return {"objects": [box(f"the {name}", x, colour=colours.get(name)) for name, x in at.items()]}
+    return {"unit": "px", "objects": [box(f"the {name}", x, colour=colours.get(name)) for name, x in at.items()]}
 
 
 def test_colours_tell_apart_what_words_cannot() -> None:
@@ -135,7 +135,7 @@ def test_certain_labels_outweigh_facts() -> None:
 
 @pytest.mark.parametrize(("confidence", "fork"), [(0.1, "q"), (0.9, "p"), (0.0, "q")])
 def test_an_uncertain_label_weighs(confidence: float, fork: str) -> None:
-    scene = {"objects": [box("p", 5, label="fork", confidence=confidence), box("q", 0)]}
+    scene = {"unit": "px", "objects": [box("p", 5, label="fork", confidence=confidence), box("q", 0)]}
     assert deixis.ground(deixis.read_script(text="fork left of plate"), scene).matches["fork"].perceived == fork
 
 
@@ -201,7 +201,7 @@ def test_an_empty_scene() -> None:
 
 
 def test_two_words_about_a_full_table_are_found_and_said_to_be_unsure() -> None:
-    scene = {"objects": [box(f"p{i}", i) for i in range(40)]}
+    scene = {"unit": "px", "objects": [box(f"p{i}", i) for i in range(40)]}
     found = deixis.ground(deixis.read_script(text="fork left of plate"), scene)
     assert set(found.matches) == {"fork", "plate"} and not found.violated
     assert not any(match.decided for match in found.matches.values())
