@@ -107,6 +107,15 @@ class Candidates:
                 varying |= {*group}
         return tuple(sorted(varying))
 
+    @property
+    def likeliest_shares(self) -> NDArray[np.float64]:
+        """How probable it is that each object is what it is in the most probable map, shape (n1,)."""
+        shares: NDArray[np.float64] = self.weights @ (self.assignments == self.best)
+        for group in self.groups:
+            members = list(group)
+            shares[members] /= max(1, len({*self.best[members].tolist()}))
+        return shares
+
     @cached_property
     def stand_ins(self) -> tuple[int, ...]:
         """The objects of which questions are worth asking: of each group the first two, for the others are alike."""

@@ -25,6 +25,7 @@ class Outcome(StrEnum):
 
     RESOLVED = "resolved"
     UNKNOWN = "unknown"  # the person does not know; nothing changes, and no question that takes the same look is asked
+    SURPRISING = "surprising"  # no candidate ever agreed: they have to be listed anew with what it says of an object
     CONTRADICTORY = "contradictory"  # no candidate agrees; nothing changes
 
 
@@ -32,7 +33,7 @@ class Outcome(StrEnum):
 class Exchange:
     """A question, its answer, and what it did; ``against`` are earlier exchanges that it cannot go together with.
 
-    With an answer that no candidate ever agreed with, ``against`` is empty.
+    With a relation that no candidate ever agreed with, ``against`` is empty.
     """
 
     question: Question
@@ -69,25 +70,28 @@ class Inquiry:
         """The question that is expected to resolve most, or None where there is none.
 
         None is asked twice, nor one that takes a look at what the person could not tell before. Who has not known as
-        many answers in a row as there are objects (``PATIENCE`` at least) is asked no more.
+        many answers in a row as there are objects (``PATIENCE`` at least), or is not understood, is asked no more.
         """
         patience = max(PATIENCE, len(self.situation.objects))
         latest = self.exchanges[-patience:]
-        if len(latest) == patience and all(exchange.outcome is Outcome.UNKNOWN for exchange in latest):
+        in_vain = (Outcome.UNKNOWN, Outcome.CONTRADICTORY)
+        if len(latest) == patience and all(exchange.outcome in in_vain for exchange in latest):
             return None
         barred = {exchange.question.topic for exchange in self.exchanges}
         unknown = (exchange for exchange in self.exchanges if exchange.outcome is Outcome.UNKNOWN)
         return best_question(self.situation, self.candidates, self.kinds, barred | {e.question.look for e in unknown})
 
     def answered(self, question: Question, answer: str) -> Inquiry:
-        """The inquiry after an answer; one that contradicts all candidates is recorded and changes nothing else."""
+        """The inquiry after an answer; one with which no candidate agrees is recorded and changes nothing else."""
         if answer == DONT_KNOW:
             return self._with(Exchange(question, answer, Outcome.UNKNOWN), self.candidates)
         try:
             left = update(self.situation, self.candidates, question, answer)
         except ContradictionError:
             against = self._against(question, answer)
-            return self._with(Exchange(question, answer, Outcome.CONTRADICTORY, against), self.candidates)
+            told = question.kind is not QuestionKind.RELATION and not against
+            outcome = Outcome.SURPRISING if told else Outcome.CONTRADICTORY
+            return self._with(Exchange(question, answer, outcome, against), self.candidates)
         return self._with(Exchange(question, answer, Outcome.RESOLVED), left)
 
     def _with(self, exchange: Exchange, candidates: Candidates) -> Inquiry:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import TextIO
 
@@ -86,22 +87,29 @@ def ask(
 ) -> Asked:
     """Grounds, asks what would tell the likeliest groundings apart, and grounds again.
 
-    What the answers make likely is listed and asked about in turn. The dialogue is written to ``out``; ``source`` makes
-    who answers, given what there is to be seen. The time limit is not for the person: half of it is for what to ask,
-    each time, and the whole for grounding after the last answer; together they keep to it where nothing was answered.
+    What the answers make likely is listed and asked about in turn, as long as that takes no more than one question
+    above log2 of the number of groundings that were considered at first. The dialogue is written to ``out``;
+    ``source`` makes who answers, given what there is to be seen. The time limit is not for the person: half of it is
+    for what to ask, each time, and the whole for grounding after the last answer; together they keep to it where
+    nothing was answered.
     """
     require_time_limit(time_limit)
     started = time.perf_counter()
     evidence = evidence_of(script, scene, meaning)
     situation = situation_of(evidence.description, evidence.scene)
-    inquiry: Inquiry | None = begin(situation, _considered(evidence, time_limit / 2))
+    inquiry = begin(situation, _considered(evidence, time_limit / 2))
     left = max(0.0, time_limit - (time.perf_counter() - started))
     answers = source(situation)
-    while inquiry is not None:
-        done = run(inquiry, answers, out)
-        replied = time.perf_counter()
+    done, most = run(inquiry, answers, out), _enough(inquiry)
+    replied = time.perf_counter()
+    while len(done.exchanges) > len(inquiry.exchanges):
         evidence = _narrowed(evidence, done)
+        if not _is_to_go_on(done):
+            break
         inquiry = _listed_again(evidence, done, time_limit / 2)
+        most = _enough(inquiry) if done.exchanges[-1].outcome is Outcome.SURPRISING else most
+        done = run(inquiry, answers, out, most)
+        replied = time.perf_counter()
     print(*closing_lines(done), sep="\n", file=out)
     if done.exchanges:
         left = max(0.0, time_limit - (time.perf_counter() - replied))
@@ -109,19 +117,26 @@ def ask(
     return Asked(ground_evidence(evidence, ExactEngine(), left, notes), done.exchanges)
 
 
-def _listed_again(evidence: Evidence, done: Inquiry, time_limit: float) -> Inquiry | None:
-    """The dialogue over what the answers have made likely, or None where that leaves nothing to ask."""
-    if not done.exchanges or done.next_question() is not None:  # nobody answers, or not any longer
-        return None
+def _enough(inquiry: Inquiry) -> int:
+    """One question more than yes and no take to tell the groundings apart, with those asked before."""
+    return len(inquiry.exchanges) + math.ceil(math.log2(inquiry.candidates.count)) + 1
+
+
+def _is_to_go_on(done: Inquiry) -> bool:
+    """Whether the person was not the one who ended the dialogue."""
+    return done.exchanges[-1].outcome is Outcome.SURPRISING or done.next_question() is None
+
+
+def _listed_again(evidence: Evidence, done: Inquiry, time_limit: float) -> Inquiry:
+    """The dialogue over what the answers have made likely; over one grounding where that leaves nothing in doubt."""
     candidates = _considered(evidence, time_limit)
     for exchange in done.exchanges:
-        if exchange.outcome is Outcome.RESOLVED:
-            try:
+        if exchange.outcome in (Outcome.RESOLVED, Outcome.SURPRISING):
+            with suppress(ContradictionError):  # what is likeliest now need not agree with every answer
                 candidates = update(done.situation, candidates, exchange.question, exchange.answer)
-            except ContradictionError:  # of what is likeliest now, nothing agrees with all answers
-                return None
-    again = replace(done, start=candidates, candidates=candidates)
-    return again if again.next_question() is not None else None
+    if (candidates.likeliest_shares >= DECIDED).all():
+        candidates = candidates.kept((candidates.assignments == candidates.best).all(axis=1))
+    return replace(done, start=candidates, candidates=candidates)
 
 
 def _considered(evidence: Evidence, time_limit: float) -> Candidates:
@@ -144,7 +159,8 @@ def _narrowed(evidence: Evidence, done: Inquiry) -> Evidence:
         out = _possible(done.start, labels.shape) & ~left
     for exchange in done.exchanges:
         question, answer = exchange.question, exchange.answer
-        if exchange.outcome is not Outcome.RESOLVED or question.kind is QuestionKind.RELATION:
+        told = exchange.outcome in (Outcome.RESOLVED, Outcome.SURPRISING)
+        if not told or question.kind is QuestionKind.RELATION:
             continue
         if answer == NO:
             out[question.subject, question.thing] = True

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -39,9 +40,12 @@ class AnswerSource(Protocol):
         ...
 
 
-def run(inquiry: Inquiry, source: AnswerSource, out: TextIO) -> Inquiry:
-    """Holds the dialogue, and tells on ``out`` what was asked and what contradicts what."""
-    while (question := inquiry.next_question()) is not None:
+def run(inquiry: Inquiry, source: AnswerSource, out: TextIO, most: float = math.inf) -> Inquiry:
+    """Holds the dialogue, up to so many questions in all, and tells of it on ``out``.
+
+    It ends with an answer that makes it necessary to list the groundings anew.
+    """
+    while len(inquiry.exchanges) < most and (question := inquiry.next_question()) is not None:
         number = len(inquiry.exchanges) + 1
         print(f"{number}. {question.text}   [{question.bits:.2f} bits]", file=out, flush=True)
         answer = source.answer(question, inquiry.situation)
@@ -50,11 +54,15 @@ def run(inquiry: Inquiry, source: AnswerSource, out: TextIO) -> Inquiry:
             break
         inquiry = inquiry.answered(question, answer)
         _remark(inquiry, out)
+        if inquiry.exchanges[-1].outcome is Outcome.SURPRISING:
+            break
     return inquiry
 
 
 def _remark(inquiry: Inquiry, out: TextIO) -> None:
     exchange = inquiry.exchanges[-1]
+    if exchange.outcome is Outcome.SURPRISING:
+        print("   No grounding that was considered has it so; they are considered anew.", file=out)
     if exchange.outcome is not Outcome.CONTRADICTORY:
         return
     if exchange.against:

@@ -299,3 +299,22 @@ def test_what_the_answers_make_likely_is_asked_about_in_turn(seed: int, tmp_path
     assert matches(out) == truth
     assert all(match["decided"] for match in json.loads(out)["matches"])
     assert "one is left after" in err
+
+
+@pytest.mark.parametrize("absent", ["dinner_knife", "water_glass"])
+def test_who_says_that_an_object_is_not_there_is_believed(absent: str, tmp_path: Path) -> None:
+    oracle = tmp_path / "truth.json"
+    oracle.write_text(json.dumps(TRUTH | {absent: None}), encoding="utf-8")
+    _, out, _ = deixis("ground", example("script1.layout"), SCENE, "--no-sizes", "--oracle", oracle, "--json")
+    asked = [one for one in json.loads(out)["questions"] if one["answer"] == "absent"]
+    if asked:
+        assert absent not in matches(out)
+    assert len(json.loads(out)["questions"]) <= 12
+
+
+def test_a_dialogue_with_somebody_who_finds_nothing_comes_to_an_end(tmp_path: Path) -> None:
+    oracle = tmp_path / "truth.json"
+    oracle.write_text(json.dumps(dict.fromkeys(TRUTH)), encoding="utf-8")
+    _, out, _ = deixis("ground", example("script1.layout"), SCENE, "--no-sizes", "--oracle", oracle, "--json")
+    assert len(json.loads(out)["questions"]) <= 2 * len(TRUTH)
+    assert len(matches(out)) <= 2

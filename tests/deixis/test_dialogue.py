@@ -63,9 +63,10 @@ def test_pointing_lists_the_things_that_it_can_be_with_their_places() -> None:
     assert "none, ?)" in text
 
 
-def test_a_contradictory_answer_is_told_and_changes_nothing() -> None:
-    done, text = typed(three_cups(QuestionKind.POINTING), "none")
-    assert "That cannot be taken in: no grounding that is considered agrees with it. It changes nothing." in text
+def test_an_answer_that_no_grounding_has_ends_the_questions_about_them() -> None:
+    done, text = typed(three_cups(QuestionKind.POINTING), "none", "o1")
+    assert "No grounding that was considered has it so; they are considered anew." in text
+    assert len(done.exchanges) == 1
     assert done.candidates.count == 4
 
 

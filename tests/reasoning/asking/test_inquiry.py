@@ -216,11 +216,11 @@ def test_an_answer_that_contradicts_an_earlier_one_is_told_with_it() -> None:
     assert third.candidates.assignments.tolist() == second.candidates.assignments.tolist() == [[0, 1, 2]]
 
 
-def test_an_answer_that_no_candidate_gives_is_against_none_of_the_others() -> None:
+def test_what_is_pointed_out_against_all_candidates_is_believed_and_they_are_to_be_listed_anew() -> None:
     start = begin(row_of(3), Candidates(np.array([[0, 1, 2], [1, 0, 2]]), np.ones(2)))
     question = next(iter(questions(start.situation, start.candidates, [QuestionKind.POINTING])))
     after = start.answered(question, "o2")
-    assert (after.exchanges[0].outcome, after.exchanges[0].against) == (Outcome.CONTRADICTORY, ())
+    assert (after.exchanges[0].outcome, after.exchanges[0].against) == (Outcome.SURPRISING, ())
     with pytest.raises(ContradictionError, match="goes against every grounding"):
         update(start.situation, start.candidates, question, "o2")
 
