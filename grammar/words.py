@@ -43,6 +43,7 @@ KEYWORDS: dict[str, str] = {
     "and": "_AND",
     "or": "_OR",
     "not": "NOT",
+    "never": "NOT",
     "optional": "OPTIONAL",
     "optionally": "OPTIONAL",
 }

@@ -25,7 +25,7 @@ def alternatives(
     found = (
         _similar(evidence, alignment, i, groups) if alignment.posterior is None else _probable(evidence, alignment, i)
     )
-    return tuple(sorted(found, key=lambda other: (other.cost, other.perceived is None, other.perceived)))
+    return tuple(sorted(found, key=lambda o: (-(o.probability or 0.0), o.cost, o.perceived is None, o.perceived)))
 
 
 def _probable(evidence: Evidence, alignment: Alignment, i: int) -> list[Alternative]:

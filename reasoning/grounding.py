@@ -20,6 +20,7 @@ from deixis.reasoning.answer import (
     Standing,
     is_decided,
 )
+from deixis.reasoning.dropping import MOST as MOST_DROPPED
 from deixis.reasoning.dropping import Dropped, without_each
 from deixis.reasoning.engines import Alignment, Engine
 from deixis.reasoning.evidence import Evidence
@@ -54,7 +55,8 @@ def ground(
     names = evidence.description.nodes
     posterior = alignment.posterior
     pivotal = _pivotal(in_order, alignment, matches, time.perf_counter() + DROPPING * time_limit)
-    hurried = pivotal is None and posterior is not None and alignment.proved_best
+    few = len(in_order.description.nodes) <= MOST_DROPPED
+    hurried = few and pivotal is None and posterior is not None and alignment.proved_best
     return Grounding(
         engine=alignment.engine,
         matches=MappingProxyType({name: matches[name] for name in names if name in matches}),

@@ -188,5 +188,7 @@ def _origin(entries: dict[str, _Entry]) -> tuple[float, float, float]:
     except ValueError:
         values = []
     if len(values) != 7 or not all(math.isfinite(value) for value in values):
-        raise CloudError(f"{entry.where}: a VIEWPOINT has 7 numbers, position and quaternion; for none: 0 0 0 1 0 0 0")
+        raise CloudError(
+            f"{entry.where}: a VIEWPOINT has 7 finite numbers, position and quaternion; for none: 0 0 0 1 0 0 0"
+        )
     return values[0], values[1], values[2]

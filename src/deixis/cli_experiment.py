@@ -74,7 +74,7 @@ def scoreboard(
 def open_ended(
     orders: Annotated[int, typer.Option(min=1, help="Random orders of teaching.")] = 10,
     seed: Seed = 1,
-    quick: Annotated[bool, typer.Option("--quick", help="Nine kinds, no meshes, in a minute or two.")] = False,
+    quick: Annotated[bool, typer.Option("--quick", help="Nine kinds, no meshes, three orders at most.")] = False,
     cache: Annotated[Path | None, typer.Option(metavar="DIR", help="Where described views are kept.")] = None,
     plot: Annotated[Path | None, typer.Option(metavar="FILE", help="Draw it (.png, .svg, .pdf).")] = None,
     as_json: AsJson = False,

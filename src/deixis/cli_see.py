@@ -243,7 +243,8 @@ def ask(
 ) -> None:
     """Have the robot ask which thing a word means; what is pointed at becomes its first view.
 
-    Where the word is known, it says which things it takes for one, and asks nothing. Exit 1 without an answer.
+    Where the word is known, it says which things it takes for one, and asks nothing, unless --points-at shows it one
+    more. Exit 1 without an answer.
     """
     from deixis.perceptual_session import new_category_name
     from deixis.session import Session, load_scene

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import os
 import unicodedata
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -162,7 +163,8 @@ def _view(scene: Scene, object: str, category: str, teacher: str) -> View:
     from deixis.perceiving import cloud_of
     from deixis.recognising import view_of
 
-    metadata = {"scene": os.path.abspath(scene.file), "object": object, "teacher": teacher}
+    file, boxes = os.path.abspath(scene.file), hashlib.sha256(scene.boxes.tobytes()).hexdigest()[:16]
+    metadata = {"scene": file, "boxes": boxes, "object": object, "teacher": teacher}
     return view_of(cloud_of(scene, _thing(scene, object)), scene.frame, category, datetime.now(UTC), metadata)
 
 

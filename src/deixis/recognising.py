@@ -109,9 +109,12 @@ def view_of(cloud: PointCloud, frame: str, category: str, time: datetime, metada
 
 
 def thing_of(view: View) -> str | None:
-    """The thing that a view shows: the object of the scene that it was taught from. None where that is not known."""
+    """The thing that a view shows: the object of the scene that it was taught from. None where that is not known.
+
+    The same file with other boxes is another scene: the next table, perceived into the same file.
+    """
     scene, object = view.metadata.get("scene"), view.metadata.get("object")
-    return json.dumps([scene, object]) if scene and object else None
+    return json.dumps([scene, view.metadata.get("boxes"), object]) if scene and object else None
 
 
 def keep_views(memory: PerceptualMemory, views: Sequence[View]) -> tuple[Taught, ...]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import io
 import json
+import shutil
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -445,3 +446,16 @@ def test_two_things_with_the_same_points_are_named_before_anything_is_learned(ta
     assert (code, out) == (2, "")
     assert "twice.scene.json: the clouds of" in err and "are the same points" in err
     assert json.loads(deixis("category", "list", "--json", "--memory", tmp_path / "memory")[1]) == {}
+
+
+def test_the_next_table_perceived_into_the_same_file_shows_other_things(tables: Path, tmp_path: Path) -> None:
+    scene, memory = tmp_path / "table.scene.json", ("--memory", tmp_path / "memory")
+    for seed in (7, 20):
+        clouds = tmp_path / "table.clouds"
+        shutil.rmtree(clouds, ignore_errors=True)
+        shutil.copytree(tables / f"{seed}.clouds", clouds)
+        text = (tables / f"{seed}.scene.json").read_text(encoding="utf-8")
+        scene.write_text(text.replace(f"{seed}.clouds", "table.clouds"), encoding="utf-8")
+        assert deixis("teach", scene, "o1", "plate", *memory)[0] == 0
+    entry = json.loads(deixis("recognise", scene, "--json", *memory)[1])["objects"][0]
+    assert "has one thing" not in json.dumps(entry)
