@@ -22,8 +22,11 @@ from typing import TYPE_CHECKING, Any
 from deixis.version import VERSION
 
 if TYPE_CHECKING:
+    from deixis.asking import ask
     from deixis.grammar.format import format_script
+    from deixis.imagination import imagine
     from deixis.ontology.errors import DeixisError
+    from deixis.perceiving import perceive
     from deixis.perception.scene_file import read_scene, write_scene
     from deixis.session import Session, ground, infer, read_script
 
@@ -31,9 +34,12 @@ __version__ = VERSION
 __all__ = [
     "DeixisError",
     "Session",
+    "ask",
     "format_script",
     "ground",
+    "imagine",
     "infer",
+    "perceive",
     "read_scene",
     "read_script",
     "write_scene",
@@ -42,9 +48,12 @@ __all__ = [
 _HOMES = {
     "DeixisError": "deixis.ontology.errors",
     "Session": "deixis.session",
+    "ask": "deixis.asking",
     "format_script": "deixis.grammar.format",
     "ground": "deixis.session",
+    "imagine": "deixis.imagination",
     "infer": "deixis.session",
+    "perceive": "deixis.perceiving",
     "read_scene": "deixis.perception.scene_file",
     "read_script": "deixis.session",
     "write_scene": "deixis.perception.scene_file",

@@ -1,13 +1,14 @@
-"""Grounding that asks, and grounding from an unknown side: what the session does with questions and viewpoints."""
+"""Grounding that asks: the questions, their answers, and what the answers make of the evidence."""
 
 from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from typing import TextIO
+from pathlib import Path
+from typing import Any, TextIO
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,22 +16,21 @@ from numpy.typing import NDArray
 from deixis.dialogue import AnswerSource, closing_lines, run
 from deixis.grammar.script import Script
 from deixis.perception.scene import Scene
+from deixis.perception.scene_file import read_scene
 from deixis.reasoning.answer import DECIDED, Grounding
 from deixis.reasoning.asking.candidates import Candidates, candidates_of
 from deixis.reasoning.asking.inquiry import ContradictionError, Exchange, Inquiry, Outcome, begin, update
 from deixis.reasoning.asking.questions import ABSENT, NO, YES, QuestionKind
 from deixis.reasoning.asking.situation import Situation, situation_of
-from deixis.reasoning.engines import engine_named
 from deixis.reasoning.errors import require_time_limit
 from deixis.reasoning.evidence import PRESENT, Evidence
-from deixis.reasoning.from_sides import FromSides, OtherSide
 from deixis.reasoning.grounding import DEFAULT_TIME_LIMIT
 from deixis.reasoning.grounding import ground as ground_evidence
 from deixis.reasoning.likeliest import ExactEngine
-from deixis.reasoning.matching.problem import UNMATCHED, Problem
+from deixis.reasoning.matching.problem import UNMATCHED
 from deixis.reasoning.meaning import SHIPPED, Meaning
-from deixis.reasoning.viewpoints import Viewpoint, Viewpoints, recover_viewpoint, turned
-from deixis.session import conflict_notes, evidence_of
+from deixis.scene_evidence import conflict_notes, evidence_of
+from deixis.session import read_script
 
 MARGINS = (6.0, 2.0)
 """How much less likely than the best (in nats) a grounding may be that is still asked about: 400 times.
@@ -41,14 +41,6 @@ Rarer ones hardly ever keep a match from being decided. Where so many cannot be 
 MOST_ANSWERED = 100
 """Ways in which those asked about may be what they are now, of which all are looked at."""
 
-WORTH_A_LOOK, MOST_SIDES = 0.005, 8
-"""How probable a side is from which matches are looked at, and how many such sides there are at most."""
-
-CONCENTRATED = 0.5
-"""Mean resultant length below which angles are no side: that of an even spread over 217 degrees."""
-
-_UNTOLD = "the scene was taken as it stands: nothing tells from which side the description speaks"
-
 
 @dataclass(frozen=True, slots=True)
 class Asked:
@@ -58,28 +50,9 @@ class Asked:
     exchanges: tuple[Exchange, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class SeenFrom:
-    """A scene as seen from the side from which a script speaks; ``viewpoints`` None where nothing tells a side."""
-
-    scene: Scene
-    viewpoints: Viewpoints | None = None
-    notes: tuple[str, ...] = ()
-    others: tuple[tuple[float, Scene], ...] = ()  # as seen from other sides, each with its probability
-    share: float = 1.0  # how probable this side is
-    evidence: Evidence | None = None  # as seen from this side, where it was worked out already
-
-    @property
-    def doubt(self) -> tuple[str, ...]:
-        """What is to be said of probabilities that hold from the likeliest side alone."""
-        if self.share >= DECIDED:
-            return ()
-        return ("from other sides the matches may be others: their probabilities hold as seen from this one",)
-
-
 def ask(
-    script: Script,
-    scene: Scene,
+    script: Script | str | Path,
+    scene: Scene | str | Path | Mapping[str, Any],
     source: Callable[[Situation], AnswerSource],
     out: TextIO,
     meaning: Meaning = SHIPPED,
@@ -95,6 +68,8 @@ def ask(
     """
     require_time_limit(time_limit)
     started = time.perf_counter()
+    script = script if isinstance(script, Script) else read_script(script)
+    scene = scene if isinstance(scene, Scene) else read_scene(scene)
     evidence = evidence_of(script, scene, meaning)
     situation = situation_of(evidence.description, evidence.scene)
     inquiry = begin(situation, _considered(evidence, time_limit / 2))
@@ -207,95 +182,3 @@ def _possible_beside(done: Inquiry, shape: tuple[int, ...]) -> NDArray[np.bool_]
         twice = (ordered[:, 1:] == ordered[:, :-1]) & (ordered[:, 1:] != UNMATCHED)
         found |= _matched(rows[~twice.any(axis=1)], shape)
     return found
-
-
-def seen_from_anywhere(
-    script: Script,
-    scene: Scene,
-    meaning: Meaning = SHIPPED,
-    any_angle: bool = True,
-    time_limit: float = DEFAULT_TIME_LIMIT,
-) -> SeenFrom:
-    """The scene as seen from the side from which the script most probably speaks, and notes that say which that is.
-
-    Turned by quarters only, unless ``any_angle``; mirrored where that explains it better. Where no fact compares two
-    things that were found, or most of the circle does as well, nothing tells a side, and the scene stays as it is.
-    """
-    deadline = time.perf_counter() + time_limit
-    evidence = evidence_of(script, scene, meaning)
-    indifferent = SeenFrom(scene, notes=(f"{_UNTOLD}, and it makes no difference",), evidence=evidence)
-    if not len(evidence.facts) or len(scene.objects) < 2:
-        return indifferent
-    present = scene.boxes
-
-    def problem(boxes: NDArray[np.float64]) -> Problem:
-        seen = evidence if np.array_equal(boxes, present) else evidence_of(script, _with_boxes(scene, boxes), meaning)
-        return seen.problem
-
-    found = recover_viewpoint(present, problem, any_angle=any_angle, deadline=deadline)
-    best = found.best
-    placed = (best.assignment[evidence.problem.ends] != UNMATCHED).all(axis=1)
-    if not placed.any():
-        return indifferent
-    if best.concentration < CONCENTRATED:
-        quarters = _from_all_quarters(scene, recover_viewpoint(present, problem, deadline=deadline))
-        return replace(quarters, evidence=evidence)
-    known = evidence if not best.angle and not best.mirrored else None
-    return SeenFrom(_seen_from(scene, best), found, _notes(found), _others(scene, found), best.probability, known)
-
-
-def _from_all_quarters(scene: Scene, found: Viewpoints) -> SeenFrom:
-    """As it stands, with the other quarter turns for the whole circle, of which no part is likelier than another."""
-    upright = next(view for view in found.viewpoints if not view.angle and not view.mirrored)
-    rest = replace(found, viewpoints=(upright, *(view for view in found.viewpoints if view is not upright)))
-    return SeenFrom(scene, None, (_UNTOLD,), _others(scene, rest), upright.probability)
-
-
-def _others(scene: Scene, found: Viewpoints) -> tuple[tuple[float, Scene], ...]:
-    """What is seen from the sides after the first, with how probable they are, where that is worth a look."""
-    worth = [view for view in found.viewpoints[1:MOST_SIDES] if view.probability >= WORTH_A_LOOK]
-    return tuple((view.probability, _seen_from(scene, view)) for view in worth)
-
-
-def ground_from_sides(
-    script: Script, side: SeenFrom, engine: str, meaning: Meaning = SHIPPED, time_limit: float = DEFAULT_TIME_LIMIT
-) -> Grounding:
-    """Grounds as seen from the likeliest side, with the probabilities of matches over all sides that are worth a look.
-
-    Where nothing tells a side, the map is that of the scene as it stands, with the probabilities from all around.
-    """
-    others = tuple(OtherSide(share, evidence_of(script, scene, meaning)) for share, scene in side.others)
-    aligning = FromSides(engine_named(engine), side.share, others) if others else engine_named(engine)
-    evidence = side.evidence or evidence_of(script, side.scene, meaning)
-    return ground_evidence(evidence, aligning, time_limit, conflict_notes(script.graph()))
-
-
-def _seen_from(scene: Scene, view: Viewpoint) -> Scene:
-    return _with_boxes(scene, turned(scene.boxes, view.angle, view.mirrored))
-
-
-def _with_boxes(scene: Scene, boxes: NDArray[np.float64]) -> Scene:
-    things = [
-        replace(thing, minimum=tuple(box[0].tolist()), maximum=tuple(box[1].tolist()))
-        for thing, box in zip(scene.objects, boxes, strict=True)
-    ]
-    return replace(scene, objects=tuple(things))
-
-
-def _notes(found: Viewpoints) -> tuple[str, ...]:
-    best = found.best
-    notes = [f"the scene was taken {_described(best)}, with probability {best.probability:.2f}"]
-    if len(found.ties) > 1:
-        others = ", or ".join(_described(view) for view in found.ties if view is not best)
-        notes.append(f"the description fits as well {others}")
-    if not found.everywhere:
-        notes.append("there was no time to look from every side, so that the probability is approximate")
-    elif not found.exact:
-        notes.append("not all groundings were counted for every side, so that the probability is approximate")
-    return tuple(notes)
-
-
-def _described(view: Viewpoint) -> str:
-    degrees = round(math.degrees(view.angle)) % 360
-    turn = "as it stands" if degrees == 0 else f"turned by {degrees} degrees counter-clockwise"
-    return f"mirrored and {turn}" if view.mirrored else turn

@@ -30,11 +30,12 @@ from deixis.cli_common import (
 from deixis.reasoning.engine_name import EngineName
 
 if TYPE_CHECKING:
-    from deixis.asking import Asked, SeenFrom
+    from deixis.asking import Asked
     from deixis.grammar.script import Script as ParsedScript
     from deixis.perception.scene import Scene
     from deixis.reasoning.answer import Grounding
     from deixis.reasoning.meaning import Meaning
+    from deixis.sides import SeenFrom
 
 
 class ViewpointName(StrEnum):
@@ -124,7 +125,7 @@ def _meaning(literal: bool, no_sizes: bool, memory: Path | None) -> Meaning:
 def _looked_around(
     script: ParsedScript, scene: Scene, meaning: Meaning, viewpoint: ViewpointName, time_limit: float
 ) -> SeenFrom:
-    from deixis.asking import seen_from_anywhere
+    from deixis.sides import seen_from_anywhere
 
     with working("looking from other sides"):
         return seen_from_anywhere(script, scene, meaning, viewpoint is ViewpointName.UNKNOWN, time_limit)
@@ -133,7 +134,7 @@ def _looked_around(
 def _from_sides(
     script: ParsedScript, side: SeenFrom, engine: EngineName, meaning: Meaning, time_limit: float
 ) -> Grounding:
-    from deixis.asking import ground_from_sides
+    from deixis.sides import ground_from_sides
 
     with working("grounding"):
         return ground_from_sides(script, side, engine, meaning, time_limit).noting(side.notes)

@@ -13,7 +13,6 @@ from deixis.grammar.parser import parse_script
 from deixis.grammar.parser import read_script as read_script_file
 from deixis.grammar.script import Script
 from deixis.inference import Inference, inference_of
-from deixis.ontology.graph import RelationGraph
 from deixis.ontology.tbox import Ontology
 from deixis.perception.scene import Scene
 from deixis.perception.scene_file import read_scene
@@ -22,12 +21,12 @@ from deixis.reasoning.answer import Grounding
 from deixis.reasoning.conflict import find_conflict
 from deixis.reasoning.engines import Select, engine_named
 from deixis.reasoning.errors import InconsistencyError, NothingFoundError, SettingError, require_time_limit
-from deixis.reasoning.evidence import Evidence, evidence_from
 from deixis.reasoning.grounding import DEFAULT_TIME_LIMIT
 from deixis.reasoning.grounding import ground as ground_evidence
 from deixis.reasoning.implications import TIME_LIMIT, Implications
-from deixis.reasoning.labels import Label
 from deixis.reasoning.meaning import SHIPPED, Meaning
+from deixis.scene_evidence import conflict_notes, evidence_of, graph_evidence, scene_labels
+from deixis.sides import ground_from_anywhere
 from deixis.version import VERSION
 from deixis.warm import ready_to_ground, ready_to_infer
 
@@ -59,25 +58,8 @@ def infer(script: Script | str | Path, time_limit: float = TIME_LIMIT) -> Infere
     return inference_of(script, time_limit)
 
 
-def evidence_of(script: Script, scene: Scene, meaning: Meaning = SHIPPED) -> Evidence:
-    """All that speaks for who is who: the script's facts, and the scene's relations, labels, sizes and colours."""
-    return _evidence(script.graph(), scene, script.ontology, meaning)
-
-
-def _evidence(description: RelationGraph, scene: Scene, ontology: Ontology, meaning: Meaning) -> Evidence:
-    labels = list(scene_labels(scene).values())
-    seen = scene.graph(ontology.relations)
-    return evidence_from(
-        description,
-        seen,
-        labels,
-        ontology.kinds,
-        ontology.sizes,
-        metric=scene.unit == "m",
-        meaning=meaning,
-        seen=scene.colours,
-        colours=ontology.colours,
-    )
+VIEWPOINTS = ("stated", "quarter", "unknown")
+"""From where left and right may be said: as the scene states it, or from a side that is to be recovered."""
 
 
 def ground(
@@ -87,13 +69,15 @@ def ground(
     time_limit: float = DEFAULT_TIME_LIMIT,
     select: str = Select.FACTS,
     meaning: Meaning = SHIPPED,
+    viewpoint: str = "stated",
 ) -> Grounding:
     """Works out which perceived thing each object of a script is.
 
     ``engine`` is ``exact``, ``scalable``, ``similarity`` (the paper's), ``blondel`` or ``heymans-singh``; ``select``
     says what chooses among sub-graphs under the paper's: ``facts``, or ``similarity`` alone as in the paper.
-    ``meaning`` says how words and sizes are taken. The answer comes within about ``time_limit`` seconds, proved or not,
-    and says which. Raises DeixisError for bad input.
+    ``meaning`` says how words and sizes are taken; ``viewpoint`` is that of the scene as ``stated``, or recovered: by
+    ``quarter`` turns, or ``unknown``, from any side (:mod:`deixis.sides`). The answer comes within about
+    ``time_limit`` seconds, proved or not, and says which. Raises DeixisError for bad input.
     """
     script = _script(script)
     scene = scene if isinstance(scene, Scene) else read_scene(scene)
@@ -101,7 +85,11 @@ def ground(
     require_time_limit(time_limit)
     if select not in list(Select):
         raise SettingError(f"select is one of {', '.join(Select)}, not '{select}'")
+    if viewpoint not in VIEWPOINTS:
+        raise SettingError(f"viewpoint is one of {', '.join(VIEWPOINTS)}, not '{viewpoint}'")
     ready_to_ground(engine)
+    if viewpoint != VIEWPOINTS[0]:
+        return ground_from_anywhere(script, scene, engine, meaning, viewpoint == VIEWPOINTS[-1], time_limit)
     return ground_evidence(evidence_of(script, scene, meaning), engine_named(engine, Select(select)), time_limit, notes)
 
 
@@ -116,14 +104,6 @@ def _viewpoint_notes(viewpoint: str | None, scene: Scene) -> tuple[str, ...]:
         f"the script speaks as seen from '{viewpoint}' and the scene is seen from '{scene.viewpoint}': "
         "left and right were compared as they stand",
     )
-
-
-def conflict_notes(graph: RelationGraph) -> tuple[str, ...]:
-    """What is to be said with an answer where a script contradicts itself."""
-    conflict = find_conflict(Implications(graph))
-    if conflict is None:
-        return ()
-    return (f"the script contradicts itself, so that not all of it can hold: {conflict.reason}",)
 
 
 @dataclass(frozen=True)
@@ -215,7 +195,7 @@ class Session(PerceptualSession):
         scene = scene if isinstance(scene, Scene) else read_scene(scene)
         graph, relations = concept.graph(self.ontology.relations), self.ontology.relations
         labels = scene_labels(scene)
-        evidence = _evidence(graph, scene, self.ontology, self.meaning())
+        evidence = graph_evidence(graph, scene, self.ontology, self.meaning())
         notes = _viewpoint_notes(concept.viewpoint, scene) + conflict_notes(graph)
         ready_to_ground("exact")
         found = ground_evidence(evidence, engine_named("exact"), time_limit)
@@ -237,8 +217,3 @@ def load_scene(file: str | Path, hide_labels: bool = False, image: str | None = 
 def is_script_file(layout: str | Path) -> bool:
     """Whether a layout is given as a file rather than by its name."""
     return isinstance(layout, Path) or layout.endswith(".layout") or os.sep in layout
-
-
-def scene_labels(scene: Scene) -> dict[str, Label | None]:
-    """What perception calls each thing of a scene."""
-    return {thing.id: Label(thing.label, thing.confidence) if thing.label else None for thing in scene.objects}

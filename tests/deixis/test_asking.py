@@ -7,12 +7,15 @@ import json
 import math
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from commands import deixis
 
-from deixis.asking import SeenFrom, _narrowed
+import deixis as deixis_package
+from deixis.asking import _narrowed
+from deixis.dialogue import Oracle
 from deixis.examples_data import example
 from deixis.experiments.generated_tables import generate
 from deixis.perception.scene_file import read_scene
@@ -25,7 +28,9 @@ from deixis.reasoning.evidence import Evidence
 from deixis.reasoning.grounding import ground
 from deixis.reasoning.likeliest import ExactEngine
 from deixis.reasoning.viewpoints import Viewpoint, Viewpoints, turned
-from deixis.session import evidence_of, read_script
+from deixis.scene_evidence import evidence_of
+from deixis.session import read_script
+from deixis.sides import SeenFrom
 
 SCENE = example("place_setting.scene.json")
 TRUTH = {thing.label: thing.id for thing in read_scene(example("place_setting.labelled.scene.json")).objects}
@@ -73,18 +78,21 @@ def test_a_truth_file_that_is_none_is_bad_input(tmp_path: Path) -> None:
     assert str(oracle) in err
 
 
-@pytest.mark.parametrize(("quarters", "option"), [(1, "quarter"), (2, "quarter"), (3, "unknown")])
-def test_a_turned_table_is_grounded_as_if_it_were_not(quarters: int, option: str, tmp_path: Path) -> None:
+def turned_scene(quarters: int) -> dict[str, Any]:
+    """The shipped setting without labels, turned by quarters of a circle."""
     scene = read_scene(SCENE)
     boxes = turned(scene.boxes, quarters * math.pi / 2)
     objects = [
         {"id": thing.id, "min": box[0].tolist(), "max": box[1].tolist()}
         for thing, box in zip(scene.objects, boxes, strict=True)
     ]
+    return {"frame": "table", "viewpoint": "chair", "unit": "m", "objects": objects}
+
+
+@pytest.mark.parametrize(("quarters", "option"), [(1, "quarter"), (2, "quarter"), (3, "unknown")])
+def test_a_turned_table_is_grounded_as_if_it_were_not(quarters: int, option: str, tmp_path: Path) -> None:
     file = tmp_path / "turned.scene.json"
-    file.write_text(
-        json.dumps({"frame": "table", "viewpoint": "chair", "unit": "m", "objects": objects}), encoding="utf-8"
-    )
+    file.write_text(json.dumps(turned_scene(quarters)), encoding="utf-8")
     straight = deixis("ground", example("formal_dinner.layout"), SCENE, "--json")[1]
     code, out, _ = deixis("ground", example("formal_dinner.layout"), file, "--viewpoint", option, "--json")
     assert code == 0
@@ -318,3 +326,18 @@ def test_a_dialogue_with_somebody_who_finds_nothing_comes_to_an_end(tmp_path: Pa
     _, out, _ = deixis("ground", example("script1.layout"), SCENE, "--no-sizes", "--oracle", oracle, "--json")
     assert len(json.loads(out)["questions"]) <= 2 * len(TRUTH)
     assert len(matches(out)) <= 2
+
+
+def test_python_grounds_from_a_side_to_be_recovered_as_the_command_does() -> None:
+    found = deixis_package.ground(example("formal_dinner.layout"), turned_scene(1), viewpoint="quarter")
+    assert {name: match.perceived for name, match in found.matches.items()} == TRUTH
+    with pytest.raises(deixis_package.DeixisError, match="viewpoint is one of stated, quarter, unknown"):
+        deixis_package.ground(example("formal_dinner.layout"), SCENE, viewpoint="above")
+
+
+def test_python_holds_a_dialogue_as_the_command_does() -> None:
+    out = io.StringIO()
+    asked = deixis_package.ask(
+        example("script1.layout"), SCENE, lambda _: Oracle({name or "": id for name, id in TRUTH.items()}, out), out
+    )
+    assert all(match.decided for match in asked.grounding.matches.values())

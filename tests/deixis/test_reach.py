@@ -16,7 +16,7 @@ from deixis.perception.settings import formal_setting
 from deixis.reasoning.graded.unary import UnaryWeights
 from deixis.reasoning.matching.exact import exact
 from deixis.reasoning.meaning import Meaning
-from deixis.session import evidence_of
+from deixis.scene_evidence import evidence_of
 
 ABSENT = {"red_wine_glass", "white_wine_glass", "champagne_glass"}
 

@@ -16,7 +16,8 @@ SOURCE = Path(deixis.__file__).parents[1]
 LOADED_LATER = """
 import json, sys
 from numba.core.dispatcher import Dispatcher
-from deixis.session import evidence_of, load_scene, read_script
+from deixis.scene_evidence import evidence_of
+from deixis.session import load_scene, read_script
 from deixis.reasoning.engines import engine_named
 from deixis.reasoning.grounding import ground
 from deixis.grammar.network_file import read_networks
