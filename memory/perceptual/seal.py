@@ -35,15 +35,19 @@ def check_seal(folder: Path, store: Path) -> None:
     file = folder / SEAL
     if not file.exists():
         return
-    advice = f"restore the folder from a copy, or delete {SEAL} to open what is left"
+    restore, open_rest = "restore the folder from a copy", f"or delete {SEAL} to open what is left"
     try:
         said = json.loads(file.read_text(encoding="ascii"))
         files, name = dict(said["files"]), said["store"]
     except (OSError, ValueError, KeyError, TypeError) as error:
-        raise DamagedMemoryError(f"the memory at {folder} is damaged: {SEAL} cannot be read; {advice}") from error
+        raise DamagedMemoryError(
+            f"the memory at {folder} is damaged: {SEAL} cannot be read; {restore}, {open_rest}"
+        ) from error
     found = _files(store)
     wrong = sorted(name for name in {*files, *found} if files.get(name) != found.get(name))
     if wrong or name != store.name:
+        # LevelDB leaves out what is broken of a log; where others of its files are not as they were, it opens nothing
+        advice = f"{restore}, {open_rest}" if all(name.endswith(".log") for name in wrong) else restore
         raise DamagedMemoryError(
             f"the memory at {folder} is damaged: {store.name}/{[*wrong, SEAL][0]} is not as it was when it was closed; "
             f"{advice}"
