@@ -97,7 +97,8 @@ def ground(
     if plot is not None:
         from deixis.plot import plot_grounding
 
-        plot_grounding(found, seen, plot, title=parsed.title or parsed.name)
+        about = (parsed.title or parsed.name, f"scene {side.turn}" if side and side.turn else "")
+        plot_grounding(found, seen, plot, title=", ".join(filter(None, about)))
     if as_json:
         print_json(grounding_to_dict(found) | more)
     else:

@@ -43,6 +43,13 @@ class SeenFrom:
     evidence: Evidence | None = None  # as seen from this side, where it was worked out already
 
     @property
+    def turn(self) -> str:
+        """How the scene was turned or mirrored, in words; empty where it stays as it stands."""
+        if self.viewpoints is None or not (self.viewpoints.best.angle or self.viewpoints.best.mirrored):
+            return ""
+        return _described(self.viewpoints.best)
+
+    @property
     def doubt(self) -> tuple[str, ...]:
         """What is to be said of probabilities that hold from the likeliest side alone."""
         if self.share >= DECIDED:
