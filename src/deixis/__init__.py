@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from deixis.ontology.errors import DeixisError
     from deixis.perceiving import perceive
     from deixis.perception.scene_file import read_scene, write_scene
+    from deixis.retrieving import retrieve
     from deixis.session import Session, ground, infer, read_script
 
 __version__ = VERSION
@@ -42,6 +43,7 @@ __all__ = [
     "perceive",
     "read_scene",
     "read_script",
+    "retrieve",
     "write_scene",
 ]
 
@@ -56,6 +58,7 @@ _HOMES = {
     "perceive": "deixis.perceiving",
     "read_scene": "deixis.perception.scene_file",
     "read_script": "deixis.session",
+    "retrieve": "deixis.retrieving",
     "write_scene": "deixis.perception.scene_file",
 }
 

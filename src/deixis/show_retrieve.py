@@ -3,20 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
-
-@dataclass(frozen=True)
-class Retrieved:
-    """A layout or a scene that is similar to what was asked for, and by which grounding (object: perceived id)."""
-
-    name: str
-    similarity: float
-    objects: float
-    relations: float | None  # None where the layout relates nothing
-    matches: dict[str, str]
-    proved: bool
+from deixis.retrieving import Retrieved
 
 
 def retrieved_lines(found: Sequence[Retrieved], query: str, among: int, least: float) -> list[str]:

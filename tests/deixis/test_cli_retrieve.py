@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 import typer
 
+import deixis as package
 from deixis.cli_retrieve import retrieve
 from deixis.ontology.errors import DeixisError
 from deixis.perception.scene_file import read_scene, write_scene
@@ -119,3 +120,13 @@ def test_bad_input_is_an_error_that_names_it(args: tuple[object, ...], message: 
     with pytest.raises(DeixisError, match=r"\S") as error:
         run(*(tmp_path if arg == "EMPTY" else arg for arg in args))
     assert message in str(error.value)
+
+
+def test_python_retrieves_as_the_command_does(tmp_path: Path) -> None:
+    by_scene = package.retrieve(SETTING, among=EXAMPLES)
+    assert [one.name for one in by_scene.found] == names(run(SETTING, "--among", EXAMPLES, "--json")[1])
+    with Session(memory=tmp_path / "memory") as session:
+        session.learn(EXAMPLES / "formal_dinner.layout", SETTING)
+        by_script = package.retrieve(EXAMPLES / "formal_dinner.layout", memory=session)
+    assert [(one.name, one.similarity) for one in by_script.found] == [("formal_dinner-1", 1.0)]
+    assert by_script.found[0].matches["dinner_plate"] == "o8"
