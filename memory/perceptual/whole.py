@@ -14,6 +14,7 @@ from pathlib import Path
 
 from deixis.memory.folder import inspect
 from deixis.memory.perceptual.archive import Archive, is_archive
+from deixis.memory.perceptual.errors import DamagedMemoryError
 from deixis.memory.perceptual.exchange import Imported, export_views, import_views
 from deixis.memory.perceptual.layout import FOLDER, version_in
 from deixis.memory.perceptual.level import LevelMemory
@@ -71,7 +72,13 @@ def verify_views(memory: Path, progress: Progress | None = None) -> tuple[Findin
 def export_all(memory: Path, file: Path, progress: Progress | None = None) -> None:
     """Writes all views and categories into one file; raises MemoryFormatError where nothing was taught."""
     with open_in(memory) as views:
-        export_views(views, file, progress)
+        try:
+            export_views(views, file, progress)
+        except DamagedMemoryError as error:
+            raise DamagedMemoryError(
+                f"{error}; nothing was exported: 'deixis memory verify' lists what is damaged, and what is taught or "
+                "learned from the same scene again is mended"
+            ) from error
 
 
 def import_all(file: Path, memory: Path, progress: Progress | None = None) -> Imported:

@@ -325,6 +325,9 @@ def test_damaged_views_are_left_out_and_told_and_mended_by_teaching_again(tables
     (line,) = err.splitlines()
     assert "left out" in line and "of 'plate'" in line and "deixis memory verify" in line
     assert deixis("memory", "verify", *memory)[0] == 1
+    code, _, err = deixis("memory", "export", "--format", "views", "-o", tmp_path / "views.zip", *memory)
+    assert code == 2 and "nothing was exported" in err and "again is mended" in err
+    assert not (tmp_path / "views.zip").exists()
     assert deixis("teach", scene, "o2", "plate", *memory)[0] == 0
     assert deixis("teach", scene, "o1", "plate", *memory)[0] == 0
     assert deixis("memory", "verify", *memory)[0] == 0
