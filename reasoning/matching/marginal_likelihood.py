@@ -21,8 +21,8 @@ NODES = 5_000
 def log_marginal_likelihood(problem: Problem) -> float:
     """At most by how much likelier, in nats, the evidence is than by chance, over all maps by what leaving out costs.
 
-    An upper bound: what the search turns back from counts in full. Infinite for a problem without a fact or a thing to
-    be, or too large for the sum.
+    An upper bound: what the search turns back from counts in full. Infinite where there is no object or no thing, and
+    for a problem that is too large for the sum.
 
     >>> ends, nothing = np.zeros((0, 2), np.int64), np.zeros((0, 1, 1), np.float32)
     >>> alone = Problem(ends, ends[:, 0], nothing, np.array([[-2.0]]), np.array([-9.0]))
