@@ -147,9 +147,14 @@ def _reliability(axes: Axes, found: Scoreboard) -> None:
         axes.plot(said, right, color=colour, linewidth=1.2, label=f"{name} ({one.error:.3f})")
         areas = [4 + 60 * each.count / one.count for each in bins]
         axes.scatter(said, right, s=areas, color=colour, linewidths=0, alpha=0.8)
-    axes.legend(fontsize=7, frameon=False, labelcolor=INK, title="expected calibration error", title_fontsize=7)
+    title = "expected calibration error"
+    look = {"frameon": False, "labelcolor": INK, "ncols": 2, "columnspacing": 0.8}
+    axes.legend(fontsize=6.5, loc="upper left", title=title, title_fontsize=7, **look)
     axes.set_ylabel("share right", color=INK, fontsize=9)
     _dress(axes, f"calibration of {DEFAULT}", "probability that the answer gives")
+    rows = 1 + (len(found.calibrations()) + 1) // 2  # of the legend, above the curves
+    axes.set_ylim(-0.05, 1.05 + 0.11 * rows)
+    axes.set_yticks(np.linspace(0.0, 1.0, 6))
 
 
 def _bars(axes: Axes, found: Scoreboard) -> None:
