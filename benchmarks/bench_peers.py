@@ -79,13 +79,7 @@ def _graph_matching() -> Iterator[Tried]:
     options: dict[str, list[tuple[tuple[str, float], ...]]] = {
         "sm": [(), (("max_iter", 200),)],
         "ipfp": [(), (("max_iter", 200),)],
-        "rrwm": [
-            tuple(
-                option for option in (("alpha", alpha), ("beta", beta)) if option not in (("alpha", 0.2), ("beta", 30))
-            )
-            for alpha in (0.05, 0.2, 0.4)
-            for beta in (5, 30, 100)
-        ],
+        "rrwm": [(("alpha", alpha), ("beta", beta)) for alpha in (0.05, 0.2, 0.4) for beta in (5.0, 30.0, 100.0)],
     }
     for solver, sets in options.items():
         for chosen, shifted in itertools.product(sets, (False, True)):

@@ -97,11 +97,11 @@ def _answer(
     """The map with its probability, where the time sufficed for one, and the paper's similarity for comparison."""
     now = time.perf_counter()
     matrix, converged, unknown = _similarity(evidence, now + COMPARISON * (deadline - now))
+    unrelated = _of_another_scene(evidence, assignment, deadline)
     probable = posterior(evidence.problem, deadline, start=assignment)
     known = math.isfinite(probable.error)
     notes += unknown
-    unrelated = _of_another_scene(evidence)
-    if unrelated > 0.5 and (assignment != UNMATCHED).any():
+    if unrelated > 0.5:
         assignment, probable = np.full_like(assignment, UNMATCHED), probable.or_nobody(unrelated)
         notes += (OF_ANOTHER,)
     notes += () if known else ("there was no time to find out how probable the matches are",)
@@ -118,12 +118,12 @@ def _answer(
     )
 
 
-def _of_another_scene(evidence: Evidence) -> float:
+def _of_another_scene(evidence: Evidence, assignment: NDArray[np.int64], deadline: float) -> float:
     """How probable it is that the description has nothing to do with the scene; 0 where that is not known.
 
-    Labels say themselves what is there, whatever is wrong on the table.
+    Labels say themselves what is there, whatever is wrong on the table; and where nothing was found, nothing is to say.
     """
-    if evidence.labels.any():
+    if evidence.labels.any() or (assignment == UNMATCHED).all() or time.perf_counter() > deadline:
         return 0.0
     return UNRELATED / (UNRELATED + math.exp(min(log_marginal_likelihood(evidence.problem), 100.0)))
 

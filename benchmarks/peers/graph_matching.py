@@ -30,7 +30,11 @@ class Settings:
         return ", ".join([how, *(f"{name} {value:g}" for name, value in self.options), "else defaults"])
 
 
-BEST = (Settings("sm"), Settings("rrwm", shifted=True, options=(("alpha", 0.4),)), Settings("ipfp", shifted=True))
+BEST = (
+    Settings("sm"),
+    Settings("rrwm", shifted=True, options=(("alpha", 0.4), ("beta", 30.0))),
+    Settings("ipfp", shifted=True),
+)
 """The settings that name most objects right in ``bench_peers.py``."""
 
 

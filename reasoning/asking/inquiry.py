@@ -41,6 +41,11 @@ class Exchange:
     outcome: Outcome
     against: tuple[int, ...] = ()
 
+    @property
+    def believed(self) -> bool:
+        """Whether the answer counts."""
+        return self.outcome in (Outcome.RESOLVED, Outcome.SURPRISING)
+
 
 def update(situation: Situation, candidates: Candidates, question: Question, answer: str) -> Candidates:
     """The candidates that agree with an answer; all of them where it is ``DONT_KNOW``.
@@ -74,8 +79,7 @@ class Inquiry:
         """
         patience = max(PATIENCE, len(self.situation.objects))
         latest = self.exchanges[-patience:]
-        in_vain = (Outcome.UNKNOWN, Outcome.CONTRADICTORY)
-        if len(latest) == patience and all(exchange.outcome in in_vain for exchange in latest):
+        if len(latest) == patience and not any(exchange.believed for exchange in latest):
             return None
         barred = {exchange.question.topic for exchange in self.exchanges}
         unknown = (exchange for exchange in self.exchanges if exchange.outcome is Outcome.UNKNOWN)

@@ -106,7 +106,7 @@ def _listed_again(evidence: Evidence, done: Inquiry, time_limit: float) -> Inqui
     """The dialogue over what the answers have made likely; over one grounding where that leaves nothing in doubt."""
     candidates = _considered(evidence, time_limit)
     for exchange in done.exchanges:
-        if exchange.outcome in (Outcome.RESOLVED, Outcome.SURPRISING):
+        if exchange.believed:
             with suppress(ContradictionError):  # what is likeliest now need not agree with every answer
                 candidates = update(done.situation, candidates, exchange.question, exchange.answer)
     if (candidates.likeliest_shares >= DECIDED).all():
@@ -134,8 +134,7 @@ def _narrowed(evidence: Evidence, done: Inquiry) -> Evidence:
         out = _possible(done.start, labels.shape) & ~left
     for exchange in done.exchanges:
         question, answer = exchange.question, exchange.answer
-        told = exchange.outcome in (Outcome.RESOLVED, Outcome.SURPRISING)
-        if not told or question.kind is QuestionKind.RELATION:
+        if not exchange.believed or question.kind is QuestionKind.RELATION:
             continue
         if answer == NO:
             out[question.subject, question.thing] = True

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import sys
 import time
-from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -28,6 +27,7 @@ from deixis.cli_common import (
     working,
 )
 from deixis.reasoning.engine_name import EngineName
+from deixis.viewpoint_name import ViewpointName
 
 if TYPE_CHECKING:
     from deixis.asking import Asked
@@ -36,12 +36,6 @@ if TYPE_CHECKING:
     from deixis.reasoning.answer import Grounding
     from deixis.reasoning.meaning import Meaning
     from deixis.sides import SeenFrom
-
-
-class ViewpointName(StrEnum):
-    STATED = "stated"
-    QUARTER = "quarter"
-    UNKNOWN = "unknown"
 
 
 def ground(
@@ -135,10 +129,11 @@ def _looked_around(
 def _from_sides(
     script: ParsedScript, side: SeenFrom, engine: EngineName, meaning: Meaning, time_limit: float
 ) -> Grounding:
+    from deixis.reasoning.engines import engine_named
     from deixis.sides import ground_from_sides
 
     with working("grounding"):
-        return ground_from_sides(script, side, engine, meaning, time_limit).noting(side.notes)
+        return ground_from_sides(script, side, engine_named(engine), meaning, time_limit).noting(side.notes)
 
 
 def _require_asking(engine: EngineName) -> None:

@@ -48,18 +48,13 @@ def retrieve(
     as_json: AsJson = False,
 ) -> None:
     """Rank all known layouts that a scene is like, or all scenes that a script is like (exit 1 where none is)."""
-    from deixis.grammar.parser import read_script
-    from deixis.perception.scene_file import read_scene
     from deixis.retrieving import retrieve as run
-    from deixis.session import is_script_file
     from deixis.show_retrieve import retrieved_lines, retrieved_to_dict
 
     ready_to_ground()
-    by_script = is_script_file(query) and not query.endswith(".json")
-    asked = read_script(query) if by_script else read_scene(query)
     with _remembering(memory, no_memory) as session, working("comparing"):
         retrieved = run(
-            asked,
+            query,
             among,
             session,
             top=top,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
@@ -13,7 +14,7 @@ from deixis.grammar.script import Script
 from deixis.memory_session import MemorySession
 from deixis.ontology.errors import DeixisError
 from deixis.ontology.kinds import plain_name
-from deixis.ontology.tbox import Ontology, default_ontology
+from deixis.ontology.tbox import default_ontology
 from deixis.perception.scene import Scene
 from deixis.perception.scene_file import read_scene
 from deixis.reasoning.likeness import Comparison, Described, Likeness, Seen, seen
@@ -63,16 +64,18 @@ def retrieve(
     """Ranks all known layouts by how like a scene is to them, or all known scenes by how like they are to a script.
 
     Known are the ``.layout`` scripts or ``.scene.json`` scenes in the folder ``among``, and what ``memory``, an open
-    session, remembers. ``query`` is a scene or a script, or the file of one: a script's name ends in ``.layout``.
+    session, remembers. ``query`` is a scene or a script, or the file of one: a script's name ends in ``.layout``, and
+    in a folder in anything but ``.json``.
     ``least`` is the similarity from which one is told. ``left_out`` is told, in one line, of what cannot be read.
     Raises DeixisError where nothing is known, or a file cannot be read.
     """
     ready_to_ground("exact")
     deadline, folder = time.perf_counter() + time_limit, None if among is None else Path(among)
     comparison = Comparison(default_ontology(), memory.meaning().sizes if memory else None)
-    if isinstance(query, Script) or (isinstance(query, str | Path) and str(query).endswith(".layout")):
-        script = query if isinstance(query, Script) else read_script(str(query))
-        layout, scenes = Described(script.file, script.graph()), _known_scenes(memory, folder, hide_labels, left_out)
+    if isinstance(query, str | Path):
+        query = read_script(str(query)) if _is_script_file(str(query)) else read_scene(query)
+    if isinstance(query, Script):
+        layout, scenes = Described(query.file, query.graph()), _known_scenes(memory, folder, hide_labels, left_out)
         ranked = rank_scenes(layout, scenes.values(), comparison, top, deadline)
         found = [_retrieved(one.scene, one, layout, scenes[one.scene]) for one in ranked if one.similarity >= least]
         return Retrieval(tuple(found), len(scenes))
@@ -82,6 +85,10 @@ def retrieve(
     ranked = rank_layouts(asked, layouts.values(), comparison, top, deadline)
     found = [_retrieved(one.layout, one, layouts[one.layout], asked) for one in ranked if one.similarity >= least]
     return Retrieval(tuple(found), len(layouts))
+
+
+def _is_script_file(name: str) -> bool:
+    return name.endswith(".layout") or (os.sep in name and not name.endswith(".json"))
 
 
 def _retrieved(name: str, likeness: Likeness, layout: Described, scene: Seen) -> Retrieved:
@@ -98,7 +105,7 @@ def _retrieved(name: str, likeness: Likeness, layout: Described, scene: Seen) ->
 
 def _seen(name: str, scene: Scene) -> Seen:
     """A scene ready to be compared, its kinds those of labels of some confidence."""
-    ontology: Ontology = default_ontology()
+    ontology = default_ontology()
     kinds: list[str | None] = []
     for thing in scene.objects:
         sure = thing.label is not None and thing.confidence >= SURE

@@ -26,8 +26,8 @@ from deixis.reasoning.grounding import ground as ground_evidence
 from deixis.reasoning.implications import TIME_LIMIT, Implications
 from deixis.reasoning.meaning import SHIPPED, Meaning
 from deixis.scene_evidence import conflict_notes, evidence_of, graph_evidence, scene_labels
-from deixis.sides import ground_from_anywhere
 from deixis.version import VERSION
+from deixis.viewpoint_name import ViewpointName
 from deixis.warm import ready_to_ground, ready_to_infer
 
 if TYPE_CHECKING:
@@ -58,10 +58,6 @@ def infer(script: Script | str | Path, time_limit: float = TIME_LIMIT) -> Infere
     return inference_of(script, time_limit)
 
 
-VIEWPOINTS = ("stated", "quarter", "unknown")
-"""From where left and right may be said: as the scene states it, or from a side that is to be recovered."""
-
-
 def ground(
     script: Script | str | Path,
     scene: Scene | str | Path | Mapping[str, Any],
@@ -69,7 +65,7 @@ def ground(
     time_limit: float = DEFAULT_TIME_LIMIT,
     select: str = Select.FACTS,
     meaning: Meaning = SHIPPED,
-    viewpoint: str = "stated",
+    viewpoint: str = ViewpointName.STATED,
 ) -> Grounding:
     """Works out which perceived thing each object of a script is.
 
@@ -81,16 +77,19 @@ def ground(
     """
     script = _script(script)
     scene = scene if isinstance(scene, Scene) else read_scene(scene)
-    notes = _viewpoint_notes(script.viewpoint, scene) + conflict_notes(script.graph())
     require_time_limit(time_limit)
     if select not in list(Select):
         raise SettingError(f"select is one of {', '.join(Select)}, not '{select}'")
-    if viewpoint not in VIEWPOINTS:
-        raise SettingError(f"viewpoint is one of {', '.join(VIEWPOINTS)}, not '{viewpoint}'")
+    if viewpoint not in list(ViewpointName):
+        raise SettingError(f"viewpoint is one of {', '.join(ViewpointName)}, not '{viewpoint}'")
     ready_to_ground(engine)
-    if viewpoint != VIEWPOINTS[0]:
-        return ground_from_anywhere(script, scene, engine, meaning, viewpoint == VIEWPOINTS[-1], time_limit)
-    return ground_evidence(evidence_of(script, scene, meaning), engine_named(engine, Select(select)), time_limit, notes)
+    chosen = engine_named(engine, Select(select))
+    if viewpoint != ViewpointName.STATED:
+        from deixis.sides import ground_from_anywhere
+
+        return ground_from_anywhere(script, scene, chosen, meaning, viewpoint == ViewpointName.UNKNOWN, time_limit)
+    notes = _viewpoint_notes(script.viewpoint, scene) + conflict_notes(script.graph())
+    return ground_evidence(evidence_of(script, scene, meaning), chosen, time_limit, notes)
 
 
 def _script(script: Script | str | Path) -> Script:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from deixis.grammar.script import Script
 from deixis.perception.scene import Scene
 from deixis.reasoning.answer import DECIDED, Grounding
-from deixis.reasoning.engines import engine_named
+from deixis.reasoning.engines import Engine
 from deixis.reasoning.evidence import Evidence
 from deixis.reasoning.from_sides import FromSides, OtherSide
 from deixis.reasoning.grounding import DEFAULT_TIME_LIMIT
@@ -106,20 +106,20 @@ def _others(scene: Scene, found: Viewpoints) -> tuple[tuple[float, Scene], ...]:
 
 
 def ground_from_sides(
-    script: Script, side: SeenFrom, engine: str, meaning: Meaning = SHIPPED, time_limit: float = DEFAULT_TIME_LIMIT
+    script: Script, side: SeenFrom, engine: Engine, meaning: Meaning = SHIPPED, time_limit: float = DEFAULT_TIME_LIMIT
 ) -> Grounding:
     """Grounds as seen from the likeliest side, with the probabilities of matches over all sides that are worth a look.
 
     Where nothing tells a side, the map is that of the scene as it stands, with the probabilities from all around.
     """
     others = tuple(OtherSide(share, evidence_of(script, scene, meaning)) for share, scene in side.others)
-    aligning = FromSides(engine_named(engine), side.share, others) if others else engine_named(engine)
+    aligning = FromSides(engine, side.share, others) if others else engine
     evidence = side.evidence or evidence_of(script, side.scene, meaning)
     return ground_evidence(evidence, aligning, time_limit, conflict_notes(script.graph()))
 
 
 def ground_from_anywhere(
-    script: Script, scene: Scene, engine: str, meaning: Meaning, any_angle: bool, time_limit: float
+    script: Script, scene: Scene, engine: Engine, meaning: Meaning, any_angle: bool, time_limit: float
 ) -> Grounding:
     """Recovers the side, for which half of the time is, and grounds as seen from there."""
     deadline = time.perf_counter() + time_limit

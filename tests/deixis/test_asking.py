@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import json
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -81,10 +82,12 @@ def test_a_truth_file_that_is_none_is_bad_input(tmp_path: Path) -> None:
 def turned_scene(quarters: int) -> dict[str, Any]:
     """The shipped setting without labels, turned by quarters of a circle."""
     scene = read_scene(SCENE)
-    boxes = turned(scene.boxes, quarters * math.pi / 2)
+    return scene_of(scene.ids, turned(scene.boxes, quarters * math.pi / 2))
+
+
+def scene_of(ids: Sequence[str], boxes: np.ndarray) -> dict[str, Any]:
     objects = [
-        {"id": thing.id, "min": box[0].tolist(), "max": box[1].tolist()}
-        for thing, box in zip(scene.objects, boxes, strict=True)
+        {"id": id, "min": low.tolist(), "max": high.tolist()} for id, (low, high) in zip(ids, boxes, strict=True)
     ]
     return {"frame": "table", "viewpoint": "chair", "unit": "m", "objects": objects}
 
@@ -120,11 +123,9 @@ def test_no_side_is_recovered_where_nothing_tells_one(viewpoint: str, tmp_path: 
 
 def boxes_file(tmp_path: Path, lows: list[list[float]], side: float = 0.1) -> Path:
     """A scene of equal things, o1, o2, …, told by their lower corners."""
-    things = [{"id": f"o{k + 1}", "min": low, "max": [x + side for x in low]} for k, low in enumerate(lows)]
+    boxes = np.array([[low, [x + side for x in low]] for low in lows])
     file = tmp_path / "boxes.scene.json"
-    file.write_text(
-        json.dumps({"frame": "table", "viewpoint": "chair", "unit": "m", "objects": things}), encoding="utf-8"
-    )
+    file.write_text(json.dumps(scene_of([f"o{k + 1}" for k in range(len(lows))], boxes)), encoding="utf-8")
     return file
 
 
@@ -293,13 +294,8 @@ def test_what_the_answers_make_likely_is_asked_about_in_turn(seed: int, tmp_path
     table = generate(6, 1.5, 0.2, seed=seed)
     description, things = table.description(), [f"o{k + 1}" for k in range(len(table.boxes))]
     script = layout_file(tmp_path, *(str(fact) for fact in description.facts()))
-    objects = [
-        {"id": id, "min": box[0].tolist(), "max": box[1].tolist()} for id, box in zip(things, table.boxes, strict=True)
-    ]
     scene, oracle = tmp_path / "table.scene.json", tmp_path / "truth.json"
-    scene.write_text(
-        json.dumps({"frame": "table", "viewpoint": "chair", "unit": "m", "objects": objects}), encoding="utf-8"
-    )
+    scene.write_text(json.dumps(scene_of(things, table.boxes)), encoding="utf-8")
     truth = {name: things[p] for name, p in zip(description.nodes, table.truth.tolist(), strict=True)}
     oracle.write_text(json.dumps(truth), encoding="utf-8")
     code, out, err = deixis("ground", script, scene, "--oracle", oracle, "--json")
