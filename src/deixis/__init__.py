@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from deixis.perception.scene_file import read_scene, write_scene
     from deixis.retrieving import retrieve
     from deixis.session import Session, ground, infer, read_script
+    from deixis.simulation import simulate
 
 __version__ = VERSION
 __all__ = [
@@ -44,6 +45,7 @@ __all__ = [
     "read_scene",
     "read_script",
     "retrieve",
+    "simulate",
     "write_scene",
 ]
 
@@ -59,6 +61,7 @@ _HOMES = {
     "read_scene": "deixis.perception.scene_file",
     "read_script": "deixis.session",
     "retrieve": "deixis.retrieving",
+    "simulate": "deixis.simulation",
     "write_scene": "deixis.perception.scene_file",
 }
 

@@ -140,6 +140,17 @@ class Session(PerceptualSession):
     The memory is opened by the first call that needs it, and held by this process until the session is closed.
     """
 
+    def ground(
+        self,
+        script: Script | str | Path,
+        scene: Scene | str | Path | Mapping[str, Any],
+        engine: str = "exact",
+        time_limit: float = DEFAULT_TIME_LIMIT,
+        viewpoint: str = ViewpointName.STATED,
+    ) -> Grounding:
+        """Grounds as :func:`ground` does, with words and sizes as this memory has learned them."""
+        return ground(script, scene, engine, time_limit, meaning=self.meaning(), viewpoint=viewpoint)
+
     def learn(
         self,
         script: Script | str | Path,
@@ -164,7 +175,7 @@ class Session(PerceptualSession):
             lines = ", ".join(str(fact.source) for fact in conflict.facts)
             raise InconsistencyError(f"the script contradicts itself, nothing was learned: {conflict.reason} ({lines})")
         started = datetime.now(UTC)
-        found = ground(script, scene, engine, time_limit, meaning=self.meaning())
+        found = self.ground(script, scene, engine, time_limit)
         if not found.matches:
             raise NothingFoundError("nothing that the script names was found in the scene, so nothing was learned")
         memory = self.memory(create=True)

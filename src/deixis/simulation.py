@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.laying import LaidScript
+from deixis.grammar.parser import read_script
+from deixis.grammar.script import Script
+from deixis.laying import LaidScript, lay_script
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.clouds.intrinsics import Intrinsics
 from deixis.perception.scene import Scene
@@ -53,16 +56,22 @@ class Simulation:
         return counts[1 + FIRST_THING :]
 
 
-def simulate(laid: LaidScript, view: View | None = None, seed: int = 0) -> Simulation:
-    """Looks at a laid table; the same seed gives the same cloud. Raises SimulationError for a camera that cannot be.
+def simulate(layout: LaidScript | Script | str | Path, view: View | None = None, seed: int = 0) -> Simulation:
+    """Lays a table as a script says, unless it is laid already, and looks at it; the same seed gives the same cloud.
 
-    >>> from deixis.grammar.parser import parse_script
-    >>> from deixis.laying import lay_script
-    >>> look = simulate(lay_script(parse_script("fork left of plate"), seed=1), seed=1)
+    Raises NoTableError where no table satisfies the script, SimulationError for a camera that cannot be.
+
+    >>> import deixis
+    >>> look = simulate(deixis.read_script(text="fork left of plate"), seed=1)
     >>> look.cloud.organised, [thing.label for thing in look.truth.objects], bool((look.points > 100).all())
     ((480, 640), ['fork', 'plate'], True)
     """
     view = view or View()
+    laid = layout if isinstance(layout, LaidScript) else lay_script(_script(layout), seed)
     camera = chair_camera(laid.table, view.height, view.back, view.azimuth, view.lens)
     cloud = see(laid.table, camera, view.sensor, seed)
     return Simulation(laid, camera, cloud, truth_scene(laid.table, laid.viewpoint))
+
+
+def _script(layout: Script | str | Path) -> Script:
+    return layout if isinstance(layout, Script) else read_script(str(layout))

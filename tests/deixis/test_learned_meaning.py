@@ -66,7 +66,7 @@ def test_learned_words_and_sizes_are_in_force_at_once_and_in_the_next_session(tm
 
 
 @pytest.mark.slow
-def test_a_check_and_a_lesson_go_by_what_was_learned(tmp_path: Path) -> None:
+def test_grounding_a_check_and_a_lesson_go_by_what_was_learned(tmp_path: Path) -> None:
     """Of two things, one as large as the plates that were seen, one as plates usually are, the former is the plate."""
     sides = {"usual": (0.0, 0.27), "seen": (0.5, 0.9)}
     things = [{"id": id, "min": [low, 0], "max": [high, high - low]} for id, (low, high) in sides.items()]
@@ -75,9 +75,10 @@ def test_a_check_and_a_lesson_go_by_what_was_learned(tmp_path: Path) -> None:
     with Session(tmp_path / "plain") as session:
         before = session.check(script, scene).table.grounding.matches["dinner_plate"].perceived
     with taught(tmp_path / "memory", 0.0, 0.1, 0.2) as session:
+        grounded = session.ground(script, scene).matches["dinner_plate"].perceived
         after = session.check(script, scene).table.grounding.matches["dinner_plate"].perceived
         learned = session.learn(script, scene).grounding.matches["dinner_plate"].perceived
-    assert (before, after, learned) == ("usual", "seen", "seen")
+    assert (before, grounded, after, learned) == ("usual", "seen", "seen", "seen")
 
 
 def test_forgetting_a_lesson_takes_back_what_it_taught(tmp_path: Path) -> None:

@@ -79,7 +79,8 @@ def test_things_are_turned_a_little_and_otherwise_fill_their_boxes() -> None:
 
 
 def test_the_same_seed_gives_the_same_simulation_and_another_another() -> None:
-    one, again, other = (simulate(lay_script(FORMAL, seed), seed=seed) for seed in (3, 3, 4))
+    one, other = (simulate(lay_script(FORMAL, seed), seed=seed) for seed in (3, 4))
+    again = simulate(EXAMPLES / "formal_dinner.layout", seed=3)
     assert np.array_equal(one.cloud.points, again.cloud.points, equal_nan=True)
     assert one.truth == again.truth
     assert one.truth != other.truth
