@@ -10,13 +10,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
-from types import TracebackType
 from typing import TYPE_CHECKING
 
 import pyoxigraph as ox
 
 from deixis.memory import ledger
 from deixis.memory.change import Change, Models, arriving, concluding, departing, incoming, modelling, together
+from deixis.memory.closing import Closing
 from deixis.memory.errors import MemoryFormatError, RejectedWriteError, UnknownLessonError
 from deixis.memory.graphs import GraphName, ModelSet, graph_iri, models_graph
 from deixis.memory.merged import default_graph, merging
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from deixis.memory.results import QueryResult
 
 
-class SemanticMemory:
+class SemanticMemory(Closing):
     """The semantic memory in one folder, owned by this process until it is closed."""
 
     def __init__(self, opened: Opened) -> None:
@@ -47,14 +47,6 @@ class SemanticMemory:
         believed, MemoryWriteError where the folder cannot be written. A failed open changes nothing.
         """
         return cls(open_memory(Path(path), create))
-
-    def __enter__(self) -> SemanticMemory:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self.close()
 
     def close(self) -> None:
         """Lets go of the folder; views made by :meth:`dataset` are of no use any more."""

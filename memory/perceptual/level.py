@@ -17,9 +17,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import AbstractContextManager
 from pathlib import Path
-from types import TracebackType
 from typing import Self
 
+from deixis.memory.closing import Closing
 from deixis.memory.perceptual.changes import of_batch, of_forgetting, of_moving
 from deixis.memory.perceptual.handle import Handle, acquire, closed, release
 from deixis.memory.perceptual.protocol import Finding, PerceptualStats, Progress, ViewKey
@@ -27,7 +27,7 @@ from deixis.memory.perceptual.reading import Snapshot, glance
 from deixis.memory.perceptual.records import Batch, CategoryRecord, View, check_merging, check_name, name_taken
 
 
-class LevelMemory:
+class LevelMemory(Closing):
     """The perceptual memory in one folder, owned by this process until the last who opened it closes it.
 
     The methods are those of :class:`deixis.memory.perceptual.protocol.PerceptualMemory`.
@@ -44,14 +44,6 @@ class LevelMemory:
         believed, MemoryWriteError where the folder cannot be written.
         """
         return cls(acquire(Path(path), create))
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self.close()
 
     def close(self) -> None:
         """Lets go of the folder, once calls under way are done."""

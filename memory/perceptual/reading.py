@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from functools import partial
-from types import TracebackType
-from typing import Any, Self
+from typing import Any
 
+from deixis.memory.closing import Closing
 from deixis.memory.folder import size
 from deixis.memory.perceptual import keys
 from deixis.memory.perceptual.codec import About, Counts, read_about, read_category, read_counts, read_view
@@ -22,7 +22,7 @@ MOST_LISTED = 5
 """Categories that a message names."""
 
 
-class Snapshot:
+class Snapshot(Closing):
     """A database as it was when this was made, until it is closed.
 
     Every value is verified: all have a checksum of ours, and all but a view's arrays are read with LevelDB's as well.
@@ -33,14 +33,6 @@ class Snapshot:
         self._then: Places | None = None
         with handle as db:
             self._source: Any = handle.keep(db.snapshot())
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self.close()
 
     def close(self) -> None:
         """Lets go of the moment."""

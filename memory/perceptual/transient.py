@@ -14,9 +14,8 @@ import threading
 from collections.abc import Iterator
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, replace
-from types import TracebackType
-from typing import Self
 
+from deixis.memory.closing import Closing
 from deixis.memory.perceptual.errors import UnknownViewError
 from deixis.memory.perceptual.handle import closed
 from deixis.memory.perceptual.layout import VERSION
@@ -34,19 +33,11 @@ class _Content:
     batches: int
 
 
-class TransientReading:
+class TransientReading(Closing):
     """Reading what is kept at one moment; the methods are those of ``PerceptualReading``."""
 
     def __init__(self, content: _Content) -> None:
         self._kept: _Content | None = content
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self.close()
 
     def close(self) -> None:
         """Lets go."""

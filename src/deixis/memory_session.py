@@ -6,10 +6,10 @@ import os
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from types import TracebackType
-from typing import TYPE_CHECKING, Self
+from typing import TYPE_CHECKING
 
 from deixis.grammar.script import Script
+from deixis.memory.closing import Closing
 from deixis.ontology.tbox import Ontology, default_ontology
 from deixis.perception.scene import Scene
 from deixis.reasoning.errors import NothingFoundError
@@ -32,7 +32,7 @@ def default_memory() -> Path:
     return (Path(data) if data else Path.home() / ".local" / "share") / "deixis" / "memory"
 
 
-class MemorySession:
+class MemorySession(Closing):
     """A memory held by this process from the first call that needs it until the session is closed."""
 
     def __init__(self, memory: str | Path | None = None, ontology: Ontology | None = None) -> None:
@@ -40,14 +40,6 @@ class MemorySession:
         self.ontology = default_ontology() if ontology is None else ontology
         self._memory: SemanticMemory | None = None
         self._meaning: Meaning | None = None  # what is in force, since the last change
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self.close()
 
     def close(self) -> None:
         """Lets go of the memory."""
