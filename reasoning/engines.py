@@ -10,7 +10,8 @@ through :func:`deixis.reasoning.grounding.ground`.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+import time
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from itertools import combinations, islice
 from typing import TYPE_CHECKING, Protocol
@@ -32,6 +33,8 @@ if TYPE_CHECKING:
 
 MAX_SUBGRAPHS = 5000
 """Sub-graphs that are all tried; where there are more, a heuristic chooses, and the result says so."""
+
+CUT_SHORT = "the time limit struck before the similarity came to its end"
 
 _BLOCK = 500
 _WORK = 2e10
@@ -135,52 +138,46 @@ class SimilarityEngine:
     def align(self, evidence: Evidence, deadline: float) -> Alignment:
         n1, n2 = evidence.allowed.shape
         if n1 == n2 or not n1 or not n2:
-            return self._whole(evidence)
+            found = paper_similarity(evidence, deadline=deadline)
+            return _in_time(self._alignment(evidence, found, assign(found.matrices[0], evidence.allowed)), deadline)
         larger, smaller = max(n1, n2), min(n1, n2)
         count = math.comb(larger, smaller)
         if count > MAX_SUBGRAPHS:
-            return self._narrowed(evidence, count)
-        return self._all_subgraphs(evidence, larger, smaller)
+            return self._narrowed(evidence, count, deadline)
+        return self._all_subgraphs(evidence, larger, smaller, deadline)
 
-    def _whole(self, evidence: Evidence, notes: tuple[str, ...] = ()) -> Alignment:
-        found = paper_similarity(evidence)
-        matrix = found.matrices[0]
-        return self._alignment(evidence, matrix, assign(matrix, evidence.allowed), bool(found.converged[0]), notes)
-
-    def _all_subgraphs(self, evidence: Evidence, larger: int, smaller: int) -> Alignment:
+    def _all_subgraphs(self, evidence: Evidence, larger: int, smaller: int, deadline: float) -> Alignment:
         """The best of all sub-graphs of the larger side that have as many objects as the smaller one."""
         flipped = len(evidence.description.nodes) == smaller
         prior = _prior(evidence)
         first, second = described(evidence.description), evidence.scene.paper_view()
         best: tuple[tuple[float, ...], Alignment] | None = None
         for members in _blocks(larger, smaller):
+            if best is not None and time.perf_counter() > deadline:
+                return _cut_short(best[1])
             if flipped:
-                found = node_similarity(second, first, members, prior.T)
-                matrices = found.matrices.transpose(0, 2, 1)
+                found = node_similarity(second, first, members, prior.T, deadline=deadline).transposed()
             else:
-                found = node_similarity(first, second, members, prior)
-                matrices = found.matrices
-            for kept, matrix, converged in zip(members, matrices, found.converged, strict=True):
+                found = node_similarity(first, second, members, prior, deadline=deadline)
+            for number, kept in enumerate(members):
                 inside = kept[None, :] if flipped else kept[:, None]
-                assignment = assign(matrix, evidence.allowed & inside)
-                key = self._key(evidence, matrix, assignment)
+                assignment = assign(found.matrices[number], evidence.allowed & inside)
+                key = self._key(evidence, found.matrices[number], assignment)
                 if best is None or key > best[0]:
-                    best = key, self._alignment(evidence, matrix, assignment, bool(converged))
+                    best = key, self._alignment(evidence, found, assignment, number=number)
         assert best is not None
-        return best[1]
+        return _in_time(best[1], deadline)
 
-    def _narrowed(self, evidence: Evidence, count: int) -> Alignment:
+    def _narrowed(self, evidence: Evidence, count: int, deadline: float) -> Alignment:
         """Too many sub-graphs: the assignment on the whole chooses one, and is repeated on it until it stays."""
-        found = paper_similarity(evidence)
+        found = paper_similarity(evidence, deadline=deadline)
         assignment = assign(found.matrices[0], evidence.allowed)
         note = f"{count} sub-graphs are too many to try all: the assignment on the whole graphs chose one (heuristic)"
-        if len(evidence.description.nodes) < len(evidence.scene.nodes):
-            return self._alignment(evidence, found.matrices[0], assignment, bool(found.converged[0]), (note,))
-        kept = assignment != UNMATCHED
-        again = paper_similarity(evidence, kept[None, :])
-        matrix = again.matrices[0]
-        assignment = assign(matrix, evidence.allowed & kept[:, None])
-        return self._alignment(evidence, matrix, assignment, bool(again.converged[0]), (note,))
+        if len(evidence.description.nodes) > len(evidence.scene.nodes):
+            kept = assignment != UNMATCHED
+            found = paper_similarity(evidence, kept[None, :], deadline)
+            assignment = assign(found.matrices[0], evidence.allowed & kept[:, None])
+        return _in_time(self._alignment(evidence, found, assignment, (note,)), deadline)
 
     def _key(
         self, evidence: Evidence, matrix: NDArray[np.float64], assignment: NDArray[np.int64]
@@ -198,15 +195,25 @@ class SimilarityEngine:
     def _alignment(
         self,
         evidence: Evidence,
-        matrix: NDArray[np.float64],
+        found: NodeSimilarity,
         assignment: NDArray[np.int64],
-        converged: bool,
         notes: tuple[str, ...] = (),
+        number: int = 0,
     ) -> Alignment:
+        matrix, converged = found.matrices[number], bool(found.converged[number])
         margins, runners_up = _similarity_margins(matrix, assignment, evidence.allowed)
         return Alignment(
             "similarity", assignment, matrix, converged, False, notes, margins=margins, runners_up=runners_up
         )
+
+
+def _in_time(aligned: Alignment, deadline: float) -> Alignment:
+    """The same, said to be cut short where the iteration was still under way at the deadline."""
+    return aligned if aligned.converged or time.perf_counter() <= deadline else _cut_short(aligned)
+
+
+def _cut_short(aligned: Alignment) -> Alignment:
+    return replace(aligned, notes=(*aligned.notes, CUT_SHORT), finished=False)
 
 
 def _blocks(n: int, k: int) -> list[NDArray[np.bool_]]:

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.reasoning.assignment import assign
-from deixis.reasoning.engines import Alignment, paper_similarity
+from deixis.reasoning.engines import CUT_SHORT, Alignment, paper_similarity
 from deixis.reasoning.evidence import Evidence
 from deixis.reasoning.matching.baselines import NodeSimilarity
 from deixis.reasoning.matching.exact import exact
@@ -79,7 +79,7 @@ class BaselineEngine:
             found.matrix,
             converged=True,
             proved_best=False,
-            notes=() if found.finished else ("the time limit struck before the similarity came to its end",),
+            notes=() if found.finished else (CUT_SHORT,),
             finished=found.finished,
         )
 

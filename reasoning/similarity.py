@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -37,6 +37,10 @@ class NodeSimilarity:
     def collapsed(self) -> NDArray[np.bool_]:
         """Where nothing in the two graphs is alike, shape (b,)."""
         return np.logical_not(self.matrices.any(axis=(1, 2)))
+
+    def transposed(self) -> NodeSimilarity:
+        """The same with the graphs exchanged."""
+        return replace(self, matrices=self.matrices.transpose(0, 2, 1))
 
 
 def node_similarity(

@@ -9,46 +9,23 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 import pytest
+from groundings import R, answer, evidence, pairs, right
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-import deixis.reasoning.engines as engines
-from deixis.ontology.errors import UnknownTermError
 from deixis.ontology.graph import RelationGraph
-from deixis.ontology.tbox import default_ontology
 from deixis.perception.scene import Scene
 from deixis.perception.settings import formal_setting
 from deixis.reasoning.answer import DECIDED, Grounding, Outcome
-from deixis.reasoning.engines import Select, engine_named
-from deixis.reasoning.evidence import Evidence, no_unary_evidence
-from deixis.reasoning.graded.unary import label_ratios
+from deixis.reasoning.engines import engine_named
+from deixis.reasoning.evidence import no_unary_evidence
 from deixis.reasoning.grounding import ground
-from deixis.reasoning.labels import Label
 from deixis.reasoning.rectangle import perceived_graph
 
 MakeGraph = Callable[..., RelationGraph]
 MakeBoxes = Callable[..., NDArray[np.float64]]
 ENGINES = ["exact", "similarity"]
-R = default_ontology().relations
-KINDS = default_ontology().kinds
-
-
-def evidence(description: RelationGraph, scene: Scene) -> Evidence:
-    return no_unary_evidence(description, scene.graph(R))
-
-
-def answer(description: RelationGraph, scene: Scene, engine: str = "exact", select: Select = Select.FACTS) -> Grounding:
-    return ground(evidence(description, scene), engine_named(engine, select))
-
-
-def pairs(found: Grounding) -> dict[str, str]:
-    return {name: match.perceived for name, match in found.matches.items()}
-
-
-def right(found: Grounding) -> int:
-    """How many objects are what the setting's ids say that they are."""
-    return sum(name == match.perceived for name, match in found.matches.items())
 
 
 def shuffled(rng: random.Random, sentences: Sequence[str], graph_of: MakeGraph) -> RelationGraph:
@@ -232,59 +209,6 @@ def test_more_things_than_objects_leave_some_out_with_a_reason(graph_of: MakeGra
     assert all("fewer things than were perceived" in entry.reason for entry in found.unmatched_perceived)
 
 
-def labelled(description: RelationGraph, labels: dict[str, Label]) -> Grounding:
-    scene = formal_setting()
-    return labelled_scene(description, scene.graph(R), [labels.get(thing.id) for thing in scene.objects])
-
-
-def labelled_scene(description: RelationGraph, scene: RelationGraph, labels: list[Label | None]) -> Grounding:
-    said = label_ratios(description, labels, KINDS)
-    return ground(Evidence(description, scene, said, np.zeros_like(said)), engine_named("exact"))
-
-
-def test_a_certain_label_fixes_its_thing_against_all_facts(graph_of: MakeGraph, full_script: list[str]) -> None:
-    found = labelled(graph_of(*full_script), {"dinner_fork": Label("napkin"), "napkin": Label("dinner_fork")})
-    assert (pairs(found)["napkin"], pairs(found)["dinner_fork"]) == ("dinner_fork", "napkin")
-    assert found.violated
-
-
-def test_a_label_settles_what_the_facts_leave_open(graph_of: MakeGraph, figure_7: list[str]) -> None:
-    found = labelled(graph_of(*figure_7), {"salad_fork": Label("salad_fork")})
-    assert pairs(found)["salad_fork"] == "salad_fork"
-    assert found.matches["salad_fork"].decided
-    assert "salad_fork" not in {name for group in found.interchangeable for name in group}
-
-
-def test_a_certain_label_that_names_nothing_leaves_its_thing_out(graph_of: MakeGraph, full_script: list[str]) -> None:
-    found = labelled(graph_of(*full_script), {"soup_spoon": Label("gizmo")})
-    (thing,) = found.unmatched_perceived
-    assert (thing.name, thing.reason) == ("soup_spoon", "its label names nothing in the description")
-    assert len(found.matches) == 11
-
-
-def test_an_object_that_labels_leave_nothing_is_left_out_with_that_reason(
-    graph_of: MakeGraph, boxes_of: MakeBoxes
-) -> None:
-    scene = perceived_graph(["p", "q"], boxes_of([(0, 1), (0, 1)], [(2, 3), (0, 1)]), R)
-    description = graph_of("left(a, b)")
-    found = labelled_scene(description, scene, [Label("a"), Label("a")])
-    assert pairs(found) == {"a": "p"} or pairs(found) == {"a": "q"}
-    assert [(entry.name, entry.reason) for entry in found.unmatched_objects] == [
-        ("b", "the labels of the scene leave it nothing that it could be")
-    ]
-    assert len(found.unmatched_perceived) == 1
-
-
-def test_an_uncertain_label_weighs_against_facts_and_loses_or_wins(graph_of: MakeGraph, boxes_of: MakeBoxes) -> None:
-    """One fact speaks for a on the left; a label has to be surer than it is to speak louder."""
-    scene = perceived_graph(["p", "q"], boxes_of([(0, 1), (0, 1)], [(2, 3), (0, 1)]), R)
-    description = graph_of("left(a, b)")
-    answers = {}
-    for confidence in (0.2, 0.5, 0.99, 0.999):
-        answers[confidence] = pairs(labelled_scene(description, scene, [None, Label("a", confidence)]))["a"]
-    assert answers == {0.2: "p", 0.5: "p", 0.99: "q", 0.999: "q"}
-
-
 def test_the_cost_of_an_alternative_is_what_it_loses(graph_of: MakeGraph, boxes_of: MakeBoxes) -> None:
     scene = perceived_graph(["p", "q"], boxes_of([(0, 1), (0, 1)], [(2, 3), (0, 1)]), R)
     found = ground(no_unary_evidence(graph_of("left(a, b)"), scene), engine_named("exact"))
@@ -310,77 +234,6 @@ def test_nothing_said_or_nothing_seen_is_answered(
     assert [entry.reason for entry in found.unmatched_objects] == ["nothing was perceived"] * objects
     assert [entry.reason for entry in found.unmatched_perceived] == ["the description names nothing"] * things
     assert all(entry.outcome is Outcome.OPEN for entry in found.outcomes)
-
-
-@pytest.mark.parametrize("engine", ENGINES)
-def test_no_relation_in_common_is_noted_and_gives_no_nan(engine: str, graph_of: MakeGraph, boxes_of: MakeBoxes) -> None:
-    scene = perceived_graph(["p", "q"], boxes_of([(0, 1), (0, 1)], [(2, 3), (0, 1)]), R)
-    found = ground(no_unary_evidence(graph_of("on(a, b)"), scene), engine_named(engine))
-    assert any("similarity is zero" in note for note in found.notes)
-    assert found.graph_similarity == 0.0
-    assert all(not math.isnan(match.similarity) for match in found.matches.values())
-    assert [str(entry.fact) for entry in found.violated] == ["on(a, b)"]
-
-
-def test_facts_that_the_similarity_cannot_see_are_listed(graph_of: MakeGraph, full_script: list[str]) -> None:
-    description = graph_of(*full_script, "not on(napkin, bread_plate)", "left or top_left(salad_fork, dinner_plate)")
-    found = answer(description, formal_setting())
-    (note,) = [note for note in found.notes if "not seen by the similarity" in note]
-    assert "not on(napkin, bread_plate)" in note
-    assert "left or top_left(salad_fork, dinner_plate)" in note
-    assert len(found.satisfied) == 13
-
-
-def test_where_one_step_of_the_similarity_is_too_much_the_exact_engine_goes_without(
-    monkeypatch: pytest.MonkeyPatch, graph_of: MakeGraph, full_script: list[str]
-) -> None:
-    monkeypatch.setattr(engines, "_WORK", 1.0)
-    found = answer(graph_of(*full_script), formal_setting())
-    assert found.proved_best
-    assert not found.converged
-    assert {name: match.perceived for name, match in found.matches.items()} == {name: name for name in found.matches}
-
-
-def test_an_unknown_engine_is_an_error_that_names_the_known_ones() -> None:
-    with pytest.raises(UnknownTermError, match="no engine 'magic'; the engines are: exact, scalable, similarity"):
-        engine_named("magic")
-
-
-def test_more_subgraphs_than_are_tried_is_noted(
-    monkeypatch: pytest.MonkeyPatch, graph_of: MakeGraph, full_script: list[str], absent_glasses: list[str]
-) -> None:
-    monkeypatch.setattr(engines, "MAX_SUBGRAPHS", 100)
-    found = answer(graph_of(*full_script, *absent_glasses), formal_setting(), "similarity")
-    assert any("455 sub-graphs are too many" in note and "heuristic" in note for note in found.notes)
-    assert len(found.matches) == 12
-
-
-def test_fewer_objects_than_things_beyond_the_subgraphs_that_are_tried(
-    monkeypatch: pytest.MonkeyPatch, graph_of: MakeGraph, full_script: list[str]
-) -> None:
-    monkeypatch.setattr(engines, "MAX_SUBGRAPHS", 1)
-    found = answer(graph_of(*full_script[:6]), formal_setting(), "similarity")
-    assert any("sub-graphs are too many" in note for note in found.notes)
-    assert len(found.matches) == len(graph_of(*full_script[:6]).nodes)
-
-
-def test_select_similarity_takes_the_most_similar_subgraph_and_facts_the_one_that_explains_most(
-    graph_of: MakeGraph, full_script: list[str], absent_glasses: list[str]
-) -> None:
-    description = graph_of(*full_script, *absent_glasses)
-    by_facts, by_similarity = (
-        answer(description, formal_setting(), "similarity", select) for select in (Select.FACTS, Select.SIMILARITY)
-    )
-    assert by_similarity.graph_similarity >= by_facts.graph_similarity - 1e-9
-    assert sum(e.degree for e in by_facts.outcomes) >= sum(e.degree for e in by_similarity.outcomes)
-    assert not by_similarity.proved_best
-
-
-def test_the_exact_value_is_never_below_that_of_the_similarity(graph_of: MakeGraph, full_script: list[str]) -> None:
-    for seed in range(5):
-        question = evidence(graph_of(*full_script), formal_setting(seed, displacement=0.05))
-        exact, similar = (engine_named(engine).align(question, time.perf_counter() + 10) for engine in ENGINES)
-        assert question.problem.value(exact.assignment) >= question.problem.value(similar.assignment) - 1e-6
 
 
 def test_a_description_that_contradicts_itself_is_grounded_all_the_same(

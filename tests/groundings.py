@@ -1,0 +1,30 @@
+"""Grounding a graph in a scene by the facts alone, and what came of it."""
+
+from __future__ import annotations
+
+from deixis.ontology.graph import RelationGraph
+from deixis.ontology.tbox import default_ontology
+from deixis.perception.scene import Scene
+from deixis.reasoning.answer import Grounding
+from deixis.reasoning.engines import Select, engine_named
+from deixis.reasoning.evidence import Evidence, no_unary_evidence
+from deixis.reasoning.grounding import ground
+
+R = default_ontology().relations
+
+
+def evidence(description: RelationGraph, scene: Scene) -> Evidence:
+    return no_unary_evidence(description, scene.graph(R))
+
+
+def answer(description: RelationGraph, scene: Scene, engine: str = "exact", select: Select = Select.FACTS) -> Grounding:
+    return ground(evidence(description, scene), engine_named(engine, select))
+
+
+def pairs(found: Grounding) -> dict[str, str]:
+    return {name: match.perceived for name, match in found.matches.items()}
+
+
+def right(found: Grounding) -> int:
+    """How many objects are what the setting's ids say that they are."""
+    return sum(name == match.perceived for name, match in found.matches.items())
