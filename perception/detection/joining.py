@@ -11,6 +11,17 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.perception.detection.lying import (
+    GAP,
+    NECK,
+    THIN,
+    apart,
+    continues,
+    extents,
+    inside,
+    roundness,
+    slenderness,
+)
 from deixis.perception.detection.parts import Parts
 
 FRAGMENT = 7e-4
@@ -31,12 +42,17 @@ LIES_ON = 0.005
 DEEP, LEVEL, HOLLOW = 0.03, 0.012, -0.1
 """A hollow is so deep (metres), its rim as high on both sides, and it bulges less: it is seen from inside."""
 
-GAP, ALONG = 0.11, 0.015
-"""Metres of a surface of one colour that something on it hides: a napkin on a plate. It goes on where it is nearest, or
-so much farther away."""
+ROUND = 0.5
+"""How much of a round rim is to be seen, in two pieces, for these to be one."""
 
 FOOT, STEM = 0.022, 0.006
 """Most of the foot of a glass is lower than the first, and what meets or hides it higher above it than the second."""
+
+TALL, CENTRED = 1.2, 0.2
+"""A bottle is so many times as high as wide, and its neck is so much (of its width) off its middle at the most."""
+
+SHOULDER = 0.02
+"""Metres below the top of a bottle from which its neck begins."""
 
 CLEAR, BESIDE = 0.012, 0.5
 """A handle begins so much higher (metres) than what it is on, and no more of it is within the outline of that."""
@@ -47,14 +63,8 @@ REACH = 0.02
 SMALLER = 0.6
 """A handle is so much narrower than what it is on, at the most, and of so much less surface."""
 
-LOW, NARROW, LONG = 0.03, 0.045, 3.0
-"""Cutlery is no higher and no wider (metres, between the middles of patches), and so many times as long as wide."""
-
-THIN = 0.01
-"""Metres: what is narrower than a patch is taken to be as wide."""
-
-NECK, OVERLAP = 0.03, 0.3
-"""Metres of its neck that may not be seen, and the share of the shorter piece by which two pieces overlap at most."""
+LOW, LONG = 0.03, 3.0
+"""Cutlery is no higher (metres), and so many times as long as wide."""
 
 Pairs = NDArray[np.intp]
 
@@ -66,10 +76,12 @@ def whole_things(parts: Parts) -> Parts:
         of_one_colour,
         enclosed,
         bridged,
+        round_rims,
         enclosed,
         of_one_colour,
         insides,
         on_a_foot,
+        necks,
         handles,
         end_to_end,
         sides,
@@ -108,7 +120,7 @@ def enclosed(parts: Parts) -> Pairs:
     """A part within the outline of one that is above it where they meet, both of one colour: the well of a plate."""
     low = (parts.rise < 0.001) & (parts.lengths > 0) & ~_differ(parts)
     low &= (parts.tops[:, None] <= parts.tops[None] + 0.005) & (parts.bulge[:, None] < 0.1)
-    return _chosen(_pairs(low), lambda low, rim: _inside(parts, low, rim) > 0.8)
+    return _chosen(_pairs(low), lambda low, rim: inside(parts, low, rim) > 0.8)
 
 
 def insides(parts: Parts) -> Pairs:
@@ -120,10 +132,28 @@ def insides(parts: Parts) -> Pairs:
 
 def bridged(parts: Parts) -> Pairs:
     """Two parts of one surface, parted by something narrow that lies on both."""
-    under = (parts.rise < -0.0005) & (parts.lengths > 0)
-    both = under.astype(np.float64) @ under.T.astype(np.float64) > 0
-    pairs = _pairs(np.triu(both & _alike(parts) & (parts.gaps < GAP)))
-    return _chosen(pairs, lambda a, b: _continues(parts, a, b, np.flatnonzero(under[a] & under[b])))
+    under = _under(parts)
+    pairs = _pairs(np.triu(_both(under) & _alike(parts) & (parts.gaps < GAP)))
+    return _chosen(pairs, lambda a, b: continues(parts, a, b, np.flatnonzero(under[a] & under[b])))
+
+
+def round_rims(parts: Parts) -> Pairs:
+    """Two pieces of a rim that is round, parted by something that lies on both: a plate, and a napkin across it."""
+    level = np.abs(parts.tops[:, None] - parts.tops[None]) < LEVEL
+    pairs = _pairs(np.triu(_both(_under(parts)) & _alike(parts) & level))
+    return _chosen(pairs, lambda a, b: parts.once(roundness, a, b) > ROUND)
+
+
+def _under(parts: Parts) -> NDArray[np.bool_]:
+    """Which parts others lie on, (p, p)."""
+    return (parts.rise < -0.0005) & (parts.lengths > 0)
+
+
+def _both(under: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """On which two parts (p, p) one and the same thing lies."""
+    counted = under.astype(np.float64)
+    both: NDArray[np.bool_] = counted @ counted.T > 0
+    return both
 
 
 def on_a_foot(parts: Parts) -> Pairs:
@@ -133,7 +163,17 @@ def on_a_foot(parts: Parts) -> Pairs:
     same = (parts.rise > STEM) & ~_differ(parts)
     narrow = parts.widths[None] < 1.2 * parts.widths[:, None]
     pairs = _pairs(high[:, None] & foot[None] & same & narrow)
-    return _chosen(pairs, lambda glass, foot: _inside(parts, foot, glass) > 0.1)
+    return _chosen(pairs, lambda glass, foot: inside(parts, foot, glass) > 0.1)
+
+
+def necks(parts: Parts) -> Pairs:
+    """Something narrow right on the middle of what is much higher than wide: the neck of a bottle, its cap."""
+    narrow = parts.widths[:, None] < SMALLER * parts.widths[None]
+    upright = parts.tops - parts.bottoms > TALL * parts.widths
+    above = parts.bottoms[:, None] > parts.tops[None] - SHOULDER
+    off = np.linalg.norm(parts.centres[:, None] - parts.centres[None], axis=2)
+    pairs = _pairs(narrow & upright[None] & above & (off < CENTRED * parts.widths[None]) & (parts.lengths > 0))
+    return _chosen(pairs, lambda neck, bottle: inside(parts, neck, bottle) > 0.8)
 
 
 def handles(parts: Parts) -> Pairs:
@@ -146,7 +186,7 @@ def handles(parts: Parts) -> Pairs:
     pairs = _pairs(small & clear & as_high & ~_differ(parts) & (parts.gaps < REACH))
     most = np.where(parts.areas < FRAGMENT, 1.0, BESIDE)  # of a fragment all: the body may be seen around it
     return _chosen(
-        pairs, lambda handle, body: _apart(parts, handle, body) < REACH and _inside(parts, handle, body) <= most[handle]
+        pairs, lambda handle, body: apart(parts, handle, body) < REACH and inside(parts, handle, body) <= most[handle]
     )
 
 
@@ -154,7 +194,7 @@ def end_to_end(parts: Parts) -> Pairs:
     """Two low pieces of one colour in a line, together long and narrow: the head and the handle of a spoon."""
     low = parts.tops < LOW
     pairs = _pairs(np.triu(low[:, None] & low[None] & (parts.gaps < NECK) & ~_differ(parts)))
-    return _chosen(pairs, lambda a, b: parts.once(_line, a, b) > LONG)
+    return _chosen(pairs, lambda a, b: parts.once(slenderness, a, b) > LONG)
 
 
 def sides(parts: Parts) -> Pairs:
@@ -162,39 +202,14 @@ def sides(parts: Parts) -> Pairs:
     beside = (parts.gaps < REACH) & (parts.tops[:, None] < parts.tops[None] + LIES_ON) & ~_differ(parts)
     sheets = np.array([_is_sheet(parts, part) for part in range(len(parts))], dtype=np.bool_)
     pairs = _pairs(sheets[:, None] & beside & (parts.areas[:, None] < parts.areas[None]))
-    return _chosen(pairs, lambda side, thing: _apart(parts, side, thing) < REACH)
+    return _chosen(pairs, lambda side, thing: apart(parts, side, thing) < REACH)
 
 
 def _is_sheet(parts: Parts, part: int) -> bool:
     patches = parts.members(part)
     normal = parts.patches.normals[patches].mean(axis=0)
     upright = abs(normal[2]) < 0.5 * np.linalg.norm(normal)
-    return bool(upright and _extents(parts.patches.middles[patches, :2])[1] < THIN)
-
-
-def _line(parts: Parts, one: NDArray[np.intp], two: NDArray[np.intp]) -> float:
-    """How often as long as wide two parts are together, if the one begins where the other, longer one ends; else 0."""
-    plans = [parts.patches.middles[part, :2] for part in (one, two)]
-    longer = max(plans, key=lambda plan: _extents(plan)[0])
-    turned = [plan @ _axes(longer) for plan in plans]
-    low, high = (np.array([end(plan, axis=0) for plan in turned]) for end in (np.min, np.max))
-    (length, width), (along, across) = high.max(axis=0) - low.min(axis=0), high.min(axis=0) - low.max(axis=0)
-    if width > NARROW or across < 0 or not -NECK < along < OVERLAP * (high - low)[:, 0].min():
-        return 0.0
-    return float(length / max(width, THIN))
-
-
-def _axes(plan: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The principal axes of places (n, 2), the longer first, as columns (2, 2)."""
-    apart = plan - plan.mean(axis=0)
-    axes: NDArray[np.float64] = np.linalg.eigh(apart.T @ apart)[1][:, ::-1]
-    return axes
-
-
-def _extents(plan: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Length and width (2,) of places (n, 2) along their principal axes."""
-    extents: NDArray[np.float64] = np.ptp(plan @ _axes(plan), axis=0)
-    return extents
+    return bool(upright and extents(parts.patches.middles[patches, :2])[1] < THIN)
 
 
 def _chosen(pairs: Pairs, belong: Callable[[int, int], bool]) -> Pairs:
@@ -217,83 +232,3 @@ def _differ(parts: Parts) -> NDArray[np.bool_]:
 def _pairs(which: NDArray[np.bool_]) -> Pairs:
     """The pairs of different parts that are marked in (p, p)."""
     return np.argwhere(which & ~np.eye(len(which), dtype=np.bool_))
-
-
-def _inside(parts: Parts, inner: int, outer: int) -> float:
-    """The share of a part's patches that lie within the convex outline of another, as seen from above."""
-    return parts.once(_share_inside, inner, outer)
-
-
-def _share_inside(parts: Parts, inner: NDArray[np.intp], outer: NDArray[np.intp]) -> float:
-    plan = parts.patches.middles[:, :2]
-    hull = _hull(plan[outer])
-    if hull is None:
-        return 0.0
-    return float((plan[inner] @ hull[:, :2].T + hull[:, 2] <= 0.004).all(axis=1).mean())
-
-
-def _covered(parts: Parts, cover: int, places: NDArray[np.float64]) -> bool:
-    """Whether most places (k, 3) are within a part's outline, or no farther from it than it is higher: hidden by it."""
-    hull = _hull(parts.patches.middles[parts.members(cover), :2])
-    if hull is None:
-        return True
-    outside = (places[:, :2] @ hull[:, :2].T + hull[:, 2]).max(axis=1)
-    return bool((outside < parts.tops[cover] - places[:, 2]).mean() > 0.5)
-
-
-def _apart(parts: Parts, a: int, b: int) -> float:
-    """The least distance between patches of two parts, as seen from above."""
-    return parts.once(_least_distance, a, b)
-
-
-def _least_distance(parts: Parts, one: NDArray[np.intp], two: NDArray[np.intp]) -> float:
-    from scipy.spatial import cKDTree
-
-    plan = parts.patches.middles[:, :2]
-    return float(cKDTree(plan[two]).query(plan[one])[0].min())
-
-
-def _hull(plan: NDArray[np.float64]) -> NDArray[np.float64] | None:
-    """The half planes (k, 3) of a convex hull; None for points in a line."""
-    from scipy.spatial import ConvexHull, QhullError
-
-    if len(plan) < 3:
-        return None
-    try:
-        result: NDArray[np.float64] = ConvexHull(plan).equations
-    except QhullError:
-        return None
-    return result
-
-
-def _continues(parts: Parts, a: int, b: int, over: NDArray[np.intp]) -> bool:
-    """Whether one surface goes on in the other, under a part that is over both: where they are nearest, that part is
-    between them, and their planes are the same."""
-    if parts.once(_share_of_one_plane, a, b) <= 0.5:
-        return False
-    p, q = _nearest(parts, parts.members(a), parts.members(b))
-    between = (parts.patches.middles[p] + parts.patches.middles[q]) / 2
-    return any(_covered(parts, int(part), between) for part in over)  # else a fork and a knife beside a plate
-
-
-def _share_of_one_plane(parts: Parts, one: NDArray[np.intp], two: NDArray[np.intp]) -> float:
-    """Of the nearest patches of two parts, the share that lie in one plane."""
-    p, q = _nearest(parts, one, two)
-    if not len(p):
-        return 0.0
-    middles, normals = parts.patches.middles, parts.patches.normals
-    normal = normals[p] + normals[q]
-    normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-9)
-    step = np.abs((normal * (middles[p] - middles[q])).sum(axis=1))
-    same = (step < 0.004) & ((normals[p] * normals[q]).sum(axis=1) > np.cos(np.deg2rad(25.0)))
-    return float(same.mean())
-
-
-def _nearest(parts: Parts, one: NDArray[np.intp], two: NDArray[np.intp]) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """Patches of two parts where these are nearest, and not too far apart: of the first, and of the second."""
-    from scipy.spatial import cKDTree
-
-    middles = parts.patches.middles
-    distance, nearest = cKDTree(middles[two]).query(middles[one])
-    close = (distance < GAP) & (distance < distance.min() + ALONG)
-    return one[close], two[nearest[close]]

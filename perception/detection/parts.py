@@ -14,11 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.perception.detection.boundaries import Boundaries
-from deixis.perception.detection.supervoxels import LEAST_WEIGHT, Supervoxels, means, sums
-
-SHADE = 0.35
-"""How much lightness counts in a difference of colour: a shadow on one thing is mostly that."""
-
+from deixis.perception.detection.supervoxels import Supervoxels, means, sums
 
 Measure = Callable[["Parts", NDArray[np.intp], NDArray[np.intp]], float]
 
@@ -85,6 +81,12 @@ class Parts:
         return np.stack([low, high])
 
     @cached_property
+    def centres(self) -> NDArray[np.float64]:
+        """The middle of that box, (p, 2)."""
+        result: NDArray[np.float64] = self.plans.mean(axis=0)
+        return result
+
+    @cached_property
     def widths(self) -> NDArray[np.float64]:
         """The longer side of that box, (p,)."""
         result: NDArray[np.float64] = (self.plans[1] - self.plans[0]).max(axis=1)
@@ -101,13 +103,13 @@ class Parts:
     @cached_property
     def colours(self) -> NDArray[np.float64]:
         """The mean colour, lightness scaled down, (p, 3)."""
-        return means(self.of, self.patches.colours * (SHADE, 1.0, 1.0), self._heavy)
+        return means(self.of, self.patches.tints, self.patches.weights)
 
     @cached_property
     def motley(self) -> NDArray[np.float64]:
         """How much the colours of its patches vary, a standard deviation, (p,)."""
-        off = ((self.patches.colours * (SHADE, 1.0, 1.0) - self.colours[self.of]) ** 2).sum(axis=1)
-        return np.sqrt(sums(self.of, off * self._heavy) / sums(self.of, self._heavy))
+        off, weights = ((self.patches.tints - self.colours[self.of]) ** 2).sum(axis=1), self.patches.weights
+        return np.sqrt(sums(self.of, off * weights) / sums(self.of, weights))
 
     @cached_property
     def bulge(self) -> NDArray[np.float64]:
@@ -154,12 +156,6 @@ class Parts:
         links = coo_array((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(count, count))
         of = connected_components(links, directed=False)[1][self.of].astype(np.int32)
         return replace(self, of=of)
-
-    @property
-    def _heavy(self) -> NDArray[np.float64]:
-        """What each patch counts for in a colour: what is higher counts more, as in a patch."""
-        weights: NDArray[np.float64] = self.patches.sizes * self.patches.middles[:, 2].clip(LEAST_WEIGHT)
-        return weights
 
     def _between(self, values: NDArray[np.float64], sign: float = 1.0) -> NDArray[np.float64]:
         """Sums over where parts meet, weighted by length; the other way round with another ``sign``."""

@@ -21,5 +21,5 @@ def segments(surface: Surface, settings: DetectionSettings) -> NDArray[np.int32]
     """The number of its thing for each point of the surface (n,), from 0."""
     patches = supervoxels(surface)
     meeting = boundaries(surface, patches, settings)
-    parts = Parts(agglomerated(len(patches), meeting, LIMIT), patches, meeting)
+    parts = Parts(agglomerated(meeting, LIMIT, patches.tints, patches.weights), patches, meeting)
     return whole_things(parts).of[patches.of]

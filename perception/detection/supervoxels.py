@@ -8,6 +8,7 @@ normals, for steps and for changing colours, so that patches meet where these ch
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,6 +26,9 @@ FEWEST = 4.5
 LEAST_WEIGHT = 1e-4
 """Metres: what a point on the table counts for in a mean that is weighted by height."""
 
+SHADE = 0.35
+"""How much lightness counts in a difference of colour: a shadow on one thing is mostly that."""
+
 
 @dataclass(frozen=True, eq=False)
 class Supervoxels:
@@ -40,6 +44,18 @@ class Supervoxels:
 
     def __len__(self) -> int:
         return len(self.sizes)
+
+    @cached_property
+    def tints(self) -> NDArray[np.float64]:
+        """The colours with their lightness scaled down, (s, 3)."""
+        tints: NDArray[np.float64] = self.colours * (SHADE, 1.0, 1.0)
+        return tints
+
+    @cached_property
+    def weights(self) -> NDArray[np.float64]:
+        """What each counts for in a mean of colours, (s,): what is higher counts more, as in a patch."""
+        weights: NDArray[np.float64] = self.sizes * self.middles[:, 2].clip(LEAST_WEIGHT)
+        return weights
 
 
 def supervoxels(surface: Surface) -> Supervoxels:

@@ -7,7 +7,7 @@ import pytest
 from numpy.typing import NDArray
 
 from deixis.perception.detection.boundaries import Boundaries
-from deixis.perception.detection.joining import bridged, whole_things
+from deixis.perception.detection.joining import bridged, round_rims, whole_things
 from deixis.perception.detection.parts import Parts
 from deixis.perception.detection.supervoxels import Supervoxels
 
@@ -69,6 +69,29 @@ def test_a_glass_whose_stem_is_seen_stands_on_its_foot_but_not_on_a_plate(width:
     assert len(whole_things(parts)) == count
 
 
+def _wall(radius: float, low: float, high: float) -> NDArray[np.float64]:
+    """The near half of an upright cylinder."""
+    turn, z = (axis.ravel() for axis in np.meshgrid(np.linspace(0.0, np.pi, AROUND), np.linspace(low, high, ROWS)))
+    return np.stack([radius * np.cos(turn), -radius * np.sin(turn), z], axis=1)
+
+
+@pytest.mark.parametrize(
+    ("height", "off", "count"),
+    [(0.15, 0.0, 1), (0.15, 0.006, 1), (0.15, 0.02, 2), (0.07, 0.0, 2)],
+    ids=["a bottle", "a bottle a little askew", "a thing on the edge of another", "a thing on a cup"],
+)
+def test_a_neck_is_the_bottles_on_whose_middle_it_is(height: float, off: float, count: int) -> None:
+    body, neck = _wall(0.035, 0.0, height), _wall(0.013, height + 0.005, height + 0.05)
+    neck[:, 0] += off
+    middles = np.concatenate([body, neck])
+    ones, of = np.ones(len(middles)), np.repeat([0, 1], [len(body), len(neck)]).astype(np.int32)
+    number = np.arange(len(middles), dtype=np.int32)
+    patches = Supervoxels(number, ones, middles, middles * (1.0, 1.0, 0.0), np.zeros_like(middles), 1e-4 * ones)
+    pairs = np.stack([len(body) - AROUND + np.arange(AROUND), len(body) + np.arange(AROUND)], axis=1).astype(np.int64)
+    meeting = Boundaries(pairs, np.ones(AROUND), np.full(AROUND, 1.2), np.ones(AROUND))
+    assert len(whole_things(Parts(of, patches, meeting))) == count
+
+
 def _grid(x: tuple[float, float], y: tuple[float, float], z: float) -> NDArray[np.float64]:
     """Patches a centimetre apart."""
     plan = np.mgrid[x[0] : x[1] + 0.005 : 0.01, y[0] : y[1] + 0.005 : 0.01].reshape(2, -1).T
@@ -99,6 +122,19 @@ def test_cutlery_on_two_sides_of_a_plate_is_not_one_thing_below_it() -> None:
     plate = plate[np.linalg.norm(plate[:, :2], axis=1) < 0.105]
     fork, knife = _grid((-0.08, 0.09), (0.11, 0.12), 0.004), _grid((0.11, 0.12), (-0.1, 0.09), 0.004)
     assert not len(bridged(_below(plate, fork, knife)))
+
+
+def test_a_round_plate_goes_on_below_a_napkin_however_wide() -> None:
+    disc = _grid((-0.13, 0.13), (-0.13, 0.13), 0.01)
+    disc = disc[np.linalg.norm(disc[:, :2], axis=1) < 0.132]
+    halves = [disc[side * disc[:, 0] > 0.065] for side in (-1, 1)]
+    assert round_rims(_below(_grid((-0.06, 0.06), (-0.1, 0.1), 0.02), *halves)).tolist() == [[1, 2]]
+
+
+@pytest.mark.parametrize("length", [0.06, 0.16])
+def test_two_things_on_both_sides_of_a_napkin_are_no_plate(length: float) -> None:
+    sides = [_grid((x, x + 0.02), (-length / 2, length / 2), 0.01) for x in (-0.09, 0.07)]
+    assert not len(round_rims(_below(_grid((-0.08, 0.08), (-0.1, 0.1), 0.02), *sides)))
 
 
 def _apart(*pieces: NDArray[np.float64], normals: tuple[float, float, float] = (0.0, 0.0, 1.0)) -> Parts:

@@ -65,10 +65,25 @@ def test_no_boundary_that_speaks_for_one_thing_is_left(count: int, seed: int) ->
     chosen = rng.random(len(a)) < 0.3
     pairs = np.stack([a[chosen], b[chosen]], axis=1).astype(np.int64)
     lengths, evidence = rng.integers(1, 9, len(pairs)).astype(float), rng.random(len(pairs))
-    of = agglomerated(count, Boundaries(pairs, lengths, evidence, np.zeros(len(pairs))), 0.5)
+    meeting = Boundaries(pairs, lengths, evidence, np.zeros(len(pairs)))
+    of = agglomerated(meeting, 0.5, 20 * rng.random((count, 3)), rng.random(count))
     assert of[0] == 0 and set(of.tolist()) == set(range(of.max() + 1))
     left = of[pairs]
     for one, other in {(int(min(p)), int(max(p))) for p in left if p[0] != p[1]}:
         between = np.sort(left, axis=1) == (one, other)
         meets = between.all(axis=1)
         assert (lengths[meets] * evidence[meets]).sum() / lengths[meets].sum() >= 0.5 - 1e-9
+
+
+@pytest.mark.parametrize(("tint", "expected"), [(0.0, [0, 0, 1]), (20.0, [0, 1, 1])])
+def test_colour_decides_what_is_merged_first(tint: float, expected: list[int]) -> None:
+    """A knife that ends smoothly on one half of a rim, and hangs over the other: the rim is made whole first."""
+    knife, rim, other = (tint, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
+    pairs, evidence = np.array([[0, 1], [0, 2], [1, 2]]), np.array([0.0, 1.4, 0.1])
+    meeting = Boundaries(pairs, np.array([4.0, 8.0, 4.0]), evidence, np.zeros(3))
+    assert agglomerated(meeting, 0.6, np.array([knife, rim, other]), np.ones(3)).tolist() == expected
+
+
+def test_what_is_of_two_colours_and_meets_smoothly_is_one() -> None:
+    meeting = Boundaries(np.array([[0, 1]]), np.ones(1), np.array([0.55]), np.zeros(1))
+    assert agglomerated(meeting, 0.6, np.array([[0.0, 0.0, 0.0], [90.0, 0.0, 0.0]]), np.ones(2)).tolist() == [0, 0]
