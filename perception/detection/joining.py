@@ -83,6 +83,7 @@ def whole_things(parts: Parts) -> Parts:
         on_a_foot,
         necks,
         handles,
+        insides,
         end_to_end,
         sides,
     ):
