@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from deixis.memory.perceptual.protocol import Progress
     from deixis.memory.perceptual.records import View
     from deixis.reasoning.answer import Match
-    from deixis.recognising import Recognised, Taught
+    from deixis.recognising import Recognised, StandingWord, Taught
 
 Done = TypeVar("Done")
 
@@ -73,6 +73,19 @@ class PerceptualSession(MemorySession):
 
         memory = self.views(create=True)
         return self._despite_damage(memory, lambda readable: keep_views(readable, views))
+
+    def but_for_taught(self, views: Sequence[View]) -> tuple[list[View], tuple[StandingWord, ...]]:
+        """The views of a grounding that no teacher has named, and what is named otherwise."""
+        from deixis.recognising import StandingWord, taught_by_hand
+
+        named = taught_by_hand(self.views(), views) if self.has_views() else {}
+        standing = []
+        for view in views:
+            taught = named.get(view.id)
+            if taught is not None and taught.category != view.category:
+                thing, teacher = (str(taught.metadata.get(key, "?")) for key in ("object", "teacher"))
+                standing.append(StandingWord(thing, taught.category, teacher, view.category))
+        return [view for view in views if view.id not in named], tuple(standing)
 
     @contextmanager
     def keeping_views(self, views: Sequence[View]) -> Iterator[tuple[Taught, ...]]:
@@ -147,8 +160,10 @@ def views_of_matches(scene: Scene, matches: Iterable[Match]) -> list[View]:
 
     Raises SceneError where two things have the same points.
     """
+    from deixis.recognising import GROUNDING
+
     seen = [match for match in matches if match.decided and scene[match.perceived].cloud is not None]
-    views = [_view(scene, match.perceived, plain_name(match.object), "grounding") for match in seen]
+    views = [_view(scene, match.perceived, plain_name(match.object), GROUNDING) for match in seen]
     first: dict[str, str] = {}
     for match, view in zip(seen, views, strict=True):
         if first.setdefault(view.id, match.perceived) != match.perceived:

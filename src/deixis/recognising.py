@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import json
 from collections.abc import Iterable, Mapping, Sequence
@@ -13,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.memory.perceptual.calibrated import keep_calibration, kept_calibration
+from deixis.memory.perceptual.errors import DamagedMemoryError, UnknownViewError
 from deixis.memory.perceptual.level import LevelMemory
 from deixis.memory.perceptual.protocol import PerceptualMemory, PerceptualReading, Progress
 from deixis.memory.perceptual.records import Batch, CategoryRecord, View
@@ -67,6 +69,9 @@ DISTANCES, IDS, COMPARED = "distances", "views", "compared"
 """The names of a category's state: D_V between its views, the ids of the views, in the same order, and the way in which
 they were compared."""
 
+GROUNDING = "grounding"
+"""Who teaches what a grounding has found."""
+
 LEAST_CONFIDENCE = 0.01
 MOST_CONFIDENCE = 0.99
 """A recognised label is never certain, since a certain one would silence the description."""
@@ -80,6 +85,19 @@ class Taught:
     category: str
     views: int
     before: str | None
+
+
+@dataclass(frozen=True)
+class StandingWord:
+    """A thing of a scene that a teacher named otherwise than a grounding did: the teacher's word stands."""
+
+    thing: str
+    taught: str
+    teacher: str
+    grounded: str
+
+    def __str__(self) -> str:
+        return f"{self.thing} stays a view of '{self.taught}', as {self.teacher} taught, and not of '{self.grounded}'"
 
 
 @dataclass(frozen=True)
@@ -142,6 +160,15 @@ def keep_views(memory: PerceptualMemory, views: Sequence[View]) -> tuple[Taught,
             if not len(category):
                 memory.forget(name)  # nothing is left of it
     return tuple(taught)
+
+
+def taught_by_hand(memory: PerceptualReading, views: Sequence[View]) -> dict[str, View]:
+    """Those of some views that a teacher named already, as they are kept, by id; what is damaged says nothing."""
+    kept = {}
+    for id in [view.id for view in views]:
+        with contextlib.suppress(UnknownViewError, DamagedMemoryError):
+            kept[id] = memory.view(id)
+    return {id: view for id, view in kept.items() if view.metadata.get("teacher") != GROUNDING}
 
 
 def _involved(memory: PerceptualReading, views: Sequence[View], place: Mapping[str, str]) -> list[str]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 from deixis.ontology.export import fact_to_dict, graph_to_dict
@@ -201,6 +202,7 @@ def learned_to_dict(learned: Learned) -> dict[str, Any]:
         "facts": len(layout.facts),
         "categories": list(learned.categories),
         "undecided": list(learned.doubtful),
+        "standing": [asdict(word) for word in learned.standing],
         "grounding": grounding_to_dict(learned.grounding),
     }
 

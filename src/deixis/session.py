@@ -33,7 +33,7 @@ from deixis.warm import ready_to_ground, ready_to_infer
 if TYPE_CHECKING:
     from deixis.ontology.concepts import LayoutConcept, Lesson
     from deixis.reasoning.checking import TableCheck
-    from deixis.recognising import Taught
+    from deixis.recognising import StandingWord, Taught
 
 
 def read_script(path: str | Path | None = None, *, text: str | None = None, ontology: Ontology | None = None) -> Script:
@@ -112,6 +112,7 @@ class Learned:
     lesson: Lesson
     grounding: Grounding
     seen: tuple[Taught, ...] = ()  # the views that it taught, of things with clouds
+    standing: tuple[StandingWord, ...] = ()  # what it would call otherwise than a teacher did
 
     @property
     def categories(self) -> tuple[str, ...]:
@@ -161,8 +162,8 @@ class Session(PerceptualSession):
         """Grounds a script in a scene, and keeps the layout and what its objects look like, with where it comes from.
 
         What is doubtful or interchangeable is kept as such and teaches no category; how sure each match is is kept too,
-        for :meth:`learn_relations`. Sizes are learned at once. Raises DeixisError, having
-        changed nothing, where the script contradicts itself or what was learned before.
+        for :meth:`learn_relations`. Sizes are learned at once. What a teacher named stays of that name. Raises
+        DeixisError, having changed nothing, where the script contradicts itself or what was learned before.
         """
         from deixis.keeping import keep
         from deixis.learning import Occasion, layout_name, lesson_of
@@ -181,10 +182,11 @@ class Session(PerceptualSession):
         memory = self.memory(create=True)
         id = next_lesson_id(layout_name(script), memory.lessons())
         lesson = lesson_of(script, scene, found, id, Occasion(started, datetime.now(UTC), VERSION))
-        with self.keeping_views(views_of_matches(scene, found.matches.values())) as seen:
+        views, standing = self.but_for_taught(views_of_matches(scene, found.matches.values()))
+        with self.keeping_views(views) as seen:
             keep(memory, self.ontology, lesson)
         self._meaning = None
-        return Learned(lesson, found, seen)
+        return Learned(lesson, found, seen, standing)
 
     def check(
         self,

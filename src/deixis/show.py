@@ -126,6 +126,7 @@ def learned_lines(learned: Learned, memory: str) -> list[str]:
         lines.append("Categories with a new view: " + ", ".join(learned.categories))
     if learned.seen:
         lines.append("What it looks like is kept of: " + ", ".join(taught.category for taught in learned.seen))
+    lines += [f"{word}." for word in learned.standing]
     if learned.doubtful:
         lines.append("Recorded as not settled, and teaching nothing: " + ", ".join(learned.doubtful))
     lines += [f"Left out: {left.name}: {left.reason}." for left in learned.grounding.unmatched_objects]

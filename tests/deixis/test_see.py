@@ -112,6 +112,27 @@ def test_a_view_is_taught_and_corrected_and_categories_are_renamed_merged_and_fo
     assert json.loads(deixis("category", "list", "--json", *memory)[1]) == {"dish": 2}
 
 
+def test_what_a_teacher_named_is_not_overruled_by_a_grounding(tables: Path, tmp_path: Path) -> None:
+    scene, memory = read_scene(tables / "7.scene.json"), tmp_path / "memory"
+    with Session(memory) as session:
+        first = session.learn(FULL, scene)
+        plate, napkin = (first.grounding.matches[name].perceived for name in ("dinner_plate", "napkin"))
+        assert session.teach(scene, plate, "grandmas_platter", teacher="Ada").before == "dinner_plate"
+        session.teach(scene, napkin, "napkin", teacher="Ada")
+        again = session.learn(FULL, scene)
+        assert {"grandmas_platter", "napkin"} < set(session.categories())
+        assert "dinner_plate" not in session.categories()
+        kept = {view.category: view.metadata["teacher"] for view in session.views().views()}
+    assert [str(word) for word in again.standing] == [
+        f"{plate} stays a view of 'grandmas_platter', as Ada taught, and not of 'dinner_plate'"
+    ]
+    assert len(again.seen) == len(first.seen) - 2
+    assert (kept["napkin"], kept["soup_spoon"]) == ("Ada", "grounding")
+    code, out = deixis("learn", FULL, tables / "7.scene.json", "--memory", memory)[:2]
+    assert code == 0
+    assert f"{again.standing[0]}." in out
+
+
 def test_what_a_category_has_learned_is_kept_and_is_what_its_views_give(tables: Path, tmp_path: Path) -> None:
     from deixis.perception.recognition.instances import InstanceCategory
     from deixis.recognising import DISTANCES, UPRIGHT, instances_of
