@@ -7,6 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.perception.detection.circles import Circle
+
 TRIM = 0.002
 """The share of the points at either end of an axis that are taken for noise."""
 
@@ -21,13 +23,18 @@ class OrientedBox:
     extents: NDArray[np.float64]
 
 
-def upright_box(points: NDArray[np.float64]) -> NDArray[np.float64]:
+def upright_box(points: NDArray[np.float64], rim: Circle | None = None) -> NDArray[np.float64]:
     """Least and greatest corner (2, 3) of points (n, 3) in the table's frame; it stands on the table or above it.
+
+    ``rim`` is a circle in the plan that it takes in, too.
 
     >>> upright_box(np.array([[0.0, 0, -0.001], [1, 2, 3]])).tolist()
     [[0.0, 0.0, 0.0], [1.0, 2.0, 3.0]]
     """
     box = trimmed(points)
+    if rim is not None:
+        box[0, :2] = np.minimum(box[0, :2], rim.centre - rim.radius)
+        box[1, :2] = np.maximum(box[1, :2], rim.centre + rim.radius)
     box[:, 2] = np.maximum(box[:, 2], 0.0)
     return box
 
@@ -39,18 +46,20 @@ def trimmed(values: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.stack([ordered[skip], ordered[len(values) - 1 - skip]])
 
 
-def oriented_box(points: NDArray[np.float64]) -> OrientedBox:
+def oriented_box(points: NDArray[np.float64], rim: Circle | None = None) -> OrientedBox:
     """The upright box with the smallest plan, among those with a side along a side of the points' outline.
+
+    ``rim`` is a circle in the plan that it takes in, too.
 
     That the smallest rectangle has such a side is the theorem of Freeman and Shapira (1975).
     """
     angle = _best_angle(points[:, :2])
     cosine, sine = np.cos(angle), np.sin(angle)
     axes = np.array([[cosine, sine, 0.0], [-sine, cosine, 0.0], [0.0, 0.0, 1.0]])
-    low, high = upright_box(points @ axes.T)
+    low, high = upright_box(points @ axes.T, rim and rim.turned(axes[:2, :2]))
     if high[1] - low[1] > high[0] - low[0]:
         axes = axes[[1, 0, 2]] * [[1.0], [-1.0], [1.0]]
-        low, high = upright_box(points @ axes.T)
+        low, high = upright_box(points @ axes.T, rim and rim.turned(axes[:2, :2]))
     return OrientedBox(axes.T @ ((low + high) / 2), axes, high - low)
 
 

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.detection.boxes import OrientedBox, oriented_box, upright_box
+from deixis.perception.detection.circles import rim_of
 from deixis.perception.detection.frame import moved, outlook_of, table_frame
 from deixis.perception.detection.heights import Raised, raised
 from deixis.perception.detection.neighbours import neighbour_table
@@ -117,12 +118,15 @@ def _on_table(
     if not found.max(initial=NONE) >= 0:
         why = ("nothing is on the table", *_too_small(view), *_a_wall(view, settings))
         return _nothing(len(cloud), table.plane, view.frame, *why)
-    numbers = _left_to_right(view.points, found)
+    members = [view.points[found == k] for k in range(int(found.max()) + 1)]
+    table_seen = view.points[(np.abs(view.heights) < ON_TABLE) & (found == NONE), :2]
+    rims = [rim_of(thing[:, :2], table_seen) for thing in members]
+    boxes = np.stack([upright_box(thing, rim) for thing, rim in zip(members, rims, strict=True)])
+    order = _left_to_right(boxes)
     labels = np.full(len(cloud), NONE, np.int32)
-    labels[kept] = numbers
-    members = [view.points[numbers == k] for k in range(int(numbers.max()) + 1)]
-    boxes = np.stack([upright_box(thing) for thing in members])
-    return Detection(table.plane, view.frame, labels, boxes, tuple(map(oriented_box, members)), _too_small(view))
+    labels[kept] = np.append(np.argsort(order), NONE)[found]
+    oriented = tuple(oriented_box(members[k], rims[k]) for k in order)
+    return Detection(table.plane, view.frame, labels, boxes[order], oriented, _too_small(view))
 
 
 def _require_metres(points: NDArray[np.float64]) -> None:
@@ -260,14 +264,10 @@ def _kept(
     return result
 
 
-def _left_to_right(points: NDArray[np.float64], numbers: NDArray[np.int32]) -> NDArray[np.int32]:
-    """The same things numbered by their least x, to the centimetre, then by their least y."""
-    count = int(numbers.max()) + 1
-    low = np.array([upright_box(points[numbers == k])[0, :2] for k in range(count)])
-    order = np.lexsort((low[:, 1], low[:, 0].round(2)))
-    rank = np.full(count + 1, NONE, np.int32)
-    rank[order] = np.arange(count)
-    return rank[numbers]
+def _left_to_right(boxes: NDArray[np.float64]) -> NDArray[np.intp]:
+    """The order of boxes (k, 2, 3) by their least x, to the centimetre, then by their least y, shape (k,)."""
+    low = boxes[:, 0, :2]
+    return np.lexsort((low[:, 1], low[:, 0].round(2)))
 
 
 def _nothing(count: int, plane: Plane | None, frame: NDArray[np.float64], *why: str) -> Detection:

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.perception.detection.circles import SECTORS, circle_around
 from deixis.perception.detection.parts import Parts
 
 GAP, ALONG = 0.11, 0.015
@@ -23,8 +22,8 @@ NECK, OVERLAP = 0.03, 0.3
 """Metres of its neck that may not be seen, and the share of the shorter piece by which two pieces overlap at most."""
 
 
-RIM, SECTORS = 0.1, 36
-"""How far an edge may be off a circle, in its radius, and into how many sectors that is divided."""
+RIM = 0.1
+"""How far an edge may be off a circle, in its radius."""
 
 
 def inside(parts: Parts, inner: int, outer: int) -> float:
@@ -110,33 +109,8 @@ def _nearest(parts: Parts, one: NDArray[np.intp], two: NDArray[np.intp]) -> tupl
 def roundness(parts: Parts, one: NDArray[np.intp], two: NDArray[np.intp]) -> float:
     """The share of a circle around two parts, as seen from above, that their edges follow; 0 where they leave it."""
     plan = parts.patches.middles[np.concatenate([one, two]), :2]
-    corners = _corners(plan)
-    if len(corners) < 5:
-        return 0.0
-    centre, radius = _circle(corners)
-    out = np.linalg.norm(plan - centre, axis=1) / radius
-    if out.max() > 1.0 + RIM or np.linalg.norm(corners - centre, axis=1).min() < (1.0 - RIM) * radius:
-        return 0.0
-    edge = plan[out > 1.0 - RIM] - centre
-    return len(np.unique(np.floor(np.arctan2(edge[:, 1], edge[:, 0]) / (2 * np.pi) * SECTORS))) / SECTORS
-
-
-def _corners(plan: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Those of the convex outline, (k, 2); none of points in a line."""
-    from scipy.spatial import ConvexHull, QhullError
-
-    try:
-        corners: NDArray[np.float64] = plan[ConvexHull(plan).vertices]
-    except QhullError:
-        return plan[:0]
-    return corners
-
-
-def _circle(places: NDArray[np.float64]) -> tuple[NDArray[np.float64], float]:
-    """Centre (2,) and radius of the circle nearest to places (k, 2), by algebraic least squares (Kasa 1976)."""
-    terms = np.column_stack([2 * places, np.ones(len(places))])
-    x, y, rest = np.linalg.lstsq(terms, (places**2).sum(axis=1))[0].tolist()
-    return np.array([x, y]), math.sqrt(max(rest + x * x + y * y, 1e-12))
+    circle = circle_around(plan, RIM)
+    return 0.0 if circle is None else len(circle.sectors(plan, RIM)) / SECTORS
 
 
 def slenderness(parts: Parts, one: NDArray[np.intp], two: NDArray[np.intp]) -> float:

@@ -1,0 +1,74 @@
+"""What is round and partly hidden, and what only looks so."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from deixis.perception.detection.boxes import oriented_box, upright_box
+from deixis.perception.detection.circles import circle_around, rim_of
+
+NO_TABLE = np.zeros((0, 2))
+
+
+def _disc(radius: float, step: float = 0.002) -> NDArray[np.float64]:
+    axis = np.arange(-radius, radius + step, step)
+    plan: NDArray[np.float64] = np.stack(np.meshgrid(axis, axis), axis=-1).reshape(-1, 2)
+    return plan[np.linalg.norm(plan, axis=1) <= radius]
+
+
+def _crescent(below: float) -> NDArray[np.float64]:
+    """What is seen of a plate of 12 cm radius in front of what stands on it."""
+    plan = _disc(0.12)
+    return plan[plan[:, 1] < below]
+
+
+@pytest.mark.parametrize("below", [-0.05, 0.0, 0.08])
+def test_the_rim_of_a_plate_goes_on_behind_what_stands_on_it(below: float) -> None:
+    rim = rim_of(_crescent(below) + np.array([0.3, 0.1]), NO_TABLE)
+    assert rim is not None
+    assert rim.centre == pytest.approx([0.3, 0.1], abs=0.003)
+    assert rim.radius == pytest.approx(0.12, abs=0.003)
+
+
+def test_a_box_takes_in_the_hidden_part_of_a_rim_whichever_way_it_is_turned() -> None:
+    plan = _crescent(-0.03) + np.array([0.2, 0.3])
+    points, rim = np.column_stack([plan, np.full(len(plan), 0.02)]), rim_of(plan, NO_TABLE)
+    assert upright_box(points, rim)[:, :2] == pytest.approx(np.array([[0.08, 0.18], [0.32, 0.42]]), abs=0.004)
+    turned = oriented_box(points, rim)
+    assert turned.centre[:2] == pytest.approx([0.2, 0.3], abs=0.004)
+    assert turned.extents[:2] == pytest.approx([0.24, 0.24], abs=0.006)
+
+
+def test_where_the_table_is_seen_no_rim_goes_on() -> None:
+    crescent = _crescent(-0.03)
+    behind = _disc(0.12)[_disc(0.12)[:, 1] > 0.02]
+    assert rim_of(crescent, behind) is None
+    assert rim_of(crescent, behind + np.array([0.0, 0.3])) is not None
+
+
+@pytest.mark.parametrize(
+    "seen",
+    [
+        _crescent(-0.1),
+        _disc(0.12) * (1.0, 0.2),
+        _disc(0.12)[np.abs(_disc(0.12)[:, 0]) < 0.02],
+        np.stack(np.meshgrid(np.arange(0, 0.2, 0.004), np.arange(0, 0.16, 0.004)), axis=-1).reshape(-1, 2),
+        np.array([[0.0, 0.0], [0.1, 0.0], [0.2, 0.0]]),
+        _disc(0.4, 0.01),
+    ],
+    ids=["too little of an edge", "a spoon", "a strip of a plate", "a napkin", "points in a line", "a round table"],
+)
+def test_what_is_not_surely_round_has_no_rim(seen: NDArray[np.float64]) -> None:
+    assert rim_of(seen, NO_TABLE) is None
+
+
+def test_a_circle_is_found_wherever_it_is_and_however_it_is_turned() -> None:
+    rng, turn = np.random.default_rng(0), 0.7
+    axes = np.array([[np.cos(turn), np.sin(turn)], [-np.sin(turn), np.cos(turn)]])
+    plan = _disc(0.08) + rng.normal(size=2)
+    there, here = circle_around(plan @ axes.T), circle_around(plan)
+    assert there is not None and here is not None
+    assert there.centre == pytest.approx(here.turned(axes).centre, abs=1e-6)
+    assert there.radius == pytest.approx(here.radius, abs=1e-6)
