@@ -14,14 +14,15 @@ NO_TABLE = np.zeros((0, 2))
 
 def _disc(radius: float, step: float = 0.002) -> NDArray[np.float64]:
     axis = np.arange(-radius, radius + step, step)
-    plan: NDArray[np.float64] = np.stack(np.meshgrid(axis, axis), axis=-1).reshape(-1, 2)
-    return plan[np.linalg.norm(plan, axis=1) <= radius]
+    plan = np.stack(np.meshgrid(axis, axis), axis=-1).reshape(-1, 2)
+    disc: NDArray[np.float64] = plan[np.linalg.norm(plan, axis=1) <= radius]
+    return disc
 
 
 def _crescent(below: float) -> NDArray[np.float64]:
     """What is seen of a plate of 12 cm radius in front of what stands on it."""
-    plan = _disc(0.12)
-    return plan[plan[:, 1] < below]
+    disc = _disc(0.12)
+    return disc[disc[:, 1] < below]
 
 
 @pytest.mark.parametrize("below", [-0.05, 0.0, 0.08])
