@@ -84,7 +84,7 @@ def left_out_things(evidence: Evidence, alignment: Alignment, ids: tuple[str, ..
         if not len(evidence.description.nodes):
             reason = "the description names nothing"
         elif not evidence.allowed[:, p].any():
-            reason = "its label names nothing in the description"
+            reason = "the labels of the scene leave it nothing in the description that it could be"
         elif len(evidence.description.nodes) < len(evidence.scene.nodes) and taken:
             reason = "the description names fewer things than were perceived, and fits the others at least as well"
         else:

@@ -24,7 +24,7 @@ from deixis.ontology.kinds import Kinds, with_article
 from deixis.reasoning.answer import FactOutcome, Grounding, Outcome
 from deixis.reasoning.evidence import Evidence
 from deixis.reasoning.graded.colours import other_colours
-from deixis.reasoning.labels import Label, named_objects, objects_called
+from deixis.reasoning.labels import Label, naming
 from deixis.reasoning.matching.problem import UNMATCHED
 
 SURE = 0.9
@@ -119,7 +119,7 @@ def check_table(
     colours in sRGB, shape (n2, 3), NaN where not known, and ``colours`` the known terms.
     """
     layout = evidence.description
-    sure = {thing: _sure_roles(layout, label, kinds) for thing, label in labels.items()}
+    sure = _sure_roles(layout, labels, kinds)
     broken = tuple(entry for entry in grounding.violated if entry.fact.weight >= 1)
     exchanged = _exchanged(evidence, grounding, sure)
     explained = [entry for entry in broken if not exchanged.keys() & {entry.fact.subject, entry.fact.object}]
@@ -246,13 +246,16 @@ def _ends(evidence: Evidence, chosen: NDArray[np.bool_], assignment: NDArray[np.
     return np.concatenate([subjects[both], objects[both]]).astype(np.int64)
 
 
-def _sure_roles(layout: RelationGraph, label: Label | None, kinds: Kinds) -> frozenset[str]:
-    """The roles that a sure label says its thing fills: those that bear the name, or the one of that kind."""
-    if label is None or label.confidence < SURE:
-        return frozenset()
-    called = np.flatnonzero(objects_called(layout, label.text))
-    named = called if len(called) else np.flatnonzero(named_objects(layout, label.text, kinds))
-    return frozenset(layout.nodes[i] for i in named) if len(called) or len(named) == 1 else frozenset()
+def _sure_roles(layout: RelationGraph, labels: Mapping[str, Label | None], kinds: Kinds) -> dict[str, frozenset[str]]:
+    """The roles that a sure label says its thing fills: those that it fits, or the one that it names."""
+    known = naming(layout, list(labels.values()), kinds)
+    roles = {}
+    for column, (thing, label) in enumerate(labels.items()):
+        named, fitted = (np.flatnonzero(which[:, column]) for which in (known.named, known.fitted))
+        chosen = fitted if len(fitted) else named[: len(named) == 1]
+        sure = label is not None and label.confidence >= SURE
+        roles[thing] = frozenset(layout.nodes[i] for i in chosen if sure)
+    return roles
 
 
 def _blamed(grounding: Grounding, broken: Sequence[FactOutcome]) -> frozenset[str]:

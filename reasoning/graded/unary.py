@@ -26,7 +26,7 @@ from deixis.reasoning.graded.looks import (
     in_image_from_aside,
     usual_size,
 )
-from deixis.reasoning.labels import Label, named_objects
+from deixis.reasoning.labels import Label, naming
 
 Array = NDArray[np.float64]
 
@@ -147,12 +147,9 @@ def label_ratios(description: RelationGraph, labels: Sequence[Label | None], kin
     its ratio is c n1 / k + 1 - c for those, and 1 - c for the others.
     """
     n1 = len(description.nodes)
-    ratios = np.ones((n1, len(labels)))
-    for column, label in enumerate(labels):
-        if label is not None and label.confidence > 0:
-            named = named_objects(description, label.text, kinds)
-            ratios[:, column] = 1 - label.confidence
-            ratios[named, column] += label.confidence * n1 / max(int(named.sum()), 1)
+    named = naming(description, labels, kinds).named
+    confidence = np.array([label.confidence if label is not None else 0.0 for label in labels])
+    ratios = 1 - confidence + confidence * named * n1 / np.maximum(named.sum(axis=0), 1)
     with np.errstate(divide="ignore"):
         logs: Array = np.log(ratios)
     return logs

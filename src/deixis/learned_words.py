@@ -86,7 +86,7 @@ def example_pairs(example: Example) -> SaidPairs:
     """The pairs of a labelled scene of which a script says a word."""
     script, scene = example
     description = script.graph()
-    who = labelled(description, scene)
+    who = labelled(description, scene, script.ontology.kinds)
     return said_pairs(description, scene.boxes, who.things, who.sureness)
 
 

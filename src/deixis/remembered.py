@@ -12,12 +12,13 @@ from deixis.grammar.parser import parse_script
 from deixis.ontology.concepts import LayoutConcept
 from deixis.ontology.errors import DeixisError
 from deixis.ontology.graph import RelationGraph
+from deixis.ontology.kinds import Kinds
 from deixis.ontology.lesson_reading import layouts
 from deixis.ontology.lesson_records import LessonRecord, lesson_records
 from deixis.ontology.tbox import Ontology
 from deixis.perception.scene import Scene
 from deixis.perception.scene_file import read_scene
-from deixis.reasoning.labels import objects_called
+from deixis.reasoning.labels import Label, naming
 
 
 @dataclass(frozen=True)
@@ -73,7 +74,7 @@ def _remembered(record: LessonRecord, layout: LayoutConcept | None, ontology: On
         description = layout.graph(ontology.relations)
     else:
         description = parse_script(record.script_text, record.script_file, ontology).graph()
-    who = labelled(description, scene) if record.words_only else _matched(record, description, scene)
+    who = labelled(description, scene, ontology.kinds) if record.words_only else _matched(record, description, scene)
     return Remembered(record.id, description, scene, who, (record.script_text, record.scene_text))
 
 
@@ -88,14 +89,11 @@ def _matched(record: LessonRecord, description: RelationGraph, scene: Scene) -> 
     )
 
 
-def labelled(description: RelationGraph, scene: Scene) -> Who:
-    """What labels say: an object is the one thing whose label calls it, as surely as the label is."""
-    called: list[list[int]] = [[] for _ in description.nodes]
-    for i, thing in enumerate(scene.objects):
-        if thing.label is not None:
-            for object in objects_called(description, thing.label).nonzero()[0].tolist():
-                called[object].append(i)
-    one = [things[0] if len(things) == 1 else None for things in called]
-    things = tuple(thing if one.count(thing) == 1 else None for thing in one)
+def labelled(description: RelationGraph, scene: Scene, kinds: Kinds) -> Who:
+    """What labels say: an object is the one thing whose label fits it, as surely as the label is."""
+    labels = [Label(thing.label, thing.confidence) if thing.label else None for thing in scene.objects]
+    fitted = naming(description, labels, kinds).fitted
+    alone = fitted & (fitted.sum(axis=1) == 1)[:, None] & (fitted.sum(axis=0) == 1)[None, :]
+    things = tuple(int(row.argmax()) if row.any() else None for row in alone)
     sure = tuple(0.0 if thing is None else scene.objects[thing].confidence for thing in things)
     return Who(things, sure, tuple(thing is not None for thing in things))

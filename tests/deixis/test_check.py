@@ -126,6 +126,18 @@ def test_an_unsure_label_is_no_identity() -> None:
     assert len(check(unsure).table.of(Verdict.UNDETERMINED)) == 12
 
 
+def test_a_thing_of_a_narrower_name_fills_its_role() -> None:
+    labels = {"a": "dinner fork", "b": "salad fork", "p": "dinner plate", "q": "bread plate", "r": "plate"}
+    places = {"a": (0.0, 0.02), "b": (0.05, 0.07), "p": (0.6, 0.8), "q": (0.9, 1.0), "r": (0.1, 0.35)}
+    objects = tuple(PerceivedObject(id, (x, 0.0), (X, 0.2), label=labels[id]) for id, (x, X) in places.items())
+    checked = check(Scene(objects), "2 fork left of plate")
+    assert roles(checked, Verdict.CORRECT) == {"fork_1", "fork_2", "plate"}
+    assert {extra.perceived: extra.reason for extra in checked.table.extra} == {
+        "p": "the layout has no place left for a dinner plate",
+        "q": "the layout has no place left for a bread plate",
+    }
+
+
 def test_what_is_optional_may_be_absent_and_may_fail() -> None:
     scene = read_scene({"objects": [{"id": "f", "min": [0, 0], "max": [1, 1], "label": "fork"},
                                     {"id": "p", "min": [2, 0], "max": [3, 1], "label": "plate"}]})  # fmt: skip

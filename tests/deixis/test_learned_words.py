@@ -22,6 +22,7 @@ from deixis.session import read_script
 
 ONTOLOGY = default_ontology()
 SCRIPT = "fork left of plate; knife right of plate"
+KINDS = ONTOLOGY.kinds
 THINGS = {"fork": (0, 2), "plate": (5, 32), "knife": (35, 37)}
 
 
@@ -93,9 +94,23 @@ def test_a_strength_that_is_none_is_refused() -> None:
 
 def test_a_label_is_one_thing_or_nothing_and_as_sure_as_it_says() -> None:
     graph = read_script(text=SCRIPT).graph()
-    who = labelled(graph, scene("fork", "plate", confidence=0.7))
+    who = labelled(graph, scene("fork", "plate", confidence=0.7), KINDS)
     by_name = dict(zip(graph.nodes, zip(who.things, who.sureness, strict=True), strict=True))
     assert by_name == {"fork": (0, 0.7), "plate": (1, 0.7), "knife": (None, 0.0)}
+
+
+def test_a_narrower_label_is_the_object_that_no_other_thing_is_called() -> None:
+    graph = read_script(text=SCRIPT).graph()
+    labels = {"o0": "dinner fork", "o1": "dinner plate", "o2": "knife"}
+    seen = scene()
+    seen = replace(seen, objects=tuple(replace(thing, label=labels[thing.id]) for thing in seen.objects))
+    assert dict(zip(graph.nodes, labelled(graph, seen, KINDS).things, strict=True)) == {
+        "fork": 0,
+        "plate": 1,
+        "knife": 2,
+    }
+    seen = replace(seen, objects=tuple(replace(thing, label="salad fork") for thing in seen.objects))
+    assert set(labelled(graph, seen, KINDS).things) == {None}
 
 
 def test_new_examples_become_lessons_that_are_read_back_as_they_were_and_none_twice(tmp_path: Path) -> None:

@@ -22,6 +22,7 @@ from deixis.reasoning.rectangle import perceived_graph
 MakeGraph = Callable[..., RelationGraph]
 MakeBoxes = Callable[..., NDArray[np.float64]]
 KINDS = default_ontology().kinds
+FORK_AND_PLATE = [KINDS.words[word].iri for word in ("fork", "plate")]
 
 
 def labelled(description: RelationGraph, labels: dict[str, Label]) -> Grounding:
@@ -50,7 +51,8 @@ def test_a_label_settles_what_the_facts_leave_open(graph_of: MakeGraph, figure_7
 def test_a_certain_label_that_names_nothing_leaves_its_thing_out(graph_of: MakeGraph, full_script: list[str]) -> None:
     found = labelled(graph_of(*full_script), {"soup_spoon": Label("gizmo")})
     (thing,) = found.unmatched_perceived
-    assert (thing.name, thing.reason) == ("soup_spoon", "its label names nothing in the description")
+    assert thing.name == "soup_spoon"
+    assert thing.reason == "the labels of the scene leave it nothing in the description that it could be"
     assert len(found.matches) == 11
 
 
@@ -75,3 +77,23 @@ def test_an_uncertain_label_weighs_against_facts_and_loses_or_wins(graph_of: Mak
     for confidence in (0.2, 0.5, 0.99, 0.999):
         answers[confidence] = pairs(labelled_scene(description, scene, [None, Label("a", confidence)]))["a"]
     assert answers == {0.2: "p", 0.5: "p", 0.99: "q", 0.999: "q"}
+
+
+def test_a_narrower_label_says_where_the_broader_object_is(graph_of: MakeGraph, boxes_of: MakeBoxes) -> None:
+    """The facts have it the other way round, and a certain label is stronger."""
+    scene = perceived_graph(["p", "q"], boxes_of([(0, 1), (0, 1)], [(2, 3), (0, 1)]), R)
+    description = graph_of("left(fork, plate)", kinds=FORK_AND_PLATE)
+    found = labelled_scene(description, scene, [Label("dinner plate"), Label("dinner fork")])
+    assert pairs(found) == {"fork": "q", "plate": "p"}
+    assert all(match.decided for match in found.matches.values())
+
+
+def test_beside_a_thing_of_its_very_name_an_object_is_none_of_a_narrower_one(
+    graph_of: MakeGraph, boxes_of: MakeBoxes
+) -> None:
+    boxes = boxes_of([(0, 1), (0, 1)], [(2, 3), (0, 1)], [(4, 5), (0, 1)])
+    description = graph_of("left(fork, plate)", kinds=FORK_AND_PLATE)
+    scene = perceived_graph(["p", "q", "r"], boxes, R)
+    found = labelled_scene(description, scene, [Label("dinner fork"), Label("plate"), Label("fork")])
+    assert pairs(found) == {"fork": "r", "plate": "q"}
+    assert found.matches["fork"].decided
