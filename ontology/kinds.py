@@ -62,6 +62,10 @@ class Kinds:
     def __len__(self) -> int:
         return len(self._all)
 
+    def __contains__(self, iri: object) -> bool:
+        """Whether a kind has that IRI."""
+        return iri in self._by_iri
+
     def __getitem__(self, iri: str) -> Kind:
         return self._by_iri[iri]
 

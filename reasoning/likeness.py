@@ -7,9 +7,11 @@ thirds of the similarity are that of objects and one third that of relations (al
 of relations). So it is 1 just where everything corresponds, and between two fully related scenes of two and more things
 it is symmetric.
 
-- Objects correspond by kind: half with every kind, itself and broader ones, that only one of the two is. An unlabelled
-  thing corresponds as far as its size is usual for the kind (:mod:`deixis.reasoning.graded.usual`), in an image beside
-  the others; where nothing is known, nothing counts against it.
+- Objects correspond by kind: half with every kind, itself and broader ones, that only one of the two is. A word that
+  stands for no known kind is a kind by itself (:func:`deixis.reasoning.labels.classes`): of it is what is called so,
+  numbers aside, and nothing else is like it. An unlabelled thing corresponds as far as its size is usual for the kind
+  (:mod:`deixis.reasoning.graded.usual`), in an image beside the others; where nothing is known, nothing counts against
+  it.
 - Relations correspond by the steps between directions (:mod:`deixis.reasoning.closeness`): half with every step
   from the nearest name that the stated relation admits.
 - A layout states few of the relations there are; a scene shows them all. Of the scene's as many are taken to ask for a
@@ -37,6 +39,7 @@ from deixis.ontology.tbox import Ontology
 from deixis.reasoning.closeness import STEP, Closeness
 from deixis.reasoning.evidence import exact_names
 from deixis.reasoning.graded.usual import usual_sizes
+from deixis.reasoning.labels import category_of, classes
 from deixis.reasoning.matching.problem import UNMATCHED, Problem
 
 Array = NDArray[np.float64]
@@ -52,6 +55,13 @@ class Described:
 
     name: str
     graph: RelationGraph
+
+    @cached_property
+    def said(self) -> tuple[tuple[str, str], ...]:
+        """The class of each object and the category of its name, both IRIs."""
+        return tuple(
+            (kind, category_of(node)) for kind, node in zip(classes(self.graph), self.graph.nodes, strict=True)
+        )
 
     @cached_property
     def edges(self) -> NDArray[np.int64]:
@@ -79,7 +89,7 @@ class Described:
 
 @dataclass(frozen=True, eq=False)
 class Seen:
-    """A scene made ready: exact names of pairs, labelled kinds (class IRI or None), and boxes or None.
+    """A scene made ready: exact names of pairs, the classes that labels say (IRI or None), and boxes or None.
 
     ``metric`` says whether the boxes are in metres; otherwise they are in pixels.
     """
@@ -99,7 +109,7 @@ class Seen:
 
 
 def seen(name: str, scene: RelationGraph, metric: bool = True) -> Seen:
-    """Makes a scene ready; ``scene.kinds`` are those of labels. Raises GraphError for one not fully related."""
+    """Makes a scene ready; ``scene.kinds`` are what labels say. Raises GraphError for one not fully related."""
     kinds = scene.kinds or (None,) * len(scene.nodes)
     return Seen(name, scene.nodes, exact_names(scene), kinds, scene.boxes, metric)
 
@@ -191,29 +201,32 @@ class Comparison:
 
     def objects(self, layout: Described, scene: Seen) -> Array:
         """How far each object corresponds to each thing, shape (n1, n2), 0 to 1."""
-        described = layout.graph.kinds or (None,) * len(layout.graph.nodes)
-        kinds = [kind for kind in described if kind is not None]
+        said = layout.said
+        sized = [kind for kind, _ in said if kind in self._kinds or kind in self._learned]
         usual: Mapping[str, Array] = {}
         if scene.boxes is not None and len(scene.boxes):
-            usual = usual_sizes(kinds, scene.boxes, self._sizes, self._learned, scene.metric)
-        result = np.ones((len(described), len(scene.kinds)))
-        for kind in dict.fromkeys(kinds):
-            rows = [i for i, other in enumerate(described) if other == kind]
-            result[rows] = self._like_kind(kind, scene, usual)
-        return result
+            usual = usual_sizes(sized, scene.boxes, self._sizes, self._learned, scene.metric)
+        alike = {pair: self._like(*pair, scene, usual) for pair in dict.fromkeys(said)}
+        return np.array([alike[pair] for pair in said]).reshape(len(said), len(scene.kinds))
 
-    def _like_kind(self, kind: str, scene: Seen, usual: Mapping[str, Array]) -> Array:
+    def _like(self, kind: str, name: str, scene: Seen, usual: Mapping[str, Array]) -> Array:
+        """How far each thing (n2,) is what an object is: of its kind, of its size, or of its very name."""
         found = usual[kind].copy() if kind in usual else np.ones(len(scene.kinds))
         for p, label in enumerate(scene.kinds):
             if label is not None:
-                found[p] = self._kinship(kind, label)
+                found[p] = 1.0 if label == name else self._kinship(kind, label)
         return found
 
     def _kinship(self, a: str, b: str) -> float:
-        """1 for the same kind, times ``STEP`` for every kind, itself and broader ones, that only one of the two is."""
+        """1 for the same kind, times ``STEP`` for every kind, itself and broader ones, that only one of the two is.
+
+        0 where they differ and one is no known kind.
+        """
         if (a, b) not in self._of_kinds:
-            first, second = ({iri, *self._kinds[iri].broader} for iri in (a, b))
-            self._of_kinds[a, b] = float(STEP ** len(first ^ second))
+            self._of_kinds[a, b] = float(a == b)
+            if a in self._kinds and b in self._kinds:
+                first, second = ({iri, *self._kinds[iri].broader} for iri in (a, b))
+                self._of_kinds[a, b] = float(STEP ** len(first ^ second))
         return self._of_kinds[a, b]
 
     def shares(self, layout: Described, scene: Seen) -> Shares:

@@ -13,10 +13,10 @@ from deixis.grammar.parser import read_script
 from deixis.grammar.script import Script
 from deixis.memory_session import MemorySession
 from deixis.ontology.errors import DeixisError
-from deixis.ontology.kinds import plain_name
 from deixis.ontology.tbox import default_ontology
 from deixis.perception.scene import Scene
 from deixis.perception.scene_file import read_scene
+from deixis.reasoning.labels import category_of
 from deixis.reasoning.likeness import Comparison, Described, Likeness, Seen, seen
 from deixis.reasoning.retrieval import rank_layouts, rank_scenes
 from deixis.warm import ready_to_ground
@@ -104,13 +104,13 @@ def _retrieved(name: str, likeness: Likeness, layout: Described, scene: Seen) ->
 
 
 def _seen(name: str, scene: Scene) -> Seen:
-    """A scene ready to be compared, its kinds those of labels of some confidence."""
+    """A scene ready to be compared, its kinds those of labels of some confidence, or the categories of their words."""
     ontology = default_ontology()
     kinds: list[str | None] = []
     for thing in scene.objects:
-        sure = thing.label is not None and thing.confidence >= SURE
-        kind = ontology.kinds.of_word(plain_name(thing.label or "")) if sure else None
-        kinds.append(kind.iri if kind else None)
+        label = thing.label if thing.confidence >= SURE else None
+        kind = ontology.of_name(label)[0] if label else None
+        kinds.append(kind.iri if kind else category_of(label) if label else None)
     return seen(name, replace(scene.graph(ontology.relations), kinds=tuple(kinds)), metric=scene.unit == "m")
 
 

@@ -52,6 +52,21 @@ def test_a_scene_ranks_the_scripts_of_a_folder() -> None:
     assert found[2]["similarity"] < 1
 
 
+def test_words_that_the_ontology_does_not_know_are_told_apart(tmp_path: Path) -> None:
+    scripts = {"dinner": "fork left of red_plate", "pump": "gasket_1 left of flange", "nonsense": "glimp left of florb"}
+    for name, text in scripts.items():
+        (tmp_path / f"{name}.layout").write_text(text, encoding="utf-8")
+    for labels, first in ((("fork", "red plate"), "dinner.layout"), (("gasket", "flange"), "pump.layout")):
+        objects = [
+            {"id": f"o{i}", "min": [i, 0], "max": [i + 0.2, 0.2], "label": word} for i, word in enumerate(labels)
+        ]
+        (tmp_path / "one.scene.json").write_text(json.dumps({"unit": "m", "objects": objects}), encoding="utf-8")
+        _, out = run(tmp_path / "one.scene.json", "--among", tmp_path, "--json", "--least", 0)
+        found = json.loads(out)["results"]
+        assert names(out)[0] == first
+        assert [entry["objects"] for entry in found] == [1.0, 0.0, 0.0]
+
+
 def test_a_script_ranks_the_scenes_of_a_folder(tmp_path: Path) -> None:
     setting = read_scene(SETTING)
     write_scene(setting, tmp_path / "whole.scene.json")

@@ -18,6 +18,7 @@ from deixis.ontology.tbox import default_ontology
 from deixis.perception.settings import formal_setting
 from deixis.reasoning.closeness import Closeness
 from deixis.reasoning.errors import SettingError
+from deixis.reasoning.labels import category_of
 from deixis.reasoning.likeness import Comparison, Described, Likeness, Seen, seen
 from deixis.reasoning.matching.problem import UNMATCHED
 from deixis.reasoning.rectangle import perceived_graph
@@ -168,6 +169,29 @@ def test_sizes_speak_where_nothing_is_labelled() -> None:
         layout("dinner_fork left of dinner_plate; dinner_plate left of dinner_knife; napkin on dinner_plate"), scene
     )
     assert plates.objects < setting.objects
+
+
+@pytest.mark.parametrize(
+    ("words", "expected"),
+    [
+        ("glimp florb_1", 1.0),
+        ("Florb glimp_7", 1.0),
+        ("glimp quux", 0.5),
+        ("gasket flange", 0.0),
+    ],
+)
+def test_words_of_no_known_kind_correspond_to_themselves_alone(words: str, expected: float) -> None:
+    boxes = np.array([[[0, 0], [0.1, 0.1]], [[0.2, 0], [0.3, 0.1]]])
+    scene = perceived_graph(["p", "q"], boxes, RELATIONS, [category_of(word) for word in words.split()])
+    assert likeness(layout("glimp left of florb_2"), scene).objects == expected
+
+
+def test_a_known_kind_is_nothing_like_a_word_that_is_not_known() -> None:
+    fork = ONTOLOGY.kinds.words["fork"].iri
+    boxes = np.array([[[0, 0], [0.02, 0.2]], [[0.2, 0], [0.22, 0.2]]])
+    scene = perceived_graph(["p", "q"], boxes, RELATIONS, [category_of("gasket"), fork])
+    assert likeness(layout("fork left of fork_2"), scene).objects == 0.5
+    assert likeness(layout("gasket is a fork; fork left of gasket"), scene).objects == 1
 
 
 def in_pixels(scale: float, metric: bool = False) -> Seen:
