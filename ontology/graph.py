@@ -54,8 +54,8 @@ class Fact:
 
     @property
     def plain(self) -> bool:
-        """One relation that is affirmed: what Definition 1 and equations 5-9 can see."""
-        return self.positive and len(self.relations) == 1
+        """One relation that is affirmed, and not rarely so: what Definition 1 and equations 5-9 can see."""
+        return self.positive and self.weight >= 0.5 and len(self.relations) == 1
 
     @property
     def relation_set(self) -> int:
@@ -243,13 +243,14 @@ class RelationGraph:
     def paper_view(self) -> PaperGraph:
         """The graph of Definition 1: one word an edge and one edge an ordered pair.
 
-        Facts that are no single affirmed relation do not enter it. Where several facts name one pair, the most
-        telling label stays: the one that implies the most others, the first stated among equals.
+        Facts that are no single affirmed relation do not enter it, nor what is rarely so, which is a denial. Where
+        several facts name one pair, the most telling label stays: the one that implies the most others, the first
+        stated among equals.
         """
         labels = tuple(r.word for r in self.vocabulary.of_reading(Reading.EXACT))
         label_of = np.array([labels.index(r.word) for r in self.vocabulary.values()], dtype=np.int8)
         telling = np.array([len(r.broader) for r in self.vocabulary.values()])
-        plain = np.flatnonzero(self.positive & (np.bitwise_count(self.relation_sets) == 1))
+        plain = np.flatnonzero(self.positive & self.affirmed & (np.bitwise_count(self.relation_sets) == 1))
         relation = np.round(np.log2(self.relation_sets[plain])).astype(np.int64)
         pair = self.subjects[plain].astype(np.int64) * len(self.nodes) + self.objects[plain]
         order = np.lexsort((plain, -telling[relation], pair))

@@ -71,7 +71,8 @@ def test_a_fact_is_written_as_the_paper_writes_it() -> None:
 
 
 def test_only_one_affirmed_relation_is_plain() -> None:
-    assert fact("left", "a", "b", optional=True, weight=0.2).plain
+    assert fact("left", "a", "b", optional=True, weight=0.5).plain
+    assert not fact("left", "a", "b", weight=0.2).plain
     assert not fact("left", "a", "b", positive=False).plain
     assert not fact("left or right", "a", "b").plain
 
@@ -182,13 +183,14 @@ def test_both_readings_of_a_word_are_one_label() -> None:
     assert labelled(made) == {("a", "b"): "left", ("b", "c"): "left"}
 
 
-def test_denials_and_choices_do_not_enter_definition_1_and_optional_facts_do() -> None:
+def test_denials_and_choices_do_not_enter_definition_1_and_optional_and_likely_facts_do() -> None:
     made = graph(
         "a b c d",
         fact("left", "a", "b", positive=False),
         fact("left or right", "b", "c"),
         fact("on", "c", "d", optional=True),
-        fact("top", "d", "a", weight=0.2),
+        fact("top", "d", "a", weight=0.7),
+        fact("top", "b", "d", weight=0.2),
     )
     assert labelled(made) == {("c", "d"): "on", ("d", "a"): "top"}
 

@@ -44,6 +44,13 @@ def test_facts_that_the_similarity_cannot_see_are_listed(graph_of: MakeGraph, fu
     assert len(found.satisfied) == 13
 
 
+def test_what_is_rarely_so_is_not_what_the_similarity_looks_for(graph_of: MakeGraph, boxes_of: MakeBoxes) -> None:
+    scene = perceived_graph(["p", "q"], boxes_of([(0, 1), (0, 1)], [(2, 3), (0, 1)]), R)
+    found = ground(no_unary_evidence(graph_of("0.2 left(a, b)"), scene), engine_named("similarity"))
+    assert found.graph_similarity == 0.0
+    assert "not seen by the similarity, being no single affirmed relation: rarely left(a, b)" in found.notes
+
+
 def test_where_one_step_of_the_similarity_is_too_much_the_exact_engine_goes_without(
     monkeypatch: pytest.MonkeyPatch, graph_of: MakeGraph, full_script: list[str]
 ) -> None:
