@@ -41,7 +41,7 @@ class Verdict(StrEnum):
     MISPLACED = "misplaced"  # it is there, and not where it belongs
     MISCOLOURED = "miscoloured"  # it is where it belongs, and of another colour than it should be
     MISSING = "missing"  # nothing fills it
-    ABSENT = "absent"  # nothing fills it, and it is optional
+    ABSENT = "absent"  # nothing fills it, and nothing firm is said of it: it need not be there
     UNDETERMINED = "undetermined"  # something may fill it, but only the layout says so
 
 

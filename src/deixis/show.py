@@ -158,7 +158,7 @@ def check_lines(checked: Checked) -> list[str]:
     lines += [
         f"undetermined {entry.role}: {entry.perceived}, {_known_by(entry)}" for entry in table.of(Verdict.UNDETERMINED)
     ]
-    lines += [f"absent      {entry.role}, which is optional" for entry in table.of(Verdict.ABSENT)]
+    lines += [f"absent      {entry.role}, which need not be there" for entry in table.of(Verdict.ABSENT)]
     lines.append(f"correct     {len(table.of(Verdict.CORRECT))} of {len(table.roles)}")
     return lines + [f"Note: {note}." for note in table.grounding.notes]
 
