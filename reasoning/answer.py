@@ -119,9 +119,10 @@ class Grounding:
     """The answer of an engine, with all that qualifies it.
 
     ``probabilities`` says what those of the matches are worth, and ``probability_error`` by how much they may be off.
-    ``pivotal`` is None where it was not looked for what would change without a fact. ``finished`` says whether the
-    engine came to its end within the time limit. By ``gap`` (nats) another answer may be likelier at most: 0 where this
-    one is proved the best, infinite where the engine has no bound.
+    ``pivotal`` is None where it was not looked for what would change without a fact, as where the description is taken
+    to be of another scene. ``finished`` says whether the engine came to its end within the time limit. By ``gap``
+    (nats) another answer may be likelier at most: 0 where this one is proved the best, infinite where the engine has no
+    bound.
     """
 
     engine: str

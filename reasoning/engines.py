@@ -62,6 +62,7 @@ class Alignment:
     gap: float = math.inf  # by how much another map may be more likely (log) at most; infinite where nobody knows
     posterior: Posterior | None = None  # of engines that work with likelihoods
     sides: int = 1  # from so many sides, each by its probability
+    of_another: bool = False  # whether nothing is matched because the description is probably of another scene
     margins: NDArray[np.float64] | None = None  # (n1,) what the next best choice for each would lose; nan: not known
     runners_up: NDArray[np.int64] | None = None  # (n1,) that choice, or UNMATCHED
 

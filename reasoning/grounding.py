@@ -34,6 +34,8 @@ DROPPING = 0.1
 
 NO_TIME = "there was no time to find out what rests on which fact"
 
+NOT_ASKED = "whether it would be so without one of the facts was not looked for"
+
 
 def ground(
     evidence: Evidence, engine: Engine, time_limit: float = DEFAULT_TIME_LIMIT, notes: tuple[str, ...] = ()
@@ -55,8 +57,6 @@ def ground(
     names = evidence.description.nodes
     posterior = alignment.posterior
     pivotal = _pivotal(in_order, alignment, matches, time.perf_counter() + DROPPING * time_limit)
-    few = len(in_order.description.nodes) <= MOST_DROPPED
-    hurried = few and pivotal is None and posterior is not None and alignment.proved_best
     return Grounding(
         engine=alignment.engine,
         matches=MappingProxyType({name: matches[name] for name in names if name in matches}),
@@ -69,7 +69,7 @@ def ground(
         finished=alignment.finished,
         gap=alignment.gap,
         converged=alignment.converged,
-        notes=notes + _notes(evidence, alignment) + ((NO_TIME,) if hurried else ()),
+        notes=notes + _notes(evidence, alignment) + (_why_not_pivotal(in_order, alignment) if pivotal is None else ()),
         pivotal=pivotal,
         probabilities=Standing.NONE if posterior is None else (Standing.EXACT if posterior.exact else Standing.SAMPLED),
         probability_error=0.0 if posterior is None else posterior.error,
@@ -168,11 +168,13 @@ def _decided(evidence: Evidence, alignment: Alignment, i: int, grouped: bool) ->
 def _pivotal(
     evidence: Evidence, alignment: Alignment, matches: dict[str, Match], deadline: float
 ) -> tuple[Pivotal, ...] | None:
-    """The facts without which something would be otherwise; None where there was no time to look at all."""
-    if alignment.posterior is None or not alignment.proved_best:
+    """The facts without which something would be otherwise; None where there was no time to look at all.
+
+    None, too, where nothing was found as of another scene: the likeliest maps without a fact do not say whether it
+    would be so still.
+    """
+    if alignment.posterior is None or not alignment.proved_best or alignment.of_another:
         return None
-    if (alignment.assignment == UNMATCHED).all():
-        return ()
     found, seen, probable = [], 0, alignment.posterior.exact and alignment.sides == 1
     for dropped in without_each(evidence.problem, alignment.assignment, probable, deadline):
         seen += 1
@@ -182,6 +184,13 @@ def _pivotal(
     if seen < len(evidence.facts):
         return None
     return tuple(sorted(found, key=lambda pivotal: _place(pivotal.fact)))
+
+
+def _why_not_pivotal(evidence: Evidence, alignment: Alignment) -> tuple[str, ...]:
+    """What is to be said where a proved answer, with its probabilities, is without the facts that it rests on."""
+    if len(evidence.description.nodes) > MOST_DROPPED or alignment.posterior is None or not alignment.proved_best:
+        return ()
+    return (NOT_ASKED if alignment.of_another else NO_TIME,)
 
 
 def _place(fact: Fact) -> tuple[str, int, str]:

@@ -36,9 +36,7 @@ CELLS, GRACE = 2e7, 0.1
 UNRELATED = 0.02
 """How often a description is of another scene, where all is as chance has it."""
 
-OF_ANOTHER = (
-    "the description, with how large such things usually are, fits so little that it is probably of another scene"
-)
+OF_ANOTHER = "the description{} fits so little that it is probably of another scene"
 
 
 @dataclass(frozen=True)
@@ -103,7 +101,7 @@ def _answer(
     notes += unknown
     if unrelated > 0.5:
         assignment, probable = np.full_like(assignment, UNMATCHED), probable.or_nobody(unrelated)
-        notes += (OF_ANOTHER,)
+        notes += (OF_ANOTHER.format(_besides_facts(evidence)),)
     notes += () if known else ("there was no time to find out how probable the matches are",)
     return Alignment(
         engine=engine,
@@ -115,7 +113,15 @@ def _answer(
         finished=finished,
         gap=gap,
         posterior=probable if known else None,
+        of_another=unrelated > 0.5,
     )
+
+
+def _besides_facts(evidence: Evidence) -> str:
+    """What was used besides the facts, as a part of a sentence, empty where nothing was."""
+    colours = evidence.colours is not None and evidence.colours.any()
+    used = ["how large such things usually are"] * bool(evidence.sizes.any()) + ["their colours"] * bool(colours)
+    return f", with {' and '.join(used)}," if used else ""
 
 
 def _of_another_scene(evidence: Evidence, assignment: NDArray[np.int64], deadline: float) -> float:

@@ -211,5 +211,5 @@ def test_a_script_about_nothing_in_the_scene_is_told_so(said: str, tmp_path: Pat
     code, out, _ = deixis("ground", script, scene, "--json")
     assert code == 1
     found = json.loads(out)
-    assert not found["matches"] and len(found["unmatched_objects"]) == 2 and not found["pivotal"]
+    assert not found["matches"] and len(found["unmatched_objects"]) == 2 and found["pivotal"] is None
     assert any("another scene" in note for note in found["notes"])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from itertools import combinations, permutations
 
 import numpy as np
@@ -20,7 +21,7 @@ from deixis.perception.settings import formal_setting
 from deixis.reasoning.answer import Standing
 from deixis.reasoning.engines import Alignment, engine_named
 from deixis.reasoning.evidence import Evidence, no_unary_evidence
-from deixis.reasoning.grounding import ground
+from deixis.reasoning.grounding import NOT_ASKED, ground
 from deixis.reasoning.matching.problem import UNMATCHED
 from deixis.reasoning.meaning import LITERAL, SHIPPED
 from deixis.reasoning.rectangle import perceived_graph
@@ -205,6 +206,40 @@ def test_without_a_pivotal_fact_the_answer_is_the_one_foretold(evidence: Evidenc
         )
         best = max(then.problem.value(option) for option in maps(evidence.allowed))
         assert then.problem.value(assignment) == pytest.approx(best, abs=1e-5)
+
+
+def elsewhere(graph_of: MakeGraph, boxes_of: MakeBoxes) -> Evidence:
+    """A description that contradicts itself, so that it fits no map well; without one fact, all are found."""
+    told = graph_of(
+        *("bottom_right(c, d)", "top(c, b)", "not left(d, c)", "top_left(b, d)"),
+        *("0.8 right(d, c)", "not left(c, d)", "0.8 right(d, b)"),
+    )
+    seen = scene(boxes_of([(11, 18), (20, 26)], [(32, 45), (32, 50)], [(43, 50), (35, 51)]))
+    return no_unary_evidence(told, seen, LITERAL)
+
+
+def test_what_makes_a_description_one_of_another_scene_is_not_said_to_be_no_fact(
+    graph_of: MakeGraph, boxes_of: MakeBoxes
+) -> None:
+    found = ground(elsewhere(graph_of, boxes_of), EXACT)
+    assert not found.matches
+    assert found.pivotal is None
+    assert NOT_ASKED in found.notes
+
+
+def test_a_description_of_another_scene_is_told_with_what_was_known_besides(
+    graph_of: MakeGraph, boxes_of: MakeBoxes
+) -> None:
+    bare = elsewhere(graph_of, boxes_of)
+    some = np.full_like(bare.sizes, -0.1)
+    others = {
+        "the description fits so little": bare,
+        "the description, with how large such things usually are, fits so little": replace(bare, sizes=some),
+        "the description, with their colours, fits so little": replace(bare, colours=some),
+    }
+    for begins, evidence in others.items():
+        (note,) = [note for note in ground(evidence, EXACT).notes if "another scene" in note]
+        assert note.startswith(begins)
 
 
 @settings(max_examples=40, deadline=None)
