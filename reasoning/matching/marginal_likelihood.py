@@ -11,8 +11,11 @@ from deixis.reasoning.matching.posterior import FACTOR_CELLS
 from deixis.reasoning.matching.problem import Problem
 from deixis.reasoning.matching.summing import add_up, factors
 
-LEFT_OUT = (1e-3, 1e-5, 1e-7)
+LEFT_OUT = (1e-3, 1e-5, 1e-7, 1e-10, 1e-15, 1e-25)
 """Shares of the most that all maps can sum up to, below which partial maps are not looked into, one after another."""
+
+NEAR = 0.01
+"""The share of a sum that may be missing of it for the bound to be near enough."""
 
 NODES = 5_000
 """Partial maps that are looked at for each share at the most."""
@@ -40,6 +43,8 @@ def log_marginal_likelihood(problem: Problem) -> float:
         if missing == math.inf:
             break
         least = min(least, math.log(max(found + missing, 1e-300)))
+        if missing <= NEAR * found:
+            break
     return least + parts.log_scale - _log_prior(problem)
 
 
