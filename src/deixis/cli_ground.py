@@ -89,7 +89,7 @@ def ground(
         with working("grounding"):
             found = run(parsed, seen, engine=engine, time_limit=left, meaning=meaning)
     if plot is not None:
-        from deixis.plot import plot_grounding
+        from deixis.plot_grounding import plot_grounding
 
         about = (parsed.title or parsed.name, f"scene {side.turn}" if side and side.turn else "")
         plot_grounding(found, seen, plot, title=", ".join(filter(None, about)))

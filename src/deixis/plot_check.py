@@ -6,20 +6,30 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from deixis.perception.scene import Scene
-from deixis.plot import grounding_figure, save
+from deixis.plot import save
+from deixis.plot_grounding import Marks, grounding_figure
 from deixis.reasoning.checking import Verdict
 from deixis.session import Checked
 
 
 def plot_check(checked: Checked, scene: Scene, path: str | Path) -> None:
-    """Draws the table from above: what is wrong with a thing in red, what is undetermined dotted, and the verdict."""
+    """Draws the table from above: what is misplaced or extra in red, what is undetermined dotted, and the verdict.
+
+    What is of another colour is hatched.
+    """
+    title = f"{checked.layout.title or checked.layout.name}: {_summary(checked)}"
+    save(grounding_figure(checked.table.grounding, scene, title, marks_of(checked)), path)
+
+
+def marks_of(checked: Checked) -> Marks:
+    """The things that the picture marks; what is both misplaced and of another colour bears both marks."""
     table = checked.table
     wrong = {entry.perceived for entry in table.of(Verdict.MISPLACED) if entry.perceived is not None}
-    wrong |= {entry.perceived for entry, _ in table.miscoloured if entry.perceived is not None}
-    wrong |= {entry.perceived for entry in table.extra}
-    unsure = {entry.perceived for entry in table.of(Verdict.UNDETERMINED) if entry.perceived is not None}
-    title = f"{checked.layout.title or checked.layout.name}: {_summary(checked)}"
-    save(grounding_figure(table.grounding, scene, title, wrong, unsure), path)
+    return Marks(
+        wrong=wrong | {entry.perceived for entry in table.extra},
+        miscoloured={entry.perceived for entry, _ in table.miscoloured if entry.perceived is not None},
+        unsure={entry.perceived for entry in table.of(Verdict.UNDETERMINED) if entry.perceived is not None},
+    )
 
 
 def _summary(checked: Checked) -> str:

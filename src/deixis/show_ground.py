@@ -22,7 +22,7 @@ def grounding_lines(found: Grounding) -> list[str]:
     elsewhere = [match.object for match in found.matches.values() if _likelier_elsewhere(match)]
     if elsewhere:
         told = "This is the likeliest map as a whole; taken alone, likelier to be another thing: "
-        lines += ["", f"{told}{', '.join(_at_most_many(elsewhere))}."]
+        lines += ["", f"{told}{', '.join(at_most_many(elsewhere))}."]
     groups = [group for group in found.interchangeable if any(name in found.matches for name in group)]
     if groups:
         lines += ["", "The description cannot tell these apart, so their names may be swapped:"]
@@ -43,11 +43,11 @@ def _left_out_lines(left_out: Sequence[LeftOut]) -> Iterator[str]:
     for reason in dict.fromkeys(left.reason for left in left_out):
         names = [left.name for left in left_out if left.reason == reason]
         if len(names) > MANY:
-            names = [", ".join(_at_most_many(names)) + " (--json has them)"]
+            names = [", ".join(at_most_many(names)) + " (--json has them)"]
         yield from (f"Left out: {name}: {reason}." for name in names)
 
 
-def _at_most_many(told: list[str]) -> list[str]:
+def at_most_many(told: list[str]) -> list[str]:
     """The first ones, and how many more there are."""
     return [*told[:MANY], f"{len(told) - MANY} more"] if len(told) > MANY else told
 
@@ -58,12 +58,12 @@ def _match_line(match: Match) -> str:
     if match.probability is not None:
         line += f" {_probability(match.probability)}"
         others = [f"{_thing(other)} {_probability(other.probability or 0)}" for other in match.alternatives]
-        return line + (f"   or {', '.join(_at_most_many(others))}" if others and not match.decided else "")
+        return line + (f"   or {', '.join(at_most_many(others))}" if others and not match.decided else "")
     equal = [_thing(other) for other in match.alternatives if other.cost <= 1e-9]
     if match.decided or not match.alternatives:
         return line.rstrip()
     return (
-        f"{line} or {', '.join(_at_most_many(equal))}"
+        f"{line} or {', '.join(at_most_many(equal))}"
         if equal
         else f"{line} or, less likely, {_thing(match.alternatives[0])}"
     )

@@ -11,8 +11,9 @@ from deixis.examples_data import example
 from deixis.grammar.script import Script
 from deixis.perception.scene import Scene
 from deixis.perception.scene_file import read_scene
-from deixis.plot import plot_grounding, require_picture
+from deixis.plot import require_picture
 from deixis.plot_check import plot_check
+from deixis.plot_grounding import plot_grounding
 from deixis.reasoning.answer import Grounding
 from deixis.reasoning.graded.unary import UnaryWeights
 from deixis.reasoning.meaning import Meaning
