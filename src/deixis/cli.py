@@ -1,6 +1,6 @@
 """The command line. Each command loads, calls and prints; everything heavy is imported by the command that needs it.
 
-Exit codes: 0 done, 1 the answer is no, 2 bad input, 3 undecided within the time limit.
+Exit codes: 0 done, 1 the answer is no, 2 bad input, 3 undecided within the time limit, 130 interrupted.
 """
 
 from __future__ import annotations
@@ -39,6 +39,7 @@ from deixis.cli_see import register as register_see
 from deixis.cli_simulate import register as register_simulate
 from deixis.cli_solve import solve
 from deixis.cli_time import time_command
+from deixis.interrupts import INTERRUPTED, noting_interrupts
 
 app = typer.Typer(
     name="deixis",
@@ -169,19 +170,32 @@ def _replace(path: Path, text: str) -> None:
 
 
 def main() -> None:
-    """Runs the command line; errors of Deixis are one message and exit code 2, never a traceback."""
+    """Runs the command line; errors of Deixis are one message and exit code 2, never a traceback.
+
+    Whatever fails once it was interrupted ends it quietly, with exit code 130.
+    """
+    with noting_interrupts() as interrupted:
+        try:
+            app()
+        except Exception as error:
+            if interrupted.is_set():
+                sys.exit(INTERRUPTED)
+            _tell(error)
+        except KeyboardInterrupt:
+            sys.exit(INTERRUPTED)
+
+
+def _tell(error: Exception) -> None:
+    """Ends the program with what an error says."""
     from deixis.ontology.errors import DeixisError
 
-    try:
-        app()
-    except DeixisError as error:
+    if isinstance(error, DeixisError):
         _fail(str(error), UNDECIDED if isinstance(error, TimeoutError) else BAD_INPUT)
-    except OSError as error:
+    if isinstance(error, OSError):
         _fail(f"{error.filename or 'standard output'}: {error.strerror or error}")
-    except Exception as error:
-        if os.environ.get("DEIXIS_DEBUG"):
-            raise
-        _fail(f"a defect in Deixis, please report it: {type(error).__name__}: {error} (DEIXIS_DEBUG=1 shows where)")
+    if os.environ.get("DEIXIS_DEBUG"):
+        raise error
+    _fail(f"a defect in Deixis, please report it: {type(error).__name__}: {error} (DEIXIS_DEBUG=1 shows where)")
 
 
 def _fail(message: str, code: int = BAD_INPUT) -> None:
