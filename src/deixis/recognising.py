@@ -79,12 +79,16 @@ MOST_CONFIDENCE = 0.99
 
 @dataclass(frozen=True)
 class Taught:
-    """A view that was kept. ``before`` is the category that it was in, where a teacher corrects an earlier word."""
+    """A view that was kept. ``before`` is the category that it was in, where a teacher corrects an earlier word.
+
+    ``again`` is whether it was a view of this category before.
+    """
 
     view: str
     category: str
     views: int
     before: str | None
+    again: bool = False
 
 
 @dataclass(frozen=True)
@@ -153,7 +157,8 @@ def keep_views(memory: PerceptualMemory, views: Sequence[View]) -> tuple[Taught,
             known[view.category] = category.with_view(view.id, descriptors, thing_of(view))
             place[view.id] = view.category
             corrected = before if before != view.category else None
-            taught.append(Taught(view.id, view.category, len(known[view.category]), corrected))
+            again = before == view.category
+            taught.append(Taught(view.id, view.category, len(known[view.category]), corrected, again))
         records = [record_of(category, ways[name]) for name, category in known.items() if len(category)]
         memory.write(Batch(views, records))
         for name, category in known.items():

@@ -123,9 +123,12 @@ def learned_lines(learned: Learned, memory: str) -> list[str]:
         f"{_count(layout.facts, 'fact')}; in {memory}"
     ]
     if learned.categories:
-        lines.append("Categories with a new view: " + ", ".join(learned.categories))
-    if learned.seen:
-        lines.append("What it looks like is kept of: " + ", ".join(taught.category for taught in learned.seen))
+        lines.append("Settled, each an example of its category: " + ", ".join(learned.categories))
+    new, again = ([taught.category for taught in learned.seen if taught.again == same] for same in (False, True))
+    if new:
+        lines.append("Categories with a new view: " + ", ".join(new))
+    if again:
+        lines.append("The same view as before, kept once: " + ", ".join(again))
     lines += [f"{word}." for word in learned.standing]
     if learned.doubtful:
         lines.append("Recorded as not settled, and teaching nothing: " + ", ".join(learned.doubtful))

@@ -425,6 +425,15 @@ def test_views_are_taken_back_where_the_lesson_cannot_be_kept(tables: Path, tmp_
         assert sum(session.categories().values()) == len(views)
 
 
+def test_a_lesson_says_which_views_are_new_and_which_it_had_before(tables: Path, tmp_path: Path) -> None:
+    arguments = ("learn", FULL, tables / "7.scene.json", "--memory", tmp_path / "memory")
+    first, again = (deixis(*arguments)[1].splitlines() for _ in range(2))
+    (new,) = (line.removeprefix("Categories with a new view: ") for line in first if "new view" in line)
+    assert not any("as before" in line for line in first)
+    assert f"The same view as before, kept once: {new}" in again
+    assert not any("new view" in line for line in again)
+
+
 @pytest.mark.parametrize("viewpoint", ["", " ", "\udcff", "a\nb"])
 def test_a_viewpoint_that_no_scene_can_have_is_refused(tables: Path, viewpoint: str) -> None:
     code, out, err = deixis("perceive", tables / "7.pcd", "--viewpoint", viewpoint)
