@@ -135,6 +135,8 @@ class Archive:
                 yield View(said["id"], said["category"], time, *arrays_by_use(arrays), said["metadata"])
 
     def _check_head(self) -> None:
+        if _HEAD not in self._zip.namelist():
+            raise ImportFormatError(f"{self.file}: this is no export of a memory: it has no '{_HEAD}'")
         with _told(self.file, _HEAD):
             head = json.loads(self._read(_HEAD))
             if head["format"] != FORMAT:

@@ -144,7 +144,7 @@ def _head(**more: Any) -> bytes:
 
 
 BAD: dict[str, tuple[dict[str, bytes | None], str]] = {
-    "no head": ({"memory.json": None}, "memory.json"),
+    "no head": ({"memory.json": None}, r"this is no export of a memory: it has no 'memory\.json'"),
     "head is no json": ({"memory.json": b"{"}, "memory.json: Expecting"),
     "head is a list": ({"memory.json": b"[]"}, "memory.json"),
     "other format": ({"memory.json": _head(format="x")}, "does not say deixis-perceptual-memory"),
