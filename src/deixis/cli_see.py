@@ -130,6 +130,7 @@ def teach(
     as_json: AsJson = False,
 ) -> None:
     """Show what a word looks like: one view more of a category; said again of the same view, a correction."""
+    from deixis.perceptual_session import category_name
     from deixis.session import Session
 
     with Session(memory) as session:
@@ -137,12 +138,17 @@ def teach(
     if as_json:
         print_json({"view": taught.view, "category": taught.category, "views": taught.views, "before": taught.before})
     else:
-        print(_taught_line(taught, object))
+        print_lines([*_meant_lines(category_name(label), taught.category), _taught_line(taught, object)])
 
 
 def _taught_line(taught: Taught, object: str) -> str:
     corrected = f", and no longer of '{taught.before}'" if taught.before else ""
     return f"{object} is a view of '{taught.category}'{corrected}; {taught.views} in all."
+
+
+def _meant_lines(said: str, known: str) -> list[str]:
+    """Says so where a word is taken for a category that is spelled otherwise."""
+    return [] if said == known else [f"'{said}' is taken for '{known}', from which only its case differs."]
 
 
 def recognise(
@@ -249,9 +255,11 @@ def ask(
     from deixis.perceptual_session import new_category_name
     from deixis.session import Session, load_scene
 
-    name, seen = new_category_name(word), load_scene(scene)
+    said, seen = new_category_name(word), load_scene(scene)
     _require_something_to_show(seen)
     with Session(memory) as session:
+        name = session.category_meant(said)
+        print_lines(_meant_lines(said, name))
         if name in session.categories() and points_at is None:
             with progress_bar("reading what was taught") as progress:
                 answers = session.recognise(seen.without_labels(), progress, _print_note).answers

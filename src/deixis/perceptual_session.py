@@ -11,6 +11,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
+from deixis.grammar.names import key_of
 from deixis.memory_session import MemorySession
 from deixis.ontology.kinds import plain_name
 from deixis.perception.errors import SceneError
@@ -61,11 +62,20 @@ class PerceptualSession(MemorySession):
     ) -> Taught:
         """Keeps what a thing of a scene looks like as a view of a category, which comes into being if it is new.
 
-        Taught again under another word, the view is corrected. Raises SceneError where the scene has no such thing, or
-        no cloud of it; SettingError for a name that is none.
+        A word that differs from a known category only in case means that one. Taught again under another word, the
+        view is corrected. Raises SceneError where the scene has no such thing, or no cloud of it; SettingError for a
+        name that is none.
         """
         scene = scene if isinstance(scene, Scene) else read_scene(scene)
-        return self.keep_views([_view(scene, object, new_category_name(category), teacher)])[0]
+        return self.keep_views([_view(scene, object, self.category_meant(new_category_name(category)), teacher)])[0]
+
+    def category_meant(self, name: str) -> str:
+        """The known category of that name, else the first that differs from it only in case, else the name itself."""
+        if not self.has_views():
+            return name
+        known = self._despite_damage(self.views(), lambda memory: sorted(memory.categories()))
+        alike = [category for category in known if key_of(category) == key_of(name)]
+        return name if name in alike or not alike else alike[0]
 
     def keep_views(self, views: Sequence[View]) -> tuple[Taught, ...]:
         """Keeps views, all or none. A damaged one in the way teaches nothing, and is mended where it is kept again."""

@@ -434,6 +434,16 @@ def test_a_lesson_says_which_views_are_new_and_which_it_had_before(tables: Path,
     assert not any("new view" in line for line in again)
 
 
+def test_a_word_that_differs_in_case_alone_is_a_known_category_and_that_is_told(tables: Path, tmp_path: Path) -> None:
+    scene, memory = tables / "7.scene.json", ("--memory", tmp_path / "memory")
+    assert "taken for" not in deixis("teach", scene, "o1", "Wine Glass", *memory)[1]
+    for arguments in (("teach", scene, "o2", "wine glass"), ("ask", "WINE_GLASS", scene, "--points-at", "o3")):
+        out = deixis(*arguments, *memory)[1]
+        assert "is taken for 'Wine_Glass', from which only its case differs." in out
+        assert "is a view of 'Wine_Glass'" in out
+    assert json.loads(deixis("category", "list", "--json", *memory)[1]) == {"Wine_Glass": 3}
+
+
 @pytest.mark.parametrize("viewpoint", ["", " ", "\udcff", "a\nb"])
 def test_a_viewpoint_that_no_scene_can_have_is_refused(tables: Path, viewpoint: str) -> None:
     code, out, err = deixis("perceive", tables / "7.pcd", "--viewpoint", viewpoint)
