@@ -9,6 +9,7 @@ from lark import Token
 
 from deixis.grammar.draft import Draft
 from deixis.grammar.errors import SHOWN, Refusal, shortened
+from deixis.grammar.reserved import KEPT_FOR, how_to_name, may_be_meant_as_name, names_things_too
 from deixis.grammar.tree import FIRM_QUALITY, source_of, span_of
 from deixis.ontology.relation import plain_phrase
 from deixis.ontology.source import Source
@@ -63,12 +64,22 @@ def unexpected(tokens: list[Token], at: int, accepts: set[str], draft: Draft) ->
         return _too_early(tokens, accepts, draft)
     token = tokens[at]
     if token.type == "ARTICLE":
-        return Refusal(source_of(token), f"expected a name after '{token}'")
+        return _no_name(tokens, at)
     if token.type in OUT_OF_PLACE:
         return Refusal(source_of(token), f"'{token}' is not expected here", QUOTE)
     if token.type == "FUNCTION" or (token.type in NAMES and at and tokens[at - 1].type in NAMES):
         return _no_relation(tokens, at, accepts, draft)
     return _other(tokens, at, accepts)
+
+
+def _no_name(tokens: list[Token], at: int) -> Refusal:
+    """An article that no name follows; perhaps a reserved word that was meant as one."""
+    message = f"expected a name after '{tokens[at]}'"
+    if at + 1 == len(tokens) or not may_be_meant_as_name(tokens, at + 1):
+        return Refusal(source_of(tokens[at]), message)
+    word = tokens[at + 1]
+    message = f"{message}, not '{shortened(word)}', which {KEPT_FOR[word.type]}"
+    return Refusal(source_of(word), message, how_to_name(tokens, at + 1))
 
 
 def _place(tokens: list[Token], at: int) -> Source:
@@ -122,6 +133,8 @@ def _bare(tokens: list[Token], draft: Draft) -> Refusal:
 def _no_relation(tokens: list[Token], at: int, accepts: set[str], draft: Draft) -> Refusal:
     """Something stands where a relation should: the phrase that is meant, if one looks like the words there."""
     token, shown = tokens[at], shortened(tokens[at])
+    if names_things_too(token):
+        return Refusal(source_of(token), _expected(accepts, shown), how_to_name(tokens, at))
     if "RELATION" in accepts and (meant := _meant(tokens, at, draft)) is not None:
         said, where, phrase = meant
         return Refusal(where, f"expected a relation, not '{said}'", f"did you mean '{phrase}'?")
@@ -135,6 +148,12 @@ def _no_relation(tokens: list[Token], at: int, accepts: set[str], draft: Draft) 
         return Refusal(source_of(token), f"{A_RELATION}, not '{shown}'", hint)
     nearness = NO_NEARNESS if str(token).casefold() in NEARNESS else None
     return Refusal(source_of(token), f"expected a name, and '{shown}' cannot be in one unquoted", nearness)
+
+
+def _expected(accepts: set[str], shown: str) -> str:
+    if accepts & {"NAME", "STRING"}:
+        return f"expected a name, and '{shown}' cannot be in one unquoted"
+    return f"{A_RELATION}, not '{shown}'" if "RELATION" in accepts else f"'{shown}' is not expected here"
 
 
 def _meant(tokens: list[Token], at: int, draft: Draft) -> tuple[str, Source, str] | None:
@@ -186,7 +205,9 @@ def _other(tokens: list[Token], at: int, accepts: set[str]) -> Refusal:
     if "_RPAR" in accepts:
         return Refusal(where, f"expected a closing bracket, not '{shown}'")
     if "_LPAR" in accepts:
-        return Refusal(where, f"expected a pair in brackets, as in left(fork, plate), not '{shown}'")
+        named = token.type == "NAME" and may_be_meant_as_name(tokens, at - 1)
+        hint = how_to_name(tokens, at - 1) if named else None
+        return Refusal(where, f"expected a pair in brackets, as in left(fork, plate), not '{shown}'", hint)
     if "$END" in accepts:
         quality = token.type in ("_AND", "_OR") and tokens[at - 2].type == "IS"
         return Refusal(where, f"expected the end of the statement, not '{shown}'", ONE_QUALITY if quality else PARTED)

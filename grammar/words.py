@@ -31,6 +31,7 @@ though through throughout till to together too toward towards until up us very v
 whereas whether which while who whom whose why will with without would yet you your
 """
 FUNCTION_WORDS = frozenset(_FUNCTION_WORDS.split())
+NOUNS_TOO = frozenset({"can", "mine", "till"})  # a watering can, and others that things may be called
 
 KEYWORDS: dict[str, str] = {
     **dict.fromkeys(FUNCTION_WORDS, "FUNCTION"),
