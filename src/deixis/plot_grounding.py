@@ -32,7 +32,7 @@ WIDTH, LEAST_HEIGHT, MOST_HEIGHT = 9.0, 3.0, 12.0
 LEGEND_LINE = 0.17
 """Inches: how high a line of the legend is."""
 
-LINE, HALF_LINE, TITLE_LINE = 115, 50, 85
+LINE, HALF_LINE, TITLE_LINE = 115, 50, 75
 """Characters that fit into a line of the legend, into half of one, and into one of the title."""
 
 NO_BREAK = "\u00a0"

@@ -17,6 +17,9 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 FONT = 8.0
+LONGEST = 48
+"""Characters of a name that are written: with an id and a probability, too."""
+
 RINGS = 40
 """How many line heights away from its thing a name may stand."""
 COVERED = 600.0
@@ -118,12 +121,13 @@ def _points(axes: Axes, clear: Sequence[tuple[float, float]]) -> NDArray[np.floa
 
 
 def _shown(name: str) -> str:
-    """A name as it is read; one of nothing but lines stays as it is written.
+    """A name as it is read, a very long one shortened; one of nothing but lines stays as it is written.
 
     >>> _shown("wine_glass_2"), _shown("_")
     ('wine glass 2', '_')
     """
-    return name.replace("_", " ") if name.strip("_ ") else name
+    shown = name.replace("_", " ") if name.strip("_ ") else name
+    return shown if len(shown) <= LONGEST else f"{shown[: LONGEST - 1]}…"
 
 
 def _outline(axes: Axes, thing: PerceivedObject) -> Box:

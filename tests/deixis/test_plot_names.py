@@ -44,6 +44,11 @@ def test_nothing_is_said_of_names_where_all_are_written() -> None:
     assert len(axes.texts) == 20 and "left out" not in axes.get_xlabel()
 
 
+def test_a_name_as_long_as_the_picture_is_shortened_and_not_left_out() -> None:
+    (axes,) = written([PerceivedObject("x" * 400, (1, 1), (9, 9))]).axes
+    assert [text.get_text() for text in axes.texts] == ["x" * 47 + "…"]
+
+
 def test_what_has_no_name_of_its_own_is_written_in_another_hand() -> None:
     (axes,) = written(grid(2, 2.0), quiet=("thing_1",)).axes
     assert [text.get_fontstyle() for text in axes.texts] == ["normal", "italic"]
