@@ -3,11 +3,20 @@
 from __future__ import annotations
 
 import signal
+from collections.abc import Iterator
 
 import pytest
 from commands import deixis
 
 from deixis.interrupts import noting_interrupts
+
+
+@pytest.fixture(autouse=True)
+def pythons_own_handler() -> Iterator[None]:
+    """Whoever runs the tests in the background has the signal ignored."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
 
 
 @pytest.mark.parametrize("error", [ImportError("generic_type: cannot initialize type"), OSError("no such library")])
@@ -40,3 +49,11 @@ def test_an_interrupt_is_noted_and_raised_and_the_handler_is_put_back() -> None:
             signal.raise_signal(signal.SIGINT)
         assert interrupted.is_set()
     assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+
+
+def test_where_the_signal_is_ignored_it_stays_so() -> None:
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    with noting_interrupts() as interrupted:
+        signal.raise_signal(signal.SIGINT)
+        assert not interrupted.is_set()
+    assert signal.getsignal(signal.SIGINT) is signal.SIG_IGN
