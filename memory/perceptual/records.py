@@ -13,7 +13,7 @@ import json
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
-from functools import cached_property
+from functools import cached_property, lru_cache
 from types import MappingProxyType
 from typing import Any
 
@@ -157,12 +157,17 @@ def arrays_by_name(
 
 def arrays_by_use(arrays: dict[str, NDArray[Any]]) -> tuple[dict[str, NDArray[Any]], NDArray[Any] | None]:
     """Descriptors and points, of arrays by the names under which they are kept. Raises ValueError for another name."""
-    points = arrays.pop(_POINTS, None)
-    start = len(_DESCRIPTOR)
-    descriptors = {name[start:]: array for name, array in arrays.items() if name.startswith(_DESCRIPTOR)}
-    if len(descriptors) < len(arrays):
+    names = _uses(tuple(arrays))
+    descriptors = {name: array for name, array in zip(names, arrays.values(), strict=True) if name}
+    return descriptors, None if len(descriptors) == len(names) else arrays[_POINTS]
+
+
+@lru_cache(256)
+def _uses(names: tuple[str, ...]) -> tuple[str, ...]:
+    """The descriptors' names, and nothing for the points; views of one layout have the same."""
+    if any(name != _POINTS and not name.startswith(_DESCRIPTOR) for name in names):
         raise ValueError(f"a view has {_POINTS} and {_DESCRIPTOR}…, and no other arrays")
-    return descriptors, points
+    return tuple("" if name == _POINTS else name.removeprefix(_DESCRIPTOR) for name in names)
 
 
 def json_text(metadata: Json) -> str:

@@ -66,8 +66,7 @@ def unpack(data: memoryview) -> tuple[dict[str, NDArray[Any]], str]:
 
     For data that is known to be whole; raises ValueError, at least, for other data.
     """
-    end = 8 + int.from_bytes(data[:8], "little")
-    layout = _layout_in(bytes(data[:end]))
+    layout = _layout_in(bytes(data[: 8 + int.from_bytes(data[:8], "little")]))
     return {part.name: np.ndarray(part.shape, part.dtype, data, part.offset) for part in layout.parts}, layout.note
 
 
