@@ -24,6 +24,7 @@ from numpy.typing import NDArray
 
 _SMALL, WIDE = 4, 8
 _BLOCK = 1024  # words of two numbers: their key fits into the smallest cache
+_WORD = np.dtype("<u8")
 _ODD, _ALL = 0x9E3779B97F4A7C15, (1 << 64) - 1
 
 
@@ -68,7 +69,7 @@ def _sum(data: bytes | bytearray, length: int) -> int:
     nh, blocks = _compiled()
     whole = length // 8
     rest = int.from_bytes(data[whole * 8 : length], "little") if length % 8 else 0
-    return nh(np.frombuffer(data, "<u8", whole), blocks, length, rest)
+    return nh(np.frombuffer(data, _WORD, whole), blocks, length, rest)
 
 
 @cache

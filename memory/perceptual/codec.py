@@ -101,10 +101,9 @@ def read_view(said: About, key: bytes, sealed: bytes | None) -> View:
     """A view again, of what is said of it, and its arrays with their key."""
     if sealed is None:
         raise DamagedMemoryError(f"view '{said.id}' of '{said.category}': its arrays are missing")
-    value = open_wide(key, sealed)
-    if value is None or sealed[-WIDE:] != said.sum:
+    if open_wide(key, sealed) is None or sealed[-WIDE:] != said.sum:
         raise DamagedMemoryError(f"view '{said.id}' of '{said.category}': its arrays are not what was written")
-    descriptors, points = arrays_by_use(unpack(value)[0])
+    descriptors, points = arrays_by_use(unpack(sealed)[0])
     return View.stored(
         id=said.id,
         category=said.category,

@@ -61,13 +61,13 @@ def lay_out(arrays: Mapping[str, NDArray[Any]], spare: int) -> tuple[bytearray, 
     return data, copies
 
 
-def unpack(data: memoryview) -> tuple[dict[str, NDArray[Any]], str]:
-    """The arrays, which lie in the data itself and cannot be written, and the note.
+def unpack(data: bytes | memoryview) -> tuple[dict[str, NDArray[Any]], str]:
+    """The arrays, which lie in the data itself and cannot be written, and the note; whatever comes after is not read.
 
     For data that is known to be whole; raises ValueError, at least, for other data.
     """
     layout = _layout_in(bytes(data[: 8 + int.from_bytes(data[:8], "little")]))
-    return {part.name: np.ndarray(part.shape, part.dtype, data, part.offset) for part in layout.parts}, layout.note
+    return {name: np.ndarray(shape, dtype, data, offset) for name, dtype, shape, offset in layout.parts}, layout.note
 
 
 @lru_cache(256)
