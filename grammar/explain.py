@@ -147,12 +147,16 @@ def _no_relation(tokens: list[Token], at: int, accepts: set[str], draft: Draft) 
         hint = f"if it belongs to a name, write {shortened('_'.join(parts))} or quote the name"
         return Refusal(source_of(token), f"{A_RELATION}, not '{shown}'", hint)
     nearness = NO_NEARNESS if str(token).casefold() in NEARNESS else None
-    return Refusal(source_of(token), f"expected a name, and '{shown}' cannot be in one unquoted", nearness)
+    return Refusal(source_of(token), _no_bare_name(shown), nearness)
+
+
+def _no_bare_name(shown: str) -> str:
+    return f"expected a name, and '{shown}' cannot be in one unquoted"
 
 
 def _expected(accepts: set[str], shown: str) -> str:
     if accepts & {"NAME", "STRING"}:
-        return f"expected a name, and '{shown}' cannot be in one unquoted"
+        return _no_bare_name(shown)
     return f"{A_RELATION}, not '{shown}'" if "RELATION" in accepts else f"'{shown}' is not expected here"
 
 

@@ -17,6 +17,7 @@ from typing import Any
 
 from numpy.typing import NDArray
 
+from deixis.memory.closing import Closing
 from deixis.memory.errors import ImportFormatError, MemoryWriteError
 from deixis.memory.perceptual.errors import RecordError
 from deixis.memory.perceptual.protocol import PerceptualReading, Progress
@@ -89,7 +90,7 @@ def category_file(record: CategoryRecord) -> bytes:
     return b"".join(pack(record.state, json.dumps(said, sort_keys=True)))
 
 
-class Archive:
+class Archive(Closing):
     """An archive open for reading; believed in nothing. Use it as a context manager.
 
     Raises ImportFormatError, here and in every method, for what is not as :func:`write_archive` writes it.
@@ -111,10 +112,8 @@ class Archive:
             self._zip.close()
             raise
 
-    def __enter__(self) -> Archive:
-        return self
-
-    def __exit__(self, *_: object) -> None:
+    def close(self) -> None:
+        """Lets go of the file."""
         self._zip.close()
 
     def __len__(self) -> int:

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.perception.detection.circles import Circle
+from deixis.perception.detection.outline import corners_of
 
 TRIM = 0.002
 """The share of the points at either end of an axis that are taken for noise."""
@@ -64,12 +65,8 @@ def oriented_box(points: NDArray[np.float64], rim: Circle | None = None) -> Orie
 
 
 def _best_angle(plan: NDArray[np.float64]) -> float:
-    from scipy.spatial import ConvexHull, QhullError
-
-    try:
-        corners = plan[ConvexHull(plan).vertices]
-    except (QhullError, ValueError):
-        corners = plan
+    corners = corners_of(plan)
+    if corners is None:
         along = np.ptp(plan, axis=0)
         return float(np.arctan2(along[1], along[0])) if along.any() else 0.0
     sides = np.roll(corners, -1, axis=0) - corners

@@ -8,6 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.perception.detection.outline import corners_of
+
 SECTORS = 36
 """Into so many a circle is divided."""
 
@@ -54,13 +56,8 @@ def circle_around(plan: NDArray[np.float64], edge: float = EDGE) -> Circle | Non
     By algebraic least squares (Kasa, A circle fitting procedure and its error analysis, 1976). None where there is
     none, or fewer than five corners.
     """
-    from scipy.spatial import ConvexHull, QhullError
-
-    try:
-        corners = plan[ConvexHull(plan).vertices]
-    except (QhullError, ValueError):
-        return None
-    if len(corners) < 5:
+    corners = corners_of(plan)
+    if corners is None or len(corners) < 5:
         return None
     terms = np.column_stack([2 * corners, np.ones(len(corners))])
     x, y, rest = np.linalg.lstsq(terms, (corners**2).sum(axis=1))[0].tolist()

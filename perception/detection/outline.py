@@ -1,4 +1,4 @@
-"""The outline of a table as seen from above, and what is within it."""
+"""Outlines as seen from above: the corners of a convex one, and what is within that of a table."""
 
 from __future__ import annotations
 
@@ -49,3 +49,14 @@ def in_largest_piece(plan: NDArray[np.float64]) -> NDArray[np.bool_]:
     of = pieces[cell[:, 0], cell[:, 1]]
     largest: NDArray[np.bool_] = of == np.bincount(of).argmax()
     return largest
+
+
+def corners_of(plan: NDArray[np.float64]) -> NDArray[np.float64] | None:
+    """The corners (k, 2) of the convex outline of places (n, 2), in turn; None of too few, or of places in a line."""
+    from scipy.spatial import ConvexHull, QhullError
+
+    try:
+        corners: NDArray[np.float64] = plan[ConvexHull(plan).vertices]
+    except (QhullError, ValueError):
+        return None
+    return corners

@@ -73,7 +73,7 @@ class PerceptualSession(MemorySession):
         """The known category of that name, else the first that differs from it only in case, else the name itself."""
         if not self.has_views():
             return name
-        known = self._despite_damage(self.views(), lambda memory: sorted(memory.categories()))
+        known = self._despite_damage(self.views(), lambda memory: memory.categories())
         alike = [category for category in known if key_of(category) == key_of(name)]
         return name if name in alike or not alike else alike[0]
 

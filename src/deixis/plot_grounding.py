@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from deixis.perception.scene import PerceivedObject, Scene
 from deixis.plot import INK, PAPER, QUIET, WRONG, dress_table, new_figure, save
-from deixis.plot_arrows import Ends, draw_arrows, from_below
+from deixis.plot_arrows import Arrow, Ends, draw_arrows, from_below
 from deixis.plot_names import write_names
 from deixis.reasoning.answer import FactOutcome, Grounding
 from deixis.show_ground import MANY, at_most_many
@@ -90,7 +90,7 @@ def _height(scene: Scene) -> float:
     return min(max(WIDTH * height / max(width, height / 4, 1e-9), LEAST_HEIGHT), MOST_HEIGHT)
 
 
-def _arrows(entries: Sequence[FactOutcome], ends: Ends) -> list[tuple[tuple[float, float], tuple[float, float]]]:
+def _arrows(entries: Sequence[FactOutcome], ends: Ends) -> list[Arrow]:
     return [ends.arrow(*entry.perceived) for entry in entries if entry.perceived is not None]
 
 

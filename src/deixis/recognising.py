@@ -170,9 +170,9 @@ def keep_views(memory: PerceptualMemory, views: Sequence[View]) -> tuple[Taught,
 def taught_by_hand(memory: PerceptualReading, views: Sequence[View]) -> dict[str, View]:
     """Those of some views that a teacher named already, as they are kept, by id; what is damaged says nothing."""
     kept = {}
-    for id in [view.id for view in views]:
+    for view in views:
         with contextlib.suppress(UnknownViewError, DamagedMemoryError):
-            kept[id] = memory.view(id)
+            kept[view.id] = memory.view(view.id)
     return {id: view for id, view in kept.items() if view.metadata.get("teacher") != GROUNDING}
 
 

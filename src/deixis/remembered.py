@@ -18,7 +18,8 @@ from deixis.ontology.lesson_records import LessonRecord, lesson_records
 from deixis.ontology.tbox import Ontology
 from deixis.perception.scene import Scene
 from deixis.perception.scene_file import read_scene
-from deixis.reasoning.labels import Label, naming
+from deixis.reasoning.labels import naming
+from deixis.scene_evidence import scene_labels
 
 
 @dataclass(frozen=True)
@@ -91,8 +92,7 @@ def _matched(record: LessonRecord, description: RelationGraph, scene: Scene) -> 
 
 def labelled(description: RelationGraph, scene: Scene, kinds: Kinds) -> Who:
     """What labels say: an object is the one thing whose label fits it, as surely as the label is."""
-    labels = [Label(thing.label, thing.confidence) if thing.label else None for thing in scene.objects]
-    fitted = naming(description, labels, kinds).fitted
+    fitted = naming(description, list(scene_labels(scene).values()), kinds).fitted
     alone = fitted & (fitted.sum(axis=1) == 1)[:, None] & (fitted.sum(axis=0) == 1)[None, :]
     things = tuple(int(row.argmax()) if row.any() else None for row in alone)
     sure = tuple(0.0 if thing is None else scene.objects[thing].confidence for thing in things)
