@@ -44,8 +44,13 @@ class Fact:
 
     def __str__(self) -> str:
         names = " or ".join(relation.name for relation in self.relations)
-        rarely = "rarely " if self.weight < 0.5 else ""
+        rarely = "rarely " if self.rare else ""
         return f"{rarely}{'' if self.positive else 'not '}{names}({self.subject}, {self.object})"
+
+    @property
+    def rare(self) -> bool:
+        """Whether it is said to be rarely so, which is mostly not."""
+        return self.weight < 0.5
 
     @property
     def affirmed_weight(self) -> float:
@@ -55,7 +60,7 @@ class Fact:
     @property
     def plain(self) -> bool:
         """One relation that is affirmed, and not rarely so: what Definition 1 and equations 5-9 can see."""
-        return self.positive and self.weight >= 0.5 and len(self.relations) == 1
+        return self.positive and not self.rare and len(self.relations) == 1
 
     @property
     def relation_set(self) -> int:

@@ -46,9 +46,12 @@ class Naming:
 def naming(description: RelationGraph, labels: Sequence[Label | None], kinds: Kinds) -> Naming:
     """What the labels of all things of a scene name, one label (or None) a thing."""
     said = [label.text if label is not None and label.confidence > 0 else None for label in labels]
-    texts = {text: _columns(description, text, kinds) for text in dict.fromkeys(said) if text is not None}
     nothing = np.zeros(len(description.nodes), dtype=bool)
-    columns = [texts.get(text, (nothing, nothing)) if text is not None else (nothing, nothing) for text in said]
+    texts = {
+        text: _columns(description, text, kinds) if text is not None else (nothing, nothing)
+        for text in dict.fromkeys(said)
+    }
+    columns = [texts[text] for text in said]
     shape = (len(columns), len(nothing))
     named = np.array([column[0] for column in columns], dtype=bool).reshape(shape).T
     fitting = np.array([column[1] for column in columns], dtype=bool).reshape(shape).T

@@ -54,7 +54,7 @@ def said_pairs(
     for fact in description.facts():
         subject, object = index[fact.subject], index[fact.object]
         first, second = things[subject], things[object]
-        said = fact.plain and not fact.optional and fact.weight >= 0.5  # what is rarely so shows what is not meant
+        said = fact.plain and not fact.optional  # what is rarely so, not plain either, shows what is not meant
         if said and first is not None and second is not None and first != second:
             words.append(fact.relations[0].word)
             ends.append((first, second))
