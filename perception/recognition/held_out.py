@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from deixis.perception.recognition.distances import Target
 from deixis.perception.recognition.index import ViewIndex
 from deixis.perception.recognition.instances import InstanceCategory
+from deixis.perception.recognition.inverted import Effort
 from deixis.perception.recognition.settings import RecognitionSettings
 from deixis.perception.recognition.spread import Width, spreads
 
@@ -56,16 +57,18 @@ def hold_out(
 ) -> HeldOut:
     """Holds views out, ``most`` of all categories together, evenly chosen; views of one thing are held out together.
 
-    So what follows is about things never seen before, where categories know which thing a view shows.
+    So what follows is about things never seen before, where categories know which thing a view shows. Among more views
+    than are searched exactly, other categories are searched as recognition searches them.
     """
     share = -(-most // max(1, len(categories)))
     chosen = [(number, place) for number, each in enumerate(categories) for place in _evenly(len(each), share)]
     widths = [category.width(settings.over_things) for category in categories]
+    effort = settings.effort_among(sum(map(len, categories)))
     rows = np.empty((len(chosen), len(categories)))
     for done, (number, place) in enumerate(chosen):
         if progress is not None:
             progress(done, len(chosen))
-        rows[done] = _row(number, place, categories, indexes, widths, settings)
+        rows[done] = _row(number, place, categories, indexes, widths, settings, effort)
     return HeldOut(rows, np.array([number for number, _ in chosen], np.int64))
 
 
@@ -76,6 +79,7 @@ def _row(
     indexes: Sequence[ViewIndex | None],
     widths: Sequence[Width],
     settings: RecognitionSettings,
+    effort: Effort | None,
 ) -> NDArray[np.float64]:
     """ND (c,) of a view that is held out."""
     own = categories[number]
@@ -89,7 +93,7 @@ def _row(
         if index is None or other == number:
             continue
         reduced = index.reduction(target.descriptors) if reduced is None else reduced
-        distances[other] = index.nearest(target, reduced).distance
+        distances[other] = index.nearest(target, reduced, effort).distance
     if len(rest):
         distances[number] = own.distances[place, rest].min()
     return distances / [spread.value for spread in spreads(left, settings.prior_spread, settings.shrinkage)]

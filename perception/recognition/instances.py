@@ -47,10 +47,14 @@ class InstanceCategory:
     ) -> InstanceCategory:
         """A category of views (id, descriptors (k, d)), all distances computed."""
         named = list(views)
-        packed = PackedViews.of((key, array) for key, array in named if len(array))
-        distances = np.array([view_distances(packed[i], packed) for i in range(len(packed))])
-        empty = tuple(key for key, array in named if not len(array))
-        return cls(name, packed, distances.reshape(len(packed), len(packed)), empty, dict(things or {}))
+        category = cls.among(name, PackedViews.of((key, array) for key, array in named if len(array)), things)
+        return replace(category, empty=tuple(key for key, array in named if not len(array)))
+
+    @classmethod
+    def among(cls, name: str, views: PackedViews, things: Mapping[str, str] | None = None) -> InstanceCategory:
+        """The same of views that are packed already."""
+        distances = np.array([view_distances(views[i], views) for i in range(len(views))])
+        return cls(name, views, distances.reshape(len(views), len(views)), things=dict(things or {}))
 
     def __len__(self) -> int:
         return len(self.views)

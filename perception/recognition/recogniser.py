@@ -63,20 +63,15 @@ class Recogniser:
             return no_answer(self.calibration, "no category has been taught")
         if isinstance(descriptors, np.ndarray) and descriptors.ndim == 2 and not len(descriptors):
             return no_answer(self.calibration, "the view has no descriptor: nothing on it could be described")
-        target, exact = Target.of(descriptors), self.exact
-        found = self._nearest(target, None if exact else self.settings.effort)
+        target, effort = Target.of(descriptors), self.settings.effort_among(sum(map(len, self.categories)))
+        found = self._nearest(target, effort)
         widths = self.spreads
         normalised = np.array([near.distance / width.value for near, width in zip(found, widths, strict=True)])
         *probabilities, unknown = self.calibration.probabilities(normalised).tolist()
         parts = zip(self.categories, found, widths, probabilities, strict=True)
         candidates = [_candidate(*each) for each in parts]
         candidates.sort(key=lambda candidate: (candidate.normalised, candidate.category))
-        return decided(candidates, unknown, self.calibration, exact)
-
-    @property
-    def exact(self) -> bool:
-        """Whether there are few enough views to compare exactly."""
-        return sum(map(len, self.categories)) <= self.settings.exact_up_to
+        return decided(candidates, unknown, self.calibration, effort is None)
 
     @cached_property
     def spreads(self) -> list[Spread]:

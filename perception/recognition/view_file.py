@@ -8,7 +8,9 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable
+from itertools import chain
 from pathlib import Path
+from tempfile import TemporaryDirectory, gettempdir
 
 import numpy as np
 from numpy.lib import format as npy
@@ -72,6 +74,26 @@ def open_views(folder: Path) -> PackedViews:
     views = PackedViews(tuple(ids), np.asarray(descriptors), starts)
     views.__dict__["squares"] = squares  # what the cached property would read the whole file for
     return views
+
+
+def mapped(views: Iterable[tuple[str, NDArray[np.float32]]]) -> PackedViews:
+    """Views (id, descriptors (k, d)) on the disk alone, read one at a time; their file ends with what is returned.
+
+    It is in the folder for temporary files (``TMPDIR``), without a name there. Raises RecognitionError where it cannot
+    be written, and as :func:`write_views` does.
+    """
+    rest = iter(views)
+    first = next(rest, None)
+    if first is None:
+        return PackedViews.of(())
+    try:
+        with TemporaryDirectory(prefix="deixis-", ignore_cleanup_errors=True) as folder:
+            write_views(Path(folder) / "views", chain([first], rest))
+            return open_views(Path(folder) / "views")  # what is mapped stays until nothing maps it
+    except OSError as error:
+        raise RecognitionError(
+            f"{gettempdir()}: views cannot be written: {error.strerror or error}; set TMPDIR to a folder with room"
+        ) from error
 
 
 def _header(file: object, shape: tuple[int, int]) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import hashlib
 import json
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, replace
 from datetime import datetime
 from typing import Any
@@ -29,6 +29,7 @@ from deixis.perception.recognition.recogniser import Recogniser
 from deixis.perception.recognition.recognition import Recognition
 from deixis.perception.recognition.settings import RecognitionSettings
 from deixis.perception.recognition.spread import PRIOR_SPREADS
+from deixis.perception.recognition.view_file import mapped
 from deixis.perception.recognition.views import PackedViews
 from deixis.perception.scene import Scene
 
@@ -75,6 +76,13 @@ GROUNDING = "grounding"
 LEAST_CONFIDENCE = 0.01
 MOST_CONFIDENCE = 0.99
 """A recognised label is never certain, since a certain one would silence the description."""
+
+
+MAPPED = 10_000
+"""From so many views on they are not held in memory."""
+
+Pack = Callable[[Iterable[tuple[str, NDArray[np.float32]]]], PackedViews]
+"""How the descriptors of views are held."""
 
 
 @dataclass(frozen=True)
@@ -188,22 +196,45 @@ def _of(views: Iterable[View], category: str) -> list[View]:
 
 def way_of(views: Iterable[View], ways: Sequence[Way]) -> Way:
     """The first of some ways in which these views can all be compared."""
-    kept = list(views)
-    return next((way for way in ways if all(way.name in view.descriptors for view in kept)), ROOTS)
+    lacking: set[str] = set()
+    for view in views:
+        lacking.update(way.name for way in ways if way.name not in view.descriptors)
+    return next((way for way in ways if way.name not in lacking), ROOTS)
 
 
-def instances_of(record: CategoryRecord, views: Sequence[View], way: Way) -> InstanceCategory:
-    """A category with its views' descriptors; distances that its record has are not worked out again."""
-    kept = [view for view in views if way.name in view.descriptors]
-    named = [(view.id, view.descriptors[way.name]) for view in kept]
-    things = {view.id: thing for view in kept if (thing := thing_of(view)) is not None}
-    ids = tuple(view for view, _ in named)
-    compared = record.metadata.get(COMPARED, ROOTS.name)  # before there was a choice
-    if compared != way.name or DISTANCES not in record.state or record.metadata.get(IDS) != sorted(ids):
-        return InstanceCategory.of(record.name, named, things)
-    order = np.argsort(np.argsort(np.array(ids, dtype=str)))
+def instances_of(
+    record: CategoryRecord, views: Iterable[View], way: Way, pack: Pack = PackedViews.of
+) -> InstanceCategory:
+    """A category with its views' descriptors; distances that its record has are not worked out again.
+
+    Of each view only what is compared is held, by ``pack``.
+    """
+    things: dict[str, str] = {}
+    empty: list[str] = []
+
+    def described() -> Iterator[tuple[str, NDArray[np.float32]]]:
+        for view in views:
+            if way.name not in view.descriptors:
+                continue
+            if (thing := thing_of(view)) is not None:
+                things[view.id] = thing
+            if len(view.descriptors[way.name]):
+                yield view.id, view.descriptors[way.name]
+            else:
+                empty.append(view.id)
+
+    packed = pack(described())
+    if not _compared(record, packed.ids, way):
+        return replace(InstanceCategory.among(record.name, packed, things), empty=tuple(empty))
+    order = np.argsort(np.argsort(np.array(packed.ids, dtype=str)))
     distances = np.asarray(record.state[DISTANCES])[np.ix_(order, order)]
-    return InstanceCategory(record.name, PackedViews.of(named), distances, things=things)
+    return InstanceCategory(record.name, packed, distances, tuple(empty), things)
+
+
+def _compared(record: CategoryRecord, ids: Iterable[str], way: Way) -> bool:
+    """Whether a record has the distances between these views, in this way."""
+    compared = record.metadata.get(COMPARED, ROOTS.name)  # before there was a choice
+    return compared == way.name and DISTANCES in record.state and record.metadata.get(IDS) == sorted(ids)
 
 
 def record_of(category: InstanceCategory, way: Way) -> CategoryRecord:
@@ -227,24 +258,33 @@ class Known:
 def recogniser_of(memory: LevelMemory, frame: str, progress: Progress | None = None) -> Known:
     """The recogniser of everything that was taught for what is seen in a frame, with its threshold from its own views.
 
-    That is worked out anew when a tenth of the views are others than the last time, and kept in the memory.
+    That is worked out anew when a tenth of the views are others than the last time, and kept in the memory. From
+    ``MAPPED`` views on, their descriptors are mapped from a file.
     """
     with memory.exclusive():
-        taught = {name: list(memory.views(name)) for name in memory.categories()}
-        way = way_of((view for kept in taught.values() for view in kept), ways_in(frame))
-        categories = []
-        for name, kept in taught.items():
-            categories.append(instances_of(memory.category(name), kept, way))
-            if progress is not None:  # what was imported may have no distances yet, and then this takes longest
-                progress(len(categories), len(taught))
-        known = Recogniser.of(categories, way.settings)
         views = {(key.category, key.id) for key in memory.listing()}
+        names = memory.categories()
+        way = way_of((view for name in names for view in _doubtful(memory, name, views)), ways_in(frame))
+        pack = PackedViews.of if len(views) < MAPPED else mapped
+        categories = []
+        for name in names:
+            categories.append(instances_of(memory.category(name), memory.views(name), way, pack))
+            if progress is not None:  # what was imported may have no distances yet, and then this takes longest
+                progress(len(categories), len(names))
+        known = Recogniser.of(categories, way.settings)
         calibration = kept_calibration(memory.path, views, str(way))
         if calibration is not None:
             return Known(replace(known, calibration=calibration), way)
         known = known.calibrated(progress)
         keep_calibration(memory.path, known.calibration, views, str(way))
     return Known(known, way)
+
+
+def _doubtful(memory: PerceptualReading, name: str, views: Set[tuple[str, str]]) -> Iterator[View]:
+    """The views of a category whose record does not say that all of them can be compared in the best way."""
+    ids = {id for category, id in views if category == name}
+    if not _compared(memory.category(name), ids, UPRIGHT):
+        yield from memory.views(name)
 
 
 def recognise(known: Known, scene: Scene, clouds: Sequence[PointCloud | None]) -> Recognised:

@@ -95,3 +95,27 @@ def test_what_is_seen_in_another_frame_than_a_tables_is_compared_by_what_needs_n
         both = recogniser_of(memory, TABLE)
         assert both.way == ROOTS
         assert {one.name: len(one) for one in both.recogniser.categories} == {"plate": 3, "fork": 2}
+
+
+def test_very_many_views_are_mapped_from_a_file_and_give_the_same_answers(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with LevelMemory.open(tmp_path / "perceptual", create=True) as memory:
+        keep_views(memory, [view(kind, seed) for kind, seed in THINGS])
+        held = recogniser_of(memory, TABLE)
+        monkeypatch.setattr("deixis.recognising.MAPPED", len(THINGS))
+        mapped = recogniser_of(memory, TABLE)
+    for one, other in zip(held.recogniser.categories, mapped.recogniser.categories, strict=True):
+        assert one.views.descriptors.flags.owndata and not other.views.descriptors.flags.owndata
+    target = held.way.describe(seen("plate", 9))
+    assert held.recogniser.recognise(target) == mapped.recogniser.recognise(target)
+
+
+def test_a_view_without_a_descriptor_can_be_kept_and_taught_anew(tmp_path: Path) -> None:
+    bare = replace(view("plate", 1), descriptors={UPRIGHT.name: np.zeros((0, 171), np.float32)})
+    with LevelMemory.open(tmp_path / "perceptual", create=True) as memory:
+        memory.write(Batch([bare]))
+        keep_views(memory, [view("plate", 2), view("mug", 1)])
+        assert recogniser_of(memory, TABLE).recogniser.categories[1].empty == (bare.id,)
+        keep_views(memory, [view("plate", 1)])
+        assert [len(known) for known in recogniser_of(memory, TABLE).recogniser.categories] == [1, 2]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tempfile
 from pathlib import Path
 
 import numpy as np
@@ -15,7 +16,7 @@ from deixis.perception.recognition.errors import RecognitionError
 from deixis.perception.recognition.index import ViewIndex
 from deixis.perception.recognition.inverted import Effort, InvertedFile
 from deixis.perception.recognition.kernels import AXES
-from deixis.perception.recognition.view_file import open_views, write_views
+from deixis.perception.recognition.view_file import mapped, open_views, write_views
 from deixis.perception.recognition.views import PackedViews
 
 
@@ -136,12 +137,27 @@ def test_reduced_descriptors_keep_distances_where_axes_suffice() -> None:
 def test_views_mapped_from_a_file_give_the_same_answers(tmp_path: Path) -> None:
     target, *views = clustered(2, 30)
     write_views(tmp_path / "views", ((str(i), view) for i, view in enumerate(views)))
-    mapped = open_views(tmp_path / "views")
-    assert not mapped.descriptors.flags.owndata and not mapped.descriptors.flags.writeable
-    index = ViewIndex.of(mapped)
+    opened = open_views(tmp_path / "views")
+    assert not opened.descriptors.flags.owndata and not opened.descriptors.flags.writeable
+    index = ViewIndex.of(opened)
     found = index.nearest(Target.of(target), index.reduction(target))
     assert (found.distance, found.place) == category_distance(target, packed(views))
-    assert mapped.ids == packed(views).ids and (mapped.squares == packed(views).squares).all()
+    assert opened.ids == packed(views).ids and (opened.squares == packed(views).squares).all()
+
+
+def test_views_kept_out_of_memory_leave_no_file_behind(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    views = clustered(2, 30)
+    found = mapped((str(i), view) for i, view in enumerate(views))
+    assert not list(tmp_path.iterdir()) and not found.descriptors.flags.owndata
+    assert found.ids == packed(views).ids and (found.descriptors == packed(views).descriptors).all()
+    assert len(mapped([])) == 0
+
+
+def test_a_folder_without_room_for_views_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "nowhere"))
+    with pytest.raises(RecognitionError, match="set TMPDIR to a folder"):
+        mapped([("a", np.zeros((2, 3), np.float32))])
 
 
 def test_a_folder_that_holds_no_views_is_refused(tmp_path: Path) -> None:
