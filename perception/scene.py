@@ -14,6 +14,7 @@ from deixis.ontology.colours import Rgb
 from deixis.ontology.graph import RelationGraph
 from deixis.ontology.relation import Relations
 from deixis.perception.errors import SceneError
+from deixis.perception.oriented_box import OrientedBox
 
 FARTHEST = 1e9
 """Coordinates reach so far at the most, in metres or pixels."""
@@ -26,7 +27,7 @@ class PerceivedObject:
     ``minimum`` and ``maximum`` are its least and greatest corner in the scene's frame, 2 or 3 coordinates: x to the
     viewer's right, y away from the viewer, z up; metres, unless the scene is in pixels. ``label`` is a name for it,
     right with probability ``confidence``. ``cloud`` names the file of its points. ``colour`` is the one that it is seen
-    in, in sRGB.
+    in, in sRGB. ``oriented`` is the narrowest box about it that is turned about the vertical, where there are heights.
     """
 
     id: str
@@ -36,6 +37,7 @@ class PerceivedObject:
     confidence: float = 1.0
     cloud: str | None = None
     colour: Rgb | None = None
+    oriented: OrientedBox | None = None
 
 
 @dataclass(frozen=True)
@@ -112,7 +114,23 @@ def _require_box(thing: PerceivedObject, file: str) -> None:
     for axis, low, high in zip("xyz", thing.minimum, thing.maximum, strict=False):
         if low > high:
             raise SceneError(f"{where}: on {axis} its min {low:g} is above its max {high:g}; swap them")
+    if thing.oriented is not None:
+        _require_oriented(thing.oriented, len(thing.minimum), where)
     if not 0 <= thing.confidence <= 1:
         raise SceneError(f"{where}: a confidence lies between 0 and 1, not at {thing.confidence:g}")
     if thing.colour is not None and (len(thing.colour) != 3 or not all(0 <= part <= 255 for part in thing.colour)):
         raise SceneError(f"{where}: a colour is red, green and blue, each from 0 to 255, not {thing.colour}")
+
+
+def _require_oriented(box: OrientedBox, axes: int, where: str) -> None:
+    numbers = (*box.centre, box.yaw, *box.extents)
+    if axes != 3:
+        raise SceneError(
+            f"{where}: an oriented box has heights, and 'min' and 'max' have none; give them 3 coordinates"
+        )
+    if len(box.centre) != 3 or len(box.extents) != 3 or not np.isfinite(numbers).all():
+        raise SceneError(
+            f"{where}: an oriented box has a centre and extents of 3 finite numbers each, and a finite yaw"
+        )
+    if max(map(abs, numbers)) > FARTHEST or min(box.extents) < 0:
+        raise SceneError(f"{where}: an oriented box's extents are 0 or more, and nothing of it beyond {FARTHEST:g}")

@@ -17,6 +17,7 @@ from deixis.ontology.tbox import default_ontology
 from deixis.perception.annotations import annotation_reader
 from deixis.perception.checks import MAX_SHOWN, kind, mapping, number, shown, text
 from deixis.perception.errors import SceneError
+from deixis.perception.oriented_box import OrientedBox
 from deixis.perception.scene import PerceivedObject, Scene
 
 UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "px": 1.0}
@@ -24,7 +25,8 @@ UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "px": 1.0}
 
 MAX_BYTES = 256 * 2**20
 _SCENE_KEYS = {"frame", "viewpoint", "unit", "objects"}
-_OBJECT_KEYS = {"id", "min", "max", "label", "confidence", "cloud", "colour"}
+_OBJECT_KEYS = {"id", "min", "max", "label", "confidence", "cloud", "colour", "oriented"}
+_ORIENTED_KEYS = {"centre", "yaw", "extents"}
 
 
 def read_scene(source: str | Path | Mapping[str, Any], image: str | int | None = None) -> Scene:
@@ -105,7 +107,7 @@ def _object(data: Any, where: str, scale: float) -> PerceivedObject:
     if missing:
         raise SceneError(f"{where}: '{missing[0]}' is missing")
     label, confidence, cloud = entry.get("label"), entry.get("confidence", 1.0), entry.get("cloud")
-    colour = entry.get("colour")
+    colour, oriented = entry.get("colour"), entry.get("oriented")
     return PerceivedObject(
         id=text(entry["id"], f"{where}: 'id'"),
         minimum=_corner(entry["min"], f"{where}: 'min'", scale),
@@ -114,7 +116,24 @@ def _object(data: Any, where: str, scale: float) -> PerceivedObject:
         confidence=1.0 if confidence is None else number(confidence, f"{where}: 'confidence'"),
         cloud=None if cloud is None else text(cloud, f"{where}: 'cloud'"),
         colour=None if colour is None else _colour(colour, f"{where}: 'colour'"),
+        oriented=None if oriented is None else _oriented(oriented, f"{where}: 'oriented'", scale),
     )
+
+
+def _oriented(data: Any, where: str, scale: float) -> OrientedBox:
+    entry = _mapping(data, where, _ORIENTED_KEYS)
+    missing = sorted(_ORIENTED_KEYS - set(entry))
+    if missing:
+        raise SceneError(f"{where}: '{missing[0]}' is missing")
+    (x, y, z), (length, width, height) = (_three(entry[key], f"{where}: '{key}'") for key in ("centre", "extents"))
+    extents = (length * scale, width * scale, height * scale)
+    return OrientedBox((x * scale, y * scale, z * scale), number(entry["yaw"], f"{where}: 'yaw'"), extents)
+
+
+def _three(data: Any, where: str) -> list[float]:
+    if not isinstance(data, list | tuple) or len(data) != 3:
+        raise SceneError(f"{where} must be a list of 3 numbers")
+    return [number(value, where) for value in data]
 
 
 def _colour(data: Any, where: str) -> Rgb:
@@ -169,6 +188,9 @@ def scene_to_dict(scene: Scene) -> dict[str, Any]:
             entry["cloud"] = thing.cloud
         if thing.colour is not None:
             entry["colour"] = hex_of_rgb(thing.colour)
+        if thing.oriented is not None:
+            box = thing.oriented
+            entry["oriented"] = {"centre": list(box.centre), "yaw": box.yaw, "extents": list(box.extents)}
         objects.append(entry)
     return {"frame": scene.frame, "viewpoint": scene.viewpoint, "unit": scene.unit, "objects": objects}
 

@@ -2,26 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
 from deixis.perception.detection.circles import Circle
 from deixis.perception.detection.outline import corners_of
+from deixis.perception.oriented_box import OrientedBox
 
 TRIM = 0.002
 """The share of the points at either end of an axis that are taken for noise."""
-
-
-@dataclass(frozen=True, eq=False)
-class OrientedBox:
-    """A box in the table's frame. ``axes`` (3, 3) are unit vectors, in rows, right-handed, the last one up;
-    ``extents`` (3,) are the sides along them, the first the longer one of the two level ones."""
-
-    centre: NDArray[np.float64]  # (3,)
-    axes: NDArray[np.float64]
-    extents: NDArray[np.float64]
 
 
 def upright_box(points: NDArray[np.float64], rim: Circle | None = None) -> NDArray[np.float64]:
@@ -50,18 +39,22 @@ def trimmed(values: NDArray[np.float64]) -> NDArray[np.float64]:
 def oriented_box(points: NDArray[np.float64], rim: Circle | None = None) -> OrientedBox:
     """The upright box with the smallest plan, among those with a side along a side of the points' outline.
 
-    ``rim`` is a circle in the plan that it takes in, too.
-
-    That the smallest rectangle has such a side is the theorem of Freeman and Shapira (1975).
+    Its first side is the longer one, with a yaw above -pi/2, to pi/2. ``rim`` is a circle in the plan that it takes in,
+    too. That the smallest rectangle has such a side is the theorem of Freeman and Shapira (1975).
     """
-    angle = _best_angle(points[:, :2])
-    cosine, sine = np.cos(angle), np.sin(angle)
-    axes = np.array([[cosine, sine, 0.0], [-sine, cosine, 0.0], [0.0, 0.0, 1.0]])
+    box = _box_along(_best_angle(points[:, :2]), points, rim)
+    if box.extents[1] > box.extents[0]:
+        box = _box_along(box.yaw + np.pi / 2, points, rim)
+    return box
+
+
+def _box_along(yaw: float, points: NDArray[np.float64], rim: Circle | None) -> OrientedBox:
+    """The box with a side in that direction."""
+    yaw = float(np.pi / 2 - (np.pi / 2 - yaw) % np.pi)
+    axes = OrientedBox((0.0, 0.0, 0.0), yaw, (0.0, 0.0, 0.0)).axes
     low, high = upright_box(points @ axes.T, rim and rim.turned(axes[:2, :2]))
-    if high[1] - low[1] > high[0] - low[0]:
-        axes = axes[[1, 0, 2]] * [[1.0], [-1.0], [1.0]]
-        low, high = upright_box(points @ axes.T, rim and rim.turned(axes[:2, :2]))
-    return OrientedBox(axes.T @ ((low + high) / 2), axes, high - low)
+    (x, y, z), (length, width, height) = (axes.T @ ((low + high) / 2)).tolist(), (high - low).tolist()
+    return OrientedBox((x, y, z), yaw, (length, width, height))
 
 
 def _best_angle(plan: NDArray[np.float64]) -> float:

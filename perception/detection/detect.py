@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.perception.clouds.cloud import PointCloud
-from deixis.perception.detection.boxes import OrientedBox, oriented_box, upright_box
+from deixis.perception.detection.boxes import oriented_box, upright_box
 from deixis.perception.detection.circles import rim_of
 from deixis.perception.detection.frame import moved, outlook_of, table_frame
 from deixis.perception.detection.heights import Raised, raised
@@ -20,6 +20,7 @@ from deixis.perception.detection.settings import DetectionSettings
 from deixis.perception.detection.tables import LEAST_TABLE, ON_TABLE, Table, tables
 from deixis.perception.detection.viewpoint import believed, likely
 from deixis.perception.errors import CloudError
+from deixis.perception.oriented_box import OrientedBox
 from deixis.perception.scene import PerceivedObject, Scene
 
 NONE = -1
@@ -58,9 +59,10 @@ class Detection:
 
     def scene(self, viewpoint: str = "chair") -> Scene:
         """The boxes as a scene, ready for grounding."""
+        boxes = zip(self.boxes.round(6).tolist(), self.oriented, strict=True)
         things = [
-            PerceivedObject(f"o{number}", tuple(low), tuple(high))
-            for number, (low, high) in enumerate(self.boxes.round(6).tolist(), start=1)
+            PerceivedObject(f"o{number}", tuple(low), tuple(high), oriented=oriented.rounded(6))
+            for number, ((low, high), oriented) in enumerate(boxes, start=1)
         ]
         return Scene(tuple(things), viewpoint=viewpoint)
 

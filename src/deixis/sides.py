@@ -134,7 +134,7 @@ def _seen_from(scene: Scene, view: Viewpoint) -> Scene:
 
 def _with_boxes(scene: Scene, boxes: NDArray[np.float64]) -> Scene:
     things = [
-        replace(thing, minimum=tuple(box[0].tolist()), maximum=tuple(box[1].tolist()))
+        replace(thing, minimum=tuple(box[0].tolist()), maximum=tuple(box[1].tolist()), oriented=None)
         for thing, box in zip(scene.objects, boxes, strict=True)
     ]
     return replace(scene, objects=tuple(things))

@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 import deixis.perception.scene_file as module
 from deixis.ontology.errors import DeixisError
 from deixis.perception.errors import SceneError
+from deixis.perception.oriented_box import OrientedBox
 from deixis.perception.scene import PerceivedObject, Scene
 from deixis.perception.scene_file import read_scene, scene_to_dict, write_scene
 
@@ -23,6 +24,13 @@ texts = st.text(st.characters(exclude_categories=["Cs", "Cc"]), min_size=1, max_
     lambda text: bool(text.strip())
 )
 coordinates = st.floats(-1e6, 1e6)
+
+oriented_boxes = st.builds(
+    OrientedBox,
+    st.tuples(coordinates, coordinates, coordinates),
+    st.floats(-np.pi / 2, np.pi / 2),
+    st.tuples(*[st.floats(0, 1e6)] * 3),
+)
 
 
 @st.composite
@@ -37,6 +45,7 @@ def objects(draw: st.DrawFn, id: str, axes: int) -> PerceivedObject:
         confidence=1.0 if label is None else draw(st.floats(0, 1)),
         cloud=draw(st.none() | texts),
         colour=draw(st.none() | st.tuples(*[st.integers(0, 255)] * 3)),
+        oriented=draw(st.none() | oriented_boxes) if axes == 3 else None,
     )
 
 
@@ -135,7 +144,39 @@ def test_an_object_made_in_python_has_a_colour_or_is_refused(colour: Any) -> Non
         Scene((PerceivedObject("o1", (0.0, 0.0), (1.0, 1.0), colour=colour),))
 
 
-KEYS = "cloud, colour, confidence, id, label, max, min"
+def test_an_oriented_box_is_in_the_unit_of_its_scene() -> None:
+    entry = {"id": "o1", "min": [0, 0, 0], "max": [20, 1, 2]}
+    turned = {"centre": [10, 0.5, 1], "yaw": 0.1, "extents": [20, 1, 2]}
+    scene = read_scene({"unit": "cm", "objects": [{**entry, "oriented": turned}]})
+    box = scene.objects[0].oriented
+    assert box is not None and box.yaw == 0.1
+    assert box.centre == pytest.approx((0.1, 0.005, 0.01)) and box.extents == pytest.approx((0.2, 0.01, 0.02))
+
+
+@pytest.mark.parametrize(
+    ("oriented", "said"),
+    [
+        ([], "'oriented': an object {…} is expected here"),
+        ({}, "'oriented': 'centre' is missing"),
+        ({"centre": [0, 0, 0], "yaw": 0, "extents": [1, 1, 1], "roll": 0}, "'roll' is no key here"),
+        ({"centre": [0, 0], "yaw": 0, "extents": [1, 1, 1]}, "'centre' must be a list of 3 numbers"),
+        ({"centre": [0, 0, 0], "yaw": "east", "extents": [1, 1, 1]}, "'yaw': a number is expected"),
+        ({"centre": [0, 0, 0], "yaw": 0, "extents": [1, -1, 1]}, "extents are 0 or more"),
+        ({"centre": [0, 0, 2e9], "yaw": 0, "extents": [1, 1, 1]}, "beyond 1e\\+09"),
+    ],
+)
+def test_an_oriented_box_that_is_none_is_refused(oriented: Any, said: str) -> None:
+    with pytest.raises(SceneError, match=said):
+        read_scene({"objects": [{"id": "o1", "min": [0, 0, 0], "max": [1, 1, 1], "oriented": oriented}]})
+
+
+def test_a_flat_box_has_no_oriented_one() -> None:
+    oriented = {"centre": [0, 0, 0], "yaw": 0, "extents": [1, 1, 1]}
+    with pytest.raises(SceneError, match="'min' and 'max' have none; give them 3 coordinates"):
+        read_scene(one(oriented=oriented))
+
+
+KEYS = "cloud, colour, confidence, id, label, max, min, oriented"
 
 CATALOGUE: list[tuple[Any, str]] = [
     ([], "an object {…} is expected here, not a list"),

@@ -21,6 +21,7 @@ def test_a_turned_brick_has_its_own_sides(angle: float, length: float, width: fl
     assert box.extents == pytest.approx([length, width, 0.05], abs=1e-9)
     assert box.centre == pytest.approx(turn @ (length / 2, width / 2, 0.025) + (0.3, -0.2, 0.0), abs=1e-9)
     assert np.allclose(box.axes @ box.axes.T, np.eye(3)) and np.linalg.det(box.axes) == pytest.approx(1)
+    assert -np.pi / 2 < box.yaw <= np.pi / 2 and np.sin(box.yaw - angle) == pytest.approx(0, abs=1e-6)
 
 
 def test_a_stray_point_in_a_thousand_does_not_stretch_a_box() -> None:

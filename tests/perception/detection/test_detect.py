@@ -46,6 +46,7 @@ def test_things_apart_are_found_numbered_from_left_to_right_and_placed(boxes_see
     assert centres[1, :2] == pytest.approx([0.125, -0.08], abs=0.006)
     assert found.boxes[1, 1, 2] == pytest.approx(0.008, abs=0.002)
     assert found.oriented[1].extents[:2] == pytest.approx([0.25, 0.04], abs=0.01)
+    assert [thing.oriented for thing in found.scene().objects] == [box.rounded(6) for box in found.oriented]
 
 
 def test_a_thing_on_a_thing_is_two_things(boxes_seen: Look) -> None:
