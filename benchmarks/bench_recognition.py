@@ -32,7 +32,7 @@ from deixis.perceiving import cloud_of, perceive, write_perceived
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.clouds.cloud_file import write_cloud
 from deixis.perception.features.registry import describer_named
-from deixis.perception.recognition.calibration import expected_calibration_error
+from deixis.perception.recognition.calibration import auroc, expected_calibration_error
 from deixis.perception.recognition.distances import Target
 from deixis.perception.recognition.index import Nearest, ViewIndex, indexes_of
 from deixis.perception.recognition.instances import InstanceCategory
@@ -212,10 +212,10 @@ def calibration(things: int = 6, each: int = 3) -> None:
     for said, categories in (("views held out", by_views), ("things held out", by_things)):
         rows = [row for fold in range(4) for row in _answers(categories, fresh, fold)]
         confidence, right, unknown, nd = (np.array(column) for column in zip(*rows, strict=True))
-        error, auroc = expected_calibration_error(confidence, right), _auroc(nd[~unknown], nd[unknown])
+        error, told = expected_calibration_error(confidence, right), auroc(nd[~unknown], nd[unknown])
         print(
             f"{said:16} expected calibration error {error:.3f}; answers right {right.mean():.3f}, mean confidence"
-            f" {confidence.mean():.3f}; unknown told from known: AUROC {auroc:.3f}"
+            f" {confidence.mean():.3f}; unknown told from known: AUROC {told:.3f}"
         )
 
 
@@ -231,10 +231,6 @@ def _answers(
         right = found.label == (None if unknown else kind)
         row = (found.probability, right, unknown, found.candidates[0].normalised)
         yield from [row] * (3 if unknown else 1)
-
-
-def _auroc(known: NDArray[np.float64], unknown: NDArray[np.float64]) -> float:
-    return float(((known[:, None] < unknown) + 0.5 * (known[:, None] == unknown)).mean())
 
 
 def found_on_table(seed: int) -> list[tuple[str, PointCloud]]:
@@ -272,7 +268,7 @@ def tables() -> None:
             nearest, right, told = rows[:, :3].mean(axis=0)
             print(
                 f"{count} taught, {said:13}: nearest by ND {nearest:.3f}; named rightly {right:.3f}; unknown said to be"
-                f" so {told:.3f}, AUROC {_auroc(rows[:, 3], rows[:, 4]):.3f}",
+                f" so {told:.3f}, AUROC {auroc(rows[:, 3], rows[:, 4]):.3f}",
                 flush=True,
             )
 

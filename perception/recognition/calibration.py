@@ -119,6 +119,21 @@ def expected_calibration_error(confidence: NDArray[np.float64], right: NDArray[n
     return float(np.abs(apart).sum() / len(confidence))
 
 
+def auroc(known: NDArray[np.floating], unknown: NDArray[np.floating]) -> float:
+    """The probability that something unknown has a higher score than something known; equal ones count half.
+
+    nan where there is none of either.
+
+    >>> auroc(np.array([1.0, 2.0]), np.array([2.0, 3.0]))
+    0.875
+    """
+    if not len(known) or not len(unknown):
+        return float("nan")
+    order = np.sort(known)
+    below, upto = np.searchsorted(order, unknown, "left"), np.searchsorted(order, unknown, "right")
+    return float((below + upto).mean() / (2 * len(known)))
+
+
 def _log_shares(normalised: NDArray[np.float64], logs: NDArray[np.float64]) -> NDArray[np.float64]:
     """Logarithms of the probabilities (..., c + 1); ``logs`` (3,) are those of even, doubt and choice."""
     log_even, (doubt, choice) = logs[0], np.exp(logs[1:])

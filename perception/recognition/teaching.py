@@ -13,8 +13,9 @@ from enum import Enum
 
 import numpy as np
 
+from deixis.perception.recognition.calibration import auroc
 from deixis.perception.recognition.errors import RecognitionError
-from deixis.perception.recognition.learners.learner import Learner
+from deixis.perception.recognition.learners.learner import Learner, Prediction
 from deixis.perception.recognition.learners.view_features import ViewFeatures
 
 
@@ -50,11 +51,13 @@ class End(Enum):
 
 @dataclass(frozen=True)
 class Answer:
-    """One question: what was shown, what the learner said, how many categories it knew, how many instances it had
-    stored afterwards, and the share of right answers that the teacher watches."""
+    """One question: what was shown, what the learner said and its doubt that it was any known category, how many
+    categories it knew, how many instances it had stored afterwards, and the share of right answers that the teacher
+    watches."""
 
     category: str
     said: str | None
+    unknown: float
     known: int
     stored: int
     accuracy: float
@@ -66,12 +69,15 @@ class Answer:
 
 @dataclass(frozen=True)
 class Course:
-    """A course of teaching from beginning to end. ``introduced`` holds, for each category, the answers given before."""
+    """A course of teaching from beginning to end. ``introduced`` holds, for each category, the answers given before;
+    ``doubts`` the learner's doubt about each view that introduced a category, before it was taught any of these; the
+    first category has none, as nothing was known."""
 
     learner: str
     order: tuple[str, ...]
     answers: tuple[Answer, ...]
     introduced: tuple[int, ...]
+    doubts: tuple[float, ...]
     learnt: int
     stored: int
     end: End
@@ -96,6 +102,12 @@ class Course:
         """APA: the mean over iterations of the accuracy that the teacher watches; nan without one."""
         return float(np.mean([answer.accuracy for answer in self.answers])) if self.answers else float("nan")
 
+    @property
+    def unknown_auroc(self) -> float:
+        """How well the learner's doubt tells views of categories not yet taught from those it was asked about: the
+        probability that it is greater of one of the former; nan where no category came after another."""
+        return auroc(np.array([answer.unknown for answer in self.answers]), np.array(self.doubts))
+
 
 def teach(
     learner: Learner,
@@ -117,17 +129,23 @@ def teach(
     rng, unseen = np.random.default_rng(seed), {name: iter(views[name]) for name in order}
     answers: list[Answer] = []
     introduced: list[int] = []
+    doubts: list[float] = []
     learnt, end = 0, End.LEARNT
     for category in order:
+        first = [next(unseen[category]) for _ in range(settings.first)]
+        if introduced:
+            doubts += [learner.predict(view).unknown for view in first]
         introduced.append(len(answers))
-        for _ in range(settings.first):
-            learner.learn(category, next(unseen[category]))
+        for view in first:
+            learner.learn(category, view)
         failed = _practise(learner, unseen, order[: len(introduced)], settings, rng, answers, tick)
         if failed is not None:
             end = failed
             break
         learnt += 1
-    return Course(learner.name, tuple(order), tuple(answers), tuple(introduced), learnt, learner.stored, end)
+    return Course(
+        learner.name, tuple(order), tuple(answers), tuple(introduced), tuple(doubts), learnt, learner.stored, end
+    )
 
 
 def _practise(
@@ -147,10 +165,10 @@ def _practise(
             view = next(unseen[category], None)
             if view is None:
                 return End.NO_VIEWS
-            said = _ask(learner, category, view)
-            right.append(said == category)
+            found = _ask(learner, category, view)
+            right.append(found.best == category)
             accuracy = float(np.mean(right[-settings.window * len(known) :]))
-            answers.append(Answer(category, said, len(known), learner.stored, accuracy))
+            answers.append(Answer(category, found.best, found.unknown, len(known), learner.stored, accuracy))
             tick()
             if len(right) >= len(known) and accuracy > settings.threshold:
                 return None
@@ -159,13 +177,13 @@ def _practise(
     return End.FRUITLESS
 
 
-def _ask(learner: Learner, category: str, view: ViewFeatures) -> str | None:
-    said = learner.predict(view).best
-    if said == category:
+def _ask(learner: Learner, category: str, view: ViewFeatures) -> Prediction:
+    found = learner.predict(view)
+    if found.best == category:
         learner.confirm(category, view)
     else:
         learner.correct(category, view)
-    return said
+    return found
 
 
 def _require(

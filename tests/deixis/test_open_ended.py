@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from deixis.experiments.open_ended.comparison import auroc, compared
+from deixis.experiments.open_ended.comparison import compared
 from deixis.experiments.open_ended.contestants import EQUATIONS, NEAREST, contestants
 from deixis.experiments.open_ended.plot import mean_curve, plot_open_ended
 from deixis.experiments.open_ended.report import to_dict
@@ -109,13 +109,6 @@ def test_a_category_with_a_large_icd_swallows_others_unless_it_is_shrunk() -> No
     ]
     # by ND a cup is 0.5 / 1 from cups and 2 / 10 from forks
     assert found == [1.0, 0.5, 1.0]
-
-
-def test_auroc_counts_pairs() -> None:
-    rng = np.random.default_rng(1)
-    known, unknown = rng.integers(0, 9, 40).astype(float), rng.integers(3, 12, 30).astype(float)
-    pairs = [(u > k) + 0.5 * (u == k) for u in unknown for k in known]
-    assert auroc(known, unknown) == pytest.approx(np.mean(pairs))
 
 
 def test_things_of_the_simulator_differ_from_one_another() -> None:

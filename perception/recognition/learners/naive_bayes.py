@@ -22,8 +22,8 @@ class NaiveBayes(TaughtViews):
     Changed: ``prior`` 0 takes all categories for equally likely, since a teacher corrects, and so shows, hard ones more
     often; ``smoothing`` is what each word is counted beforehand. Left out: the grasps.
 
-    A score is the mean log-likelihood of a word; unknown is how far the best of them lies below that of the words of
-    all categories together.
+    A score is the mean log-likelihood of a word; unknown is how far the best of them lies below that of the view's own
+    shares of words, the most that any can have: the Kullback-Leibler divergence of the view from the category.
     """
 
     name = "naive Bayes"
@@ -42,8 +42,8 @@ class NaiveBayes(TaughtViews):
         words = self._codebook.counts(view)
         number = words.sum()
         scores = {name: float(words @ self._log(counts)) / number for name, counts in self._counts.items()}
-        everything = float(words @ self._log(np.sum(list(self._counts.values()), axis=0))) / number
-        unknown = everything - max(scores.values())
+        shares = words[words > 0] / number
+        unknown = float(shares @ np.log(shares)) - max(scores.values())
         for name in scores:
             scores[name] += self._prior * float(np.log(len(self._views[name]) / self.stored)) / number
         return Prediction.of(scores, unknown)

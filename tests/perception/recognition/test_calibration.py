@@ -14,6 +14,7 @@ from deixis.perception.recognition.calibration import (
     LEAST,
     SHIPPED,
     Calibration,
+    auroc,
     best_threshold,
     calibrate,
     expected_calibration_error,
@@ -22,6 +23,7 @@ from deixis.perception.recognition.distances import category_distance
 from deixis.perception.recognition.errors import RecognitionError
 from deixis.perception.recognition.held_out import HeldOut, hold_out
 from deixis.perception.recognition.instances import InstanceCategory
+from deixis.perception.recognition.inverted import Effort
 from deixis.perception.recognition.recogniser import Recogniser
 from deixis.perception.recognition.settings import DEFAULT, RecognitionSettings
 
@@ -148,6 +150,16 @@ def test_views_of_one_thing_are_held_out_together() -> None:
     assert held.normalised[0, 0] == pytest.approx(wanted)
 
 
+def test_among_very_many_views_others_are_searched_as_recognition_searches_them() -> None:
+    categories = categories_of(3, count=3, views=40)
+    few = replace(DEFAULT, exact_up_to=0, effort=Effort(lists=1, few=1))
+    exact, approximate = (hold_out(categories, Recogniser.of(categories).indexes, each) for each in (DEFAULT, few))
+    others = np.arange(3) != exact.truth[:, None]
+    assert (approximate.normalised >= exact.normalised - 1e-12).all()
+    assert (approximate.normalised > exact.normalised + 1e-12)[others].any()
+    assert np.array_equal(approximate.normalised[~others], exact.normalised[~others])
+
+
 def test_a_category_of_one_view_gives_an_unknown_answer_and_no_known_one() -> None:
     categories = [*categories_of(1, count=2), categories_of(2, count=3, views=1)[2]]
     held = hold_out(categories, Recogniser.of(categories).indexes, DEFAULT)
@@ -163,3 +175,14 @@ def test_calibrating_a_recogniser_separates_its_categories_from_others() -> None
 
 def test_one_category_alone_cannot_be_calibrated() -> None:
     assert Recogniser.of(categories_of(0, count=1)).calibrated().calibration == SHIPPED
+
+
+def test_auroc_counts_pairs() -> None:
+    rng = np.random.default_rng(1)
+    known, unknown = rng.integers(0, 9, 40).astype(float), rng.integers(3, 12, 30).astype(float)
+    pairs = [(u > k) + 0.5 * (u == k) for u in unknown for k in known]
+    assert auroc(known, unknown) == pytest.approx(np.mean(pairs))
+
+
+def test_auroc_of_nothing_is_no_number() -> None:
+    assert np.isnan(auroc(np.empty(0), np.ones(2))) and np.isnan(auroc(np.ones(2), np.empty(0)))

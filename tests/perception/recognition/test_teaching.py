@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+import numpy as np
 import pytest
 
 from deixis.perception.recognition.errors import RecognitionError
@@ -22,10 +23,16 @@ class Scripted(TaughtViews):
         super().__init__()
         self.truth, self.script = truth, script
         self.asked: list[str] = []
+        self.met: list[str] = []
 
     def predict(self, view: ViewFeatures) -> Prediction:
-        self.asked.append(self.truth[id(view)])
-        return Prediction.of({self.asked[-1] if next(self.script, True) else "nonsense": 1.0}, 0.0)
+        truth = self.truth[id(view)]
+        if truth not in self.categories:
+            self.met.append(truth)
+            return Prediction.of({"nonsense": 1.0}, 1.0)
+        self.asked.append(truth)
+        right = next(self.script, True)
+        return Prediction.of({truth if right else "nonsense": 1.0}, 0.0 if right else 2.0)
 
     def _added(self, category: str, view: ViewFeatures) -> None:
         assert self.truth[id(view)] == category
@@ -82,6 +89,22 @@ def test_a_course_ends_where_a_category_has_no_view_left() -> None:
 def test_a_category_is_introduced_by_as_many_views_as_asked_for() -> None:
     found, _ = course([], teaching=Teaching(first=3))
     assert found.stored == 9 and found.instances == 3.0
+
+
+def test_a_category_is_met_before_it_is_taught_and_the_first_is_not() -> None:
+    found, learner = course([], teaching=Teaching(first=3))
+    assert learner.met == ["c1"] * 3 + ["c2"] * 3 and found.doubts == (1.0,) * 6
+    assert found.unknown_auroc == 1.0
+
+
+def test_the_unknown_is_told_by_doubt_from_what_is_asked_about() -> None:
+    found, _ = course([True, False, True, True, True], categories=2)  # doubts 0, 2, 0, 0, 0 and, of the new one, 1
+    assert [answer.unknown for answer in found.answers] == [0, 2, 0, 0, 0] and found.unknown_auroc == 0.8
+
+
+def test_a_single_category_leaves_nothing_unknown() -> None:
+    found, _ = course([], categories=1)
+    assert found.doubts == () and np.isnan(found.unknown_auroc)
 
 
 def test_the_same_seed_asks_in_the_same_order() -> None:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from deixis.experiments.open_ended.contestants import D2, SPIN
 from deixis.experiments.open_ended.shown import Shown
 from deixis.experiments.open_ended.splits import Split
+from deixis.perception.recognition.calibration import auroc
 from deixis.perception.recognition.distances import Target, view_distances
 from deixis.perception.recognition.learners.view_features import roots
 from deixis.perception.recognition.settings import RecognitionSettings
@@ -70,14 +71,3 @@ def compared(shown: Shown, distances: Matrix, split: Split, settings: Recognitio
     left_out[np.arange(len(right)), right] = np.inf
     accuracy = float((nearest.argmin(axis=1) == right).mean())
     return Scores(accuracy, auroc(nearest.min(axis=1), left_out.min(axis=1)))
-
-
-def auroc(known: NDArray[np.floating], unknown: NDArray[np.floating]) -> float:
-    """The probability that something unknown has a higher score than something known; equal ones count half.
-
-    >>> auroc(np.array([1.0, 2.0]), np.array([2.0, 3.0]))
-    0.875
-    """
-    order = np.sort(known)
-    below, upto = np.searchsorted(order, unknown, "left"), np.searchsorted(order, unknown, "right")
-    return float((below + upto).mean() / (2 * len(known)))

@@ -18,6 +18,7 @@ MEASURES: dict[str, Callable[[Taught], float]] = {
     "AIC": lambda one: one.course.instances,
     "GCA": lambda one: one.course.global_accuracy,
     "APA": lambda one: one.course.protocol_accuracy,
+    "AUROC": lambda one: one.course.unknown_auroc,
     "new": lambda one: one.afterwards,
 }
 
@@ -42,13 +43,14 @@ def _head(found: OpenEnded) -> Iterator[str]:
     yield ""
     yield "Means and standard deviations over orders. QCI: question and correction iterations; ALC: categories learnt;"
     yield "AIC: instances stored per category; GCA: share of right answers; APA: mean of what the teacher watched;"
-    yield "new: share right, in the end, on things never taught; all: orders in which every category was learnt."
+    yield "AUROC: views of a category about to be introduced, told by the learner's doubt from those it is asked about;"
+    yield "new: share right, in the end, on things never taught; least: the least GCA; all: orders that ended with all."
 
 
 def _set(found: OpenEnded, one: Findings) -> Iterator[str]:
     yield ""
     yield f"{one.name}: {len(one.kinds)} categories, {one.things} things, {one.views} views"
-    yield f"{'':<{NAME}}" + "".join(f" {measure:>12}" for measure in MEASURES) + " least GCA  all"
+    yield f"{'':<{NAME}}" + "".join(f" {measure:>11}" for measure in MEASURES) + " least  all"
     for name in dict.fromkeys(taught.contestant for taught in one.taught):
         yield _row(name, one.of(name))
     yield from _single_views(f"Single views of the {one.name}", one.nearest)
@@ -70,10 +72,10 @@ def _single_views(title: str, found: Ways) -> Iterator[str]:
 
 
 def _row(name: str, courses: Sequence[Taught]) -> str:
-    cells = "".join(f" {spread([measure(one) for one in courses]):>12}" for measure in MEASURES.values())
+    cells = "".join(f" {spread([measure(one) for one in courses]):>11}" for measure in MEASURES.values())
     least = min(one.course.global_accuracy for one in courses)
     whole = sum(one.course.end is End.LEARNT for one in courses)
-    return f"{name:<{NAME}}{cells} {least:>9.2f} {whole:>4}/{len(courses)}"
+    return f"{name:<{NAME}}{cells} {least:>5.2f} {whole:>4}/{len(courses)}"
 
 
 def spread(values: Sequence[float]) -> str:

@@ -47,7 +47,15 @@ def test_scores_are_the_mean_log_likelihood_with_laplace_smoothing() -> None:
     assert dict(found.ranked) == pytest.approx(
         {"cup": np.log([3 / 5, 2 / 5]).mean(), "fork": np.log([1 / 3, 2 / 3]).mean()}
     )
-    assert found.unknown == pytest.approx(np.log([3 / 6, 3 / 6]).mean() - np.log([3 / 5, 2 / 5]).mean())
+
+
+def test_a_view_is_as_unknown_as_its_words_diverge_from_the_best_category() -> None:
+    learner = NaiveBayes(BOOK, smoothing=1.0)
+    learner.learn("cup", view(0.0, 10.0))  # one half each
+    learner.learn("fork", view(10.0, 10.0))
+    assert learner.predict(view(0.0, 10.0)).unknown == pytest.approx(0.0)
+    divergence = 3 / 4 * np.log(3 / 4 / (1 / 2)) + 1 / 4 * np.log(1 / 4 / (1 / 2))
+    assert learner.predict(view(0.0, 0.0, 0.0, 10.0)).unknown == pytest.approx(divergence)
 
 
 def test_a_prior_favours_what_was_taught_more_often() -> None:
