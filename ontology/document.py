@@ -60,7 +60,8 @@ _SIZES = """\
 ## Usual sizes
 
 How large things usually are, in centimetres: least, typical, greatest. The length is the longer side of the outline,
-seen from above, the width the shorter one; of a circle both are the diameter. A kind of which nothing stands here is as
+seen from above, the width the shorter one; of a circle both are the diameter. Handles are not counted: the reach is how
+far they stand out, in hundredths of the length. A kind of which nothing stands here is as
 large as the nearest broader one that does."""
 
 _COLOURS = """\
@@ -172,7 +173,7 @@ def _entry(term: Term) -> str:
 
 
 def _sizes(own: Iterable[Term]) -> str:
-    ends = ("length", "width", "height")
+    ends = ("length", "width", "height", "reach")
     rows = [
         (term.value(W3C.RDFS_LABEL), term.value(DX.OUTLINE), *(_extent(term, end) for end in ends), _source(term))
         for term in own

@@ -23,7 +23,7 @@ class Outline(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Extent:
-    """A range of lengths in metres, with what is typical."""
+    """A range of lengths in metres (or of shares), with what is typical."""
 
     least: float
     typical: float
@@ -45,7 +45,8 @@ class Extent:
 class SizeRange:
     """How large things of a kind usually are: ``length`` is the longer side in the plan, ``width`` the shorter one.
 
-    Of a circle both are the diameter. ``stated_of`` is the IRI of the kind of which the TBox states it, the kind
+    Of a circle both are the diameter. ``reach`` is how far a handle stands out, as a share of the length, which leaves
+    it out; None where there is none. ``stated_of`` is the IRI of the kind of which the TBox states it, the kind
     itself or the nearest broader one; ``source`` says where the numbers are from.
     """
 
@@ -55,6 +56,7 @@ class SizeRange:
     height: Extent
     stated_of: str
     source: str
+    reach: Extent | None = None
 
     def __str__(self) -> str:
         if self.outline is Outline.CIRCLE:
@@ -99,6 +101,7 @@ _EXTENTS = {
     "length": (DX.LEAST_LENGTH, DX.TYPICAL_LENGTH, DX.GREATEST_LENGTH),
     "width": (DX.LEAST_WIDTH, DX.TYPICAL_WIDTH, DX.GREATEST_WIDTH),
     "height": (DX.LEAST_HEIGHT, DX.TYPICAL_HEIGHT, DX.GREATEST_HEIGHT),
+    "reach": (DX.LEAST_REACH, DX.TYPICAL_REACH, DX.GREATEST_REACH),
 }
 
 
@@ -122,6 +125,7 @@ def _size_range(iri: str, triples: Triples) -> SizeRange:
         height=_extent(iri, "height", triples),
         stated_of=iri,
         source=triples.value(iri, W3C.DCTERMS_SOURCE),
+        reach=_extent(iri, "reach", triples) if triples.values(iri, DX.TYPICAL_REACH) else None,
     )
 
 

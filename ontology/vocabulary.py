@@ -38,6 +38,9 @@ class DX(StrEnum):
     LEAST_HEIGHT = BASE + "leastHeight"
     TYPICAL_HEIGHT = BASE + "typicalHeight"
     GREATEST_HEIGHT = BASE + "greatestHeight"
+    LEAST_REACH = BASE + "leastReach"
+    TYPICAL_REACH = BASE + "typicalReach"
+    GREATEST_REACH = BASE + "greatestReach"
     # readings
     WIDE = BASE + "wide"
     EXACT = BASE + "exact"

@@ -119,7 +119,7 @@ def check_table(
     colours in sRGB, shape (n2, 3), NaN where not known, and ``colours`` the known terms.
     """
     layout = evidence.description
-    sure = _sure_roles(layout, labels, kinds)
+    sure = sure_roles(layout, labels, kinds)
     broken = tuple(entry for entry in grounding.violated if entry.fact.weight >= 1)
     exchanged = _exchanged(evidence, grounding, sure)
     explained = [entry for entry in broken if not exchanged.keys() & {entry.fact.subject, entry.fact.object}]
@@ -246,7 +246,7 @@ def _ends(evidence: Evidence, chosen: NDArray[np.bool_], assignment: NDArray[np.
     return np.concatenate([subjects[both], objects[both]]).astype(np.int64)
 
 
-def _sure_roles(layout: RelationGraph, labels: Mapping[str, Label | None], kinds: Kinds) -> dict[str, frozenset[str]]:
+def sure_roles(layout: RelationGraph, labels: Mapping[str, Label | None], kinds: Kinds) -> dict[str, frozenset[str]]:
     """The roles that a sure label says its thing fills: those that it fits, or the one that it names."""
     known = naming(layout, list(labels.values()), kinds)
     roles = {}

@@ -28,14 +28,14 @@ WINE_RED, NAVY, MOSS, SAND = (140, 44, 52), (50, 66, 110), (98, 120, 78), (206, 
 class Form:
     """A shape that a kind of things has.
 
-    ``reach`` is how far a handle stands out, as a share of the diameter, which the usual sizes do not count.
-    ``height`` replaces the usual heights where a shape is only some of what the kind can be. What is ``soft`` drapes.
+    ``handle`` is whether it has the one that its kind may have, which the usual sizes do not count. ``height`` replaces
+    the usual heights where a shape is only some of what the kind can be. What is ``soft`` drapes.
     """
 
     name: str
     build: Callable[[Size, np.random.Generator], Mesh]
     colours: tuple[Colour, ...]
-    reach: tuple[float, float] | None = None
+    handle: bool = False
     height: Extent | None = None
     soft: bool = False
     generic: bool = False
@@ -49,8 +49,8 @@ _GLASS = (FROST, BLUE_GLASS)
 FORMS: dict[str, Form] = {
     "Plate": Form("plate", crockery.plate, _CHINA),
     "Bowl": Form("bowl", crockery.bowl, _CHINA),
-    "Cup": Form("cup", crockery.cup, _CHINA, reach=(0.3, 0.4)),
-    "Mug": Form("mug", crockery.mug, _STONEWARE, reach=(0.3, 0.42)),
+    "Cup": Form("cup", crockery.cup, _CHINA, handle=True),
+    "Mug": Form("mug", crockery.mug, _STONEWARE, handle=True),
     "Glassware": Form("tumbler", glassware.tumbler, _GLASS),
     "WaterGlass": Form("water glass", glassware.water_glass, _GLASS),
     "WineGlass": Form("wine glass", glassware.wine_glass, _GLASS),
@@ -147,7 +147,9 @@ def drawn_plan(kind: Kind | None, seed: int, ontology: Ontology) -> tuple[float,
 
 
 def _size(form: Form, usual: SizeRange, rng: np.random.Generator, plan: tuple[float, float] | None) -> Size:
-    reach = 1.0 if form.reach is None else 1 + rng.uniform(*form.reach)
+    reach = 1.0
+    if form.handle and usual.reach is not None:
+        reach += rng.uniform(usual.reach.least, usual.reach.greatest)
     size = drawn_size(usual, rng, plan)
     return size if plan is not None else Size(size.width, size.length * reach, size.height)
 

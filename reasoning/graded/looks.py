@@ -24,6 +24,9 @@ TURNED = 0.2
 ANGLES = np.radians(np.arange(5.0, 46.0, 5.0))
 """Angles between a thing and the nearest axis, as likely each, by which a box is larger than what is in it."""
 
+HANDLES_SEEN = 0.8
+"""Share of things with a handle whose handle is seen: of the others the thing itself hides it."""
+
 LEAST_SPREAD = 0.05
 """Standard deviation of a logarithm below which no range falls: 5 per cent of a length."""
 
@@ -76,14 +79,17 @@ def usual_size(kind: str, sizes: Sizes) -> SizeModel | None:
     return None if usual.stated_of == DX.THING else size_model(usual)
 
 
-def from_above(model: SizeModel) -> Look:
+def from_above(model: SizeModel, reach: float = 0.0) -> Look:
     """The look of a thing that lies or stands on a table, in the plan; of what images taught, as they showed it.
 
     Of a thing l long and w wide that lies at an angle a, the box is l cos a + w sin a by l sin a + w cos a. A thing
-    about as wide as long is taken to be round, and looks the same however it lies.
+    about as wide as long is taken to be round, and looks the same however it lies, but for a handle: ``reach`` is how
+    far one stands out, as a share of the length.
     """
     straight = np.array([[model.length[0], model.aspect[0]]])
     spread = np.array([model.length[1], model.aspect[1]])
+    if reach and not model.relative:
+        return _with_handle(straight, spread, reach)
     if model.relative or model.aspect[0] > -2 * LEAST_SPREAD:
         return Look(straight, np.ones(1), spread, model.relative)
     length, width = np.exp(model.length[0]), np.exp(model.length[0] + model.aspect[0])
@@ -92,6 +98,18 @@ def from_above(model: SizeModel) -> Look:
     turned = np.log(np.stack([long, wide / long], axis=1))
     shares = np.array([1 - TURNED, *[TURNED / len(ANGLES)] * len(ANGLES)])
     return Look(np.concatenate([straight, turned]), shares, spread, model.relative)
+
+
+def _with_handle(straight: Array, spread: Array, reach: float) -> Look:
+    """The look of a round thing whose handle points anywhere, or is not seen.
+
+    At an angle a from an axis, the handle's end is (1/2 + reach) cos a diameters from the middle along that axis.
+    """
+    angles = np.concatenate([[0.0], ANGLES])
+    along, across = (np.maximum(0.5, (0.5 + reach) * side(angles)) + 0.5 for side in (np.cos, np.sin))
+    centres = straight + np.log(np.stack([along, across / along], axis=1))
+    shares = np.array([1 - HANDLES_SEEN, *[HANDLES_SEEN / len(angles)] * len(angles)])
+    return Look(np.concatenate([straight, centres]), shares, spread)
 
 
 def in_image_from_above(model: SizeModel) -> Look:

@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 from deixis.ontology.graph import RelationGraph
 from deixis.ontology.kinds import Kinds
 from deixis.ontology.size_model import SizeModel
-from deixis.ontology.sizes import Sizes
+from deixis.ontology.sizes import Extent, Sizes
+from deixis.ontology.vocabulary import DX
 from deixis.reasoning.errors import SettingError
 from deixis.reasoning.graded.geometry import pair_geometry
 from deixis.reasoning.graded.looks import (
@@ -32,6 +33,9 @@ Array = NDArray[np.float64]
 
 OUTLIERS = 0.05
 """Share of things whose size says nothing of their kind."""
+
+HIGHER, MEASURED = 2.0, 0.02
+"""A thing is plainly too high for a kind where it is so many times as high as the highest ones, and so many metres."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,14 +79,30 @@ def size_evidence(
     A learned model takes the place of the usual size; a kind of which no size is known says nothing. Where units are
     pixels (not ``metric``), sizes in metres say how large the objects are beside each other, seen from above or from
     aside, whichever fits the whole scene. Chance is the scene itself: a thing weighs as much as it fits the kind better
-    than the things around do, log n2 at the most, and nothing where all are alike.
+    than the things around do, log n2 at the most, and nothing where all are alike. Heights say only which things are
+    :func:`too_high`.
     """
     known = _known(kinds, sizes, learned)
     if not known or not len(boxes):
         return np.zeros((len(kinds), len(boxes)))
     if metric:
-        return _ratios(kinds, boxes, {kind: from_above(model) for kind, model in known.items()})
+        reaches = {kind: sizes.of(kind).reach for kind in known if kind not in (learned or {})}
+        looks = {kind: from_above(model, _typical(reaches.get(kind))) for kind, model in known.items()}
+        return np.where(too_high(kinds, boxes, sizes), np.log(OUTLIERS), _ratios(kinds, boxes, looks))
     return _whichever_view([_ratios(kinds, boxes, looks) for looks in looks_in_image(kinds, sizes, learned)])
+
+
+def too_high(kinds: Sequence[str], boxes: NDArray[np.float64], sizes: Sizes) -> NDArray[np.bool_]:
+    """Which of n2 boxes in metres are plainly higher than things of n1 kinds (class IRIs) ever are, shape (n1, n2).
+
+    Lower than usual is whatever something else hides in part; and of flat boxes no height is known.
+    """
+    if boxes.shape[2] < 3:
+        return np.zeros((len(kinds), len(boxes)), dtype=bool)
+    usual = [sizes.of(kind) for kind in kinds]
+    most = [np.inf if size.stated_of == DX.THING else HIGHER * size.height.greatest + MEASURED for size in usual]
+    result: NDArray[np.bool_] = boxes[None, :, 1, 2] - boxes[None, :, 0, 2] > np.array(most)[:, None]
+    return result
 
 
 def looks_in_image(
@@ -98,6 +118,10 @@ def looks_in_image(
 def _known(kinds: Sequence[str], sizes: Sizes, learned: Mapping[str, SizeModel] | None) -> dict[str, SizeModel]:
     different = dict.fromkeys(kinds)
     return {kind: model for kind in different if (model := (learned or {}).get(kind) or usual_size(kind, sizes))}
+
+
+def _typical(extent: Extent | None) -> float:
+    return 0.0 if extent is None else extent.typical
 
 
 def _whichever_view(views: Sequence[Array]) -> Array:

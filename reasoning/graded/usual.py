@@ -55,7 +55,8 @@ def _range(kind: str, sizes: Sizes, learned: Mapping[str, SizeModel]) -> tuple[A
     if model is None or model.relative:
         usual = sizes.of(kind)
         ranges = usual.length, usual.width
-        return np.log([one.least for one in ranges]), np.log([one.greatest for one in ranges])
+        handle = np.log1p([0.0 if usual.reach is None else usual.reach.greatest, 0.0])
+        return np.log([one.least for one in ranges]), np.log([one.greatest for one in ranges]) + handle
     (length, spread), (aspect, other) = model.length, model.aspect
     typical, off = np.array([length, length + aspect]), 2 * np.array([spread, math.hypot(spread, other)])
     return typical - off, typical + off

@@ -196,7 +196,7 @@ class Session(PerceptualSession):
     ) -> Checked:
         """What is wrong with a table: ``layout`` is a learned layout's name, or a script or its file."""
         from deixis.learning import layout_concept
-        from deixis.reasoning.checking import check_table
+        from deixis.reasoning.impostors import checked_table
         from deixis.shacl_report import shacl_report
 
         concept = (
@@ -210,10 +210,12 @@ class Session(PerceptualSession):
         evidence = graph_evidence(graph, scene, self.ontology, self.meaning())
         notes = _viewpoint_notes(concept.viewpoint, scene) + conflict_notes(graph)
         ready_to_ground("exact")
-        found = ground_evidence(evidence, engine_named("exact"), time_limit)
+        known, engine = self.ontology, engine_named("exact")
+        sizes = known.sizes if scene.unit == "m" else None
+        table = checked_table(evidence, labels, known.kinds, sizes, engine, time_limit, scene.colours, known.colours)
+        found = table.grounding
         kept = tuple(note for note in found.notes if "similarity" not in note)  # a check shows no similarity
-        found = replace(found, notes=notes + kept)
-        table = check_table(evidence, labels, self.ontology.kinds, found, scene.colours, self.ontology.colours)
+        table = replace(table, grounding=replace(found, notes=notes + kept))
         return Checked(concept, table, *shacl_report(concept, scene, table, relations))
 
     def _script(self, script: Script | str | Path) -> Script:

@@ -77,6 +77,41 @@ def test_a_thing_without_a_name_is_extra_for_want_of_a_place_or_for_fitting_none
     assert (extra.perceived, extra.reason) == ("p", "it fits no place that is left in the layout")
 
 
+def box(id: str, low: tuple[float, ...], sides: tuple[float, ...], label: str | None = None) -> PerceivedObject:
+    return PerceivedObject(id, low, tuple(a + b for a, b in zip(low, sides, strict=True)), label=label)
+
+
+PLATE = box("plate", (0.0, 0.0, 0.0), (0.25, 0.25, 0.02), "plate")
+CUBE = (0.3, 0.3, 0.3)
+
+
+def test_what_is_no_fork_by_its_size_nor_by_its_place_is_no_misplaced_fork() -> None:
+    checked = check(Scene((PLATE, box("o2", (0.3, 0.06, 0.0), CUBE))), "fork left of plate")
+    assert roles(checked, Verdict.MISSING) == {"fork"} and not roles(checked, Verdict.MISPLACED)
+    (extra,) = checked.table.extra
+    assert (extra.perceived, extra.reason) == ("o2", "it fits no place that is left in the layout")
+    assert not checked.table.well
+
+
+def test_what_is_far_too_high_for_a_knife_is_no_misplaced_knife() -> None:
+    mug = box("o2", (0.4, 0.06, 0.0), (0.12, 0.12, 0.1))  # as long and as wide as a knife that lies aslant
+    low = box("o2", (0.4, 0.06, 0.0), (0.12, 0.12, 0.02))
+    for other, verdict in ((mug, Verdict.MISSING), (low, Verdict.MISPLACED)):
+        assert roles(check(Scene((PLATE, other)), "butter_knife left of plate"), verdict) == {"butter_knife"}
+
+
+def test_what_is_as_large_as_a_fork_or_is_called_one_is_misplaced() -> None:
+    for other in (box("o2", (0.4, 0.06, 0.0), (0.025, 0.19, 0.01)), box("o2", (0.3, 0.06, 0.0), CUBE, "fork")):
+        checked = check(Scene((PLATE, other)), "fork left of plate")
+        assert "fork" in roles(checked, Verdict.MISPLACED) and not checked.table.extra
+
+
+def test_what_stands_in_a_forks_place_may_be_one_of_any_length_and_not_of_any_height() -> None:
+    for height, verdict in ((0.02, Verdict.UNDETERMINED), (0.3, Verdict.MISSING)):
+        checked = check(Scene((PLATE, box("o2", (-0.4, 0.0, 0.0), (0.3, 0.3, height)))), "fork left of plate")
+        assert roles(checked, verdict) == {"fork"}
+
+
 def test_a_thing_of_another_colour_is_a_finding_of_its_own() -> None:
     text = "the red mug left of plate\nnapkin is white; napkin on plate\nknife right of plate; knife is grey"
     scene = Scene(

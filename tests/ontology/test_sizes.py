@@ -85,6 +85,12 @@ def test_everyday_things_are_in_order_of_size(smaller: str, larger: str) -> None
     assert small.length.typical * small.height.typical < large.length.typical * large.height.typical
 
 
+def test_what_has_a_handle_says_how_far_it_stands_out() -> None:
+    reach = SIZES.of(kind("mug").iri).reach
+    assert reach is not None and 0.3 <= reach.least <= reach.typical <= reach.greatest <= 0.5
+    assert SIZES.of(kind("dinner plate").iri).reach is None
+
+
 def test_a_size_of_an_extra_text_is_taken() -> None:
     numbers = " ; ".join(
         f"dx:{which}{end} {metres}"
@@ -106,6 +112,7 @@ def test_a_size_of_an_extra_text_is_taken() -> None:
             "dx:SaltShaker dx:outline 'circle' ; dx:leastLength 1.0 ; dx:typicalLength 0.5 ; dx:greatestLength 2.0 .",
             "must be above 0 and in that order",
         ),
+        ("dx:Bowl dx:typicalReach 0.2 .", "must have exactly one <https://w3id.org/deixis/onto#leastReach>"),
         (
             "dx:SaltShaker dx:outline 'circle' ; dx:leastLength 'wee' ; dx:typicalLength 0.5 ; dx:greatestLength 2.0 .",
             "must be given in numbers, not as wee",

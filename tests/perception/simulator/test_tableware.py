@@ -43,7 +43,7 @@ def test_things_of_every_kind_are_closed_and_of_the_usual_size(kind: str) -> Non
         assert volume(thing.mesh) > 0
         assert usual.width.admits(width, 1e-9)
         assert usual.height.admits(height, 1e-9)
-        if thing.form.reach is None:
+        if not thing.form.handle:
             assert usual.length.admits(length, 1e-9)
             assert usual.outline is Outline.RECTANGLE or width == pytest.approx(length)
         else:

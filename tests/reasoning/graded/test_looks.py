@@ -54,6 +54,23 @@ def test_of_what_the_ontology_does_not_know_there_is_no_usual_size() -> None:
     assert usual_size("https://example.org/unheard", SIZES) is None
 
 
+def test_a_handle_makes_a_round_thing_longer_whichever_way_it_points_or_is_not_seen() -> None:
+    look = from_above(SizeModel((np.log(0.08), 0.1), (0.0, 0.05)), reach=0.4)
+    hidden, along, *turned = sides(look)
+    assert hidden == pytest.approx((0.08, 0.08)) and along == pytest.approx((0.08 * 1.4, 0.08))
+    middle = 0.08 * (0.5 + 0.9 * np.cos(np.radians(45)))  # towards a corner both sides are as long
+    assert turned[-1] == pytest.approx((middle, middle))
+    assert look.shares.sum() == pytest.approx(1.0) and look.shares[0] == pytest.approx(0.2)
+    assert [length for length, _ in (along, *turned)] == sorted(
+        (length for length, _ in (along, *turned)), reverse=True
+    )
+
+
+def test_what_was_learned_from_images_is_as_they_showed_it_handle_and_all() -> None:
+    model = SizeModel((0.1, 0.1), (-0.2, 0.1), relative=True)
+    assert sides(from_above(model, reach=0.4)) == sides(from_above(model))
+
+
 def test_a_round_thing_looks_one_way_from_above() -> None:
     assert sides(from_above(SizeModel((np.log(0.27), 0.1), (0.0, 0.05)))) == [pytest.approx((0.27, 0.27))]
 

@@ -13,10 +13,12 @@ from deixis.reasoning.errors import SettingError
 from deixis.reasoning.evidence import evidence_from
 from deixis.reasoning.graded.size_learning import learn_size, pooled_prior
 from deixis.reasoning.graded.unary import (
+    OUTLIERS,
     UnaryWeights,
     label_ratios,
     log_sizes,
     size_evidence,
+    too_high,
 )
 from deixis.reasoning.labels import Label
 from deixis.reasoning.meaning import Meaning
@@ -34,6 +36,18 @@ TWO = RelationGraph.from_facts(R, ["soup_spoon", "dinner_plate"], [], kinds=[SPO
 def learned_from(*views: tuple[np.ndarray, int], relative: bool = False) -> SizeModel:
     sizes = np.array([log_sizes(boxes, relative)[thing] for boxes, thing in views])
     return learn_size(sizes, pooled_prior([sizes]), relative)
+
+
+def test_what_is_far_higher_than_a_fork_is_none_whatever_its_plan() -> None:
+    def things(height: float) -> np.ndarray:
+        return np.array([[[0.0, 0.0, 0.0], [0.03, 0.195, height]], [[0.1, 0.0, 0.0], [0.37, 0.27, 0.02]]])
+
+    flat = size_evidence([FORK, PLATE], things(0.02)[..., :2], SIZES)
+    assert np.array_equal(size_evidence([FORK, PLATE], things(0.02), SIZES), flat)
+    high = size_evidence([FORK, PLATE], things(0.2), SIZES)
+    assert high[0, 0] == pytest.approx(np.log(OUTLIERS)) and flat[0, 0] > 0
+    assert np.array_equal(high[:, 1], flat[:, 1])
+    assert not too_high(["https://example.org/unheard"], things(9.0), SIZES).any()
 
 
 def test_a_soup_spoon_is_no_plate() -> None:
@@ -78,7 +92,7 @@ def test_a_fork_at_any_angle_is_a_fork_before_it_is_a_plate(degrees: int) -> Non
 
 
 def test_heights_are_no_part_of_the_plan() -> None:
-    upright = np.concatenate([TABLE, np.array([[[0.0], [0.3]]] * 3)], axis=2)
+    upright = np.concatenate([TABLE, np.array([[[0.0], [0.03]]] * 3)], axis=2)
     assert size_evidence([SPOON, PLATE], upright, SIZES) == pytest.approx(size_evidence([SPOON, PLATE], TABLE, SIZES))
 
 
