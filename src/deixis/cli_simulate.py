@@ -137,6 +137,8 @@ def _lines(found: Simulation) -> Iterator[str]:
         yield f"{seen.id:<4} {thing.name:<22} {place:<16} {points:>7} points  {shape}"
     if found.laid.top_name is not None:
         yield f"{found.laid.top_name} is the table itself, and none of the things."
+    if found.laid.beside:
+        yield f"In the air beside the table: {', '.join(found.laid.beside)}."
     x, y, z = found.camera.eye.tolist()
     measured = int(found.cloud.finite.sum())
     yield f"Camera at {100 * x:.1f}, {100 * y:.1f}, {100 * z:.1f} cm; {measured} of {len(found.cloud)} points measured."
@@ -175,6 +177,7 @@ def simulation_to_dict(found: Simulation, view: View, seed: int) -> dict[str, An
             for number, (seen, thing, points) in enumerate(things, start=1)
         ],
         "points": {"all": len(found.cloud), "measured": int(found.cloud.finite.sum())},
+        "beside": list(found.laid.beside),
         "missed": [fact_to_dict(fact) for fact in found.laid.missed],
         "scene": scene_to_dict(found.truth),
     }

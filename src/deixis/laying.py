@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -65,6 +65,13 @@ class LaidScript:
     missed: tuple[Fact, ...] = ()
     top_name: str | None = None
 
+    @property
+    def beside(self) -> tuple[str, ...]:
+        """What is not over the top, but beside it in the air, since the script says so, or leaves no other place."""
+        low, high = np.array(self.table.top.low), np.array(self.table.top.high)
+        middles = {thing.name: thing.box[:, :2].mean(axis=0) for thing in self.table.things}
+        return tuple(name for name, middle in middles.items() if not ((low <= middle) & (middle <= high)).all())
+
 
 def lay_random(
     count: int,
@@ -93,7 +100,8 @@ def lay_script(
     """Lays a table that satisfies every firm fact of a script, with things of their kinds, varied from the seed.
 
     Everything is turned a little off its axis, unless a fact would no longer hold. ``meshes`` (metres, z up) stand
-    for objects of the script, by name. What is a table is the table's top itself. Raises NoTableError where there is
+    for objects of the script, by name. What is a table is the table's top itself, and everything is on it, unless the
+    script has it elsewhere. Raises NoTableError where there is
     no such table, TimeIsUpError where that stayed open, SimulationError for a mesh that stands for nothing.
     """
     meshes = _checked(meshes or {})
@@ -128,22 +136,34 @@ def _planned(script: Script, graph: RelationGraph, meshes: Mapping[str, Mesh], s
     ontology = script.ontology
     objects = sized_objects(script, graph)
     lying = lying_cutlery(graph, objects, ontology.kinds)
-    draws = DRAWS if any(form_of(thing.kind, ontology).reach for thing in objects) else 1
+    tables = tuple(_is_table(thing, ontology) for thing in objects)
+    draws = DRAWS if any(form_of(thing.kind, ontology).handle for thing in objects) else 1
     for draw in range(draws):
         sizes = [
             _room(thing, meshes.get(thing.name), _instance(seed, number) + draw, ontology)
             for number, thing in enumerate(objects)
         ]
-        rng = np.random.default_rng([seed, draw])
-        found = realise(graph, sizes, lying=lying, time_limit=time_limit, rng=rng)
+        for said in (_all_on_it(graph, tables), graph):
+            rng = np.random.default_rng([seed, draw])
+            found = realise(said, sizes, lying=lying, time_limit=time_limit, rng=rng)
+            if isinstance(found, Picture) or said is graph:
+                break
         if isinstance(found, Picture):
-            tables = tuple(_is_table(thing, ontology) for thing in objects)
             return _Plan(graph, objects, found.boxes, tables, meshes, seed, ontology)
         if not isinstance(found, Impossible):
             raise TimeIsUpError(f"{script.file}: no table was found within {time_limit:g} seconds; give it more time")
     raise NoTableError(
         f"{script.file}: there is no such table with things of their usual sizes; 'deixis imagine' says why"
     )
+
+
+def _all_on_it(graph: RelationGraph, tables: Sequence[bool]) -> RelationGraph:
+    """The graph with everything said to be on the one table that it speaks of, if it speaks of one."""
+    if sum(tables) != 1:
+        return graph
+    on, table = graph.vocabulary["on"], graph.nodes[tables.index(True)]
+    facts = [*graph.facts(), *(Fact(name, (on,), table) for name in graph.nodes if name != table)]
+    return RelationGraph.from_facts(graph.vocabulary, graph.nodes, facts, graph.kinds, graph.boxes, graph.colours)
 
 
 def _is_table(thing: Sized, ontology: Ontology) -> bool:
@@ -155,7 +175,7 @@ def _room(thing: Sized, mesh: Mesh | None, instance: int, ontology: Ontology) ->
     """How much room a thing takes in the plan: its usual size, but with the handle where there is one."""
     if mesh is not None:
         return _exactly(thing.size, *_plan_of(mesh))
-    if form_of(thing.kind, ontology).reach is not None:
+    if form_of(thing.kind, ontology).handle:
         return _exactly(thing.size, *drawn_plan(thing.kind, instance, ontology))
     return thing.size
 
@@ -213,7 +233,7 @@ def _placement(plan: _Plan, number: int, turn: float) -> Placement:
         crosswise = (sides[0] > sides[1]) != (across > deep) and abs(across - deep) > 1e-9
         return Placement(thing.name, kind, x, y, turn + (np.pi / 2 if crosswise else 0.0), seed, mesh=mesh)
     lies = across > deep
-    turned_round = form_of(thing.kind, plan.ontology).reach is not None and seed % 2 == 1
+    turned_round = form_of(thing.kind, plan.ontology).handle and seed % 2 == 1
     yaw = (np.pi / 2 if lies else 0.0) + (np.pi if turned_round else 0.0)
     return Placement(thing.name, kind, x, y, yaw + turn, seed, plan=(min(across, deep), max(across, deep)))
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from numbers import Integral
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +17,7 @@ from deixis.perception.clouds.intrinsics import Intrinsics
 from deixis.perception.scene import Scene
 from deixis.perception.simulator.camera import HEIGHT, KINECT, Camera, chair_camera, check_place
 from deixis.perception.simulator.depth import FIRST_THING, DepthSensor, see
+from deixis.perception.simulator.errors import SimulationError
 from deixis.perception.simulator.truth import truth_scene
 
 
@@ -59,13 +61,15 @@ class Simulation:
 def simulate(layout: LaidScript | Script | str | Path, view: View | None = None, seed: int = 0) -> Simulation:
     """Lays a table as a script says, unless it is laid already, and looks at it; the same seed gives the same cloud.
 
-    Raises NoTableError where no table satisfies the script, SimulationError for a camera that cannot be.
+    Raises NoTableError where no table satisfies the script, SimulationError for a camera or a seed that cannot be.
 
     >>> import deixis
     >>> look = simulate(deixis.read_script(text="fork left of plate"), seed=1)
     >>> look.cloud.organised, [thing.label for thing in look.truth.objects], bool((look.points > 100).all())
     ((480, 640), ['fork', 'plate'], True)
     """
+    if not isinstance(seed, Integral) or seed < 0:
+        raise SimulationError(f"a seed is a whole number, 0 or more, not {seed!r}")
     view = view or View()
     laid = layout if isinstance(layout, LaidScript) else lay_script(_script(layout), seed)
     camera = chair_camera(laid.table, view.height, view.back, view.azimuth, view.lens)

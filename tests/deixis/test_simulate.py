@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from itertools import combinations
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -103,6 +104,22 @@ def test_a_table_that_a_script_speaks_of_is_the_tables_top() -> None:
         assert (low <= thing.box[0, :2]).all() and (thing.box[1, :2] <= high).all()
     with pytest.raises(SimulationError, match="one table"):
         lay_script(parse_script("dining_table left of side_table; dining_table is a table; side_table is a table"), 0)
+
+
+def test_everything_is_on_the_table_that_a_script_speaks_of_unless_it_is_beside_it() -> None:
+    script = "laptop left of toaster; banana right of toaster; mug on coffee_table; teapot right of banana"
+    laid = lay_script(parse_script(script), seed=5)
+    low, high = np.array(laid.table.top.low), np.array(laid.table.top.high)
+    for thing in laid.table.things:
+        assert (low <= thing.box[0, :2]).all() and (thing.box[1, :2] <= high).all()
+    assert laid.beside == ()
+    assert lay_script(parse_script("chair left of table; mug on table"), seed=1).beside == ("chair",)
+
+
+@pytest.mark.parametrize("seed", [-1, 1.5, None])
+def test_a_seed_that_is_none_is_refused(seed: Any) -> None:
+    with pytest.raises(SimulationError, match="a seed is a whole number"):
+        simulate("formal_dinner.layout", seed=seed)
 
 
 def test_a_mesh_stands_for_an_object_in_its_own_size() -> None:
