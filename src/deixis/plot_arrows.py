@@ -20,6 +20,12 @@ GRID = 12
 DEEP, LEAST = 0.015, 0.05
 """How far inside its things an arrow should end, and how long it should be: shares of the picture's extent."""
 
+BEND = 0.12
+"""How far an arrow's control point lies aside, as a share of its length."""
+
+STEPS = 40
+"""Points along an arrow that a name should keep clear of."""
+
 Point = tuple[float, float]
 Arrow = tuple[Point, Point]
 
@@ -76,7 +82,7 @@ def draw_arrows(axes: Axes, arrows: Sequence[Arrow], colour: str, width: float, 
             end,
             arrowstyle="-|>",
             mutation_scale=9,
-            connectionstyle="arc3,rad=0.12",
+            connectionstyle=f"arc3,rad={BEND}",
             shrinkA=0,
             shrinkB=0,
             color=colour,
@@ -88,6 +94,19 @@ def draw_arrows(axes: Axes, arrows: Sequence[Arrow], colour: str, width: float, 
         axes.add_patch(arrow)
     x, y = ([start[axis] for start, _ in arrows] for axis in (0, 1))
     axes.plot(x, y, "o", color=colour, markersize=3.5, alpha=alpha, zorder=order, scalex=False, scaley=False)
+
+
+def along(arrows: Sequence[Arrow]) -> list[Point]:
+    """Points along arrows as :func:`draw_arrows` bends them, where both axes have one scale."""
+    share = np.linspace(0.0, 1.0, STEPS)[:, None]
+    points: list[Point] = []
+    for begin, finish in arrows:
+        start, end = np.array(begin), np.array(finish)
+        aside = (end - start)[::-1] * [1.0, -1.0]
+        middle = (start + end) / 2 + BEND * aside
+        curve = (1 - share) ** 2 * start + 2 * share * (1 - share) * middle + share**2 * end
+        points += [(float(x), float(y)) for x, y in curve]
+    return points
 
 
 def _plan(thing: PerceivedObject) -> NDArray[np.float64]:

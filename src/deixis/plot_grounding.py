@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from deixis.perception.scene import PerceivedObject, Scene
 from deixis.plot import INK, PAPER, QUIET, WRONG, dress_table, new_figure, save
-from deixis.plot_arrows import Arrow, Ends, draw_arrows, from_below
+from deixis.plot_arrows import Arrow, Ends, along, draw_arrows, from_below
 from deixis.plot_names import write_names
 from deixis.reasoning.answer import FactOutcome, Grounding
 from deixis.show_ground import MANY, at_most_many
@@ -34,6 +34,9 @@ LEGEND_LINE = 0.17
 
 LINE, HALF_LINE, TITLE_LINE = 115, 50, 75
 """Characters that fit into a line of the legend, into half of one, and into one of the title."""
+
+MOST_CLEAR = 30
+"""Arrows of violated facts of which names keep clear, at most."""
 
 NO_BREAK = "\u00a0"
 
@@ -77,7 +80,8 @@ def grounding_figure(found: Grounding, scene: Scene, title: str | None = None, m
     _write_legend(figure, keys)
     named = [replace(thing, label=names.get(thing.id) or thing.label or thing.id) for thing in scene.objects]
     quiet = {thing.id for thing in scene.objects if thing.id not in names}
-    write_names(figure, axes, named, quiet, [end for arrow in satisfied + violated for end in arrow])
+    ends_of_arrows = [end for arrow in satisfied + violated for end in arrow]
+    write_names(figure, axes, named, quiet, [*ends_of_arrows, *along(violated[:MOST_CLEAR])])
     return figure
 
 

@@ -5,10 +5,12 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
+import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
 from deixis.perception.scene import PerceivedObject
-from deixis.plot_arrows import Ends, Point
+from deixis.plot_arrows import Ends, Point, along, draw_arrows
 
 PLATE = PerceivedObject("plate", (0.0, 0.0), (10.0, 10.0))
 
@@ -64,3 +66,16 @@ def test_a_thing_that_cannot_be_seen_has_its_arrow_nevertheless() -> None:
     under, over = replace(box(0, 0, 10, 10), id="under"), replace(box(0, 0, 10, 10), id="over")
     start, _ = Ends([under, over]).arrow("under", "over")
     assert held(start, under)
+
+
+def test_points_along_an_arrow_lie_where_it_is_drawn() -> None:
+    axes = Figure(figsize=(4.0, 4.0)).add_subplot()
+    axes.set(xlim=(0, 1), ylim=(0, 1), aspect="equal")
+    arrow = ((0.1, 0.2), (0.8, 0.5))
+    draw_arrows(axes, [arrow], "black", 1.0, 1)
+    (drawn,) = axes.patches
+    start, control, _ = np.asarray(drawn.get_path().vertices)[:3]
+    points = np.array(along([arrow]))
+    assert start == pytest.approx(arrow[0]) and points[[0, -1]] == pytest.approx(np.array(arrow))
+    middle = (np.array(arrow[0]) + 2 * control + np.array(arrow[1])) / 4  # of a quadratic Bezier curve
+    assert np.linalg.norm(points - middle, axis=1).min() < 0.01
