@@ -42,6 +42,11 @@ def read_scene(source: str | Path | Mapping[str, Any], image: str | int | None =
     """
     if isinstance(source, Mapping):
         return scene_from_dict(source, "<scene>", image)
+    if not isinstance(source, str | Path):
+        raise SceneError(
+            f"a scene is read from a file or from parsed JSON, not from {type(source).__name__};"
+            " what 'perceive' gives in Python has a 'scene', and 'write(file)' writes it with its clouds"
+        )
     path = Path(source)
     return scene_from_dict(_parsed(path), str(path), image)
 

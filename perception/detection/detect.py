@@ -32,6 +32,12 @@ WIDEST, NARROWEST = 20.0, 0.002
 LONGEST_ALONE = 0.4
 """Metres: a cloud that is no longer, and in its other directions shorter than a table, shows one thing alone."""
 
+LEAST_TOP = 0.1
+"""Metres: what is taken for a table and is shorter, with nothing on it, is nothing."""
+
+MOST_TABLE = 6.0
+"""Metres: nothing that a robot lays is longer."""
+
 FEW = 0.5
 """Percent of the points at either end that say nothing of how large a thing is."""
 
@@ -118,7 +124,9 @@ def _on_table(
     colours = None if cloud.colours is None else cloud.colours[kept]
     found = _things(view, rising, neighbours, colours, settings)
     if not found.max(initial=NONE) >= 0:
-        why = ("nothing is on the table", *_too_small(view), *_a_wall(view, settings))
+        if not _too_large(view) and max(_sides(view)) < LEAST_TOP:
+            return _nothing(len(cloud), None, np.eye(4), _no_table(settings, 0))
+        why = ("nothing is on the table", *(_too_large(view) or _too_small(view)), *_a_wall(view, settings))
         return _nothing(len(cloud), table.plane, view.frame, *why)
     members = [view.points[found == k] for k in range(int(found.max()) + 1)]
     table_seen = view.points[(np.abs(view.heights) < ON_TABLE) & (found == NONE), :2]
@@ -128,7 +136,7 @@ def _on_table(
     labels = np.full(len(cloud), NONE, np.int32)
     labels[kept] = np.append(np.argsort(order), NONE)[found]
     oriented = tuple(oriented_box(members[k], rims[k]) for k in order)
-    return Detection(table.plane, view.frame, labels, boxes[order], oriented, _too_small(view))
+    return Detection(table.plane, view.frame, labels, boxes[order], oriented, _too_large(view) or _too_small(view))
 
 
 def _require_metres(points: NDArray[np.float64]) -> None:
@@ -137,7 +145,7 @@ def _require_metres(points: NDArray[np.float64]) -> None:
     if spread > WIDEST:
         raise CloudError(
             f"half of the points are more than {spread:.0f} m from the middle, too far for a table;"
-            " coordinates are metres: if these are millimetres, divide them by 1000"
+            " coordinates are metres: divide millimetres by 1000, centimetres by 100; a depth image has a depth_scale"
         )
     if len(few) > 100 and spread < NARROWEST:
         raise CloudError(
@@ -202,11 +210,30 @@ def _view(points: NDArray[np.float64], plane: Plane, outlook: Outlook, settings:
 
 def _too_small(view: _View) -> tuple[str, ...]:
     """A note where the table is too small for one."""
-    across, deep = np.ptp(view.points[view.top, :2], axis=0).tolist() if len(view.top) else (0.0, 0.0)
+    across, deep = _sides(view)
     if max(across, deep) >= LEAST_TABLE:
         return ()
     size = f"{100 * across:.0f} by {100 * deep:.0f} cm"
     return (f"what was taken for the table is only {size}: it may be a part of a thing seen alone",)
+
+
+def _too_large(view: _View) -> tuple[str, ...]:
+    """A note where no table is so large: what is level with it is looked at, as points far apart are no one piece."""
+    level = view.points[np.abs(view.heights) < ON_TABLE, :2]
+    if not len(level):
+        return ()
+    across, deep = np.subtract(*np.percentile(level, (95, 5), axis=0)).tolist()
+    if max(across, deep) <= MOST_TABLE:
+        return ()
+    return (
+        f"what was taken for the table is {across:.0f} by {deep:.0f} m: coordinates are metres; is the unit another?",
+    )
+
+
+def _sides(view: _View) -> tuple[float, float]:
+    """How far the table reaches across and away, in metres."""
+    across, deep = np.ptp(view.points[view.top, :2], axis=0).tolist() if len(view.top) else (0.0, 0.0)
+    return across, deep
 
 
 def _a_wall(view: _View, settings: DetectionSettings) -> tuple[str, ...]:

@@ -115,6 +115,7 @@ def _across(up: NDArray[np.float64], wanted: list[NDArray[np.float64]]) -> NDArr
 
 
 def moved(points: NDArray[np.floating], frame: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Points (n, 3) taken by a transform (4, 4)."""
-    result: NDArray[np.float64] = points @ frame[:3, :3].T + frame[:3, 3]
+    """Points (n, 3) taken by a transform (4, 4); what is not finite stays so."""
+    with np.errstate(invalid="ignore"):  # infinity times nothing
+        result: NDArray[np.float64] = points @ frame[:3, :3].T + frame[:3, 3]
     return result

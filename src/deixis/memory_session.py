@@ -33,16 +33,22 @@ def default_memory() -> Path:
 
 
 class MemorySession(Closing):
-    """A memory held by this process from the first call that needs it until the session is closed."""
+    """A memory held by this process from the first call that needs it until the session is closed, and never after."""
 
     def __init__(self, memory: str | Path | None = None, ontology: Ontology | None = None) -> None:
         self.path = default_memory() if memory is None else Path(memory)
         self.ontology = default_ontology() if ontology is None else ontology
         self._memory: SemanticMemory | None = None
         self._meaning: Meaning | None = None  # what is in force, since the last change
+        self._closed = False
 
     def close(self) -> None:
-        """Lets go of the memory."""
+        """Lets go of the memory; what would need it afterwards raises MemoryFormatError."""
+        self._closed = True
+        self._let_go()
+
+    def _let_go(self) -> None:
+        """Closes what is open, until it is needed again."""
         self._meaning = None
         if self._memory is not None:
             self._memory.close()
@@ -58,9 +64,16 @@ class MemorySession(Closing):
         """The open memory; raises DeixisError where there is none and ``create`` is not set."""
         from deixis.memory.semantic import SemanticMemory
 
+        self._require_open()
         if self._memory is None:
             self._memory = SemanticMemory.open(self.path, create=create)
         return self._memory
+
+    def _require_open(self) -> None:
+        from deixis.memory.errors import MemoryFormatError
+
+        if self._closed:
+            raise MemoryFormatError(f"{self.path}: this session is closed, and holds no memory; open another")
 
     def meaning(self) -> Meaning:
         """The words and sizes in force: what is shipped, but for what was learned; where there is no memory, all of it.
@@ -132,7 +145,8 @@ class MemorySession(Closing):
         """
         from deixis.keeping import take_in
 
-        self.close()
+        self._require_open()
+        self._let_go()
         take_in(file, self.path, self.ontology)
 
     def layouts(self) -> tuple[LayoutConcept, ...]:

@@ -39,6 +39,10 @@ class Perceived:
         """The points of one thing, counted from 0, in the table's frame, with where the sensor stood."""
         return in_frame(self.cloud.take(self.detection.labels == number), self.detection.frame)
 
+    def write(self, file: str | Path) -> Scene:
+        """Writes the scene with its clouds, as :func:`write_perceived` does: what it gives can be taught from."""
+        return write_perceived(self, Path(file))
+
 
 def perceive(
     cloud: PointCloud | str | Path,

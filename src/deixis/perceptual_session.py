@@ -36,12 +36,12 @@ class PerceptualSession(MemorySession):
 
     _views: LevelMemory | None = None
 
-    def close(self) -> None:
-        """Lets go of both memories."""
+    def _let_go(self) -> None:
+        """Closes both memories."""
         if self._views is not None:
             self._views.close()
             self._views = None
-        super().close()
+        super()._let_go()
 
     def has_views(self) -> bool:
         """Whether anything was ever taught."""
@@ -53,6 +53,7 @@ class PerceptualSession(MemorySession):
         """The open perceptual memory; raises DeixisError where there is none and ``create`` is not set."""
         from deixis.memory.perceptual.whole import open_in
 
+        self._require_open()
         if self._views is None:
             self._views = open_in(self.path, create)
         return self._views
@@ -197,6 +198,8 @@ def category_name(text: str) -> str:
     """A category's name as scripts write it: ``dinner fork`` is ``dinner_fork``; raises SettingError for nothing."""
     from deixis.reasoning.errors import SettingError
 
+    if not isinstance(text, str):
+        raise SettingError(f"a category's name is a text, not {text!r}")
     name = "_".join(text.split())
     if not name:
         raise SettingError("a category's name is a word or more, not nothing")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -12,8 +13,11 @@ from hypothesis import strategies as st
 
 import deixis
 from deixis.examples_data import example
+from deixis.memory.errors import MemoryFormatError
+from deixis.perception.errors import SceneError
 from deixis.perception.scene import Scene
 from deixis.reasoning.answer import Grounding
+from deixis.reasoning.errors import SettingError
 from deixis.show_ground import grounding_lines
 
 SCRIPT1 = deixis.read_script(example("script1.layout"))
@@ -213,3 +217,23 @@ def test_many_things_left_out_for_one_reason_are_one_line() -> None:
     shown = grounding_lines(deixis.ground(deixis.read_script(text="fork left of plate"), scene))
     told = [line for line in shown if line.startswith("Left out:")]
     assert len(told) < 5 and any("more (--json has them): " in line for line in told)
+
+
+def test_a_closed_session_does_not_take_the_memory_again(tmp_path: Path) -> None:
+    with deixis.Session(tmp_path / "memory") as session:
+        session.learn(example("formal_dinner.layout"), SCENE)
+    for needs_it in (session.layouts, lambda: session.query("ASK {}"), lambda: session.views(create=True)):
+        with pytest.raises(MemoryFormatError, match="this session is closed"):
+            needs_it()
+    with deixis.Session(tmp_path / "memory") as another:
+        assert another.layouts()
+
+
+def test_what_is_no_scene_is_told_what_is() -> None:
+    with pytest.raises(SceneError, match=r"from a file or from parsed JSON, not from int"):
+        deixis.read_scene(3)  # type: ignore[arg-type]
+
+
+def test_a_category_is_named_by_a_text(tmp_path: Path) -> None:
+    with deixis.Session(tmp_path / "memory") as session, pytest.raises(SettingError, match="is a text, not 3"):
+        session.teach(SCENE, "o1", 3)  # type: ignore[arg-type]

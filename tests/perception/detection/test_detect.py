@@ -194,9 +194,33 @@ def test_a_wall_that_was_taken_for_a_table_is_noted() -> None:
     assert found.notes[0] == "nothing is on the table" and found.notes[1].endswith("it may be a wall")
 
 
-@pytest.mark.parametrize(("scale", "hint"), [(1000.0, "divide them by 1000"), (0.001, "depth_scale")])
+@pytest.mark.parametrize(("scale", "hint"), [(1000.0, "millimetres by 1000"), (0.001, "depth_scale")])
 def test_a_cloud_in_another_unit_is_refused_with_a_hint(scale: float, hint: str) -> None:
     x, y = (axis.ravel() for axis in np.mgrid[-0.5:0.5:0.01, 0.5:1.5:0.01])
     points = scale * np.stack([x, y, np.full(x.shape, -0.7)], axis=1)
     with pytest.raises(CloudError, match=hint):
         detect(PointCloud(points.astype(np.float32)))
+
+
+def test_a_table_that_no_robot_lays_is_noted() -> None:
+    x, y = (axis.ravel() for axis in np.mgrid[-8:8:0.05, 4:14:0.05])
+    found = detect(PointCloud(np.stack([x, y, np.full(x.shape, -5.0)], axis=1).astype(np.float32)))
+    assert found.notes[0] == "nothing is on the table"
+    assert any(note.endswith("coordinates are metres; is the unit another?") for note in found.notes)
+
+
+def test_a_few_points_anywhere_are_no_table() -> None:
+    found = detect(PointCloud(np.random.default_rng(0).random((50, 3)).astype(np.float32)))
+    assert found.table is None and found.notes[0].startswith("no table was found")
+
+
+@pytest.mark.filterwarnings("error")
+def test_depth_that_is_infinite_is_no_depth(boxes_seen: Look) -> None:
+    cloud = boxes_seen([PLANK, CUBE])
+    points = cloud.points.copy()
+    points[::3] = np.inf
+    points[1::3, 1:] = -np.inf
+    nothing = points.copy()
+    nothing[~np.isfinite(points).all(axis=1)] = np.nan
+    found, wanted = (detect(replace(cloud, points=each)) for each in (points, nothing))
+    assert np.array_equal(found.labels, wanted.labels)
