@@ -19,6 +19,7 @@ from deixis.perception.detection.lying import (
     continues,
     extents,
     inside,
+    offset,
     roundness,
     slenderness,
 )
@@ -65,6 +66,10 @@ SMALLER = 0.6
 
 LOW, LONG = 0.03, 3.0
 """Cutlery is no higher (metres), and so many times as long as wide."""
+
+DOWN = 0.009
+"""Metres: the lowest places of the head and the handle of what lies on one thing differ by less, however it is arched;
+those of cutlery on the rim of a plate and of cutlery beside the plate by more."""
 
 Pairs = NDArray[np.intp]
 
@@ -195,7 +200,14 @@ def end_to_end(parts: Parts) -> Pairs:
     """Two low pieces of one colour in a line, together long and narrow: the head and the handle of a spoon."""
     low = parts.tops < LOW
     pairs = _pairs(np.triu(low[:, None] & low[None] & (parts.gaps < NECK) & ~_differ(parts)))
-    return _chosen(pairs, lambda a, b: parts.once(slenderness, a, b) > LONG)
+    return _chosen(pairs, lambda a, b: parts.once(slenderness, a, b) > LONG and _lie_as_one(parts, a, b))
+
+
+def _lie_as_one(parts: Parts, a: int, b: int) -> bool:
+    """Whether two pieces in a line can be one rigid thing for how high they lie: both come down to what it lies on, or
+    it leans and its slope goes on from the one to the other. Cutlery on a plate does neither to cutlery beside it."""
+    down = abs(parts.bottoms[a] - parts.bottoms[b]) < DOWN
+    return bool(down or parts.once(offset, a, b) < LIES_ON)
 
 
 def sides(parts: Parts) -> Pairs:

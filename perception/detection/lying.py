@@ -125,6 +125,25 @@ def slenderness(parts: Parts, one: NDArray[np.intp], two: NDArray[np.intp]) -> f
     return float(length / max(width, THIN))
 
 
+def offset(parts: Parts, one: NDArray[np.intp], two: NDArray[np.intp]) -> float:
+    """Metres by which two pieces of one line miss each other in height, in the middle between them, if each goes on as
+    it slopes: little where both are pieces of something straight, level or leaning."""
+    places = [parts.patches.middles[part] for part in (one, two)]
+    longer = max(places, key=lambda place: extents(place[:, :2])[0])
+    along = _axes(longer[:, :2])[:, 0]
+    near, far = sorted((place[:, :2] @ along for place in places), key=np.mean)
+    between = (near.max() + far.min()) / 2
+    heights = [_height_at(place[:, :2] @ along - between, place[:, 2]) for place in places]
+    return abs(heights[0] - heights[1])
+
+
+def _height_at(along: NDArray[np.float64], heights: NDArray[np.float64]) -> float:
+    """Where a line through heights (n,) at places (n,) along it passes 0; of what is too short to slope, the mean."""
+    off = along - along.mean()
+    slope = float(off @ heights) / max(float(off @ off), THIN**2)
+    return float(heights.mean() - slope * along.mean())
+
+
 def _axes(plan: NDArray[np.float64]) -> NDArray[np.float64]:
     """The principal axes of places (n, 2), the longer first, as columns (2, 2)."""
     apart = plan - plan.mean(axis=0)

@@ -168,6 +168,25 @@ def test_the_head_of_a_spoon_goes_on_in_its_handle(other: NDArray[np.float64], c
 
 
 @pytest.mark.parametrize(
+    ("heights", "count"),
+    [
+        (((0.0, 0.002), (0.02, 0.022)), 2),  # on the table, and on the rim of a plate
+        (((0.01, 0.002), (0.018, 0.024)), 2),  # both slope, but not towards each other
+        (((0.002, 0.014), (0.016, 0.026)), 1),  # leaning on the rim
+        (((0.002, 0.018), (0.01, 0.002)), 1),  # both come down to the table, from an arch
+    ],
+)
+def test_two_pieces_in_a_line_are_one_where_they_can_lie_so_as_one(
+    heights: tuple[tuple[float, float], tuple[float, float]], count: int
+) -> None:
+    pieces = [_grid((0.0, 0.01), ends, 0.0) for ends in ((0.0, 0.12), (0.14, 0.24))]
+    for piece, (near, far) in zip(pieces, heights, strict=True):
+        piece[:, 2] = np.interp(piece[:, 1], (piece[:, 1].min(), piece[:, 1].max()), (near, far))
+    assert len(whole_things(_apart(*pieces))) == count
+    assert len(whole_things(_apart(*pieces[::-1]))) == count
+
+
+@pytest.mark.parametrize(
     ("normal", "top", "count"),
     [((1.0, 0.0, 0.1), 0.06, 1), ((0.0, 0.0, 1.0), 0.06, 2), ((1.0, 0.0, 0.1), 0.12, 2)],
 )
