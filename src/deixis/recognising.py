@@ -5,7 +5,8 @@ from __future__ import annotations
 import contextlib
 import hashlib
 import json
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Set
+from collections import defaultdict
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from datetime import datetime
 from typing import Any
@@ -16,7 +17,7 @@ from numpy.typing import NDArray
 from deixis.memory.perceptual.calibrated import keep_calibration, kept_calibration
 from deixis.memory.perceptual.errors import DamagedMemoryError, UnknownViewError
 from deixis.memory.perceptual.level import LevelMemory
-from deixis.memory.perceptual.protocol import PerceptualMemory, PerceptualReading, Progress
+from deixis.memory.perceptual.protocol import PerceptualMemory, PerceptualReading, Progress, ViewKey
 from deixis.memory.perceptual.records import Batch, CategoryRecord, View
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.errors import CloudError
@@ -262,9 +263,9 @@ def recogniser_of(memory: LevelMemory, frame: str, progress: Progress | None = N
     ``MAPPED`` views on, their descriptors are mapped from a file.
     """
     with memory.exclusive():
-        views = {(key.category, key.id) for key in memory.listing()}
-        names = memory.categories()
-        way = way_of((view for name in names for view in _doubtful(memory, name, views)), ways_in(frame))
+        names, listed = memory.categories(), list(memory.listing())
+        way = way_of(_doubtful(memory, listed), ways_in(frame))
+        views = {(key.category, key.id) for key in listed}
         pack = PackedViews.of if len(views) < MAPPED else mapped
         categories = []
         for name in names:
@@ -280,11 +281,14 @@ def recogniser_of(memory: LevelMemory, frame: str, progress: Progress | None = N
     return Known(known, way)
 
 
-def _doubtful(memory: PerceptualReading, name: str, views: Set[tuple[str, str]]) -> Iterator[View]:
-    """The views of a category whose record does not say that all of them can be compared in the best way."""
-    ids = {id for category, id in views if category == name}
-    if not _compared(memory.category(name), ids, UPRIGHT):
-        yield from memory.views(name)
+def _doubtful(memory: PerceptualReading, listed: Iterable[ViewKey]) -> Iterator[View]:
+    """The views of categories whose records do not say that all of them can be compared in the best way."""
+    ids = defaultdict(list)
+    for key in listed:
+        ids[key.category].append(key.id)
+    for name, own in ids.items():
+        if not _compared(memory.category(name), own, UPRIGHT):
+            yield from memory.views(name)
 
 
 def recognise(known: Known, scene: Scene, clouds: Sequence[PointCloud | None]) -> Recognised:
