@@ -2,8 +2,8 @@
 
 The threshold makes the fewest wrong decisions between known and unknown (Youden 1950, with a prior). That a thing is
 known at all has Platt's probability (1999), a sigmoid of the least ND's logarithm: 1 / (1 + (ND / even)^doubt). Which
-category it then is, is a conditional logit (McFadden 1974): P(c) ~ ND(c)^-choice. Both are fitted by likelihood; few
-held-out views move the numbers little away from the shipped ones, by a normal prior on their logarithms.
+category it then is, is a conditional logit (McFadden 1974): P(c) ~ ND(c)^-choice. Both are fitted by likelihood; a
+normal prior on their logarithms holds them near the shipped ones while held-out views are few.
 """
 
 from __future__ import annotations
@@ -70,18 +70,18 @@ SHIPPED = Calibration(threshold=0.73, even=0.74, doubt=7.3, choice=10.5)
 def calibrate(held: HeldOut, prior_unknown: float = 0.5, start: Calibration = SHIPPED) -> Calibration:
     """Threshold and probabilities from held-out views, if ``prior_unknown`` of all things seen are of no category.
 
-    With fewer than ``LEAST`` known or unknown answers the threshold of ``start`` stays. Raises RecognitionError where
+    With fewer than ``LEAST`` known or unknown answers everything stays as in ``start``: of a few answers likelihood
+    makes certainties, beside a threshold that does not move. Raises RecognitionError where
     the prior is not between 0 and 1.
     """
     if not 0 < prior_unknown < 1:
         raise RecognitionError(f"the share of unknown things lies between 0 and 1, not at {prior_unknown}")
     known, truth = held.as_known
     unknown = held.as_unknown
-    if not len(known) or not len(unknown):
+    if min(len(known), len(unknown)) < LEAST:
         return start
     even, doubt, choice = _fitted(known, truth, unknown, prior_unknown, start)
-    enough = min(len(known), len(unknown)) >= LEAST
-    threshold = best_threshold(known.min(axis=1), unknown.min(axis=1), prior_unknown) if enough else start.threshold
+    threshold = best_threshold(known.min(axis=1), unknown.min(axis=1), prior_unknown)
     return Calibration(threshold, even, doubt, choice, len(known), len(unknown))
 
 

@@ -186,3 +186,10 @@ def test_auroc_counts_pairs() -> None:
 
 def test_auroc_of_nothing_is_no_number() -> None:
     assert np.isnan(auroc(np.empty(0), np.ones(2))) and np.isnan(auroc(np.ones(2), np.empty(0)))
+
+
+def test_a_few_answers_calibrate_nothing() -> None:
+    held = HeldOut(np.array([[0.9, 2.0], [2.0, 0.8]]), np.array([0, 1]))
+    assert calibrate(held) == SHIPPED
+    many = HeldOut(np.tile(held.normalised, (LEAST, 1)), np.tile(held.truth, LEAST))
+    assert calibrate(many).calibrated
