@@ -1,8 +1,8 @@
 """A table is checked until no role is given to what is plainly something else.
 
 The likeliest map may give a role the one thing that is left, whatever that is, since sizes rule nothing out. Where no
-sure label says so, what is plainly too high is no fork; and what is plainly not as large, and stands in none of the
-role's places either, is no misplaced fork: the fork is missing, and it is extra.
+label says so, and it stands in none of the role's places, what is plainly higher, larger or smaller than a fork is no
+misplaced fork: the fork is missing, and it is extra.
 """
 
 from __future__ import annotations
@@ -47,33 +47,33 @@ def checked_table(
     """
     deadline = time.perf_counter() + time_limit
     sure = sure_roles(evidence.description, labels, kinds)
-    if sizes is not None:
-        evidence = _without_too_high(evidence, sure, sizes)
+    high = _too_high(evidence, sizes)
     while True:
         found = ground(evidence, engine, max(0.0, deadline - time.perf_counter()))
         table = check_table(evidence, labels, kinds, found, seen, colours)
-        rest = _without_impostors(evidence, sure, table)
+        rest = _without_impostors(evidence, sure, high, table)
         if rest is None or time.perf_counter() > deadline:
             return table
         evidence = rest
 
 
-def _without_impostors(evidence: Evidence, sure: Mapping[str, frozenset[str]], table: TableCheck) -> Evidence | None:
+def _without_impostors(
+    evidence: Evidence, sure: Mapping[str, frozenset[str]], high: NDArray[np.bool_], table: TableCheck
+) -> Evidence | None:
     """The evidence with the table's impostors ruled out, one match at least; None where there is none."""
     said = evidence.sizes.copy()
     for check in table.of(Verdict.MISPLACED):
-        if check.perceived is not None and check.role not in sure[check.perceived]:
-            role, thing = evidence.description.index(check.role), evidence.scene.index(check.perceived)
-            if said[role, thing] < IMPOSTOR:
-                said[role, thing] = RULED_OUT
+        if check.perceived is None or check.role in sure[check.perceived]:
+            continue
+        place = evidence.description.index(check.role), evidence.scene.index(check.perceived)
+        if evidence.labels[place] <= 0 and (high[place] or evidence.sizes[place] < IMPOSTOR):
+            said[place] = RULED_OUT
     return None if np.array_equal(said, evidence.sizes) else replace(evidence, sizes=said)
 
 
-def _without_too_high(evidence: Evidence, sure: Mapping[str, frozenset[str]], sizes: Sizes) -> Evidence:
-    """The evidence with those ruled out that no label surely calls so, and that are plainly too high."""
-    boxes, things = evidence.scene.boxes, evidence.scene.nodes
-    if boxes is None:
-        return evidence
-    high = too_high(classes(evidence.description), boxes, sizes)
-    called = [[role in sure[thing] for thing in things] for role in evidence.description.nodes]
-    return replace(evidence, sizes=np.where(high & ~np.array(called, bool), RULED_OUT, evidence.sizes))
+def _too_high(evidence: Evidence, sizes: Sizes | None) -> NDArray[np.bool_]:
+    """Which things are plainly too high for which roles, shape (n1, n2); none where sizes are not known."""
+    boxes = evidence.scene.boxes
+    if sizes is None or boxes is None:
+        return np.zeros(evidence.labels.shape, dtype=bool)
+    return too_high(classes(evidence.description), boxes, sizes, evidence.meaning.sizes)

@@ -88,19 +88,28 @@ def size_evidence(
     if metric:
         reaches = {kind: sizes.of(kind).reach for kind in known if kind not in (learned or {})}
         looks = {kind: from_above(model, _typical(reaches.get(kind))) for kind, model in known.items()}
-        return np.where(too_high(kinds, boxes, sizes), np.log(OUTLIERS), _ratios(kinds, boxes, looks))
+        return np.where(too_high(kinds, boxes, sizes, learned), np.log(OUTLIERS), _ratios(kinds, boxes, looks))
     return _whichever_view([_ratios(kinds, boxes, looks) for looks in looks_in_image(kinds, sizes, learned)])
 
 
-def too_high(kinds: Sequence[str], boxes: NDArray[np.float64], sizes: Sizes) -> NDArray[np.bool_]:
-    """Which of n2 boxes in metres are plainly higher than things of n1 kinds (class IRIs) ever are, shape (n1, n2).
+def too_high(
+    kinds: Sequence[str],
+    boxes: NDArray[np.float64],
+    sizes: Sizes,
+    learned: Mapping[str, SizeModel] | None = None,
+) -> NDArray[np.bool_]:
+    """Which of n2 boxes in metres are plainly higher than things of n1 kinds (class IRIs) usually are, (n1, n2).
 
-    Lower than usual is whatever something else hides in part; and of flat boxes no height is known.
+    Lower than usual is whatever something else hides in part. Of flat boxes no height is known, and of kinds whose size
+    was learned none is usual.
     """
     if boxes.shape[2] < 3:
         return np.zeros((len(kinds), len(boxes)), dtype=bool)
-    usual = [sizes.of(kind) for kind in kinds]
-    most = [np.inf if size.stated_of == DX.THING else HIGHER * size.height.greatest + MEASURED for size in usual]
+    usual = [None if kind in (learned or {}) else sizes.of(kind) for kind in kinds]
+    most = [
+        np.inf if size is None or size.stated_of == DX.THING else HIGHER * size.height.greatest + MEASURED
+        for size in usual
+    ]
     result: NDArray[np.bool_] = boxes[None, :, 1, 2] - boxes[None, :, 0, 2] > np.array(most)[:, None]
     return result
 

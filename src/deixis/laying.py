@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import time
+from collections.abc import Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, replace
+from numbers import Integral
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,6 +15,7 @@ from deixis.grammar.script import Script
 from deixis.imagination import Sized, lying_cutlery, sized_objects
 from deixis.ontology.errors import DeixisError
 from deixis.ontology.graph import Fact, RelationGraph
+from deixis.ontology.relation import Relation
 from deixis.ontology.sizes import Extent, Outline, SizeRange
 from deixis.perception.clouds.mesh import Mesh
 from deixis.perception.simulator.errors import SimulationError
@@ -82,6 +85,7 @@ def lay_random(
     ontology: Ontology | None = None,
 ) -> LaidScript:
     """A table with so many random things, and the meshes (metres, z up), at random places."""
+    require_seed(seed)
     foreign = [
         Placement(name, None, 0.0, 0.0, plan=_plan_of(mesh), mesh=mesh) for name, mesh in _checked(meshes or {}).items()
     ]
@@ -104,6 +108,7 @@ def lay_script(
     script has it elsewhere. Raises NoTableError where there is
     no such table, TimeIsUpError where that stayed open, SimulationError for a mesh that stands for nothing.
     """
+    require_seed(seed)
     meshes = _checked(meshes or {})
     graph = script.graph().affirming()
     unknown = sorted(set(meshes) - set(graph.nodes))
@@ -116,6 +121,12 @@ def lay_script(
     table = replace(laid, top=_top(plan, laid, cloth))
     top_name = next((name for name, is_table in zip(graph.nodes, plan.tables, strict=True) if is_table), None)
     return LaidScript(table, script.viewpoint or "chair", _missed(plan, table), top_name)
+
+
+def require_seed(seed: int) -> None:
+    """Raises SimulationError where a seed is no whole number of 0 or more."""
+    if not isinstance(seed, Integral) or seed < 0:
+        raise SimulationError(f"a seed is a whole number, 0 or more, not {seed!r}")
 
 
 @dataclass(frozen=True, eq=False)
@@ -137,16 +148,18 @@ def _planned(script: Script, graph: RelationGraph, meshes: Mapping[str, Mesh], s
     objects = sized_objects(script, graph)
     lying = lying_cutlery(graph, objects, ontology.kinds)
     tables = tuple(_is_table(thing, ontology) for thing in objects)
+    graphs = (*_all_on_it(graph, tables), graph)
+    deadline = time.monotonic() + time_limit
     draws = DRAWS if any(form_of(thing.kind, ontology).handle for thing in objects) else 1
     for draw in range(draws):
         sizes = [
             _room(thing, meshes.get(thing.name), _instance(seed, number) + draw, ontology)
             for number, thing in enumerate(objects)
         ]
-        for said in (_all_on_it(graph, tables), graph):
-            rng = np.random.default_rng([seed, draw])
-            found = realise(said, sizes, lying=lying, time_limit=time_limit, rng=rng)
-            if isinstance(found, Picture) or said is graph:
+        for number, said in enumerate(graphs):
+            left = max(0.0, deadline - time.monotonic()) / (len(graphs) - number)
+            found = realise(said, sizes, lying=lying, time_limit=left, rng=np.random.default_rng([seed, draw]))
+            if isinstance(found, Picture):
                 break
         if isinstance(found, Picture):
             return _Plan(graph, objects, found.boxes, tables, meshes, seed, ontology)
@@ -157,13 +170,31 @@ def _planned(script: Script, graph: RelationGraph, meshes: Mapping[str, Mesh], s
     )
 
 
-def _all_on_it(graph: RelationGraph, tables: Sequence[bool]) -> RelationGraph:
-    """The graph with everything said to be on the one table that it speaks of, if it speaks of one."""
+def _all_on_it(graph: RelationGraph, tables: Sequence[bool]) -> tuple[RelationGraph, ...]:
+    """The graph with everything said to be on the one table that it speaks of, if it speaks of one: but for what it has
+    beside the table, or on what is there."""
     if sum(tables) != 1:
-        return graph
-    on, table = graph.vocabulary["on"], graph.nodes[tables.index(True)]
-    facts = [*graph.facts(), *(Fact(name, (on,), table) for name in graph.nodes if name != table)]
-    return RelationGraph.from_facts(graph.vocabulary, graph.nodes, facts, graph.kinds, graph.boxes, graph.colours)
+        return ()
+    on, table, facts = graph.vocabulary["on"], graph.nodes[tables.index(True)], list(graph.facts())
+    beside = {table}
+    while True:
+        more = {name for fact in facts for name in _elsewhere(fact, on, table, beside)} - beside
+        if not more:
+            break
+        beside |= more
+    facts += [Fact(name, (on,), table) for name in graph.nodes if name not in beside]
+    return (RelationGraph.from_facts(graph.vocabulary, graph.nodes, facts, graph.kinds, graph.boxes, graph.colours),)
+
+
+def _elsewhere(fact: Fact, on: Relation, table: str, beside: Set[str]) -> Iterator[str]:
+    """What a fact has beside the table, or on what is beside it."""
+    if not fact.positive:
+        return
+    if on in fact.relations:
+        if fact.object != table and fact.object in beside:
+            yield fact.subject
+    elif table in (fact.subject, fact.object):
+        yield fact.object if fact.subject == table else fact.subject
 
 
 def _is_table(thing: Sized, ontology: Ontology) -> bool:

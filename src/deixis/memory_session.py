@@ -6,7 +6,7 @@ import os
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Self
 
 from deixis.grammar.script import Script
 from deixis.memory.closing import Closing
@@ -41,6 +41,10 @@ class MemorySession(Closing):
         self._memory: SemanticMemory | None = None
         self._meaning: Meaning | None = None  # what is in force, since the last change
         self._closed = False
+
+    def __enter__(self) -> Self:
+        self._require_open()
+        return super().__enter__()
 
     def close(self) -> None:
         """Lets go of the memory; what would need it afterwards raises MemoryFormatError."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from numbers import Integral
 from pathlib import Path
 
 import numpy as np
@@ -11,13 +10,12 @@ from numpy.typing import NDArray
 
 from deixis.grammar.parser import read_script
 from deixis.grammar.script import Script
-from deixis.laying import LaidScript, lay_script
+from deixis.laying import LaidScript, lay_script, require_seed
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.clouds.intrinsics import Intrinsics
 from deixis.perception.scene import Scene
 from deixis.perception.simulator.camera import HEIGHT, KINECT, Camera, chair_camera, check_place
 from deixis.perception.simulator.depth import FIRST_THING, DepthSensor, see
-from deixis.perception.simulator.errors import SimulationError
 from deixis.perception.simulator.truth import truth_scene
 
 
@@ -68,8 +66,7 @@ def simulate(layout: LaidScript | Script | str | Path, view: View | None = None,
     >>> look.cloud.organised, [thing.label for thing in look.truth.objects], bool((look.points > 100).all())
     ((480, 640), ['fork', 'plate'], True)
     """
-    if not isinstance(seed, Integral) or seed < 0:
-        raise SimulationError(f"a seed is a whole number, 0 or more, not {seed!r}")
+    require_seed(seed)
     view = view or View()
     laid = layout if isinstance(layout, LaidScript) else lay_script(_script(layout), seed)
     camera = chair_camera(laid.table, view.height, view.back, view.azimuth, view.lens)

@@ -106,10 +106,15 @@ def test_what_is_as_large_as_a_fork_or_is_called_one_is_misplaced() -> None:
         assert "fork" in roles(checked, Verdict.MISPLACED) and not checked.table.extra
 
 
-def test_what_stands_in_a_forks_place_may_be_one_of_any_length_and_not_of_any_height() -> None:
-    for height, verdict in ((0.02, Verdict.UNDETERMINED), (0.3, Verdict.MISSING)):
-        checked = check(Scene((PLATE, box("o2", (-0.4, 0.0, 0.0), (0.3, 0.3, height)))), "fork left of plate")
-        assert roles(checked, verdict) == {"fork"}
+def test_what_stands_in_a_forks_place_may_be_one_whatever_its_size() -> None:
+    for label in (None, "fork"):
+        fork = replace(box("o2", (-0.4, 0.0, 0.0), CUBE), label=label, confidence=0.8)
+        assert roles(check(Scene((PLATE, fork)), "fork left of plate"), Verdict.UNDETERMINED) == {"fork"}
+
+
+def test_what_is_called_a_fork_and_is_seen_in_part_is_misplaced() -> None:
+    part = replace(box("o2", (0.4, 0.06, 0.0), (0.03, 0.05, 0.01)), label="fork", confidence=0.85)
+    assert roles(check(Scene((PLATE, part)), "fork left of plate"), Verdict.MISPLACED) == {"fork"}
 
 
 def test_a_thing_of_another_colour_is_a_finding_of_its_own() -> None:

@@ -225,6 +225,8 @@ def test_a_closed_session_does_not_take_the_memory_again(tmp_path: Path) -> None
     for needs_it in (session.layouts, lambda: session.query("ASK {}"), lambda: session.views(create=True)):
         with pytest.raises(MemoryFormatError, match="this session is closed"):
             needs_it()
+    with pytest.raises(MemoryFormatError, match="this session is closed"), session:
+        pass
     with deixis.Session(tmp_path / "memory") as another:
         assert another.layouts()
 

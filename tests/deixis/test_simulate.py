@@ -113,7 +113,18 @@ def test_everything_is_on_the_table_that_a_script_speaks_of_unless_it_is_beside_
     for thing in laid.table.things:
         assert (low <= thing.box[0, :2]).all() and (thing.box[1, :2] <= high).all()
     assert laid.beside == ()
-    assert lay_script(parse_script("chair left of table; mug on table"), seed=1).beside == ("chair",)
+
+
+@pytest.mark.parametrize(
+    ("script", "beside"),
+    [
+        ("plate on table; fork left of plate; chair left of table", {"chair"}),
+        ("plate left of table; fork on plate; fork left of knife", {"plate", "fork"}),
+        ("fork left of plate; dog below table", {"dog"}),
+    ],
+)
+def test_only_what_a_script_has_beside_its_table_is_not_on_it(script: str, beside: set[str]) -> None:
+    assert set(lay_script(parse_script(script), seed=3).beside) == beside
 
 
 @pytest.mark.parametrize("seed", [-1, 1.5, None])

@@ -48,6 +48,7 @@ def test_what_is_far_higher_than_a_fork_is_none_whatever_its_plan() -> None:
     assert high[0, 0] == pytest.approx(np.log(OUTLIERS)) and flat[0, 0] > 0
     assert np.array_equal(high[:, 1], flat[:, 1])
     assert not too_high(["https://example.org/unheard"], things(9.0), SIZES).any()
+    assert not too_high([FORK], things(9.0), SIZES, {FORK: SizeModel((0.0, 1.0), (0.0, 1.0))}).any()
 
 
 def test_a_soup_spoon_is_no_plate() -> None:
