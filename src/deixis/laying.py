@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator, Mapping, Sequence, Set
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from numbers import Integral
 from typing import TYPE_CHECKING
@@ -15,7 +15,6 @@ from deixis.grammar.script import Script
 from deixis.imagination import Sized, lying_cutlery, sized_objects
 from deixis.ontology.errors import DeixisError
 from deixis.ontology.graph import Fact, RelationGraph
-from deixis.ontology.relation import Relation
 from deixis.ontology.sizes import Extent, Outline, SizeRange
 from deixis.perception.clouds.mesh import Mesh
 from deixis.perception.simulator.errors import SimulationError
@@ -34,6 +33,7 @@ from deixis.perception.simulator.scatter import scattered
 from deixis.perception.simulator.tableware import drawn_plan, form_of
 from deixis.reasoning.realisation.picture import Impossible, Picture, realise
 from deixis.reasoning.realisation.verification import facts_that_hold
+from deixis.spoken_table import all_on_it, is_table
 
 if TYPE_CHECKING:
     from deixis.ontology.tbox import Ontology
@@ -119,7 +119,7 @@ def lay_script(
     plan = _planned(script, graph, meshes, seed, time_limit)
     laid = _laid_straight_where_needed(plan)
     table = replace(laid, top=_top(plan, laid, cloth))
-    top_name = next((name for name, is_table in zip(graph.nodes, plan.tables, strict=True) if is_table), None)
+    top_name = next((name for name, found in zip(graph.nodes, plan.tables, strict=True) if found), None)
     return LaidScript(table, script.viewpoint or "chair", _missed(plan, table), top_name)
 
 
@@ -147,8 +147,8 @@ def _planned(script: Script, graph: RelationGraph, meshes: Mapping[str, Mesh], s
     ontology = script.ontology
     objects = sized_objects(script, graph)
     lying = lying_cutlery(graph, objects, ontology.kinds)
-    tables = tuple(_is_table(thing, ontology) for thing in objects)
-    graphs = (*_all_on_it(graph, tables), graph)
+    tables = tuple(is_table(thing, ontology) for thing in objects)
+    graphs = (*all_on_it(graph, tables), graph)
     deadline = time.monotonic() + time_limit
     draws = DRAWS if any(form_of(thing.kind, ontology).handle for thing in objects) else 1
     for draw in range(draws):
@@ -168,38 +168,6 @@ def _planned(script: Script, graph: RelationGraph, meshes: Mapping[str, Mesh], s
     raise NoTableError(
         f"{script.file}: there is no such table with things of their usual sizes; 'deixis imagine' says why"
     )
-
-
-def _all_on_it(graph: RelationGraph, tables: Sequence[bool]) -> tuple[RelationGraph, ...]:
-    """The graph with everything said to be on the one table that it speaks of, if it speaks of one: but for what it has
-    beside the table, or on what is there."""
-    if sum(tables) != 1:
-        return ()
-    on, table, facts = graph.vocabulary["on"], graph.nodes[tables.index(True)], list(graph.facts())
-    beside = {table}
-    while True:
-        more = {name for fact in facts for name in _elsewhere(fact, on, table, beside)} - beside
-        if not more:
-            break
-        beside |= more
-    facts += [Fact(name, (on,), table) for name in graph.nodes if name not in beside]
-    return (RelationGraph.from_facts(graph.vocabulary, graph.nodes, facts, graph.kinds, graph.boxes, graph.colours),)
-
-
-def _elsewhere(fact: Fact, on: Relation, table: str, beside: Set[str]) -> Iterator[str]:
-    """What a fact has beside the table, or on what is beside it."""
-    if not fact.positive:
-        return
-    if on in fact.relations:
-        if fact.object != table and fact.object in beside:
-            yield fact.subject
-    elif table in (fact.subject, fact.object):
-        yield fact.object if fact.subject == table else fact.subject
-
-
-def _is_table(thing: Sized, ontology: Ontology) -> bool:
-    table = ontology.kinds.of_word("table")
-    return thing.kind is not None and table is not None and ontology.kinds.is_a(thing.kind, table)
 
 
 def _room(thing: Sized, mesh: Mesh | None, instance: int, ontology: Ontology) -> SizeRange:
@@ -306,7 +274,7 @@ def _missed(plan: _Plan, table: LaidTable) -> tuple[Fact, ...]:
 def _top(plan: _Plan, laid: LaidTable, cloth: bool) -> TableTop:
     """The table that the script speaks of, else one that reaches a little beyond everything."""
     colour = _top_colour(cloth)
-    spoken_of = [i for i, is_table in enumerate(plan.tables) if is_table]
+    spoken_of = [i for i, found in enumerate(plan.tables) if found]
     if len(spoken_of) > 1:
         names = " and ".join(plan.graph.nodes[i] for i in spoken_of[:2])
         raise SimulationError(f"{names} are tables, and one table is simulated; leave one of them out")
