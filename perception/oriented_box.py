@@ -30,5 +30,10 @@ class OrientedBox:
     @property
     def axes(self) -> NDArray[np.float64]:
         """Unit vectors (3, 3) along the extents, in rows, right-handed, the last one up."""
-        cosine, sine = np.cos(self.yaw), np.sin(self.yaw)
-        return np.array([[cosine, sine, 0.0], [-sine, cosine, 0.0], [0.0, 0.0, 1.0]])
+        return turned_axes(self.yaw)
+
+
+def turned_axes(yaw: float) -> NDArray[np.float64]:
+    """The axes (3, 3), in rows, turned about the vertical."""
+    cosine, sine = np.cos(yaw), np.sin(yaw)
+    return np.array([[cosine, sine, 0.0], [-sine, cosine, 0.0], [0.0, 0.0, 1.0]])

@@ -6,7 +6,7 @@ Annotation files (COCO, LabelMe) are told by their content and read too: see :mo
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -108,15 +108,13 @@ def _own_scene(data: Any, file: str) -> Scene:
 
 def _object(data: Any, where: str, scale: float) -> PerceivedObject:
     entry = _mapping(data, where, _OBJECT_KEYS)
-    missing = [key for key in ("id", "min", "max") if key not in entry]
-    if missing:
-        raise SceneError(f"{where}: '{missing[0]}' is missing")
+    _require_keys(entry, ("id", "min", "max"), where)
     label, confidence, cloud = entry.get("label"), entry.get("confidence", 1.0), entry.get("cloud")
     colour, oriented = entry.get("colour"), entry.get("oriented")
     return PerceivedObject(
         id=text(entry["id"], f"{where}: 'id'"),
-        minimum=_corner(entry["min"], f"{where}: 'min'", scale),
-        maximum=_corner(entry["max"], f"{where}: 'max'", scale),
+        minimum=_numbers(entry["min"], f"{where}: 'min'", scale, (2, 3)),
+        maximum=_numbers(entry["max"], f"{where}: 'max'", scale, (2, 3)),
         label=None if label is None else text(label, f"{where}: 'label'"),
         confidence=1.0 if confidence is None else number(confidence, f"{where}: 'confidence'"),
         cloud=None if cloud is None else text(cloud, f"{where}: 'cloud'"),
@@ -127,18 +125,10 @@ def _object(data: Any, where: str, scale: float) -> PerceivedObject:
 
 def _oriented(data: Any, where: str, scale: float) -> OrientedBox:
     entry = _mapping(data, where, _ORIENTED_KEYS)
-    missing = sorted(_ORIENTED_KEYS - set(entry))
-    if missing:
-        raise SceneError(f"{where}: '{missing[0]}' is missing")
-    (x, y, z), (length, width, height) = (_three(entry[key], f"{where}: '{key}'") for key in ("centre", "extents"))
-    extents = (length * scale, width * scale, height * scale)
-    return OrientedBox((x * scale, y * scale, z * scale), number(entry["yaw"], f"{where}: 'yaw'"), extents)
-
-
-def _three(data: Any, where: str) -> list[float]:
-    if not isinstance(data, list | tuple) or len(data) != 3:
-        raise SceneError(f"{where} must be a list of 3 numbers")
-    return [number(value, where) for value in data]
+    _require_keys(entry, ("centre", "extents", "yaw"), where)
+    x, y, z = _numbers(entry["centre"], f"{where}: 'centre'", scale, (3,))
+    length, width, height = _numbers(entry["extents"], f"{where}: 'extents'", scale, (3,))
+    return OrientedBox((x, y, z), number(entry["yaw"], f"{where}: 'yaw'"), (length, width, height))
 
 
 def _colour(data: Any, where: str) -> Rgb:
@@ -175,9 +165,15 @@ def _mapping(data: Any, where: str, known: set[str]) -> Mapping[str, Any]:
     return entry
 
 
-def _corner(data: Any, where: str, scale: float) -> tuple[float, ...]:
-    if not isinstance(data, list | tuple) or len(data) not in (2, 3):
-        raise SceneError(f"{where} must be a list of 2 or 3 numbers")
+def _require_keys(entry: Mapping[str, Any], keys: Sequence[str], where: str) -> None:
+    missing = [key for key in keys if key not in entry]
+    if missing:
+        raise SceneError(f"{where}: '{missing[0]}' is missing")
+
+
+def _numbers(data: Any, where: str, scale: float, counts: Sequence[int]) -> tuple[float, ...]:
+    if not isinstance(data, list | tuple) or len(data) not in counts:
+        raise SceneError(f"{where} must be a list of {' or '.join(map(str, counts))} numbers")
     return tuple(number(value, where) * scale for value in data)
 
 

@@ -16,16 +16,16 @@ from numpy.typing import NDArray
 
 from deixis.ontology.colours import Colours
 from deixis.ontology.kinds import Kinds
-from deixis.ontology.sizes import Sizes
 from deixis.reasoning.checking import SURE, TableCheck, Verdict, check_table, sure_roles
 from deixis.reasoning.engines import Engine
 from deixis.reasoning.evidence import PRESENT, Evidence
-from deixis.reasoning.graded.unary import OUTLIERS, too_high
+from deixis.reasoning.graded.unary import OUTLIERS
 from deixis.reasoning.grounding import DEFAULT_TIME_LIMIT, ground
-from deixis.reasoning.labels import Label, classes
+from deixis.reasoning.labels import Label
 
 IMPOSTOR = float(np.log(OUTLIERS / SURE))
-"""Sizes that say less than this for a match say with probability ``SURE`` that the thing's size is not its kind's."""
+"""Sizes that say less than this for a match say with probability ``SURE`` that the thing's size is not its kind's; of
+what is too high they say less."""
 
 RULED_OUT = 2 * PRESENT
 """What such a match counts as then: no facts about it outweigh that."""
@@ -35,45 +35,30 @@ def checked_table(
     evidence: Evidence,
     labels: Mapping[str, Label | None],
     kinds: Kinds,
-    sizes: Sizes | None,
     engine: Engine,
     time_limit: float = DEFAULT_TIME_LIMIT,
     seen: NDArray[np.float64] | None = None,
     colours: Colours | None = None,
 ) -> TableCheck:
-    """Grounds a layout and reads the grounding as :func:`check_table` does, as often as an impostor is found.
-
-    ``sizes`` are the usual ones, None where boxes are not in metres; for the rest see :func:`check_table`.
-    """
+    """Grounds a layout and reads the grounding as :func:`check_table` does, as often as an impostor is found."""
     deadline = time.perf_counter() + time_limit
     sure = sure_roles(evidence.description, labels, kinds)
-    high = _too_high(evidence, sizes)
     while True:
         found = ground(evidence, engine, max(0.0, deadline - time.perf_counter()))
         table = check_table(evidence, labels, kinds, found, seen, colours)
-        rest = _without_impostors(evidence, sure, high, table)
+        rest = _without_impostors(evidence, sure, table)
         if rest is None or time.perf_counter() > deadline:
             return table
         evidence = rest
 
 
-def _without_impostors(
-    evidence: Evidence, sure: Mapping[str, frozenset[str]], high: NDArray[np.bool_], table: TableCheck
-) -> Evidence | None:
+def _without_impostors(evidence: Evidence, sure: Mapping[str, frozenset[str]], table: TableCheck) -> Evidence | None:
     """The evidence with the table's impostors ruled out, one match at least; None where there is none."""
     said = evidence.sizes.copy()
     for check in table.of(Verdict.MISPLACED):
         if check.perceived is None or check.role in sure[check.perceived]:
             continue
         place = evidence.description.index(check.role), evidence.scene.index(check.perceived)
-        if evidence.labels[place] <= 0 and (high[place] or evidence.sizes[place] < IMPOSTOR):
+        if evidence.labels[place] <= 0 and evidence.sizes[place] < IMPOSTOR:
             said[place] = RULED_OUT
     return None if np.array_equal(said, evidence.sizes) else replace(evidence, sizes=said)
-
-
-def _too_high(evidence: Evidence, sizes: Sizes | None) -> NDArray[np.bool_]:
-    """Which things are plainly too high for which roles, shape (n1, n2); none where sizes are not known."""
-    boxes = evidence.scene.boxes
-    if sizes is None or boxes is None:
-        return np.zeros(evidence.labels.shape, dtype=bool)
-    return too_high(classes(evidence.description), boxes, sizes, evidence.meaning.sizes)

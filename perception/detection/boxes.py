@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from deixis.perception.detection.circles import Circle
 from deixis.perception.detection.outline import corners_of
-from deixis.perception.oriented_box import OrientedBox
+from deixis.perception.oriented_box import OrientedBox, turned_axes
 
 TRIM = 0.002
 """The share of the points at either end of an axis that are taken for noise."""
@@ -51,7 +51,7 @@ def oriented_box(points: NDArray[np.float64], rim: Circle | None = None) -> Orie
 def _box_along(yaw: float, points: NDArray[np.float64], rim: Circle | None) -> OrientedBox:
     """The box with a side in that direction."""
     yaw = float(np.pi / 2 - (np.pi / 2 - yaw) % np.pi)
-    axes = OrientedBox((0.0, 0.0, 0.0), yaw, (0.0, 0.0, 0.0)).axes
+    axes = turned_axes(yaw)
     low, high = upright_box(points @ axes.T, rim and rim.turned(axes[:2, :2]))
     (x, y, z), (length, width, height) = (axes.T @ ((low + high) / 2)).tolist(), (high - low).tolist()
     return OrientedBox((x, y, z), yaw, (length, width, height))

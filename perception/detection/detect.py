@@ -123,10 +123,11 @@ def _on_table(
     rising = raised(view.heights, view.distance, neighbours, settings)
     colours = None if cloud.colours is None else cloud.colours[kept]
     found = _things(view, rising, neighbours, colours, settings)
+    large = _too_large(view)
     if not found.max(initial=NONE) >= 0:
-        if not _too_large(view) and max(_sides(view)) < LEAST_TOP:
+        if not large and max(_sides(view)) < LEAST_TOP:
             return _nothing(len(cloud), None, np.eye(4), _no_table(settings, 0))
-        why = ("nothing is on the table", *(_too_large(view) or _too_small(view)), *_a_wall(view, settings))
+        why = ("nothing is on the table", *(large or _too_small(view)), *_a_wall(view, settings))
         return _nothing(len(cloud), table.plane, view.frame, *why)
     members = [view.points[found == k] for k in range(int(found.max()) + 1)]
     table_seen = view.points[(np.abs(view.heights) < ON_TABLE) & (found == NONE), :2]
@@ -136,7 +137,7 @@ def _on_table(
     labels = np.full(len(cloud), NONE, np.int32)
     labels[kept] = np.append(np.argsort(order), NONE)[found]
     oriented = tuple(oriented_box(members[k], rims[k]) for k in order)
-    return Detection(table.plane, view.frame, labels, boxes[order], oriented, _too_large(view) or _too_small(view))
+    return Detection(table.plane, view.frame, labels, boxes[order], oriented, large or _too_small(view))
 
 
 def _require_metres(points: NDArray[np.float64]) -> None:
@@ -220,6 +221,7 @@ def _too_small(view: _View) -> tuple[str, ...]:
 def _too_large(view: _View) -> tuple[str, ...]:
     """A note where no table is so large: what is level with it is looked at, as points far apart are no one piece."""
     level = view.points[np.abs(view.heights) < ON_TABLE, :2]
+    level = level[:: max(1, len(level) // 10_000)]
     if not len(level):
         return ()
     across, deep = np.subtract(*np.percentile(level, (95, 5), axis=0)).tolist()

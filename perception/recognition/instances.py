@@ -47,14 +47,16 @@ class InstanceCategory:
     ) -> InstanceCategory:
         """A category of views (id, descriptors (k, d)), all distances computed."""
         named = list(views)
-        category = cls.among(name, PackedViews.of((key, array) for key, array in named if len(array)), things)
-        return replace(category, empty=tuple(key for key, array in named if not len(array)))
+        packed = PackedViews.of((key, array) for key, array in named if len(array))
+        return cls.among(name, packed, tuple(key for key, array in named if not len(array)), things or {})
 
     @classmethod
-    def among(cls, name: str, views: PackedViews, things: Mapping[str, str] | None = None) -> InstanceCategory:
-        """The same of views that are packed already."""
+    def among(
+        cls, name: str, views: PackedViews, empty: tuple[str, ...], things: Mapping[str, str]
+    ) -> InstanceCategory:
+        """The same of views that are packed already, but for the empty ones."""
         distances = np.array([view_distances(views[i], views) for i in range(len(views))])
-        return cls(name, views, distances.reshape(len(views), len(views)), things=dict(things or {}))
+        return cls(name, views, distances.reshape(len(views), len(views)), empty, dict(things))
 
     def __len__(self) -> int:
         return len(self.views)

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from deixis.ontology.graph import RelationGraph
 from deixis.ontology.kinds import Kinds
 from deixis.ontology.size_model import SizeModel
-from deixis.ontology.sizes import Extent, Sizes
+from deixis.ontology.sizes import Sizes
 from deixis.ontology.vocabulary import DX
 from deixis.reasoning.errors import SettingError
 from deixis.reasoning.graded.geometry import pair_geometry
@@ -86,8 +86,7 @@ def size_evidence(
     if not known or not len(boxes):
         return np.zeros((len(kinds), len(boxes)))
     if metric:
-        reaches = {kind: sizes.of(kind).reach for kind in known if kind not in (learned or {})}
-        looks = {kind: from_above(model, _typical(reaches.get(kind))) for kind, model in known.items()}
+        looks = {kind: from_above(model, _reach(kind, sizes, learned)) for kind, model in known.items()}
         return np.where(too_high(kinds, boxes, sizes, learned), np.log(OUTLIERS), _ratios(kinds, boxes, looks))
     return _whichever_view([_ratios(kinds, boxes, looks) for looks in looks_in_image(kinds, sizes, learned)])
 
@@ -129,8 +128,10 @@ def _known(kinds: Sequence[str], sizes: Sizes, learned: Mapping[str, SizeModel] 
     return {kind: model for kind in different if (model := (learned or {}).get(kind) or usual_size(kind, sizes))}
 
 
-def _typical(extent: Extent | None) -> float:
-    return 0.0 if extent is None else extent.typical
+def _reach(kind: str, sizes: Sizes, learned: Mapping[str, SizeModel] | None) -> float:
+    """How far a handle stands out that the kind's length leaves out; a learned length has it."""
+    reach = None if kind in (learned or {}) else sizes.of(kind).reach
+    return 0.0 if reach is None else reach.typical
 
 
 def _whichever_view(views: Sequence[Array]) -> Array:

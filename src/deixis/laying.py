@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from numbers import Integral
 from typing import TYPE_CHECKING
@@ -31,7 +31,7 @@ from deixis.perception.simulator.laying import (
 )
 from deixis.perception.simulator.scatter import scattered
 from deixis.perception.simulator.tableware import drawn_plan, form_of
-from deixis.reasoning.realisation.picture import Impossible, Picture, realise
+from deixis.reasoning.realisation.picture import Impossible, Picture, Undecided, realise
 from deixis.reasoning.realisation.verification import facts_that_hold
 from deixis.spoken_table import all_on_it, is_table
 
@@ -156,11 +156,7 @@ def _planned(script: Script, graph: RelationGraph, meshes: Mapping[str, Mesh], s
             _room(thing, meshes.get(thing.name), _instance(seed, number) + draw, ontology)
             for number, thing in enumerate(objects)
         ]
-        for number, said in enumerate(graphs):
-            left = max(0.0, deadline - time.monotonic()) / (len(graphs) - number)
-            found = realise(said, sizes, lying=lying, time_limit=left, rng=np.random.default_rng([seed, draw]))
-            if isinstance(found, Picture):
-                break
+        found = _first_picture(graphs, sizes, lying, deadline, [seed, draw])
         if isinstance(found, Picture):
             return _Plan(graph, objects, found.boxes, tables, meshes, seed, ontology)
         if not isinstance(found, Impossible):
@@ -168,6 +164,23 @@ def _planned(script: Script, graph: RelationGraph, meshes: Mapping[str, Mesh], s
     raise NoTableError(
         f"{script.file}: there is no such table with things of their usual sizes; 'deixis imagine' says why"
     )
+
+
+def _first_picture(
+    graphs: Sequence[RelationGraph],
+    sizes: Sequence[SizeRange],
+    lying: Sequence[bool],
+    deadline: float,
+    seeds: list[int],
+) -> Picture | Impossible | Undecided:
+    """A picture of the first graph that has one, else what came of the last; they share the time that is left."""
+    found: Picture | Impossible | Undecided
+    for number, graph in enumerate(graphs):
+        left = max(0.0, deadline - time.monotonic()) / (len(graphs) - number)
+        found = realise(graph, sizes, lying=lying, time_limit=left, rng=np.random.default_rng(seeds))
+        if isinstance(found, Picture):
+            break
+    return found
 
 
 def _room(thing: Sized, mesh: Mesh | None, instance: int, ontology: Ontology) -> SizeRange:

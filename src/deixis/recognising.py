@@ -83,7 +83,7 @@ MAPPED = 10_000
 """From so many views on they are not held in memory."""
 
 Pack = Callable[[Iterable[tuple[str, NDArray[np.float32]]]], PackedViews]
-"""How the descriptors of views are held."""
+"""How the descriptors of views are held; it reads all of them before it returns."""
 
 
 @dataclass(frozen=True)
@@ -195,12 +195,9 @@ def _of(views: Iterable[View], category: str) -> list[View]:
     return [view for view in views if view.category == category]
 
 
-def way_of(views: Iterable[View], ways: Sequence[Way]) -> Way:
+def way_of(views: Sequence[View], ways: Sequence[Way]) -> Way:
     """The first of some ways in which these views can all be compared."""
-    lacking: set[str] = set()
-    for view in views:
-        lacking.update(way.name for way in ways if way.name not in view.descriptors)
-    return next((way for way in ways if way.name not in lacking), ROOTS)
+    return next((way for way in ways if all(way.name in view.descriptors for view in views)), ROOTS)
 
 
 def instances_of(
@@ -226,7 +223,7 @@ def instances_of(
 
     packed = pack(described())
     if not _compared(record, packed.ids, way):
-        return replace(InstanceCategory.among(record.name, packed, things), empty=tuple(empty))
+        return InstanceCategory.among(record.name, packed, tuple(empty), things)
     order = np.argsort(np.argsort(np.array(packed.ids, dtype=str)))
     distances = np.asarray(record.state[DISTANCES])[np.ix_(order, order)]
     return InstanceCategory(record.name, packed, distances, tuple(empty), things)
@@ -264,7 +261,7 @@ def recogniser_of(memory: LevelMemory, frame: str, progress: Progress | None = N
     """
     with memory.exclusive():
         names, listed = memory.categories(), list(memory.listing())
-        way = way_of(_doubtful(memory, listed), ways_in(frame))
+        way = _way_in(frame, memory, listed)
         views = {(key.category, key.id) for key in listed}
         pack = PackedViews.of if len(views) < MAPPED else mapped
         categories = []
@@ -281,14 +278,18 @@ def recogniser_of(memory: LevelMemory, frame: str, progress: Progress | None = N
     return Known(known, way)
 
 
-def _doubtful(memory: PerceptualReading, listed: Iterable[ViewKey]) -> Iterator[View]:
-    """The views of categories whose records do not say that all of them can be compared in the best way."""
+def _way_in(frame: str, memory: PerceptualReading, listed: Iterable[ViewKey]) -> Way:
+    """The first way in a frame in which all that was taught can be compared: by the categories' records, and where they
+    do not say so, by their views, until one cannot."""
     ids = defaultdict(list)
     for key in listed:
         ids[key.category].append(key.id)
-    for name, own in ids.items():
-        if not _compared(memory.category(name), own, UPRIGHT):
-            yield from memory.views(name)
+
+    def can(name: str, way: Way) -> bool:
+        said = _compared(memory.category(name), ids[name], way)
+        return said or all(way.name in view.descriptors for view in memory.views(name))
+
+    return next((way for way in ways_in(frame) if way is ROOTS or all(can(name, way) for name in ids)), ROOTS)
 
 
 def recognise(known: Known, scene: Scene, clouds: Sequence[PointCloud | None]) -> Recognised:

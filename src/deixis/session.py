@@ -211,8 +211,7 @@ class Session(PerceptualSession):
         notes = _viewpoint_notes(concept.viewpoint, scene) + conflict_notes(graph)
         ready_to_ground("exact")
         known, engine = self.ontology, engine_named("exact")
-        sizes = known.sizes if scene.unit == "m" else None
-        table = checked_table(evidence, labels, known.kinds, sizes, engine, time_limit, scene.colours, known.colours)
+        table = checked_table(evidence, labels, known.kinds, engine, time_limit, scene.colours, known.colours)
         found = table.grounding
         kept = tuple(note for note in found.notes if "similarity" not in note)  # a check shows no similarity
         table = replace(table, grounding=replace(found, notes=notes + kept))
