@@ -36,7 +36,7 @@ $(STAMP): requirements.lock pyproject.toml
 	rm -rf $(VENV) && "$$python" -m venv $(VENV)
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements.lock
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation --editable .
-	@$(BIN)/python -m deixis.warm
+	@$(BIN)/python -m deixis.kernels
 	@touch $(STAMP)
 
 # Writes the lock anew: name==version and hashes, no address. Needs uv.

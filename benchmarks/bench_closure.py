@@ -23,12 +23,12 @@ from common import medians
 from numba import njit
 from numpy.typing import NDArray
 
-from deixis.grammar.network_file import write_networks
-from deixis.reasoning.allen import allen_relations
-from deixis.reasoning.calculi.calculus import ProductCalculus, TableCalculus
-from deixis.reasoning.calculi.registry import calculus
-from deixis.reasoning.networks.closure import Closure, close
-from deixis.reasoning.networks.network import Constraint, Network, on_axes
+from deixis.grammar.formats.networks import write_networks
+from deixis.reasoning.geometry.allen import allen_relations
+from deixis.reasoning.qualitative.calculi.calculus import ProductCalculus, TableCalculus
+from deixis.reasoning.qualitative.calculi.registry import calculus
+from deixis.reasoning.qualitative.networks.closure import Closure, close
+from deixis.reasoning.qualitative.networks.network import Constraint, Network, on_axes
 
 ALLEN = cast(TableCalculus, calculus("allen"))
 RA = cast(ProductCalculus, calculus("ra"))

@@ -16,12 +16,20 @@ import pyoxigraph as ox
 import rdflib
 
 from deixis.ontology.vocabulary import BASE
-from deixis.reasoning.description_logic import Reasoner, classify
+from deixis.reasoning.description_logic.justification import justify
+from deixis.reasoning.description_logic.materialisation import Materialisation
+from deixis.reasoning.description_logic.reasoners import Reasoner, classify
+from deixis.reasoning.description_logic.terms import (
+    NAMED_INDIVIDUAL,
+    NOTHING,
+    SUB_CLASS_OF,
+    TYPE,
+    Triple,
+    read_ntriples,
+    term,
+    write_ntriples,
+)
 from deixis.reasoning.errors import LimitError
-from deixis.reasoning.owl.justification import justify
-from deixis.reasoning.owl.ntriples import Triple, read_ntriples, write_ntriples
-from deixis.reasoning.owl.terms import NAMED_INDIVIDUAL, NOTHING, SUB_CLASS_OF, TYPE, term
-from deixis.reasoning.owl_rl.materialisation import Materialisation
 
 CORE = Path(__file__).parent.parent / "ontology" / "deixis.ttl"
 SIZES, TABLE, CHAIN, ADDED = (100, 1_000, 10_000), 10, 200, 10

@@ -19,11 +19,11 @@ from common import data_folder
 from numpy.typing import NDArray
 
 from deixis.grammar.parser import read_script
-from deixis.laying import lay_script
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.clouds.cloud_file import read_cloud
 from deixis.perception.detection.detect import detect
-from deixis.simulation import Simulation, simulate
+from deixis.workflows.lay_table import lay_script
+from deixis.workflows.simulate import Simulation, simulate
 
 LEAST = 200
 CLOSE = 0.01

@@ -1,11 +1,11 @@
 """Graded meaning on what people wrote down about photographs (those of ``bench_vrd.py``), and on generated tables.
 
-Every image's facts become log-likelihood ratios (:mod:`deixis.reasoning.graded.facts`); the one-to-one map with the
-largest sum is found exactly. Share of objects named right, mean over images, each a mean over random node orders.
-``shipped`` words and sizes know nothing of these images. ``learned`` words, and sizes of what people call things, are
-fitted by cross-validation over images: the test fold is never seen. ``--halves`` adds the shares of two fixed halves
-of the images, development and confirmation; the last choices of form, and the strengths of the priors of what is
-learned, were made by looking at the first alone.
+Every image's facts become log-likelihood ratios (:mod:`deixis.reasoning.grounding.evidence.facts`); the one-to-one map
+with the largest sum is found exactly. Share of objects named right, mean over images, each a mean over random node
+orders. ``shipped`` words and sizes know nothing of these images. ``learned`` words, and sizes of what people call
+things, are fitted by cross-validation over images: the test fold is never seen. ``--halves`` adds the shares of two
+fixed halves of the images, development and confirmation; the last choices of form, and the strengths of the priors of
+what is learned, were made by looking at the first alone.
 
 ``--tables N`` grounds N generated tables of 12 objects a setting instead: the share right of the best map, beside
 the exact Bayes limit of who knows the words only and of who knows as well how pairs are drawn; the expected calibration
@@ -27,16 +27,16 @@ from deixis.experiments.generated_tables import generate
 from deixis.experiments.photographs import Photograph, photographs
 from deixis.experiments.scoreboard.bayes_limit import bayes_limit
 from deixis.ontology.tbox import default_ontology
-from deixis.reasoning.evidence import exact_names
-from deixis.reasoning.graded.facts import FactTables, crisp_tables, fact_tables
-from deixis.reasoning.graded.fitting import FitSettings
-from deixis.reasoning.graded.unary import UnaryWeights, size_evidence
-from deixis.reasoning.labels import classes
-from deixis.reasoning.matching.exact import exact
-from deixis.reasoning.matching.posterior import posterior
-from deixis.reasoning.matching.problem import Problem
-from deixis.reasoning.meaning import SHIPPED, Meaning
-from deixis.reasoning.rectangle import perceived_graph
+from deixis.reasoning.geometry.rectangle import perceived_graph
+from deixis.reasoning.grounding.evidence.evidence import exact_names
+from deixis.reasoning.grounding.evidence.facts import FactTables, crisp_tables, fact_tables
+from deixis.reasoning.grounding.evidence.labels import classes
+from deixis.reasoning.grounding.evidence.meaning import SHIPPED, Meaning
+from deixis.reasoning.grounding.evidence.unary import UnaryWeights, size_evidence
+from deixis.reasoning.grounding.fitting.fit import FitSettings
+from deixis.reasoning.grounding.matching.exact import exact
+from deixis.reasoning.grounding.matching.posterior import posterior
+from deixis.reasoning.grounding.matching.problem import Problem
 
 HALVES_SEED = 2016
 SETTINGS = ((1.0, 0.0), (1.5, 0.0), (2.5, 0.0), (1.0, 0.1), (2.5, 0.1), (2.5, 0.2))  # facts an object, share off

@@ -20,7 +20,7 @@ from rdflib import Graph, URIRef
 
 from deixis.ontology.graph import RelationGraph
 from deixis.ontology.tbox import default_ontology
-from deixis.reasoning.implications import Implications
+from deixis.reasoning.entailment.implications import Implications
 
 R = default_ontology().relations
 LEFT = R["left"]
@@ -132,7 +132,7 @@ def long_chain(n: int) -> None:
 
 def to_triples(n: int) -> None:
     """A chain to N-Triples, beside HermiT and Pellet on the same chain as a transitive property."""
-    from deixis.reasoning.description_logic import Reasoner, classify
+    from deixis.reasoning.description_logic.reasoners import Reasoner, classify
 
     graph = graph_of(*chain(n))
     (taken,) = medians(lambda: Implications(graph).ntriples(), runs=7)

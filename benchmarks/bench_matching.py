@@ -22,13 +22,13 @@ from numpy.typing import NDArray
 from peers import annealing, cp_sat, faq, graph_matching
 
 from deixis.experiments.generated_tables import GeneratedTable, generate
-from deixis.reasoning.engines import engine_named
-from deixis.reasoning.evidence import no_unary_evidence
-from deixis.reasoning.graded.facts import fact_tables
-from deixis.reasoning.grounding import ground
-from deixis.reasoning.matching.exact import exact, maps_within, warm
-from deixis.reasoning.matching.problem import Problem
-from deixis.reasoning.matching.scalable import scalable
+from deixis.reasoning.grounding.engines import engine_named
+from deixis.reasoning.grounding.evidence.evidence import no_unary_evidence
+from deixis.reasoning.grounding.evidence.facts import fact_tables
+from deixis.reasoning.grounding.ground import ground
+from deixis.reasoning.grounding.matching.exact import exact, maps_within, warm
+from deixis.reasoning.grounding.matching.problem import Problem
+from deixis.reasoning.grounding.matching.scalable import scalable
 
 T = TypeVar("T")
 

@@ -15,10 +15,10 @@ from pathlib import Path
 import pyoxigraph as ox
 from common import medians
 
-from deixis.memory.graphs import GraphName, graph_iri
-from deixis.memory.prefixes import PREFIXES
-from deixis.memory.semantic import SemanticMemory
-from deixis.ontology.rdf import iri, text, typed
+from deixis.memory.semantic.rdf.files import PREFIXES
+from deixis.memory.semantic.rdf.graphs import GraphName, graph_iri
+from deixis.memory.semantic.store import SemanticMemory
+from deixis.ontology.triples import iri, text, typed
 from deixis.ontology.vocabulary import DX, W3C
 
 ASSERTED = graph_iri(GraphName.ASSERTED)

@@ -22,8 +22,8 @@ from numpy.typing import NDArray
 from peers import annealing, faq, graph_matching
 
 from deixis.experiments.scoreboard.cases import Case, Setting, generated_cases
-from deixis.reasoning.matching.problem import Problem
-from deixis.reasoning.meaning import SHIPPED
+from deixis.reasoning.grounding.evidence.meaning import SHIPPED
+from deixis.reasoning.grounding.matching.problem import Problem
 
 SEED = 4242  # the scoreboard's is 1, or what a user says
 

@@ -16,10 +16,10 @@ from contextlib import contextmanager
 import numpy as np
 
 from deixis.experiments.generated_tables import generate
-from deixis.reasoning.graded.facts import fact_tables
-from deixis.reasoning.matching import posterior as settings
-from deixis.reasoning.matching.posterior import Posterior, posterior
-from deixis.reasoning.matching.problem import Problem
+from deixis.reasoning.grounding.evidence.facts import fact_tables
+from deixis.reasoning.grounding.matching import posterior as settings
+from deixis.reasoning.grounding.matching.posterior import Posterior, posterior
+from deixis.reasoning.grounding.matching.problem import Problem
 
 ABSENT = math.log(0.05 / 0.95)  # as grounding has it
 LONGER = {8: 10, 12: 10, 30: 10, 100: 3}  # times as many proposals for the reference

@@ -24,11 +24,8 @@ from numba import njit
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from deixis import recognising
 from deixis.examples_data import example
 from deixis.grammar.parser import parse_script
-from deixis.laying import lay_script
-from deixis.perceiving import cloud_of, perceive, write_perceived
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.clouds.cloud_file import write_cloud
 from deixis.perception.features.registry import describer_named
@@ -43,7 +40,10 @@ from deixis.perception.recognition.views import PackedViews
 from deixis.perception.simulator.tableware import make
 from deixis.perception.simulator.views import views_of
 from deixis.session import ground
-from deixis.simulation import simulate
+from deixis.workflows import recognise as recognising
+from deixis.workflows.lay_table import lay_script
+from deixis.workflows.perceive import cloud_of, perceive, write_perceived
+from deixis.workflows.simulate import simulate
 
 KINDS = (
     *("dinner plate", "bowl", "cup", "mug", "glass", "water glass", "wine glass", "champagne glass"),

@@ -10,7 +10,7 @@ from common import medians
 from numpy.typing import NDArray
 
 from deixis.ontology.tbox import default_ontology
-from deixis.reasoning.rectangle import box_relations
+from deixis.reasoning.geometry.rectangle import box_relations
 
 
 def boxes(n: int) -> NDArray[np.float64]:

@@ -19,9 +19,9 @@ from numpy.typing import NDArray
 
 from deixis.ontology.graph import Fact, RelationGraph
 from deixis.ontology.tbox import default_ontology
-from deixis.reasoning.likeness import Comparison, Described, Seen, seen
-from deixis.reasoning.rectangle import box_relations, perceived_graph
-from deixis.reasoning.retrieval import rank_layouts, rank_scenes
+from deixis.reasoning.comparison.likeness import Comparison, Described, Seen, seen
+from deixis.reasoning.comparison.retrieval import rank_layouts, rank_scenes
+from deixis.reasoning.geometry.rectangle import box_relations, perceived_graph
 
 ONTOLOGY = default_ontology()
 RELATIONS = ONTOLOGY.relations

@@ -16,15 +16,14 @@ from pathlib import Path
 
 from peers import annealing, cp_sat, faq, graph_matching
 
-from deixis.cli_common import print_json, print_lines
-from deixis.cli_experiment import progress
+from deixis.cli.common import print_json, print_lines
+from deixis.cli.experiment import progress
 from deixis.experiments.photographs import photographs_folder
 from deixis.experiments.scoreboard.contestants import Answer, Contestant, engines, peer
 from deixis.experiments.scoreboard.plot import plot_scoreboard
-from deixis.experiments.scoreboard.report import to_dict
+from deixis.experiments.scoreboard.report import lines, to_dict
 from deixis.experiments.scoreboard.run import Plan, run, steps
-from deixis.experiments.scoreboard.text import lines
-from deixis.reasoning.matching.problem import Problem
+from deixis.reasoning.grounding.matching.problem import Problem
 
 MOST = {"annealing": 300, "faq": 100, "cp-sat": 8, "pygmtools": 30}
 """Objects: beyond, a case takes minutes, or more memory than a desktop has."""

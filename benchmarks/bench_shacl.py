@@ -11,13 +11,13 @@ from pathlib import Path
 import pyoxigraph as ox
 from bench_memory import scenes
 
-from deixis.memory.change import Change
 from deixis.memory.errors import RejectedWriteError
-from deixis.memory.graphs import GraphName
-from deixis.memory.semantic import SemanticMemory
-from deixis.memory.shacl import shapes_graph, violations
-from deixis.memory.validation import check_change
-from deixis.ontology.rdf import iri, text
+from deixis.memory.semantic.rdf.change import Change
+from deixis.memory.semantic.rdf.graphs import GraphName
+from deixis.memory.semantic.store import SemanticMemory
+from deixis.memory.semantic.validation.shacl import shapes_graph, violations
+from deixis.memory.semantic.validation.validate import check_change
+from deixis.ontology.triples import iri, text
 from deixis.ontology.vocabulary import DX
 
 NODES, CHANGED = 10_000, 1_000

@@ -23,8 +23,8 @@ def main() -> None:
         script.write_text(SCRIPT, encoding="utf-8")
         jobs = {
             "python -c pass": command("-c", "pass"),
-            "deixis --help": command("-m", "deixis.cli", "--help"),
-            "deixis parse, 20 lines": command("-m", "deixis.cli", "parse", str(script)),
+            "deixis --help": command("-m", "deixis.cli.app", "--help"),
+            "deixis parse, 20 lines": command("-m", "deixis.cli.app", "parse", str(script)),
         }
         for name, seconds in zip(jobs, medians(*jobs.values(), runs=15), strict=True):
             print(f"{name:<24} {seconds * 1000:7.0f} ms")

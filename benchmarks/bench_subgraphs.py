@@ -14,9 +14,9 @@ import numpy as np
 from common import medians
 
 from deixis.examples_data import example
-from deixis.perception.scene_file import read_scene
-from deixis.reasoning.engines import described
-from deixis.reasoning.similarity import node_similarity
+from deixis.perception.formats.scene_json import read_scene
+from deixis.reasoning.grounding.engines import described
+from deixis.reasoning.grounding.similarity import node_similarity
 from deixis.session import read_script
 
 

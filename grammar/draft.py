@@ -8,12 +8,12 @@ from functools import cached_property
 
 from deixis.grammar.errors import SHOWN, Problem, Refusal, shortened
 from deixis.grammar.names import NameBook
-from deixis.grammar.phrases import chains
 from deixis.grammar.script import Mention
+from deixis.grammar.words import chains
 from deixis.ontology.colours import Colour
+from deixis.ontology.graph import Source
 from deixis.ontology.kinds import Kind, with_article
 from deixis.ontology.relation import Relation, nearest, plain_phrase
-from deixis.ontology.source import Source
 from deixis.ontology.tbox import Ontology
 
 MOST_FACTS = 1_000_000  # of one script with all that it includes

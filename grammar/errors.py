@@ -5,8 +5,8 @@ from __future__ import annotations
 import unicodedata
 from dataclasses import dataclass
 
-from deixis.ontology.errors import DeixisError
-from deixis.ontology.source import Source
+from deixis.errors import DeixisError
+from deixis.ontology.graph import Source
 
 SHOWN = 50  # problems that are shown in full
 WINDOW = 100  # characters of a long line that are shown

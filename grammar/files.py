@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from deixis.grammar.errors import Refusal, ScriptFileError, shortened
-from deixis.ontology.source import Source
+from deixis.ontology.graph import Source
 
 LARGEST = 64 * 1024 * 1024  # bytes of one file
 DEEPEST = 32  # includes within includes

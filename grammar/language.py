@@ -10,9 +10,9 @@ from lark import Lark, Token
 from lark.lark import PostLex
 from lark.lexer import PatternRE, TerminalDef
 
-from deixis.grammar.phrases import chains, phrase_pattern
 from deixis.grammar.tokens import HOMELESS, Scanner
 from deixis.grammar.tree import TreeBuilder
+from deixis.grammar.words import chains, phrase_pattern
 from deixis.ontology.relation import plain_phrase
 from deixis.ontology.tbox import Ontology
 

@@ -10,16 +10,16 @@ from pathlib import Path
 from lark import Token
 from lark.exceptions import UnexpectedToken
 
+from deixis.grammar.diagnostics import bad_token, unexpected
 from deixis.grammar.draft import Draft, Place, place
 from deixis.grammar.errors import SHOWN, Problem, Refusal, ScriptError, ScriptFileError
-from deixis.grammar.explain import bad_token, unexpected
 from deixis.grammar.files import Includes, read_text
 from deixis.grammar.language import Language, language_of
 from deixis.grammar.names import key_of
 from deixis.grammar.script import Comment, Header, Include, Script, Statement
 from deixis.grammar.tokens import HOMELESS
 from deixis.grammar.tree import span_of
-from deixis.ontology.source import Source
+from deixis.ontology.graph import Source
 from deixis.ontology.tbox import Ontology, default_ontology
 
 

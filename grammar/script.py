@@ -8,10 +8,9 @@ from functools import cached_property
 from itertools import chain, pairwise, product
 
 from deixis.ontology.colours import Colour
-from deixis.ontology.graph import Fact, RelationGraph
+from deixis.ontology.graph import Fact, RelationGraph, Source
 from deixis.ontology.kinds import Kind
 from deixis.ontology.relation import Relation
-from deixis.ontology.source import Source
 from deixis.ontology.tbox import Ontology
 
 

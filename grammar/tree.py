@@ -9,8 +9,8 @@ from deixis.grammar.errors import Refusal, shortened
 from deixis.grammar.names import unquoted
 from deixis.grammar.script import Chain, Declaration, Header, Include, Mention, Modifiers, Placement, Statement
 from deixis.grammar.words import NUMBERS, VERBS_OR_NOUNS
+from deixis.ontology.graph import Source
 from deixis.ontology.relation import Relation, plain_phrase
-from deixis.ontology.source import Source
 
 FIRM_QUALITY = "what kind of thing an object is, or its colour, cannot be denied, optional or hedged"
 

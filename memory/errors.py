@@ -1,11 +1,11 @@
-"""What this room raises on purpose."""
+"""Errors that the memories raise."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from deixis.ontology.errors import DeixisError
+from deixis.errors import DeixisError
 
 
 class MemoryBusyError(DeixisError, BlockingIOError):
@@ -58,3 +58,25 @@ class RejectedWriteError(DeixisError, ValueError):
     def __init__(self, message: str, results: Sequence[ShapeResult] = ()) -> None:
         self.results = tuple(results)
         super().__init__("\n".join([message, *map(str, self.results)]))
+
+
+class RecordError(DeixisError, ValueError):
+    """A view, a category or a batch that cannot be kept: wrong arrays, names or metadata."""
+
+
+class DamagedMemoryError(MemoryFormatError):
+    """What is stored is not what was written: bytes have changed, or some are missing."""
+
+
+class UnknownViewError(DeixisError, KeyError):
+    """A view that the memory does not hold."""
+
+    def __str__(self) -> str:
+        return str(self.args[0]) if self.args else "unknown view"
+
+
+class UnknownCategoryError(DeixisError, KeyError):
+    """A category that the memory does not hold."""
+
+    def __str__(self) -> str:
+        return str(self.args[0]) if self.args else "unknown category"

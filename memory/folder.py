@@ -8,17 +8,43 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from enum import Enum, auto
 from pathlib import Path
 from typing import Any
 
 import pyoxigraph as ox
 
-from deixis.memory import disk
-from deixis.memory.errors import MemoryFormatError
-from deixis.memory.lock import LOCK_FILE
-from deixis.memory.migration import MIGRATIONS, VERSION
+from deixis.errors import DeixisError
+from deixis.memory import owner as disk
+from deixis.memory.errors import MemoryFormatError, MemoryWriteError
+from deixis.memory.owner import LOCK_FILE
+from deixis.memory.semantic.queries.union import merge_if_overlapping
+from deixis.memory.semantic.rdf.graphs import GRAPHS
+
+VERSION = 1
+
+_GRAPHS_0 = "urn:deixis:graph:"
+
+
+def _from_0(old: ox.Store, new: ox.Store) -> None:
+    """Version 0 named its graphs ``urn:deixis:graph:learned``, a lesson's ``urn:deixis:graph:lesson:set-1:learned``."""
+
+    def renamed() -> Iterator[ox.Quad]:
+        for quad in old:
+            graph = quad.graph_name
+            if isinstance(graph, ox.NamedNode) and graph.value.startswith(_GRAPHS_0):
+                graph = ox.NamedNode(GRAPHS + graph.value.removeprefix(_GRAPHS_0).replace(":", "/"))
+            yield ox.Quad(quad.subject, quad.predicate, quad.object, graph)
+
+    new.bulk_extend(renamed())
+    merge_if_overlapping(new)
+
+
+MIGRATIONS: dict[int, Callable[[ox.Store, ox.Store], None]] = {0: _from_0}
+"""From a version to the step that leads to the next."""
+
 
 FORMAT = "deixis-memory"
 MARK, STORE, NEW, OLD = "memory.json", "semantic", "semantic.new", "semantic.old"
@@ -204,3 +230,30 @@ def _write(file: Path, mark: dict[str, Any]) -> None:
         out.write(json.dumps(mark, indent=2, sort_keys=True) + "\n")
         out.flush()
         os.fsync(out.fileno())
+
+
+@contextmanager
+def committed(folder: Path) -> Iterator[None]:
+    """Turns what a failed write raises into MemoryWriteError."""
+    advice = (
+        "see that the disk has room and the folder is writable, then try again: what was kept before is still there"
+    )
+    with wrap_storage_errors(folder, "written", advice):
+        yield
+
+
+@contextmanager
+def reading(folder: Path) -> Iterator[None]:
+    """Turns what a failed read raises into MemoryWriteError."""
+    with wrap_storage_errors(folder, "read", "restore the folder from a copy"):
+        yield
+
+
+@contextmanager
+def wrap_storage_errors(folder: Path, done: str, advice: str) -> Iterator[None]:
+    try:
+        yield
+    except (OSError, RuntimeError) as error:
+        if isinstance(error, DeixisError):
+            raise
+        raise MemoryWriteError(f"the memory at {folder} could not be {done} ({one_line(error)}); {advice}") from error

@@ -1,7 +1,7 @@
 """Allen's thirteen relations between two intervals (Allen 1983), as names and codes.
 
 The codes run along the conceptual neighbourhood, so that the converse of code ``i`` is code ``12 - i``. What the
-relations imply is reasoned out in :mod:`deixis.reasoning.allen`; here they are only named.
+relations imply is reasoned out in :mod:`deixis.reasoning.geometry.allen`; here they are only named.
 """
 
 from __future__ import annotations

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.ontology.errors import OntologyError
+from deixis.errors import OntologyError
 from deixis.ontology.vocabulary import DX, W3C
 
 if TYPE_CHECKING:

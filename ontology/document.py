@@ -7,9 +7,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
+from deixis.errors import OntologyError
 from deixis.ontology.allen import SYMBOLS
 from deixis.ontology.document_terms import DCTERMS, OWL, RDFS, Term, Terms, read_terms, union
-from deixis.ontology.errors import OntologyError
 from deixis.ontology.vocabulary import BASE, DX, ONTOLOGY_IRI, W3C
 
 _PREFIXES = {

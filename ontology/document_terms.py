@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from deixis.ontology.errors import OntologyError
+from deixis.errors import OntologyError
 from deixis.ontology.vocabulary import DX, W3C
 
 OWL = "http://www.w3.org/2002/07/owl#"

@@ -10,10 +10,9 @@ from urllib.parse import quote
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.ontology.errors import GraphError
-from deixis.ontology.graph import Fact, RelationGraph
+from deixis.errors import GraphError
+from deixis.ontology.graph import Fact, RelationGraph, Source
 from deixis.ontology.relation import Relation, Relations
-from deixis.ontology.source import Source
 from deixis.ontology.vocabulary import BASE, DX
 
 

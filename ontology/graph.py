@@ -13,12 +13,29 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.ontology.errors import GraphError
+from deixis.errors import GraphError
 from deixis.ontology.relation import Reading, Relation, Relations
-from deixis.ontology.source import Source
 
 if TYPE_CHECKING:
     import networkx as nx
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Source:
+    """A span of a file, lines and columns counted from 1, the end exclusive.
+
+    >>> str(Source("dinner.layout", 3, 1, 3, 23))
+    'dinner.layout:3:1'
+    """
+
+    file: str
+    line: int
+    column: int
+    end_line: int
+    end_column: int
+
+    def __str__(self) -> str:
+        return f"{self.file}:{self.line}:{self.column}"
 
 
 @dataclass(frozen=True, slots=True)

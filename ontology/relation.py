@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.errors import OntologyError, UnknownTermError
 from deixis.ontology.allen import SYMBOLS, Allen, allen_mask
-from deixis.ontology.errors import OntologyError, UnknownTermError
 from deixis.ontology.vocabulary import DX, W3C
 
 if TYPE_CHECKING:
@@ -73,7 +73,7 @@ class Relations(Mapping[str, Relation]):
     >>> relations["lefft"]
     Traceback (most recent call last):
         ...
-    deixis.ontology.errors.UnknownTermError: there is no relation 'lefft'; did you mean 'left'?
+    deixis.errors.UnknownTermError: there is no relation 'lefft'; did you mean 'left'?
     """
 
     def __init__(self, relations: tuple[Relation, ...]) -> None:

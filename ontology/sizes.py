@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import TYPE_CHECKING
 
-from deixis.ontology.errors import OntologyError
+from deixis.errors import OntologyError
 from deixis.ontology.vocabulary import DX, W3C
 
 if TYPE_CHECKING:

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 
+from deixis.errors import OntologyError
 from deixis.ontology.colours import Colour, Colours, colours_from_triples
-from deixis.ontology.errors import OntologyError
 from deixis.ontology.kinds import Kind, Kinds, plain_name
 from deixis.ontology.relation import Relation, Relations, relation_from_triples
 from deixis.ontology.sizes import Sizes, sizes_from_triples

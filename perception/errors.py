@@ -1,8 +1,8 @@
-"""The errors of this room."""
+"""Errors that perception raises."""
 
 from __future__ import annotations
 
-from deixis.ontology.errors import DeixisError
+from deixis.errors import DeixisError
 
 
 class SceneError(DeixisError, ValueError):
@@ -11,3 +11,11 @@ class SceneError(DeixisError, ValueError):
 
 class CloudError(DeixisError, ValueError):
     """A point cloud that cannot be read, or arrays that make none."""
+
+
+class RecognitionError(DeixisError, ValueError):
+    """Descriptors, categories or settings that do not fit together; the message names which, and what would fit."""
+
+
+class SimulationError(DeixisError, ValueError):
+    """A thing, a table or a camera that cannot be simulated; the message says which and why."""

@@ -1,8 +1,8 @@
-"""The errors of this room."""
+"""Errors that reasoning raises."""
 
 from __future__ import annotations
 
-from deixis.ontology.errors import DeixisError
+from deixis.errors import DeixisError
 
 
 class LimitError(DeixisError, OverflowError):
@@ -45,3 +45,7 @@ class ReasonerError(DeixisError, RuntimeError):
 
 class NotEntailedError(DeixisError, ValueError):
     """A statement of which a justification was asked, and which does not follow."""
+
+
+class NetworkError(DeixisError, ValueError):
+    """A network whose parts do not fit together, or a question about a pair that it does not have."""

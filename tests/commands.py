@@ -7,7 +7,7 @@ import sys
 from contextlib import redirect_stderr, redirect_stdout
 from unittest.mock import patch
 
-from deixis.cli import main
+from deixis.cli.app import main
 
 
 def deixis(*args: object) -> tuple[int, str, str]:

@@ -5,10 +5,10 @@ from __future__ import annotations
 from deixis.ontology.graph import RelationGraph
 from deixis.ontology.tbox import default_ontology
 from deixis.perception.scene import Scene
-from deixis.reasoning.answer import Grounding
-from deixis.reasoning.engines import Select, engine_named
-from deixis.reasoning.evidence import Evidence, no_unary_evidence
-from deixis.reasoning.grounding import ground
+from deixis.reasoning.grounding.answer import Grounding
+from deixis.reasoning.grounding.engines import Select, engine_named
+from deixis.reasoning.grounding.evidence.evidence import Evidence, no_unary_evidence
+from deixis.reasoning.grounding.ground import ground
 
 R = default_ontology().relations
 

@@ -8,7 +8,7 @@ import numpy as np
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from deixis.reasoning.matching.problem import UNMATCHED, Problem
+from deixis.reasoning.grounding.matching.problem import UNMATCHED, Problem
 
 
 @st.composite

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pyoxigraph as ox
 
-from deixis.reasoning.owl.ntriples import Triple, read_ntriples
+from deixis.reasoning.description_logic.terms import Triple, read_ntriples
 
 CORE = Path(__file__).parent.parent / "ontology" / "deixis.ttl"
 

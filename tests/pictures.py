@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from deixis.ontology.allen import ALL_ALLEN
 from deixis.ontology.graph import Fact
 from deixis.ontology.relation import Relation
-from deixis.reasoning.allen import allen_relations
+from deixis.reasoning.geometry.allen import allen_relations
 
 
 @cache

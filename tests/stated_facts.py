@@ -11,9 +11,9 @@ from rdflib import OWL, RDF, RDFS, Graph, URIRef
 from deixis.ontology.graph import Fact, RelationGraph
 from deixis.ontology.relation import Relation
 from deixis.ontology.tbox import default_ontology, tbox_turtle
-from deixis.reasoning.calculi.calculus import ProductCalculus
-from deixis.reasoning.calculi.registry import calculus
-from deixis.reasoning.implications import Implications
+from deixis.reasoning.entailment.implications import Implications
+from deixis.reasoning.qualitative.calculi.calculus import ProductCalculus
+from deixis.reasoning.qualitative.calculi.registry import calculus
 
 MakeGraph = Callable[..., RelationGraph]
 Triple = tuple[str, str, str]

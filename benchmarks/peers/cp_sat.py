@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.reasoning.matching.problem import UNMATCHED, Problem
+from deixis.reasoning.grounding.matching.problem import UNMATCHED, Problem
 
 SCALE = 10_000  # the solver counts in whole numbers
 WORKERS = 2

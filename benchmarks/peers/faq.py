@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.reasoning.matching.problem import UNMATCHED, Problem
+from deixis.reasoning.grounding.matching.problem import UNMATCHED, Problem
 
 ITERATIONS = 30  # scipy's default
 STARTS = 10

@@ -17,9 +17,8 @@ from typing import Any
 
 from numpy.typing import NDArray
 
-from deixis.memory.closing import Closing
-from deixis.memory.errors import ImportFormatError, MemoryWriteError
-from deixis.memory.perceptual.errors import RecordError
+from deixis.memory.errors import ImportFormatError, MemoryWriteError, RecordError
+from deixis.memory.owner import Closing
 from deixis.memory.perceptual.protocol import PerceptualReading, Progress
 from deixis.memory.perceptual.records import CategoryRecord, View, arrays_by_name, arrays_by_use
 from deixis.memory.perceptual.tensors import pack

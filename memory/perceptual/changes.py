@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from deixis.memory.errors import DamagedMemoryError, UnknownViewError
 from deixis.memory.perceptual import keys
 from deixis.memory.perceptual.codec import About, read_about, write_about, write_category, write_view
-from deixis.memory.perceptual.errors import DamagedMemoryError, UnknownViewError
 from deixis.memory.perceptual.handle import Handle
 from deixis.memory.perceptual.reading import Snapshot
 from deixis.memory.perceptual.records import Batch, CategoryRecord, View, check_name

@@ -7,6 +7,7 @@ import struct
 from types import MappingProxyType
 from typing import NamedTuple
 
+from deixis.memory.errors import DamagedMemoryError
 from deixis.memory.perceptual import keys
 from deixis.memory.perceptual.checksum import (
     WIDE,
@@ -15,7 +16,6 @@ from deixis.memory.perceptual.checksum import (
     seal_small,
     seal_wide,
 )
-from deixis.memory.perceptual.errors import DamagedMemoryError
 from deixis.memory.perceptual.records import (
     CategoryRecord,
     JsonObject,

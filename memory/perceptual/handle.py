@@ -16,17 +16,16 @@ from typing import TYPE_CHECKING, Any
 
 import plyvel
 
-from deixis.memory import disk
-from deixis.memory.errors import MemoryFormatError, MemoryWriteError
+from deixis.errors import DeixisError
+from deixis.memory import owner as disk
+from deixis.memory.errors import DamagedMemoryError, MemoryFormatError, MemoryWriteError
 from deixis.memory.folder import one_line
-from deixis.memory.lock import LOCK_FILE, OwnerLock
+from deixis.memory.owner import LOCK_FILE, OwnerLock
 from deixis.memory.perceptual import keys, layout
 from deixis.memory.perceptual.codec import Counts, read_counts, write_counts
-from deixis.memory.perceptual.errors import DamagedMemoryError
 from deixis.memory.perceptual.places import Places, read_places
 from deixis.memory.perceptual.seal import check_seal, write_seal
 from deixis.memory.perceptual.tally import Tally
-from deixis.ontology.errors import DeixisError
 
 if TYPE_CHECKING:
     from deixis.memory.perceptual.changes import Change

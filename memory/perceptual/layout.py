@@ -19,10 +19,9 @@ from pathlib import Path
 
 import plyvel
 
-from deixis.memory import disk
-from deixis.memory.errors import MemoryFormatError
-from deixis.memory.lock import LOCK_FILE
-from deixis.memory.perceptual.errors import DamagedMemoryError
+from deixis.memory import owner as disk
+from deixis.memory.errors import DamagedMemoryError, MemoryFormatError
+from deixis.memory.owner import LOCK_FILE
 
 FOLDER = "perceptual"
 """Where a perceptual memory lies in the folder of a memory."""

@@ -19,7 +19,7 @@ from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import Self
 
-from deixis.memory.closing import Closing
+from deixis.memory.owner import Closing
 from deixis.memory.perceptual.changes import of_batch, of_forgetting, of_moving
 from deixis.memory.perceptual.handle import Handle, acquire, closed, release
 from deixis.memory.perceptual.protocol import Finding, PerceptualStats, Progress, ViewKey

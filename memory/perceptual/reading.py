@@ -6,11 +6,11 @@ from collections.abc import Callable, Iterator
 from functools import partial
 from typing import Any
 
-from deixis.memory.closing import Closing
+from deixis.memory.errors import DamagedMemoryError, UnknownCategoryError, UnknownViewError
 from deixis.memory.folder import size
+from deixis.memory.owner import Closing
 from deixis.memory.perceptual import keys
 from deixis.memory.perceptual.codec import About, Counts, read_about, read_category, read_counts, read_view
-from deixis.memory.perceptual.errors import DamagedMemoryError, UnknownCategoryError, UnknownViewError
 from deixis.memory.perceptual.handle import Handle, closed
 from deixis.memory.perceptual.layout import VERSION
 from deixis.memory.perceptual.places import Places, read_places

@@ -20,8 +20,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.memory.errors import RejectedWriteError
-from deixis.memory.perceptual.errors import RecordError
+from deixis.memory.errors import RecordError, RejectedWriteError
 from deixis.memory.perceptual.tensors import TYPES
 from deixis.memory.perceptual.written import Written, written
 

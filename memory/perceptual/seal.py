@@ -12,8 +12,8 @@ import os
 import zlib
 from pathlib import Path
 
-from deixis.memory.disk import rename
-from deixis.memory.perceptual.errors import DamagedMemoryError
+from deixis.memory.errors import DamagedMemoryError
+from deixis.memory.owner import rename
 from deixis.memory.perceptual.layout import SEAL
 
 _IGNORED = {"LOCK", "LOG", "LOG.old"}

@@ -11,8 +11,8 @@ import contextlib
 import os
 from pathlib import Path
 
+from deixis.memory.errors import DamagedMemoryError
 from deixis.memory.perceptual.codec import Counts, read_counts
-from deixis.memory.perceptual.errors import DamagedMemoryError
 from deixis.memory.perceptual.layout import TALLY
 
 

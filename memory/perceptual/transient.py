@@ -15,8 +15,8 @@ from collections.abc import Iterator
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, replace
 
-from deixis.memory.closing import Closing
-from deixis.memory.perceptual.errors import UnknownViewError
+from deixis.memory.errors import UnknownViewError
+from deixis.memory.owner import Closing
 from deixis.memory.perceptual.handle import closed
 from deixis.memory.perceptual.layout import VERSION
 from deixis.memory.perceptual.protocol import Finding, PerceptualStats, Progress, ViewKey

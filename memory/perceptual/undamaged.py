@@ -11,9 +11,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from functools import cached_property
 
+from deixis.memory.errors import DamagedMemoryError
 from deixis.memory.perceptual import keys
 from deixis.memory.perceptual.codec import read_about
-from deixis.memory.perceptual.errors import DamagedMemoryError
 from deixis.memory.perceptual.level import LevelMemory
 from deixis.memory.perceptual.protocol import ViewKey
 from deixis.memory.perceptual.reading import Snapshot

@@ -5,10 +5,10 @@ from __future__ import annotations
 import contextlib
 from collections.abc import Iterator, Sequence
 
+from deixis.errors import DeixisError
 from deixis.memory.errors import MemoryWriteError
 from deixis.memory.perceptual.protocol import PerceptualMemory
 from deixis.memory.perceptual.records import Batch, CategoryRecord, View
-from deixis.ontology.errors import DeixisError
 
 
 @contextlib.contextmanager

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from deixis.ontology.json_text import parse_json
+from deixis.ontology.strict_json import parse_json
 from deixis.perception.clouds.content import content_of
 from deixis.perception.errors import CloudError
 

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from deixis.perception.detection.circles import Circle
 from deixis.perception.detection.outline import corners_of
-from deixis.perception.oriented_box import OrientedBox, turned_axes
+from deixis.perception.scene import OrientedBox, turned_axes
 
 TRIM = 0.002
 """The share of the points at either end of an axis that are taken for noise."""

@@ -20,8 +20,7 @@ from deixis.perception.detection.settings import DetectionSettings
 from deixis.perception.detection.tables import LEAST_TABLE, ON_TABLE, Table, tables
 from deixis.perception.detection.viewpoint import believed, likely
 from deixis.perception.errors import CloudError
-from deixis.perception.oriented_box import OrientedBox
-from deixis.perception.scene import PerceivedObject, Scene
+from deixis.perception.scene import OrientedBox, PerceivedObject, Scene
 
 NONE = -1
 """The label of a point that belongs to no thing."""

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.reasoning.graded.colours import lab_of_srgb
+from deixis.reasoning.grounding.evidence.colours import lab_of_srgb
 
 SMALLEST, LARGEST = 0.005, 0.018
 """Metres around a point from which its plane is estimated: six times the noise, within these bounds."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from types import MappingProxyType
 
-from deixis.ontology.errors import UnknownTermError
+from deixis.errors import UnknownTermError
 from deixis.perception.features.d2_extents import D2ExtentsDescriber
 from deixis.perception.features.describer import Describer
 from deixis.perception.features.fpfh import FpfhDescriber

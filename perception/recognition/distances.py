@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.perception.recognition.errors import RecognitionError
+from deixis.perception.errors import RecognitionError
 from deixis.perception.recognition.views import PackedViews, checked, squared_lengths
 
 

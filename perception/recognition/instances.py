@@ -9,8 +9,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.perception.errors import RecognitionError
 from deixis.perception.recognition.distances import view_distances
-from deixis.perception.recognition.errors import RecognitionError
 from deixis.perception.recognition.spread import Width
 from deixis.perception.recognition.views import PackedViews
 

@@ -16,9 +16,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.perception.errors import RecognitionError
 from deixis.perception.recognition.calibration import SHIPPED, Calibration, calibrate
 from deixis.perception.recognition.distances import Target
-from deixis.perception.recognition.errors import RecognitionError
 from deixis.perception.recognition.held_out import Progress, hold_out
 from deixis.perception.recognition.index import Nearest, ViewIndex, indexes_of
 from deixis.perception.recognition.instances import InstanceCategory

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.lib import format as npy
 from numpy.typing import NDArray
 
-from deixis.perception.recognition.errors import RecognitionError
+from deixis.perception.errors import RecognitionError
 from deixis.perception.recognition.views import PackedViews, checked, squared_lengths
 
 _NAMES = ("descriptors.npy", "lengths.npy", "squares.npy", "ids.json")

@@ -14,7 +14,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.perception.recognition.errors import RecognitionError
+from deixis.perception.errors import RecognitionError
 
 LARGEST = 1e15
 """Numbers in a descriptor are below this, so that no square overflows in single precision."""

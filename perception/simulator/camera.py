@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from deixis.perception.clouds.intrinsics import Intrinsics
-from deixis.perception.simulator.errors import SimulationError
+from deixis.perception.errors import SimulationError
 from deixis.perception.simulator.laying import LaidTable
 
 HEIGHT = 0.7

@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.clouds.depth import back_projected
+from deixis.perception.errors import SimulationError
 from deixis.perception.simulator.camera import Camera
-from deixis.perception.simulator.errors import SimulationError
 from deixis.perception.simulator.laying import LaidTable
 from deixis.perception.simulator.rays import RayCaster
 

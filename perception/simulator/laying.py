@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 
 from deixis.ontology.tbox import Ontology, default_ontology
 from deixis.perception.clouds.mesh import Mesh
+from deixis.perception.errors import SimulationError
 from deixis.perception.simulator.blocks import CLOTH_CELL
-from deixis.perception.simulator.errors import SimulationError
 from deixis.perception.simulator.resting import PlanBox, draped, lowered, overlap_in_plan, plan_box
 from deixis.perception.simulator.solids import moved
 from deixis.perception.simulator.tableware import Colour, make

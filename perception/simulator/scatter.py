@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.ontology.tbox import Ontology, default_ontology
-from deixis.perception.simulator.errors import SimulationError
+from deixis.perception.errors import SimulationError
 from deixis.perception.simulator.laying import Placement
 from deixis.perception.simulator.tableware import drawn_plan, kind_named
 

@@ -11,8 +11,8 @@ from deixis.ontology.kinds import Kind
 from deixis.ontology.sizes import Extent, Outline, SizeRange
 from deixis.ontology.tbox import Ontology, default_ontology
 from deixis.perception.clouds.mesh import Mesh
+from deixis.perception.errors import SimulationError
 from deixis.perception.simulator import blocks, crockery, cutlery, glassware
-from deixis.perception.simulator.errors import SimulationError
 from deixis.perception.simulator.size import Size, drawn_size
 from deixis.perception.simulator.solids import fitted
 

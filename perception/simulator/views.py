@@ -7,9 +7,9 @@ from numpy.typing import NDArray
 
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.clouds.mesh import Mesh
+from deixis.perception.errors import SimulationError
 from deixis.perception.simulator.camera import Camera, looking_pose
 from deixis.perception.simulator.depth import DepthSensor, look
-from deixis.perception.simulator.errors import SimulationError
 from deixis.perception.simulator.laying import stood
 from deixis.perception.simulator.rays import RayCaster
 

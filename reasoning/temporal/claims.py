@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from deixis.ontology.allen import ALL_ALLEN
-from deixis.reasoning.convex import convex_pieces
+from deixis.reasoning.geometry.allen import convex_pieces
 from deixis.reasoning.temporal.bounds import ZERO, Bounds, bound_text
 from deixis.reasoning.temporal.endpoints import necessary_orders
 from deixis.reasoning.temporal.explanation import Explanation, Rule

@@ -1,7 +1,7 @@
 """Allen's relations as orders of end points, and which of them given distances admit.
 
-A convex set of Allen relations (:mod:`deixis.reasoning.convex`) is a few orders of end points, and each of them a
-difference constraint. Any other set is a union of convex ones.
+A convex set of Allen relations (:mod:`deixis.reasoning.geometry.allen`) is a few orders of end points, and each of them
+a difference constraint. Any other set is a union of convex ones.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.ontology.allen import Allen
-from deixis.reasoning.convex import HIGH_A, HIGH_B, LOW_A, LOW_B, convex_hull
+from deixis.reasoning.geometry.allen import HIGH_A, HIGH_B, LOW_A, LOW_B, convex_hull
 from deixis.reasoning.temporal.bounds import UNBOUNDED, ZERO, Bounds, add_arrays
 
 START_A, FINISH_A, START_B, FINISH_B = LOW_A, HIGH_A, LOW_B, HIGH_B

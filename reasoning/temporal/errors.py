@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from difflib import get_close_matches
 
-from deixis.ontology.errors import DeixisError, UnknownTermError
+from deixis.errors import DeixisError, UnknownTermError
 from deixis.reasoning.errors import InconsistencyError
 from deixis.reasoning.temporal.explanation import Explanation
 

@@ -9,7 +9,7 @@ from typing import Protocol
 import numpy as np
 
 from deixis.ontology.allen import ALL_ALLEN, Allen, members
-from deixis.reasoning.convex import convex_hull
+from deixis.reasoning.geometry.allen import convex_hull
 from deixis.reasoning.temporal.bounds import bound_text
 from deixis.reasoning.temporal.claims import Disjunction, allen_constraints, ends
 from deixis.reasoning.temporal.endpoints import converse_masks, masks_of_pairs, necessary_orders

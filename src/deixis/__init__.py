@@ -22,15 +22,15 @@ from typing import TYPE_CHECKING, Any
 from deixis.version import VERSION
 
 if TYPE_CHECKING:
-    from deixis.asking import ask
+    from deixis.errors import DeixisError
     from deixis.grammar.format import format_script
-    from deixis.imagination import imagine
-    from deixis.ontology.errors import DeixisError
-    from deixis.perceiving import perceive
-    from deixis.perception.scene_file import read_scene, write_scene
-    from deixis.retrieving import retrieve
+    from deixis.perception.formats.scene_json import read_scene, write_scene
     from deixis.session import Session, ground, infer, read_script
-    from deixis.simulation import simulate
+    from deixis.workflows.ask import ask
+    from deixis.workflows.imagine import imagine
+    from deixis.workflows.perceive import perceive
+    from deixis.workflows.retrieve import retrieve
+    from deixis.workflows.simulate import simulate
 
 __version__ = VERSION
 __all__ = [
@@ -50,19 +50,19 @@ __all__ = [
 ]
 
 _HOMES = {
-    "DeixisError": "deixis.ontology.errors",
+    "DeixisError": "deixis.errors",
     "Session": "deixis.session",
-    "ask": "deixis.asking",
+    "ask": "deixis.workflows.ask",
     "format_script": "deixis.grammar.format",
     "ground": "deixis.session",
-    "imagine": "deixis.imagination",
+    "imagine": "deixis.workflows.imagine",
     "infer": "deixis.session",
-    "perceive": "deixis.perceiving",
-    "read_scene": "deixis.perception.scene_file",
+    "perceive": "deixis.workflows.perceive",
+    "read_scene": "deixis.perception.formats.scene_json",
     "read_script": "deixis.session",
-    "retrieve": "deixis.retrieving",
-    "simulate": "deixis.simulation",
-    "write_scene": "deixis.perception.scene_file",
+    "retrieve": "deixis.workflows.retrieve",
+    "simulate": "deixis.workflows.simulate",
+    "write_scene": "deixis.perception.formats.scene_json",
 }
 
 

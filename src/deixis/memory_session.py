@@ -9,18 +9,18 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Self
 
 from deixis.grammar.script import Script
-from deixis.memory.closing import Closing
+from deixis.memory.owner import Closing
 from deixis.ontology.tbox import Ontology, default_ontology
 from deixis.perception.scene import Scene
 from deixis.reasoning.errors import NothingFoundError
-from deixis.reasoning.meaning import SHIPPED, Meaning
+from deixis.reasoning.grounding.evidence.meaning import SHIPPED, Meaning
 
 if TYPE_CHECKING:
-    from deixis.learned_words import LearnedWords
-    from deixis.memory.results import QueryResult
-    from deixis.memory.semantic import SemanticMemory
-    from deixis.ontology.concepts import LayoutConcept
-    from deixis.remembered import Recollection
+    from deixis.learning.recollection import Recollection
+    from deixis.learning.words import LearnedWords
+    from deixis.memory.semantic.queries.results import QueryResult
+    from deixis.memory.semantic.store import SemanticMemory
+    from deixis.ontology.lessons.types import LayoutConcept
 
 
 def default_memory() -> Path:
@@ -66,7 +66,7 @@ class MemorySession(Closing):
 
     def memory(self, create: bool = False) -> SemanticMemory:
         """The open memory; raises DeixisError where there is none and ``create`` is not set."""
-        from deixis.memory.semantic import SemanticMemory
+        from deixis.memory.semantic.store import SemanticMemory
 
         self._require_open()
         if self._memory is None:
@@ -90,10 +90,10 @@ class MemorySession(Closing):
         return self._meaning
 
     def _in_force(self) -> Meaning:
-        from deixis.memory.graphs import ModelSet
-        from deixis.ontology.relation_model_triples import models_from_triples
-        from deixis.ontology.size_model_triples import sizes_from_triples
-        from deixis.reasoning.graded.shipped import shipped_models
+        from deixis.memory.semantic.rdf.graphs import ModelSet
+        from deixis.ontology.models.relation_triples import models_from_triples
+        from deixis.ontology.models.sizes import sizes_from_triples
+        from deixis.reasoning.grounding.evidence.meaning import shipped_models
 
         words = models_from_triples(self.memory().models(ModelSet.WORDS))
         sizes = sizes_from_triples(self.memory().models(ModelSet.SIZES))
@@ -101,8 +101,8 @@ class MemorySession(Closing):
 
     def recollection(self) -> Recollection:
         """All lessons of the memory, ready to be learned from; none where there is no memory."""
-        from deixis.keeping import remembered
-        from deixis.remembered import Recollection
+        from deixis.learning.recollection import Recollection
+        from deixis.learning.update import remembered
 
         return remembered(self.memory(), self.ontology) if self.remembers() else Recollection(())
 
@@ -113,8 +113,8 @@ class MemorySession(Closing):
         NothingFoundError, having changed nothing, where there is nothing to learn from; SettingError for a strength
         that is not above 0.
         """
-        from deixis.keeping import keep_words
-        from deixis.learned_words import new_lessons
+        from deixis.learning.update import keep_words
+        from deixis.learning.words import new_lessons
 
         ids = self.memory().lessons() if self.remembers() else ()
         lessons, left_out = new_lessons(examples, self.recollection(), ids)
@@ -127,7 +127,7 @@ class MemorySession(Closing):
 
     def forget_relations(self) -> None:
         """Takes the learned models of relation words away: the shipped ones are in force again. Lessons stay."""
-        from deixis.memory.graphs import ModelSet
+        from deixis.memory.semantic.rdf.graphs import ModelSet
 
         self.memory().keep_models({ModelSet.WORDS: []})
         self._meaning = None
@@ -137,7 +137,7 @@ class MemorySession(Closing):
 
         What it kept of how things look stays.
         """
-        from deixis.keeping import forget
+        from deixis.learning.update import forget
 
         forget(self.memory(), self.ontology, lesson)
         self._meaning = None
@@ -147,7 +147,7 @@ class MemorySession(Closing):
 
         Raises InconsistencyError, having changed nothing, where what is there and what comes contradict each other.
         """
-        from deixis.keeping import take_in
+        from deixis.learning.update import take_in
 
         self._require_open()
         self._let_go()
@@ -155,20 +155,20 @@ class MemorySession(Closing):
 
     def layouts(self) -> tuple[LayoutConcept, ...]:
         """Every learned layout."""
-        from deixis.memory.graphs import GraphName
-        from deixis.ontology.lesson_reading import layouts
+        from deixis.memory.semantic.rdf.graphs import GraphName
+        from deixis.ontology.lessons.read import layouts
 
         return layouts(self.memory().triples(GraphName.LEARNED), self.ontology.relations)
 
     def layout(self, name: str) -> LayoutConcept:
         """The layout of that name, learned last, or of the lesson with that id; raises UnknownTermError for none."""
-        from deixis.ontology.lesson_reading import layout_named
+        from deixis.ontology.lessons.read import layout_named
 
         return layout_named(self.layouts(), name, self.memory().lessons())
 
     def show(self, name: str) -> str:
         """A learned layout as a script again."""
-        from deixis.grammar.rebuild import layout_script
+        from deixis.grammar.format import layout_script
 
         return layout_script(self.layout(name), self.ontology)
 

@@ -15,15 +15,15 @@ from deixis.grammar.names import key_of
 from deixis.memory_session import MemorySession
 from deixis.ontology.kinds import plain_name
 from deixis.perception.errors import SceneError
+from deixis.perception.formats.scene_json import read_scene
 from deixis.perception.scene import PerceivedObject, Scene
-from deixis.perception.scene_file import read_scene
 
 if TYPE_CHECKING:
     from deixis.memory.perceptual.level import LevelMemory
     from deixis.memory.perceptual.protocol import Progress
     from deixis.memory.perceptual.records import View
-    from deixis.reasoning.answer import Match
-    from deixis.recognising import Recognised, StandingWord, Taught
+    from deixis.reasoning.grounding.answer import Match
+    from deixis.workflows.recognise import Recognised, StandingWord, Taught
 
 Done = TypeVar("Done")
 
@@ -45,13 +45,13 @@ class PerceptualSession(MemorySession):
 
     def has_views(self) -> bool:
         """Whether anything was ever taught."""
-        from deixis.memory.perceptual.whole import has_views
+        from deixis.memory.perceptual.in_folder import has_views
 
         return self._views is not None or has_views(self.path)
 
     def views(self, create: bool = False) -> LevelMemory:
         """The open perceptual memory; raises DeixisError where there is none and ``create`` is not set."""
-        from deixis.memory.perceptual.whole import open_in
+        from deixis.memory.perceptual.in_folder import open_in
 
         self._require_open()
         if self._views is None:
@@ -80,14 +80,14 @@ class PerceptualSession(MemorySession):
 
     def keep_views(self, views: Sequence[View]) -> tuple[Taught, ...]:
         """Keeps views, all or none. A damaged one in the way teaches nothing, and is mended where it is kept again."""
-        from deixis.recognising import keep_views
+        from deixis.workflows.recognise import keep_views
 
         memory = self.views(create=True)
         return self._despite_damage(memory, lambda readable: keep_views(readable, views))
 
     def but_for_taught(self, views: Sequence[View]) -> tuple[list[View], tuple[StandingWord, ...]]:
         """The views of a grounding that no teacher has named, and what is named otherwise."""
-        from deixis.recognising import StandingWord, taught_by_hand
+        from deixis.workflows.recognise import StandingWord, taught_by_hand
 
         named = taught_by_hand(self.views(), views) if self.has_views() else {}
         standing = []
@@ -124,9 +124,9 @@ class PerceptualSession(MemorySession):
         ``progress`` is told of reading what was taught, and of the calibration, which take seconds after many views;
         ``left_out``, in one line, of views that are damaged and teach nothing.
         """
-        from deixis.perceiving import cloud_of
         from deixis.perception.recognition.recogniser import Recogniser
-        from deixis.recognising import UPRIGHT, Known, recognise, recogniser_of
+        from deixis.workflows.perceive import cloud_of
+        from deixis.workflows.recognise import UPRIGHT, Known, recognise, recogniser_of
 
         scene = scene if isinstance(scene, Scene) else read_scene(scene)
         clouds = [cloud_of(scene, thing) if thing.cloud is not None else None for thing in scene.objects]
@@ -142,8 +142,8 @@ class PerceptualSession(MemorySession):
         self, memory: LevelMemory, work: Callable[[LevelMemory], Done], left_out: Callable[[str], None] | None = None
     ) -> Done:
         """What is done with all views, or, where some are damaged, with the others."""
-        from deixis.memory.perceptual.errors import DamagedMemoryError
-        from deixis.memory.perceptual.whole import open_undamaged
+        from deixis.memory.errors import DamagedMemoryError
+        from deixis.memory.perceptual.in_folder import open_undamaged
 
         try:
             return work(memory)
@@ -171,7 +171,7 @@ def views_of_matches(scene: Scene, matches: Iterable[Match]) -> list[View]:
 
     Raises SceneError where two things have the same points.
     """
-    from deixis.recognising import GROUNDING
+    from deixis.workflows.recognise import GROUNDING
 
     seen = [match for match in matches if match.decided and scene[match.perceived].cloud is not None]
     views = [_view(scene, match.perceived, plain_name(match.object), GROUNDING) for match in seen]
@@ -186,8 +186,8 @@ def views_of_matches(scene: Scene, matches: Iterable[Match]) -> list[View]:
 
 
 def _view(scene: Scene, object: str, category: str, teacher: str) -> View:
-    from deixis.perceiving import cloud_of
-    from deixis.recognising import view_of
+    from deixis.workflows.perceive import cloud_of
+    from deixis.workflows.recognise import view_of
 
     file, boxes = os.path.abspath(scene.file), hashlib.sha256(scene.boxes.tobytes()).hexdigest()[:16]
     metadata = {"scene": file, "boxes": boxes, "object": object, "teacher": teacher}

@@ -12,28 +12,28 @@ from typing import TYPE_CHECKING, Any
 from deixis.grammar.parser import parse_script
 from deixis.grammar.parser import read_script as read_script_file
 from deixis.grammar.script import Script
-from deixis.inference import Inference, inference_of
+from deixis.kernels import ready_to_ground, ready_to_infer
+from deixis.learning.scene_evidence import conflict_notes, evidence_of, graph_evidence, scene_labels
 from deixis.ontology.tbox import Ontology
+from deixis.perception.formats.scene_json import read_scene
 from deixis.perception.scene import Scene
-from deixis.perception.scene_file import read_scene
 from deixis.perceptual_session import PerceptualSession, views_of_matches
-from deixis.reasoning.answer import Grounding
-from deixis.reasoning.conflict import find_conflict
-from deixis.reasoning.engines import Select, engine_named
+from deixis.reasoning.entailment.conflict import find_conflict
+from deixis.reasoning.entailment.implications import TIME_LIMIT, Implications
 from deixis.reasoning.errors import InconsistencyError, NothingFoundError, SettingError, require_time_limit
-from deixis.reasoning.grounding import DEFAULT_TIME_LIMIT
-from deixis.reasoning.grounding import ground as ground_evidence
-from deixis.reasoning.implications import TIME_LIMIT, Implications
-from deixis.reasoning.meaning import SHIPPED, Meaning
-from deixis.scene_evidence import conflict_notes, evidence_of, graph_evidence, scene_labels
+from deixis.reasoning.grounding.answer import Grounding
+from deixis.reasoning.grounding.engines import Select, engine_named
+from deixis.reasoning.grounding.evidence.meaning import SHIPPED, Meaning
+from deixis.reasoning.grounding.ground import DEFAULT_TIME_LIMIT
+from deixis.reasoning.grounding.ground import ground as ground_evidence
+from deixis.reasoning.grounding.options import ViewpointName
 from deixis.version import VERSION
-from deixis.viewpoint_name import ViewpointName
-from deixis.warm import ready_to_ground, ready_to_infer
+from deixis.workflows.infer import Inference, inference_of
 
 if TYPE_CHECKING:
-    from deixis.ontology.concepts import LayoutConcept, Lesson
-    from deixis.reasoning.checking import TableCheck
-    from deixis.recognising import StandingWord, Taught
+    from deixis.ontology.lessons.types import LayoutConcept, Lesson
+    from deixis.reasoning.comparison.checking import TableCheck
+    from deixis.workflows.recognise import StandingWord, Taught
 
 
 def read_script(path: str | Path | None = None, *, text: str | None = None, ontology: Ontology | None = None) -> Script:
@@ -72,7 +72,7 @@ def ground(
     ``engine`` is ``exact``, ``scalable``, ``similarity`` (the paper's), ``blondel`` or ``heymans-singh``; ``select``
     says what chooses among sub-graphs under the paper's: ``facts``, or ``similarity`` alone as in the paper.
     ``meaning`` says how words and sizes are taken; ``viewpoint`` is that of the scene as ``stated``, or recovered: by
-    ``quarter`` turns, or ``unknown``, from any side (:mod:`deixis.sides`). The answer comes within about
+    ``quarter`` turns, or ``unknown``, from any side (:mod:`deixis.workflows.viewpoint`). The answer comes within about
     ``time_limit`` seconds, proved or not, and says which. Raises DeixisError for bad input.
     """
     script = _script(script)
@@ -85,7 +85,7 @@ def ground(
     ready_to_ground(engine)
     chosen = engine_named(engine, Select(select))
     if viewpoint != ViewpointName.STATED:
-        from deixis.sides import ground_from_anywhere
+        from deixis.workflows.viewpoint import ground_from_anywhere
 
         return ground_from_anywhere(script, scene, chosen, meaning, viewpoint == ViewpointName.UNKNOWN, time_limit)
     notes = _viewpoint_notes(script.viewpoint, scene) + conflict_notes(script.graph())
@@ -165,9 +165,9 @@ class Session(PerceptualSession):
         for :meth:`learn_relations`. Sizes are learned at once. What a teacher named stays of that name. Raises
         DeixisError, having changed nothing, where the script contradicts itself or what was learned before.
         """
-        from deixis.keeping import keep
-        from deixis.learning import Occasion, layout_name, lesson_of
-        from deixis.ontology.concepts import next_lesson_id
+        from deixis.learning.lesson import Occasion, layout_name, lesson_of
+        from deixis.learning.update import keep
+        from deixis.ontology.lessons.types import next_lesson_id
 
         script = self._script(script)
         scene = scene if isinstance(scene, Scene) else read_scene(scene)
@@ -195,9 +195,9 @@ class Session(PerceptualSession):
         time_limit: float = DEFAULT_TIME_LIMIT,
     ) -> Checked:
         """What is wrong with a table: ``layout`` is a learned layout's name, or a script or its file."""
-        from deixis.learning import layout_concept
-        from deixis.reasoning.impostors import checked_table
-        from deixis.shacl_report import shacl_report
+        from deixis.learning.lesson import layout_concept
+        from deixis.reasoning.comparison.checking import checked_table
+        from deixis.workflows.shacl_report import shacl_report
 
         concept = (
             layout_concept(self._script(layout), "script")

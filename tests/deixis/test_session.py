@@ -16,9 +16,9 @@ from deixis.examples_data import example
 from deixis.memory.errors import MemoryFormatError
 from deixis.perception.errors import SceneError
 from deixis.perception.scene import Scene
-from deixis.reasoning.answer import Grounding
 from deixis.reasoning.errors import SettingError
-from deixis.show_ground import grounding_lines
+from deixis.reasoning.grounding.answer import Grounding
+from deixis.report.ground import grounding_lines
 
 SCRIPT1 = deixis.read_script(example("script1.layout"))
 SCENE = deixis.read_scene(example("place_setting.scene.json"))

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
+from deixis.errors import DeixisError
 from deixis.grammar.errors import ScriptError, ScriptFileError
 from deixis.grammar.format import format_script
 from deixis.grammar.parser import read_script
-from deixis.ontology.errors import DeixisError
 
 
 def write(folder: Path, **texts: str) -> Path:

@@ -6,11 +6,11 @@ import pytest
 from hypothesis import given, settings
 from random_scripts import scripts
 
+from deixis.grammar.format import layout_script
 from deixis.grammar.parser import parse_script
-from deixis.grammar.rebuild import layout_script
 from deixis.grammar.script import Script
-from deixis.learning import layout_concept
-from deixis.ontology.lesson_reading import layouts
+from deixis.learning.lesson import layout_concept
+from deixis.ontology.lessons.read import layouts
 from deixis.ontology.tbox import default_ontology
 
 

@@ -9,10 +9,10 @@ from pathlib import Path
 import pyoxigraph as ox
 import pytest
 
-from deixis.memory.exchange import export_memory
-from deixis.memory.graphs import GraphName
-from deixis.memory.prefixes import PREFIXES
-from deixis.memory.semantic import SemanticMemory
+from deixis.memory.semantic.exchange import export_memory
+from deixis.memory.semantic.rdf.files import PREFIXES
+from deixis.memory.semantic.rdf.graphs import GraphName
+from deixis.memory.semantic.store import SemanticMemory
 
 Contributions = dict[GraphName, list[ox.Triple]]
 Read = Callable[[str], list[ox.Triple]]

@@ -11,7 +11,7 @@ from rdflib.namespace import GEO
 
 from deixis.ontology.tbox import TBOX_FILES, tbox_turtle
 from deixis.ontology.vocabulary import BASE, ONTOLOGY_IRI
-from deixis.reasoning.description_logic import classify
+from deixis.reasoning.description_logic.reasoners import classify
 
 FOLDER = TBOX_FILES[0].parent / "alignments"
 FILES = {path.stem: path for path in sorted(FOLDER.glob("*.ttl"))}

@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 from rdflib import RDF, RDFS, SKOS, Graph, URIRef
 
+from deixis.errors import OntologyError
 from deixis.ontology.document import term_document
-from deixis.ontology.errors import OntologyError
 from deixis.ontology.tbox import default_ontology, tbox_turtle
 from deixis.ontology.vocabulary import BASE, DX
 

@@ -16,10 +16,9 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from rdflib import RDF, RDFS, Graph, Literal, URIRef
 
-from deixis.ontology.errors import GraphError
+from deixis.errors import GraphError
 from deixis.ontology.export import fact_to_dict, graph_from_dict, graph_to_dict, graph_to_dot, graph_to_turtle
-from deixis.ontology.graph import Fact, RelationGraph
-from deixis.ontology.source import Source
+from deixis.ontology.graph import Fact, RelationGraph, Source
 from deixis.ontology.tbox import default_ontology
 from deixis.ontology.vocabulary import DX
 

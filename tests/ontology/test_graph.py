@@ -10,9 +10,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from deixis.ontology.errors import DeixisError, GraphError
-from deixis.ontology.graph import Fact, RelationGraph
-from deixis.ontology.source import Source
+from deixis.errors import DeixisError, GraphError
+from deixis.ontology.graph import Fact, RelationGraph, Source
 from deixis.ontology.tbox import default_ontology
 
 R = default_ontology().relations

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from deixis.ontology.errors import OntologyError
+from deixis.errors import OntologyError
 from deixis.ontology.kinds import Kind
 from deixis.ontology.sizes import Extent, Outline, Sizes
 from deixis.ontology.tbox import default_ontology, load_ontology

@@ -14,8 +14,8 @@ import pytest
 import rdflib
 from rdflib import DCTERMS, OWL, PROV, RDF, RDFS, SKOS, Graph, URIRef
 
+from deixis.errors import DeixisError, OntologyError
 from deixis.ontology import vocabulary
-from deixis.ontology.errors import DeixisError, OntologyError
 from deixis.ontology.tbox import default_ontology, load_ontology, tbox_turtle
 from deixis.ontology.vocabulary import BASE, DX, ONTOLOGY_IRI
 

@@ -6,7 +6,7 @@ from collections import Counter, deque
 from collections.abc import Sequence
 from math import prod
 
-from deixis.perception.recognition.errors import RecognitionError
+from deixis.perception.errors import RecognitionError
 from deixis.perception.recognition.learners.learner import Learner, Prediction
 from deixis.perception.recognition.learners.view_features import ViewFeatures
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.perception.recognition.errors import RecognitionError
+from deixis.perception.errors import RecognitionError
 from deixis.perception.recognition.learners.codebook import Codebook
 from deixis.perception.recognition.learners.learner import Prediction
 from deixis.perception.recognition.learners.taught_views import TaughtViews

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.perception.recognition.errors import RecognitionError
+from deixis.perception.errors import RecognitionError
 from deixis.perception.recognition.learners.learner import Prediction
 from deixis.perception.recognition.learners.taught_views import TaughtViews
 from deixis.perception.recognition.learners.view_features import ViewFeatures, pooled

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.perception.recognition.errors import RecognitionError
+from deixis.perception.errors import RecognitionError
 from deixis.perception.recognition.learners.learner import Prediction
 from deixis.perception.recognition.learners.one_class import SHAPES
 from deixis.perception.recognition.learners.taught_views import require_free, require_known, require_two

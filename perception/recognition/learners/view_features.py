@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.perception.clouds.cloud import PointCloud
+from deixis.perception.errors import RecognitionError
 from deixis.perception.features.describer import Describer
-from deixis.perception.recognition.errors import RecognitionError
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,14 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.experiments.photographs import Photograph
-from deixis.ontology.size_model import SizeModel
-from deixis.reasoning.graded.fitting import FitSettings, learn_relations
-from deixis.reasoning.graded.lessons import said_pairs
-from deixis.reasoning.graded.shipped import shipped_models
-from deixis.reasoning.graded.size_learning import learn_sizes
-from deixis.reasoning.graded.unary import log_sizes
-from deixis.reasoning.labels import classes
-from deixis.reasoning.meaning import Meaning
+from deixis.ontology.models.sizes import SizeModel
+from deixis.reasoning.grounding.evidence.labels import classes
+from deixis.reasoning.grounding.evidence.meaning import Meaning, shipped_models
+from deixis.reasoning.grounding.evidence.unary import log_sizes
+from deixis.reasoning.grounding.fitting.fit import FitSettings, learn_relations
+from deixis.reasoning.grounding.fitting.likelihood import said_pairs
+from deixis.reasoning.grounding.fitting.sizes import learn_sizes
 
 FIT = FitSettings(iterations=60)
 

@@ -22,17 +22,39 @@ from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 
 from deixis.examples_data import example
+from deixis.experiments.place_settings import formal_setting
 from deixis.ontology.graph import PaperGraph, RelationGraph
 from deixis.ontology.tbox import default_ontology
+from deixis.perception.formats.scene_json import read_scene
 from deixis.perception.scene import Scene
-from deixis.perception.scene_file import read_scene
-from deixis.perception.settings import formal_setting
-from deixis.reasoning.engines import described
-from deixis.reasoning.evidence import Evidence, no_unary_evidence
-from deixis.reasoning.matching.problem import UNMATCHED
-from deixis.reasoning.similarity import node_similarity
-from deixis.reasoning.symmetry import interchangeable
+from deixis.plots.figure import INK, PAPER, QUIET, new_figure, save
+from deixis.reasoning.grounding.engines import described
+from deixis.reasoning.grounding.evidence.evidence import Evidence, no_unary_evidence
+from deixis.reasoning.grounding.matching.problem import UNMATCHED
+from deixis.reasoning.grounding.similarity import node_similarity
+from deixis.reasoning.grounding.symmetry import interchangeable
 from deixis.session import read_script
+
+
+def plot_points(points: Points, path: Path, title: str, rho: float) -> None:
+    """Graph similarity against the share named right, a point a sub-graph, coloured by the facts it satisfies."""
+    figure, axes = new_figure(6.4, 4.4)
+    drawn = axes.scatter(
+        points.similarity, points.right, c=points.facts, cmap="viridis", s=18, alpha=0.75, linewidths=0
+    )
+    bar = figure.colorbar(drawn, ax=axes, pad=0.02)
+    bar.set_label("satisfied facts (sum of degrees)", color=INK, fontsize=9)
+    bar.outline.set_edgecolor(QUIET)
+    axes.set_xlabel("overall graph similarity", color=INK, fontsize=9)
+    axes.set_ylabel("share of objects named right\n(mean over node orders)", color=INK, fontsize=9)
+    axes.set_title(f"{title}, Spearman's ρ = {rho:.2f}", color=INK, fontsize=11, loc="left")
+    axes.set_ylim(-0.03, 1.03)
+    axes.set_facecolor(PAPER)
+    axes.grid(color=QUIET, alpha=0.25, linewidth=0.6)
+    for side in axes.spines.values():
+        side.set_color(QUIET)
+    save(figure, path)
+
 
 SIZES = range(4, 13)
 PER_SIZE = 60
@@ -129,7 +151,6 @@ def _panel_lines(name: str, panel: Panel) -> list[str]:
 
 def run(out: Path, variants: int = 50, orders: int = 200, seed: int = 1) -> Figure6:
     """Runs both panels and writes ``figure6a.png`` and ``figure6b.png`` to ``out``."""
-    from deixis.experiments.figure6_plot import plot_points
 
     annotated = read_scene(example("place_setting.labelled.scene.json"))
     scenes = [formal_setting(seed * 1000 + i, DISPLACEMENT) for i in range(variants)]

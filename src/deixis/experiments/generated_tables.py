@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 from deixis.ontology.graph import Fact, RelationGraph
 from deixis.ontology.relation import Reading, Relations
 from deixis.ontology.tbox import default_ontology
-from deixis.reasoning.matching.problem import UNMATCHED, Problem
-from deixis.reasoning.rectangle import box_relations, perceived_graph
+from deixis.reasoning.geometry.rectangle import box_relations, perceived_graph
+from deixis.reasoning.grounding.matching.problem import UNMATCHED, Problem
 
 # A formal setting: centre (x, y) from the middle of the dinner plate, then width and depth, metres. The napkin lies on
 # the dinner plate, the butter knife on the bread plate.

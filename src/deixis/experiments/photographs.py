@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.ontology.errors import DeixisError
+from deixis.errors import DeixisError
 from deixis.ontology.graph import Fact, RelationGraph
 from deixis.ontology.tbox import Ontology
 

@@ -14,11 +14,11 @@ from typing import Any
 import plyvel
 import pytest
 
+from deixis.errors import DeixisError
+from deixis.memory.errors import DamagedMemoryError
 from deixis.memory.perceptual import keys
-from deixis.memory.perceptual.errors import DamagedMemoryError
 from deixis.memory.perceptual.level import LevelMemory
 from deixis.memory.perceptual.records import Batch, View
-from deixis.ontology.errors import DeixisError
 
 Content = Callable[..., Any]
 Said = Callable[..., dict[str, Any]]

@@ -15,11 +15,11 @@ from safetensors.numpy import load, save
 
 from deixis.memory.errors import ImportFormatError, MemoryFormatError, MemoryWriteError, RejectedWriteError
 from deixis.memory.perceptual.exchange import Imported, export_views, import_views
+from deixis.memory.perceptual.in_folder import export_all, import_all, is_archive, open_in, stats_of, verify_views
 from deixis.memory.perceptual.level import LevelMemory
 from deixis.memory.perceptual.protocol import PerceptualMemory
 from deixis.memory.perceptual.records import Batch, CategoryRecord, View
 from deixis.memory.perceptual.transient import TransientMemory
-from deixis.memory.perceptual.whole import export_all, import_all, is_archive, open_in, stats_of, verify_views
 
 Content = Callable[..., Any]
 MakeView = Callable[..., View]

@@ -10,12 +10,17 @@ from typing import Any
 import numpy as np
 import pytest
 
-from deixis.memory.errors import MemoryFormatError, RejectedWriteError
-from deixis.memory.perceptual.errors import RecordError, UnknownCategoryError, UnknownViewError
+from deixis.errors import DeixisError
+from deixis.memory.errors import (
+    MemoryFormatError,
+    RecordError,
+    RejectedWriteError,
+    UnknownCategoryError,
+    UnknownViewError,
+)
 from deixis.memory.perceptual.level import LevelMemory
 from deixis.memory.perceptual.protocol import PerceptualMemory
 from deixis.memory.perceptual.records import Batch, CategoryRecord, View
-from deixis.ontology.errors import DeixisError
 
 MakeView = Callable[..., View]
 MakeRecord = Callable[..., CategoryRecord]

@@ -14,8 +14,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, invariant, precondition, rule
 
-from deixis.memory.errors import RejectedWriteError
-from deixis.memory.perceptual.errors import UnknownCategoryError, UnknownViewError
+from deixis.memory.errors import RejectedWriteError, UnknownCategoryError, UnknownViewError
 from deixis.memory.perceptual.exchange import export_views, import_views
 from deixis.memory.perceptual.level import LevelMemory
 from deixis.memory.perceptual.protocol import PerceptualMemory

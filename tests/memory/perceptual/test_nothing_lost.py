@@ -148,7 +148,7 @@ def test_a_read_only_folder_is_told(kept: Path, monkeypatch: pytest.MonkeyPatch)
         raise OSError(errno.EROFS, os.strerror(errno.EROFS))
 
     with monkeypatch.context() as patched:
-        patched.setattr("deixis.memory.lock.os.open", read_only)
+        patched.setattr("deixis.memory.owner.os.open", read_only)
         with pytest.raises(MemoryWriteError, match="cannot be opened for writing: Read-only file system"):
             LevelMemory.open(kept)
     LevelMemory.open(kept).close()

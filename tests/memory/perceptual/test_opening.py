@@ -14,11 +14,10 @@ from typing import Any
 import plyvel
 import pytest
 
-from deixis.memory import disk
-from deixis.memory.errors import MemoryBusyError, MemoryFormatError, MemoryWriteError
-from deixis.memory.lock import OwnerLock
+from deixis.memory import owner as disk
+from deixis.memory.errors import DamagedMemoryError, MemoryBusyError, MemoryFormatError, MemoryWriteError
+from deixis.memory.owner import OwnerLock
 from deixis.memory.perceptual import keys, layout
-from deixis.memory.perceptual.errors import DamagedMemoryError
 from deixis.memory.perceptual.level import LevelMemory
 from deixis.memory.perceptual.records import Batch, View
 
@@ -184,7 +183,7 @@ def test_of_two_that_find_no_memory_the_one_that_is_too_late_leaves_the_others_a
         raise MemoryBusyError("in use by process 1")
 
     with monkeypatch.context() as patched:
-        patched.setattr("deixis.memory.lock.OwnerLock.acquire", too_late)
+        patched.setattr("deixis.memory.owner.OwnerLock.acquire", too_late)
         with pytest.raises(MemoryBusyError):
             LevelMemory.open(place, create=True)
     assert content_of(place, content) == before
@@ -205,7 +204,7 @@ def test_an_opening_that_fails_takes_away_what_it_made_and_nothing_else(
         raise OSError("no space left on device")
 
     with monkeypatch.context() as patched:
-        patched.setattr("deixis.memory.lock.OwnerLock.acquire", after_another)
+        patched.setattr("deixis.memory.owner.OwnerLock.acquire", after_another)
         patched.setattr("deixis.memory.perceptual.handle._counted", full)
         with pytest.raises(MemoryWriteError):
             LevelMemory.open(place, create=True)

@@ -9,8 +9,8 @@ from pathlib import Path
 import plyvel
 import pytest
 
+from deixis.memory.errors import DamagedMemoryError, UnknownViewError
 from deixis.memory.perceptual import keys
-from deixis.memory.perceptual.errors import DamagedMemoryError, UnknownViewError
 from deixis.memory.perceptual.level import LevelMemory
 from deixis.memory.perceptual.records import Batch, View
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from deixis.memory.perceptual.errors import RecordError
+from deixis.memory.errors import RecordError
 from deixis.memory.perceptual.records import CategoryRecord, View
 
 NOW = datetime(2026, 5, 1, tzinfo=UTC)

@@ -10,6 +10,7 @@ import numpy as np
 import plyvel
 import pytest
 
+from deixis.errors import DeixisError
 from deixis.memory.errors import MemoryWriteError
 from deixis.memory.perceptual import keys
 from deixis.memory.perceptual.level import LevelMemory
@@ -17,7 +18,6 @@ from deixis.memory.perceptual.protocol import PerceptualMemory
 from deixis.memory.perceptual.records import Batch, CategoryRecord, View
 from deixis.memory.perceptual.undamaged import UndamagedMemory
 from deixis.memory.perceptual.undoing import restored_on_failure
-from deixis.ontology.errors import DeixisError
 
 Content = Callable[..., Any]
 Make = Callable[..., View]

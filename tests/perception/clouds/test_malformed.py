@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from deixis.ontology.errors import DeixisError
+from deixis.errors import DeixisError
 from deixis.perception.clouds.cloud_file import read_cloud
 from deixis.perception.clouds.intrinsics import Intrinsics
 from deixis.perception.clouds.mesh_file import read_mesh

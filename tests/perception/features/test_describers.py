@@ -11,7 +11,7 @@ import pytest
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from deixis.ontology.errors import UnknownTermError
+from deixis.errors import UnknownTermError
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.features.d2_extents import D2ExtentsDescriber
 from deixis.perception.features.describer import Describer

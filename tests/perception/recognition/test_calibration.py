@@ -10,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from deixis.perception.errors import RecognitionError
 from deixis.perception.recognition.calibration import (
     LEAST,
     SHIPPED,
@@ -20,7 +21,6 @@ from deixis.perception.recognition.calibration import (
     expected_calibration_error,
 )
 from deixis.perception.recognition.distances import category_distance
-from deixis.perception.recognition.errors import RecognitionError
 from deixis.perception.recognition.held_out import HeldOut, hold_out
 from deixis.perception.recognition.instances import InstanceCategory
 from deixis.perception.recognition.inverted import Effort

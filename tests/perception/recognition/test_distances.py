@@ -10,8 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from deixis.perception.errors import RecognitionError
 from deixis.perception.recognition.distances import category_distance, view_distance, view_distances
-from deixis.perception.recognition.errors import RecognitionError
 from deixis.perception.recognition.views import PackedViews
 
 Descriptors = NDArray[np.float32]

@@ -11,8 +11,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from deixis.perception.errors import RecognitionError
 from deixis.perception.recognition.distances import Target, category_distance, view_distances
-from deixis.perception.recognition.errors import RecognitionError
 from deixis.perception.recognition.index import ViewIndex
 from deixis.perception.recognition.inverted import Effort, InvertedFile
 from deixis.perception.recognition.kernels import AXES

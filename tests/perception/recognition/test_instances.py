@@ -8,8 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from deixis.perception.errors import RecognitionError
 from deixis.perception.recognition.distances import view_distances
-from deixis.perception.recognition.errors import RecognitionError
 from deixis.perception.recognition.instances import InstanceCategory
 from deixis.perception.recognition.views import PackedViews
 

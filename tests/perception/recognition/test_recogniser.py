@@ -10,9 +10,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from deixis.perception.errors import RecognitionError
 from deixis.perception.recognition.calibration import Calibration
 from deixis.perception.recognition.distances import view_distance
-from deixis.perception.recognition.errors import RecognitionError
 from deixis.perception.recognition.instances import InstanceCategory
 from deixis.perception.recognition.recogniser import Recogniser, recognise
 from deixis.perception.recognition.settings import PAPER, RecognitionSettings

@@ -8,9 +8,9 @@ from numpy.typing import NDArray
 from solid_checks import distances
 
 from deixis.perception.clouds.cloud import PointCloud
+from deixis.perception.errors import SimulationError
 from deixis.perception.simulator.camera import Camera, chair_camera, looking_pose
 from deixis.perception.simulator.depth import DISPARITY_STEP, NOISE, DepthSensor, in_table_frame, look, see
-from deixis.perception.simulator.errors import SimulationError
 from deixis.perception.simulator.laying import LaidTable, Placement, TableTop, lay
 from deixis.perception.simulator.rays import RayCaster
 from deixis.perception.simulator.scatter import scattered

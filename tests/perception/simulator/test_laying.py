@@ -9,7 +9,7 @@ import pytest
 from solid_checks import boxes_within, deepest, distances, surface_points
 
 from deixis.perception.clouds.mesh import Mesh
-from deixis.perception.simulator.errors import SimulationError
+from deixis.perception.errors import SimulationError
 from deixis.perception.simulator.laying import LaidTable, Placement, TableTop, lay
 from deixis.perception.simulator.scatter import GAP, MOST, scattered
 from deixis.perception.simulator.solids import thick_sheet

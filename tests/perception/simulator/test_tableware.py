@@ -14,7 +14,7 @@ from solid_checks import is_closed, volume
 from deixis.ontology.sizes import Extent, Outline
 from deixis.ontology.tbox import default_ontology
 from deixis.perception.clouds.mesh import Mesh
-from deixis.perception.simulator.errors import SimulationError
+from deixis.perception.errors import SimulationError
 from deixis.perception.simulator.rays import RayCaster
 from deixis.perception.simulator.size import quantile, share_below
 from deixis.perception.simulator.tableware import drawn_plan, form_of, kind_named, make

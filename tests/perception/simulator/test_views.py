@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from deixis.perception.clouds.mesh import Mesh
-from deixis.perception.simulator.errors import SimulationError
+from deixis.perception.errors import SimulationError
 from deixis.perception.simulator.solids import moved
 from deixis.perception.simulator.tableware import make
 from deixis.perception.simulator.views import DISTANCE, views_of

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from deixis.ontology.allen import ALL_ALLEN, Allen, allen_mask
-from deixis.reasoning.allen import allen_relations
+from deixis.reasoning.geometry.allen import allen_relations
 from deixis.reasoning.temporal.bounds import Bounds
 from deixis.reasoning.temporal.chronology import Status
 from deixis.reasoning.temporal.claims import claims_of

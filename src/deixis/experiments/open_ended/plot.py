@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.experiments.open_ended.run import Findings, OpenEnded
-from deixis.perception.recognition.teaching import Course
-from deixis.plot import INK, PAPER, QUIET, new_figure, save
+from deixis.perception.recognition.learners.teaching import Course
+from deixis.plots.figure import INK, PAPER, QUIET, new_figure, save
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -25,9 +25,9 @@ from deixis.experiments.open_ended.splits import Split, by_things, by_views
 from deixis.experiments.open_ended.things import FOLDER, from_meshes, rows_of, simulated
 from deixis.perception.recognition.learners.codebook import Codebook
 from deixis.perception.recognition.learners.learner import Learner
+from deixis.perception.recognition.learners.teaching import Course, Teaching, teach
 from deixis.perception.recognition.learners.view_features import ViewFeatures
 from deixis.perception.recognition.settings import DEFAULT, PAPER
-from deixis.perception.recognition.teaching import Course, Teaching, teach
 from deixis.perception.simulator.tableware import FORMS
 
 Tick = Callable[[str], None]

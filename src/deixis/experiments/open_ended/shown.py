@@ -12,7 +12,7 @@ from zipfile import BadZipFile
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.ontology.errors import DeixisError
+from deixis.errors import DeixisError
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.features.d2_extents import D2ExtentsDescriber
 from deixis.perception.features.describer import Describer

@@ -10,8 +10,8 @@ from pathlib import Path
 
 import numpy as np
 
+from deixis.errors import DeixisError
 from deixis.experiments.open_ended.shown import Seen
-from deixis.ontology.errors import DeixisError
 from deixis.perception.clouds.mesh import Mesh
 from deixis.perception.clouds.mesh_file import read_mesh
 from deixis.perception.simulator.tableware import make

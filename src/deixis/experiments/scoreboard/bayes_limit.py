@@ -21,9 +21,9 @@ from numpy.typing import NDArray
 from deixis.experiments.generated_tables import GeneratedTable, nearest, neighbours
 from deixis.ontology.relation import Reading, Relations
 from deixis.ontology.tbox import default_ontology
-from deixis.reasoning.matching.exact import exact, maps_within
-from deixis.reasoning.matching.problem import Problem
-from deixis.reasoning.rectangle import box_relations
+from deixis.reasoning.geometry.rectangle import box_relations
+from deixis.reasoning.grounding.matching.exact import exact, maps_within
+from deixis.reasoning.grounding.matching.problem import Problem
 
 MOST_MAPS = 1_000_000
 IMPOSSIBLE, PLACED = -1e3, -1e6  # worth of a fact that cannot have been said, and of leaving an object out

@@ -22,7 +22,7 @@ from deixis.experiments.scoreboard.measures import (
     satisfied,
 )
 from deixis.experiments.scoreboard.statistics import Interval, holm, interval, paired_p
-from deixis.reasoning.meaning import SHIPPED
+from deixis.reasoning.grounding.evidence.meaning import SHIPPED
 
 MEASURES = ("right", "grouped", "facts", "value")
 ALPHA = 0.05

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from deixis.experiments.scoreboard.cases import Case, Group
 from deixis.experiments.scoreboard.contestants import Answer
-from deixis.reasoning.answer import is_decided
-from deixis.reasoning.matching.problem import UNMATCHED
+from deixis.reasoning.grounding.answer import is_decided
+from deixis.reasoning.grounding.matching.problem import UNMATCHED
 
 BINS = 10
 

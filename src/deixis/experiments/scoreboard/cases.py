@@ -15,9 +15,9 @@ from deixis.experiments.generated_tables import GeneratedTable, generate
 from deixis.experiments.photographs import photographs
 from deixis.ontology.graph import RelationGraph
 from deixis.ontology.tbox import default_ontology
-from deixis.reasoning.evidence import Evidence, evidence_from
-from deixis.reasoning.meaning import Meaning
-from deixis.reasoning.rectangle import perceived_graph
+from deixis.reasoning.geometry.rectangle import perceived_graph
+from deixis.reasoning.grounding.evidence.evidence import Evidence, evidence_from
+from deixis.reasoning.grounding.evidence.meaning import Meaning
 
 PHOTOGRAPHS = 0
 """The number of objects that stands for photographs, which have any number."""

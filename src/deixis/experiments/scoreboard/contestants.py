@@ -10,12 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.experiments.scoreboard.cases import Case
-from deixis.reasoning.engine_name import EngineName
-from deixis.reasoning.engines import engine_named
-from deixis.reasoning.evidence import Evidence
-from deixis.reasoning.graded.unary import UnaryWeights
-from deixis.reasoning.matching.problem import Problem
-from deixis.reasoning.meaning import LITERAL, SHIPPED, Meaning
+from deixis.reasoning.grounding.engines import engine_named
+from deixis.reasoning.grounding.evidence.evidence import Evidence
+from deixis.reasoning.grounding.evidence.meaning import LITERAL, SHIPPED, Meaning
+from deixis.reasoning.grounding.evidence.unary import UnaryWeights
+from deixis.reasoning.grounding.matching.problem import Problem
+from deixis.reasoning.grounding.options import EngineName
 
 DEFAULT = EngineName.EXACT.value
 

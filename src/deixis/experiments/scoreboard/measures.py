@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.ontology.graph import RelationGraph
-from deixis.reasoning.evidence import Evidence
-from deixis.reasoning.matching.problem import UNMATCHED
-from deixis.reasoning.symmetry import interchangeable
+from deixis.reasoning.grounding.evidence.evidence import Evidence
+from deixis.reasoning.grounding.matching.problem import UNMATCHED
+from deixis.reasoning.grounding.symmetry import interchangeable
 
 Map = NDArray[np.int64]
 

@@ -12,7 +12,7 @@ from deixis.experiments.scoreboard.board import Board, median_seconds
 from deixis.experiments.scoreboard.cases import PHOTOGRAPHS, Group
 from deixis.experiments.scoreboard.contestants import DEFAULT
 from deixis.experiments.scoreboard.run import Scoreboard
-from deixis.plot import INK, PAPER, QUIET, new_figure, save
+from deixis.plots.figure import INK, PAPER, QUIET, new_figure, save
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -1,15 +1,17 @@
-"""The scoreboard as plain data for JSON; what is not known is null."""
+"""The scoreboard as JSON and as text of at most 120 columns."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict, fields
+from textwrap import wrap
 from typing import Any
 
-from deixis.experiments.scoreboard.board import MEASURES, Board, Comparison, median_seconds
-from deixis.experiments.scoreboard.cases import Group, Setting
+from deixis.experiments.scoreboard.board import ALPHA, MEASURES, Board, Comparison, median_seconds
+from deixis.experiments.scoreboard.cases import PHOTOGRAPHS, Group, Setting
+from deixis.experiments.scoreboard.contestants import DEFAULT
 from deixis.experiments.scoreboard.run import Scoreboard
-from deixis.experiments.scoreboard.text import verdict
 
 
 def to_dict(found: Scoreboard) -> dict[str, Any]:
@@ -24,8 +26,8 @@ def to_dict(found: Scoreboard) -> dict[str, Any]:
         "photographs": plan.photographs is not None,
         "engines": {one.name: one.settings for one in found.main.contestants},
         "skipped": list(found.skipped),
-        "board": _board(found.main),
-        "ablations": _board(found.ablations),
+        "board": _board_json(found.main),
+        "ablations": _board_json(found.ablations),
         "limits": [_limit(asdict(one)) for one in found.limits],
         "calibration": {name: asdict(one) for name, one in found.calibrations().items()},
         "comparisons": [_comparison(one) for some in comparisons.values() for one in some],
@@ -34,7 +36,7 @@ def to_dict(found: Scoreboard) -> dict[str, Any]:
     return {key: _known(value) for key, value in data.items()}
 
 
-def _board(board: Board) -> dict[str, Any]:
+def _board_json(board: Board) -> dict[str, Any]:
     settings = sorted({score.setting for score in board.scores})
     return {
         "groups": [_place(board, name, group) for group in board.groups for name in _names(board, group)],
@@ -74,3 +76,168 @@ def _known(value: Any) -> Any:
     if isinstance(value, list | tuple):
         return [_known(inner) for inner in value]
     return None if isinstance(value, float) and math.isnan(value) else value
+
+
+WIDTH = 120
+NAME = 13
+ACROSS = 6
+"""Comparisons with so many others stand side by side."""
+
+
+def lines(found: Scoreboard) -> list[str]:
+    """Everything, from what was run to what follows from it."""
+    return [
+        *_head(found),
+        "",
+        "Shares with 95 % t intervals over cases. right: objects given their own thing, or left out where they are",
+        "missing; grouped: the same where interchangeable objects may be exchanged; fact, value: satisfied facts and",
+        "log-likelihood over the best found by any engine on the case; time: median from evidence to the full answer;",
+        "proof: share of the cases on which the map was proved the likeliest.",
+        *_board(found.main),
+        "",
+        "Ablations: descriptions say what kind of thing each object is, so that sizes count. On photographs, 'learned",
+        "words' and 'learned, all' (words and sizes) are cross-validated: what is grounded has taught nothing.",
+        *_board(found.ablations),
+        "",
+        *_limits(found),
+        "",
+        *_calibration(found),
+        "",
+        *_significance(found),
+    ]
+
+
+def _head(found: Scoreboard) -> Iterator[str]:
+    plan = found.plan
+    yield f"Scoreboard, seed {plan.seed}, {plan.time_limit:g} s for a case"
+    counts = ", ".join(f"{plan.count(size)} of {size}" for size in plan.sizes)
+    yield f"Tables of each setting, by objects: {counts}."
+    yield (
+        f"Settings: {_listed(plan.facts_each)} facts an object; {_percent(plan.off)} of them off; "
+        "nothing changed, or a tenth missing and extra."
+    )
+    if plan.photographs is not None:
+        units = len({score.unit for score in found.main.scores if score.setting.objects == PHOTOGRAPHS})
+        yield f"{units} photographs, each in {plan.orders} node order{'s' if plan.orders > 1 else ''}."
+    yield ""
+    yield from (f"  {one.name:<{NAME}} {one.settings}" for one in found.main.contestants)
+    yield from (f"  skipped: {note}" for note in found.skipped)
+
+
+def _listed(values: Sequence[float]) -> str:
+    return ", ".join(f"{value:g}" for value in values)
+
+
+def _percent(values: Sequence[float]) -> str:
+    return ", ".join(f"{100 * value:.0f}" for value in values) + " %"
+
+
+def _board(board: Board) -> Iterator[str]:
+    """A block for every size, a row for every contestant, four columns for every noise."""
+    sizes = list(dict.fromkeys(group.objects for group in board.groups))
+    for size in sizes:
+        columns = [group for group in board.groups if group.objects == size]
+        title = "photographs" if size == PHOTOGRAPHS else f"{size} objects"
+        yield ""
+        yield (f"{title:<{NAME}}" + "".join(f" {_title(board, group):<30}" for group in columns)).rstrip()
+        yield f"{'':<{NAME}}" + f" {'right':<9} {'grouped':<9} fact value" * len(columns) + "    time proof"
+        for one in board.contestants:
+            if any(board.of(one.name, group) for group in columns):
+                yield _row(board, one.name, columns)
+
+
+def _title(board: Board, group: Group) -> str:
+    count = board.mean(DEFAULT, group, "right").count
+    return f"{count} images" if group.objects == PHOTOGRAPHS else f"{100 * group.off:.0f} % off, {count} tables"
+
+
+def _row(board: Board, name: str, columns: Sequence[Group]) -> str:
+    cells = ""
+    for group in columns:
+        right, grouped, facts, value = (board.mean(name, group, m) for m in ("right", "grouped", "facts", "value"))
+        cells += f" {right!s:<9} {grouped!s:<9} {facts.mean:.2f} {value.mean:5.2f}"
+    scores = [score for group in columns for score in board.of(name, group)]
+    proved = sum(score.proved for score in scores) / len(scores)
+    return f"{name:<{NAME}}{cells} {_time(median_seconds(scores)):>7} {proved:5.2f}"
+
+
+def _time(seconds: float) -> str:
+    return f"{1e3 * seconds:.1f} ms" if seconds < 0.0999 else f"{seconds:.2f} s"
+
+
+def _limits(found: Scoreboard) -> Iterator[str]:
+    if not found.limits:
+        return
+    yield "The exact Bayes limit of the share right, nothing missing or extra: by the words that were said, and knowing"
+    yield "also how the generator draws pairs. Positive 'short': the default engine is below the first limit."
+    yield f"  objects  facts each   off  tables  {DEFAULT:<10} limit      short         pairs known  most maps   listed"
+    for one in found.limits:
+        place, count = one.setting, one.right.count
+        listed, short = f"{count - one.incomplete} of {count}", f"{one.short.mean:+.3f}±{one.short.half:.3f}"
+        yield (
+            f"  {place.objects:7}  {place.facts_each:10g}  {100 * place.off:2.0f} %  {count:6}  {one.right!s:<9}"
+            f"  {one.words!s:<9}  {short}  {one.words_and_pairs!s:<11}  {one.maps:9}  {listed:>8}"
+        )
+
+
+def _calibration(found: Scoreboard) -> Iterator[str]:
+    yield "Calibration of the default engine's matches: expected calibration error, the share called decided and its"
+    yield "precision, and the share right (n) where the answer said so many tenths or more, but less than the next."
+    calibrations = found.calibrations()
+    yield f"  {'':<18}  matches  error  decided  precision"
+    for name, one in calibrations.items():
+        yield f"  {name:<18}  {one.count:7}  {one.error:5.3f}  {one.decided:7.2f}  {one.precision:9.3f}"
+    yield f"  {'':<18}" + "".join(f"{f'0.{tenth}':>10}" for tenth in range(10))
+    for name, one in calibrations.items():
+        cells = (f"{b.right:.2f}({_short(b.count)})" if b.count else "-" for b in one.bins)
+        yield f"  {name:<18}" + "".join(f"{cell:>10}" for cell in cells)
+
+
+def _short(count: int) -> str:
+    return str(count) if count < 1000 else f"{count / 1000:.0f}k"
+
+
+def _significance(found: Scoreboard) -> Iterator[str]:
+    plan = found.plan
+    for measure, said in (("right", "share right"), ("grouped", "share right up to interchangeability")):
+        comparisons = found.main.comparisons(measure, plan.seed)
+        yield f"{DEFAULT} less each other, {said}: mean difference, p of a paired permutation test"
+        yield f"over the cases, and + or - where {DEFAULT} is significantly better or worse (at {ALPHA:g}, by Holm's"
+        yield "correction for all of these comparisons)."
+        yield from _comparison_table(found.main, comparisons)
+        yield from wrap(verdict(comparisons), WIDTH)
+        yield ""
+
+
+def _comparison_table(board: Board, comparisons: Sequence[Comparison]) -> Iterator[str]:
+    cells = {(one.group, one.other): one for one in comparisons}
+    others = [one.name for one in board.contestants[1:]]
+    for start in range(0, len(others), ACROSS):
+        shown = others[start : start + ACROSS]
+        yield f"  {'':<22}" + "".join(f"{name:>15}" for name in shown)
+        for group in board.groups:
+            row = "".join(f"{_cell(cells.get((group, name))):>15}" for name in shown)
+            yield f"  {group!s:<22}{row}".rstrip()
+
+
+def _cell(one: Comparison | None) -> str:
+    if one is None or math.isnan(one.difference.mean):
+        return "-"
+    mark = {"better": "+", "worse": "-"}.get(one.verdict, " ")
+    return (
+        f"{one.difference.mean:+.2f} {one.p:.3f}{mark}".replace(" 0.", " .").replace("+0.", "+.").replace("-0.", "-.")
+    )
+
+
+def verdict(comparisons: Sequence[Comparison]) -> str:
+    """In a sentence: where the default is significantly worse than anybody, or that it is nowhere."""
+    worse = [one for one in comparisons if one.verdict == "worse"]
+    if worse:
+        where = "; ".join(f"{one.other} ({one.group}, {one.difference.mean:+.2f})" for one in worse)
+        return f"{DEFAULT} is significantly worse than: {where}."
+    behind = [one for one in comparisons if one.difference.mean < 0]
+    least = min((one.p for one in behind), default=1.0)
+    return (
+        f"{DEFAULT} is not significantly worse than any other at any size or noise ({len(comparisons)} comparisons, "
+        f"behind in {len(behind)}, of which the smallest uncorrected p is {least:.3f})."
+    )

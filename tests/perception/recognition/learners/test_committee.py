@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from deixis.perception.recognition.errors import RecognitionError
+from deixis.perception.errors import RecognitionError
 from deixis.perception.recognition.learners.committee import BELIEF, VOTE, Committee, dempster_shafer, majority
 from deixis.perception.recognition.learners.learner import Prediction
 from deixis.perception.recognition.learners.taught_views import TaughtViews

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from deixis.perception.recognition.errors import RecognitionError
+from deixis.perception.errors import RecognitionError
 from deixis.perception.recognition.learners.codebook import Codebook
 from deixis.perception.recognition.learners.committee import Committee
 from deixis.perception.recognition.learners.instance_based import InstanceBased

@@ -9,9 +9,9 @@ from deixis.perception.recognition.learners.committee import Committee
 from deixis.perception.recognition.learners.instance_based import InstanceBased
 from deixis.perception.recognition.learners.naive_bayes import NaiveBayes
 from deixis.perception.recognition.learners.one_class import SupportVectorDescription
+from deixis.perception.recognition.learners.teaching import Teaching
 from deixis.perception.recognition.learners.vector_quantisation import VectorQuantisation
 from deixis.perception.recognition.settings import SHRINKAGE
-from deixis.perception.recognition.teaching import Teaching
 
 PAGE = (Path(__file__).parents[4] / "docs" / "open_ended.md").read_text(encoding="utf-8")
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from deixis.perception.recognition.errors import RecognitionError
+from deixis.perception.errors import RecognitionError
 from deixis.perception.recognition.learners.codebook import Codebook
 from deixis.perception.recognition.learners.naive_bayes import NaiveBayes
 from deixis.perception.recognition.learners.view_features import ViewFeatures

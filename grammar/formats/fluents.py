@@ -1,0 +1,243 @@
+"""Fluents as files: ``.fluents.json``, read with an error that names the place, and written.
+
+A file holds the origin from which times are counted, fluents with bounds on their starts and finishes, and relations
+between them: Allen's, or bounds on the time from one point to another. ``docs/time.md`` describes it.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass, field
+from difflib import get_close_matches
+from pathlib import Path
+from typing import Any
+
+from deixis.errors import DeixisError
+from deixis.grammar.errors import shortened
+from deixis.grammar.files import read_text
+from deixis.ontology.allen import SYMBOLS, Allen, allen_mask, members
+from deixis.ontology.strict_json import parse_json
+from deixis.reasoning.errors import SettingError
+from deixis.reasoning.temporal.bounds import FARTHEST, UNKNOWN, Bounds
+from deixis.reasoning.temporal.fluent import (
+    ORIGIN,
+    AllenStatement,
+    Difference,
+    Fluent,
+    Statement,
+    TemporalRelation,
+)
+
+UNITS = {"s": 1.0, "ms": 0.001, "min": 60.0, "h": 3600.0}
+"""Accepted units, and how many seconds one is."""
+
+_ALLEN = {relation.name.lower(): relation for relation in Allen} | dict(zip(SYMBOLS, Allen, strict=True))
+_BOUNDS_KEYS = ("lower", "upper", "lower_open", "upper_open")
+
+
+class FluentFileError(DeixisError, ValueError):
+    """A file of fluents that cannot be read as it stands; the message names the file and the place in it."""
+
+
+@dataclass(frozen=True)
+class FluentFile:
+    """Fluents and relations between them, with times in seconds since ``origin``, which is told in words."""
+
+    origin: str
+    fluents: tuple[Fluent, ...]
+    relations: tuple[TemporalRelation, ...] = ()
+    file: str = field(default="<fluents>", compare=False)
+
+
+def read_fluents(path: str | Path) -> FluentFile:
+    """Reads a file of fluents.
+
+    Raises FluentFileError, with the place in it, where it is no such file; ScriptFileError where it cannot be read.
+    """
+    if Path(path).is_dir():
+        raise FluentFileError(f"{path}: this is a directory, not a file of fluents")
+    return parse_fluents(read_text(Path(path), str(path)), str(path))
+
+
+def parse_fluents(text: str, file: str = "<fluents>") -> FluentFile:
+    """Reads the text of a file of fluents; ``file`` is how messages and explanations call it.
+
+    >>> cup = '{"id": "f", "statement": ["cup", "full"], "start": [0, 2]}'
+    >>> parsed = parse_fluents(f'{{"origin": "noon", "fluents": [{cup}]}}')
+    >>> str(parsed.fluents[0])
+    'f: full(cup) from [0, 2] to (-∞, ∞)'
+
+    Raises FluentFileError, with line and column where the text is no JSON, else with the path to the place.
+    """
+    parsed = parse_json(text, file, FluentFileError, "is no time; write null for a bound that is not known")
+    data = _object(parsed, file, ("origin", "unit", "fluents", "relations"), ("origin", "fluents"))
+    origin = _text(data["origin"], f"{file}: origin")
+    unit = _text(data.get("unit", "s"), f"{file}: unit")
+    if unit not in UNITS:
+        raise FluentFileError(f"{file}: unit: '{shortened(unit)}' is not known; use one of {', '.join(UNITS)}")
+    fluents: dict[str, Fluent] = {}
+    for position, entry in enumerate(_list(data["fluents"], f"{file}: fluents")):
+        fluent = _fluent(entry, f"{file}: fluents[{position}]", UNITS[unit])
+        if fluent.id in fluents:
+            raise FluentFileError(f"{fluent.source}.id: '{shortened(fluent.id)}' is used twice; give each its own")
+        fluents[fluent.id] = fluent
+    points = dict.fromkeys([ORIGIN, *(point for fluent in fluents.values() for point in fluent.points)])
+    relations = tuple(
+        _relation(entry, f"{file}: relations[{position}]", UNITS[unit], fluents, points)
+        for position, entry in enumerate(_list(data.get("relations", []), f"{file}: relations"))
+    )
+    return FluentFile(origin, tuple(fluents.values()), relations, file)
+
+
+def _fluent(data: Any, where: str, scale: float) -> Fluent:
+    entry = _object(data, where, ("id", "statement", "start", "finish"), ("id", "statement"))
+    id = _text(entry["id"], f"{where}.id")
+    words = _list(entry["statement"], f"{where}.statement")
+    if len(words) not in (2, 3):
+        raise FluentFileError(f"{where}.statement: subject, predicate and, if there is one, object are expected")
+    statement = Statement(*(_text(word, f"{where}.statement[{position}]") for position, word in enumerate(words)))
+    start = _bounds(entry.get("start"), f"{where}.start", scale)
+    finish = _bounds(entry.get("finish"), f"{where}.finish", scale)
+    return Fluent(id, statement, start, finish, where)
+
+
+def _relation(
+    data: Any, where: str, scale: float, fluents: Collection[str], points: Collection[str]
+) -> TemporalRelation:
+    if isinstance(data, dict) and "allen" in data:
+        entry = _object(data, where, ("a", "allen", "b"), ("a", "allen", "b"))
+        a, b = (_known(entry[end], f"{where}.{end}", fluents, "fluent") for end in "ab")
+        names = _list(entry["allen"], f"{where}.allen")
+        if not names:
+            raise FluentFileError(f'{where}.allen: at least one relation is expected, such as "before"')
+        relations = [_ALLEN[_known(n, f"{where}.allen[{k}]", _ALLEN, "relation")] for k, n in enumerate(names)]
+        return AllenStatement(a, allen_mask(relations), b, where)
+    entry = _object(data, where, ("from", "to", "bounds"), ("from", "to", "bounds"))
+    tail, head = (_known(entry[end], f"{where}.{end}", points, "point") for end in ("from", "to"))
+    return Difference(tail, head, _bounds(entry["bounds"], f"{where}.bounds", scale), where)
+
+
+def _bounds(data: Any, where: str, scale: float) -> Bounds:
+    """``[lower, upper]``, or an object that also says which ends are open; null is unknown."""
+    if data is None:
+        return UNKNOWN
+    flags = (False, False)
+    if isinstance(data, dict):
+        entry = _object(data, where, _BOUNDS_KEYS, ("lower", "upper"))
+        flags = (_flag(entry, "lower_open", where), _flag(entry, "upper_open", where))
+        data = [entry["lower"], entry["upper"]]
+    ends = _list(data, where)
+    if len(ends) != 2:
+        raise FluentFileError(f"{where}: two bounds are expected, [lower, upper], either of which may be null")
+    lower = -math.inf if ends[0] is None else _number(ends[0], f"{where}[0]", scale)
+    upper = math.inf if ends[1] is None else _number(ends[1], f"{where}[1]", scale)
+    try:
+        return Bounds(lower, upper, *flags)
+    except SettingError as error:
+        raise FluentFileError(f"{where}: {error}") from None
+
+
+def _flag(entry: dict[str, Any], key: str, where: str) -> bool:
+    if not isinstance(entry.get(key, False), bool):
+        raise FluentFileError(f"{where}.{key}: true or false is expected, not {_kind(entry[key])}")
+    return bool(entry.get(key, False))
+
+
+def _number(data: Any, where: str, scale: float) -> float:
+    if isinstance(data, bool) or not isinstance(data, int | float):
+        raise FluentFileError(f"{where}: a number or null is expected, not {_kind(data)}")
+    if not abs(data) <= FARTHEST / scale:
+        raise FluentFileError(f"{where}: the time is beyond {FARTHEST:g} s; is the unit or the origin right?")
+    return data * scale
+
+
+def _object(data: Any, where: str, known: Sequence[str], needed: Sequence[str]) -> dict[str, Any]:
+    if not isinstance(data, dict):
+        raise FluentFileError(f"{where}: an object {{…}} is expected here, not {_kind(data)}")
+    for key in data:
+        if key not in known:
+            hint = _suggestion(key, known)
+            raise FluentFileError(f"{where}: '{shortened(key)}' is no key here; {hint}the keys are {', '.join(known)}")
+    for key in needed:
+        if key not in data:
+            raise FluentFileError(f"{where}: '{key}' is missing")
+    return data
+
+
+def _list(data: Any, where: str) -> list[Any]:
+    if not isinstance(data, list):
+        raise FluentFileError(f"{where}: a list is expected, not {_kind(data)}")
+    return data
+
+
+def _text(data: Any, where: str) -> str:
+    if not isinstance(data, str):
+        raise FluentFileError(f"{where}: a text is expected, not {_kind(data)}")
+    if not data.strip() or not data.isprintable():
+        raise FluentFileError(f"{where}: a text in one line is expected, that is not blank and can be printed")
+    return data
+
+
+def _known(data: Any, where: str, names: Collection[str], kind: str) -> str:
+    """One of the names that there are."""
+    name = _text(data, where)
+    if name not in names:
+        hint = _suggestion(name, names).removesuffix("; ")
+        raise FluentFileError(f"{where}: there is no {kind} '{shortened(name)}'{'; ' if hint else ''}{hint}")
+    return name
+
+
+def _suggestion(name: str, names: Collection[str]) -> str:
+    close = get_close_matches(name[:100], list(names), n=1)
+    return f"did you mean '{shortened(close[0])}'?; " if close else ""
+
+
+def _kind(data: Any) -> str:
+    if data is None or isinstance(data, bool):
+        return {None: "null", True: "true", False: "false"}[data]
+    kinds = {str: "a text", int: "a number", float: "a number", list: "a list"}
+    return kinds.get(type(data), "an object")
+
+
+def format_fluents(content: FluentFile) -> str:
+    """The text of a file of fluents, a fluent or a relation a line; reading it gives the same again."""
+    head = f'{{\n  "origin": {_json(content.origin)},\n  "unit": "s",\n'
+    fluents = _lines([_fluent_to_dict(fluent) for fluent in content.fluents])
+    relations = _lines([_relation_to_dict(relation) for relation in content.relations])
+    return f'{head}  "fluents": {fluents},\n  "relations": {relations}\n}}\n'
+
+
+def bounds_to_json(bounds: Bounds) -> Any:
+    """Bounds as a file has them: ``[lower, upper]``, unless an end is open.
+
+    >>> bounds_to_json(Bounds(0, 5)), bounds_to_json(Bounds(2.5))
+    ([0, 5], [2.5, None])
+    """
+    ends = [None if math.isinf(bound) else bound for bound in (bounds.lower, bounds.upper)]
+    if not (bounds.lower_open or bounds.upper_open):
+        return ends
+    return dict(zip(_BOUNDS_KEYS, (*ends, bounds.lower_open, bounds.upper_open), strict=True))
+
+
+def _fluent_to_dict(fluent: Fluent) -> dict[str, Any]:
+    said = fluent.statement
+    words = [said.subject, said.predicate, *([] if said.object is None else [said.object])]
+    ends = {"start": bounds_to_json(fluent.start), "finish": bounds_to_json(fluent.finish)}
+    return {"id": fluent.id, "statement": words, **ends}
+
+
+def _relation_to_dict(relation: TemporalRelation) -> dict[str, Any]:
+    if isinstance(relation, AllenStatement):
+        names = [found.name.lower() for found in members(relation.relations)]
+        return {"a": relation.a, "allen": names, "b": relation.b}
+    return {"from": relation.tail, "to": relation.head, "bounds": bounds_to_json(relation.bounds)}
+
+
+def _lines(entries: Sequence[dict[str, Any]]) -> str:
+    return "[" + ",".join(f"\n    {_json(entry)}" for entry in entries) + ("\n  ]" if entries else "]")
+
+
+def _json(data: Any) -> str:
+    return json.dumps(data, ensure_ascii=False)

@@ -1,0 +1,1 @@
+"""Semantic memory: RDF in named graphs that one process owns."""

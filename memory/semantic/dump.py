@@ -1,0 +1,133 @@
+"""A file as what a memory would keep of it: lessons with their contributions, and what belongs to no lesson."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from datetime import UTC, datetime
+from pathlib import Path
+
+import pyoxigraph as ox
+
+from deixis.memory.errors import ImportFormatError
+from deixis.memory.semantic.rdf import ledger
+from deixis.memory.semantic.rdf.change import named
+from deixis.memory.semantic.rdf.files import read_quads
+from deixis.memory.semantic.rdf.graphs import (
+    CANONICAL,
+    GRAPHS,
+    LOADED,
+    PACKAGE,
+    GraphName,
+    ModelSet,
+    copied_graph,
+    graph_iri,
+    lesson_graph,
+    lesson_of_graph,
+    loaded_graph,
+    models_graph,
+    models_of_graph,
+    package_graph,
+)
+from deixis.ontology.triples import content_key, iri, learned_iri, text, typed, with_names
+from deixis.ontology.vocabulary import PROV, W3C
+
+_ACTIVITY = "http://www.w3.org/ns/prov#Activity"
+
+Graphs = dict[GraphName, set[ox.Triple]]
+
+
+def _graphs() -> Graphs:
+    return defaultdict(set)
+
+
+@dataclass
+class Dump:
+    """The content of a file, by what it is to a memory."""
+
+    canonical: Graphs = field(default_factory=_graphs)
+    lessons: dict[str, Graphs] = field(default_factory=lambda: defaultdict(_graphs))
+    package: Graphs = field(default_factory=_graphs)
+    loaded: Graphs = field(default_factory=_graphs)
+    models: dict[ModelSet, set[ox.Triple]] = field(default_factory=lambda: defaultdict(set))
+
+    def quads(self) -> Iterator[ox.Quad]:
+        """Everything, as a new memory stores it."""
+        for name, triples in self.canonical.items():
+            yield from _in(graph_iri(name), triples)
+        for lesson, graphs in self.lessons.items():
+            for name, triples in graphs.items():
+                yield from _in(lesson_graph(lesson, name), triples)
+                yield from _in(graph_iri(name), triples)
+        for which, triples in self.models.items():
+            yield from _in(models_graph(which), triples)
+            yield from _in(graph_iri(GraphName.LEARNED), triples)
+        for kept, graph_of in ((self.package, package_graph), (self.loaded, loaded_graph)):
+            for name, triples in kept.items():
+                yield from _in(graph_of(name), triples)
+                yield from _in(graph_iri(name), triples)
+
+    def loose(self, name: GraphName) -> set[ox.Triple]:
+        """What a canonical graph holds that no lesson, no learned model and not the package contributed."""
+        held = [self.package[name], *(graphs[name] for graphs in self.lessons.values())]
+        held += self.models.values() if name is GraphName.LEARNED else ()
+        return self.canonical[name].difference(*held) | self.loaded[name]
+
+
+def read_dump(file: Path) -> Dump:
+    """Reads a file. Plain triples become a lesson, named after the file, about the asserted graph.
+
+    Raises ImportFormatError for what cannot be read, or speaks of a graph that no memory has.
+    """
+    dump, plain = Dump(), list[ox.Triple]()
+    found: dict[str, list[ox.Triple]] = defaultdict(list)
+    for quad in read_quads(file):
+        if isinstance(quad.object, ox.Triple):
+            raise ImportFormatError(f"{file}: a triple inside a triple cannot be kept: {quad.object}")
+        if isinstance(quad.graph_name, ox.DefaultGraph):
+            plain.append(quad.triple)
+        elif isinstance(quad.graph_name, ox.NamedNode):
+            found[quad.graph_name.value].append(quad.triple)
+        else:
+            raise ImportFormatError(f"{file}: a graph without a name, {quad.graph_name}, has no place in a memory")
+    for graph, triples in found.items():
+        _place(dump, file, graph).update(ledger.as_stored(with_names(triples)))
+    if plain:
+        _add_plain(dump, file, plain)
+    return dump
+
+
+def _place(dump: Dump, file: Path, graph: str) -> set[ox.Triple]:
+    """Where the triples of a graph belong."""
+    name = copied_graph(graph) or CANONICAL.get(ox.NamedNode(graph))
+    if name is None:
+        raise ImportFormatError(f"{file}: the graph <{graph}> is none of a memory's; those begin with {GRAPHS}")
+    lesson = lesson_of_graph(graph)
+    if lesson is not None:
+        return dump.lessons[lesson[0]][name]
+    models = models_of_graph(graph)
+    if models is not None:
+        return dump.models[models]
+    kept = dump.package if graph.startswith(PACKAGE) else dump.loaded if graph.startswith(LOADED) else dump.canonical
+    return kept[name]
+
+
+def _add_plain(dump: Dump, file: Path, triples: list[ox.Triple]) -> None:
+    lesson = file.stem
+    if lesson in dump.lessons:
+        raise ImportFormatError(f"{file}: holds a lesson '{lesson}' and triples without a graph; rename the file")
+    about = iri(learned_iri("lesson", lesson))
+    told = [
+        ox.Triple(about, iri(W3C.RDF_TYPE), iri(_ACTIVITY)),
+        ox.Triple(about, iri(W3C.RDFS_LABEL), text(lesson)),
+        ox.Triple(about, iri(PROV.STARTED_AT_TIME), typed(datetime.now(UTC))),
+    ]
+    key = content_key(lesson)
+    dump.lessons[lesson][GraphName.ASSERTED].update(ledger.as_stored(named(key, triples)))
+    dump.lessons[lesson][GraphName.EPISODES].update(ledger.as_stored(told))
+
+
+def _in(graph: ox.NamedNode, triples: set[ox.Triple]) -> Iterator[ox.Quad]:
+    for triple in triples:
+        yield ox.Quad(triple.subject, triple.predicate, triple.object, graph)

@@ -1,0 +1,115 @@
+"""A memory as text, and text as a memory: the user's data is the user's."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pyoxigraph as ox
+
+from deixis.memory.errors import ImportFormatError, RejectedWriteError
+from deixis.memory.folder import State, inspect, reading
+from deixis.memory.semantic.dump import Dump, read_dump
+from deixis.memory.semantic.opening import open_memory
+from deixis.memory.semantic.queries.union import merge_if_overlapping
+from deixis.memory.semantic.rdf import ledger
+from deixis.memory.semantic.rdf.change import Change, modelling, together
+from deixis.memory.semantic.rdf.files import trig, turtle
+from deixis.memory.semantic.rdf.graphs import CANONICAL, CONTRIBUTED, GraphName, copied_graph, graph_iri, loaded_graph
+from deixis.memory.semantic.rdf.package import packaged
+from deixis.memory.semantic.store import SemanticMemory
+
+TURTLE_GRAPHS = (GraphName.ONTOLOGY, GraphName.ASSERTED, GraphName.INFERRED, GraphName.LEARNED, GraphName.EPISODES)
+"""The graphs that an export in Turtle merges."""
+
+
+def export_memory(memory: SemanticMemory, format: str = "trig") -> str:
+    """Everything that a memory keeps, the same text for the same content.
+
+    ``trig`` is exact: every graph, and which lesson contributed what. ``turtle`` merges the ontology with what was
+    asserted, inferred and learned, and when, into one graph, for tools such as Protégé. Raises ImportFormatError for
+    others.
+    """
+    with reading(memory.path):
+        return _exported(memory, format)
+
+
+def _exported(memory: SemanticMemory, format: str) -> str:
+    if format == "turtle":
+        return turtle(triple for name in TURTLE_GRAPHS for triple in memory.triples(name))
+    if format != "trig":
+        raise ImportFormatError(f"no export as '{format}': it is trig or turtle")
+    graphs = [graph for graph in memory.store.named_graphs() if isinstance(graph, ox.NamedNode)]
+    copies = sorted((graph for graph in graphs if copied_graph(graph.value)), key=lambda graph: graph.value)
+    return trig((graph, ledger.triples_in(memory.store, graph)) for graph in [*CANONICAL, *copies])
+
+
+def import_dump(file: str | Path, target: str | Path) -> None:
+    """Takes a file into a memory, all of it or nothing.
+
+    A TriG or N-Quads file that export wrote gives the same graphs back; into a memory that holds something it is
+    merged, lesson by lesson; learned models are taken where it has none. Plain triples (Turtle, N-Triples, RDF/XML)
+    become a lesson named after the file. Raises ImportFormatError for what cannot be read, RejectedWriteError for what
+    breaks the shapes or another lesson.
+    """
+    file, target = Path(file), Path(target)
+    dump = read_dump(file)
+    if inspect(target) in (State.ABSENT, State.EMPTY):
+        open_memory(target, create=True, fill=lambda store: _fill(store, dump)).close()
+        return
+    with SemanticMemory.open(target) as memory:
+        change = _merged(memory, dump, file)
+        if change.statements:
+            memory.commit(change)
+
+
+def _fill(store: ox.Store, dump: Dump) -> None:
+    from deixis.memory.semantic.validation.validate import check_store
+
+    store.bulk_extend(dump.quads())
+    statements = list(ledger.package_update(store, packaged()))
+    if statements:
+        store.update(" ;\n".join(statements))
+    merge_if_overlapping(store)
+    check_store(store)
+
+
+def _merged(memory: SemanticMemory, dump: Dump, file: Path) -> Change:
+    """The change that brings a dump into a memory."""
+    store, known = memory.store, set(memory.lessons())
+    added: dict[GraphName, set[ox.Triple]] = {name: set() for name in GraphName}
+    statements: list[str] = []
+    for lesson, graphs in dump.lessons.items():
+        said = {name: sorted(triples, key=str) for name, triples in graphs.items() if triples}
+        if lesson in known:
+            if {name: set(triples) for name, triples in memory.contributions(lesson).items()} != _sets(said):
+                raise RejectedWriteError(
+                    f"{file}: its lesson '{lesson}' differs from the one in the memory at {memory.path}; forget that "
+                    "one first, or import into another memory"
+                )
+            continue
+        statements += ledger.arrival(store, lesson, said)
+        for name, triples in said.items():
+            added[name].update(triples)
+    for name, graph, loose in _loose(store, dump):
+        statements += ledger.insertion(graph, sorted(loose, key=str))
+        added[name].update(loose)
+    lessons = Change({name: frozenset(triples) for name, triples in added.items()}, {}, tuple(statements))
+    new = {which: sorted(triples, key=str) for which, triples in dump.models.items() if not memory.models(which)}
+    return together(lessons, modelling(store, new))
+
+
+def _loose(store: ox.Store, dump: Dump) -> Iterator[tuple[GraphName, ox.NamedNode, set[ox.Triple]]]:
+    """What belongs to no lesson, by graph; what a lesson says as well is marked as loaded, so that it stays."""
+    for name in CONTRIBUTED:
+        loose = dump.loose(name)
+        also = {triple for triple in loose if any(ledger.quads_of(store, triple))} | dump.loaded[name]
+        also |= {triple for triple in loose for graphs in dump.lessons.values() if triple in graphs[name]}
+        yield name, graph_iri(name), loose
+        yield name, loaded_graph(name), also
+    inferred = graph_iri(GraphName.INFERRED)
+    yield GraphName.INFERRED, inferred, dump.canonical[GraphName.INFERRED]
+
+
+def _sets(said: dict[GraphName, list[ox.Triple]]) -> dict[GraphName, set[ox.Triple]]:
+    return {name: set(triples) for name, triples in said.items()}

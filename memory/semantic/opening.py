@@ -1,0 +1,138 @@
+"""Opening a memory: look, lock, look again, mend what a crash left, bring up to date, open."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Callable
+from pathlib import Path
+
+import pyoxigraph as ox
+
+from deixis.memory import folder as files
+from deixis.memory.errors import MemoryBusyError, MemoryFormatError, MemoryWriteError
+from deixis.memory.folder import State, committed
+from deixis.memory.owner import OwnerLock
+from deixis.memory.semantic.rdf import ledger
+from deixis.memory.semantic.rdf.package import package_digest, packaged, packaged_quads
+
+
+class Opened:
+    """An open store, the folder that it is in, and the lock on it."""
+
+    def __init__(self, folder: Path, lock: OwnerLock) -> None:
+        self.folder, self._lock = folder, lock
+        self.store = open_store(folder)
+
+    def close(self) -> None:
+        """Closes the store, then lets go of the lock."""
+        self.shut()
+        self._lock.release()
+
+    def shut(self) -> None:
+        """Closes the store alone."""
+        del self.store
+
+    def reopen(self) -> None:
+        """Opens the store again after :meth:`shut`."""
+        self.store = open_store(self.folder)
+
+
+def open_store(folder: Path) -> ox.Store:
+    """Opens ``semantic/`` for reading and writing."""
+    try:
+        return ox.Store(folder / files.STORE)
+    except (OSError, RuntimeError) as error:
+        if "lock hold by current process" in str(error):
+            raise MemoryBusyError(
+                f"the memory at {folder} is still read by this process: let go of what iterates over it, then try again"
+            ) from error
+        raise MemoryWriteError(f"the memory at {folder} could not be opened: {files.one_line(error)}") from error
+
+
+def _fill(store: ox.Store) -> None:
+    """What every memory begins with, into a store that is none of a memory's yet: nobody reads it half full."""
+    store.bulk_extend(packaged_quads())
+
+
+def open_memory(folder: Path, create: bool, fill: Callable[[ox.Store], None] = _fill) -> Opened:
+    """Opens a memory, or makes one whose store ``fill`` fills; raises as ``SemanticMemory.open`` does."""
+    state = files.inspect(folder)
+    if state in (State.ABSENT, State.EMPTY) and not create:
+        raise MemoryFormatError(f"{_nothing(folder, state)}; learn something into it first, or name another folder")
+    made = _make_folder(folder) if state is State.ABSENT else False
+    try:
+        return _open_locked(folder, fill)
+    except BaseException:
+        if made and not any(folder.iterdir()):
+            folder.rmdir()
+        raise
+
+
+def _nothing(folder: Path, state: State) -> str:
+    """What there is where nothing was learned."""
+    from deixis.memory.perceptual.in_folder import has_views
+
+    if state is State.ABSENT:
+        return f"there is no memory at {folder}"
+    if has_views(folder):
+        return f"the memory at {folder} has views only, nothing was learned into it yet"
+    return f"there is no memory yet in the empty folder {folder}"
+
+
+def _make_folder(folder: Path) -> bool:
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise MemoryWriteError(f"the folder {folder} cannot be made: {error.strerror}") from error
+    return True
+
+
+def _open_locked(folder: Path, fill: Callable[[ox.Store], None]) -> Opened:
+    lock = OwnerLock.acquire(folder)
+    try:
+        lock.sign()
+        _prepare(folder, fill)
+        opened = Opened(folder, lock)
+    except BaseException:
+        lock.release(undo=True)
+        raise
+    try:
+        _drop_old_logs(folder)
+        _update_package(opened)
+    except BaseException:
+        opened.close()
+        raise
+    return opened
+
+
+def _drop_old_logs(folder: Path) -> None:
+    """The store leaves a log of its own behind at every opening, and never takes one away."""
+    for log in (folder / files.STORE).glob("LOG.old.*"):
+        with contextlib.suppress(OSError):
+            log.unlink()
+
+
+def _prepare(folder: Path, fill: Callable[[ox.Store], None]) -> None:
+    """Everything between the lock and the open store. What is damaged is found before anything is changed."""
+    state = files.inspect(folder)
+    if state is State.EMPTY:
+        with committed(folder):
+            files.create(folder, fill, package_digest())
+        return
+    files.check_store_opens(folder)
+    with committed(folder):
+        files.finish(folder)
+        files.migrate(folder)
+
+
+def _update_package(opened: Opened) -> None:
+    """Brings the ontology and the shapes to the packaged version, if they are of another one."""
+    mark, digest = files.read_mark(opened.folder), package_digest()
+    if mark.get("package") == digest:
+        return
+    with committed(opened.folder):
+        statements = list(ledger.package_update(opened.store, packaged()))
+        if statements:
+            opened.store.update(" ;\n".join(statements))
+            opened.store.flush()
+        files.write_mark(opened.folder, {**mark, "package": digest})

@@ -1,0 +1,1 @@
+"""SPARQL over semantic memory: what is admitted, the answers, and the rdflib view."""

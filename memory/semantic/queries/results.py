@@ -1,0 +1,147 @@
+"""Answers to queries, and the forms in which they are printed."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import Any
+
+import pyoxigraph as ox
+
+from deixis.memory.errors import QueryError
+from deixis.memory.semantic.rdf.files import PREFIXES, short
+from deixis.ontology.triples import with_blank_nodes
+
+Term = ox.NamedNode | ox.BlankNode | ox.Literal | ox.Triple
+_STRING = PREFIXES["xsd"] + "string"
+
+
+class QueryKind(StrEnum):
+    """The four forms of a query."""
+
+    SELECT = "select"
+    ASK = "ask"
+    CONSTRUCT = "construct"
+    DESCRIBE = "describe"
+
+
+@dataclass(frozen=True)
+class QueryResult:
+    """What a query found: rows of terms, a boolean, or triples, by its kind.
+
+    Rows come as the store gives them; what is printed is sorted where the query states no order, so that the same
+    memory prints the same answer.
+    """
+
+    kind: QueryKind
+    variables: tuple[str, ...] = ()
+    rows: tuple[tuple[Term | None, ...], ...] = ()
+    boolean: bool | None = None
+    triples: tuple[ox.Triple, ...] = ()
+    ordered: bool = False  # whether the query states an order
+
+    @classmethod
+    def of(
+        cls, kind: QueryKind, answer: ox.QuerySolutions | ox.QueryBoolean | ox.QueryTriples, ordered: bool
+    ) -> QueryResult:
+        """What Oxigraph answers, read to its end."""
+        if isinstance(answer, ox.QueryBoolean):
+            return cls(kind, boolean=bool(answer))
+        if isinstance(answer, ox.QuerySolutions):
+            variables = tuple(variable.value for variable in answer.variables)
+            return cls(kind, variables, tuple(map(tuple, answer)), ordered=ordered)
+        return cls(kind, triples=tuple(sorted(set(answer), key=str)))
+
+    def printed(self) -> Sequence[Sequence[Term | None]]:
+        """The rows in the order in which they are printed."""
+        return self.rows if self.ordered else sorted(self.rows, key=_row_key)
+
+    def to_table(self) -> list[str]:
+        """Lines of aligned plain text; IRIs by their known prefixes."""
+        if self.kind is QueryKind.ASK:
+            return ["yes" if self.boolean else "no"]
+        if self.kind is not QueryKind.SELECT:
+            return [" ".join(_readable(term, quoted=True) for term in triple) + " ." for triple in self.triples]
+        cells = [[_readable(term) for term in row] for row in self.printed()]
+        widths = [max(map(len, column)) for column in zip(self.variables, *cells, strict=True)]
+        lines = [self.variables, ["-" * width for width in widths], *cells]
+        return [_padded(line, widths) for line in lines]
+
+    def to_json(self) -> str:
+        """SPARQL 1.1 results as JSON; of a graph, its triples in N-Triples."""
+        if self.kind is QueryKind.ASK:
+            answer: dict[str, Any] = {"head": {}, "boolean": self.boolean}
+        elif self.kind is QueryKind.SELECT:
+            bound = [zip(self.variables, row, strict=True) for row in self.printed()]
+            bindings = [{name: _json_term(term) for name, term in row if term is not None} for row in bound]
+            answer = {"head": {"vars": list(self.variables)}, "results": {"bindings": bindings}}
+        else:
+            answer = {"triples": [f"{triple} ." for triple in self.triples]}
+        return json.dumps(answer, indent=2, ensure_ascii=False)
+
+    def to_csv(self) -> str:
+        """SPARQL 1.1 results as CSV. Raises QueryError for what has no rows."""
+        if self.kind is not QueryKind.SELECT:
+            raise QueryError(f"{self.kind.upper()} has no rows to write as CSV; use SELECT")
+        out = io.StringIO()
+        writer = csv.writer(out, lineterminator="\r\n")
+        writer.writerow(self.variables)
+        writer.writerows([[_csv_term(term) for term in row] for row in self.printed()])
+        return out.getvalue()
+
+    def to_turtle(self) -> str:
+        """The triples in Turtle. Raises QueryError for what has none."""
+        if self.kind not in (QueryKind.CONSTRUCT, QueryKind.DESCRIBE):
+            raise QueryError(f"{self.kind.upper()} has no triples to write as Turtle; use CONSTRUCT or DESCRIBE")
+        triples = with_blank_nodes(self.triples)
+        return (ox.serialize(triples, format=ox.RdfFormat.TURTLE, prefixes=PREFIXES) or b"").decode("utf-8")
+
+
+def _row_key(row: Sequence[Term | None]) -> tuple[str, ...]:
+    return tuple("" if term is None else str(term) for term in row)
+
+
+def _padded(cells: Sequence[str], widths: Sequence[int]) -> str:
+    return "  ".join(cell.ljust(width) for cell, width in zip(cells, widths, strict=True)).rstrip()
+
+
+def _readable(term: Term | None, quoted: bool = False) -> str:
+    if term is None:
+        return ""
+    if isinstance(term, ox.NamedNode):
+        return _printable(short(term.value))
+    if isinstance(term, ox.Literal):
+        text = _printable(term.value)
+        return json.dumps(text, ensure_ascii=False) if quoted and term.datatype.value == _STRING else text
+    return _printable(str(term))
+
+
+def _printable(text: str) -> str:
+    """Without line ends and other characters that would move a terminal's cursor."""
+    return "".join(letter if letter.isprintable() else letter.encode("unicode_escape").decode() for letter in text)
+
+
+def _csv_term(term: Term | None) -> str:
+    if term is None:
+        return ""
+    return term.value if isinstance(term, ox.NamedNode | ox.Literal) else str(term)
+
+
+def _json_term(term: Term) -> dict[str, Any]:
+    if isinstance(term, ox.NamedNode):
+        return {"type": "uri", "value": term.value}
+    if isinstance(term, ox.BlankNode):
+        return {"type": "bnode", "value": term.value}
+    if isinstance(term, ox.Triple):
+        parts = zip(("subject", "predicate", "object"), term, strict=True)
+        return {"type": "triple", "value": {name: _json_term(part) for name, part in parts}}
+    told: dict[str, Any] = {"type": "literal", "value": term.value}
+    if term.language:
+        told["xml:lang"] = term.language
+    elif term.datatype.value != _STRING:
+        told["datatype"] = term.datatype.value
+    return told

@@ -1,0 +1,203 @@
+"""Asking SPARQL of a memory: what is let in, what is refused, and where a query is wrong."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+
+import pyoxigraph as ox
+
+from deixis.memory.errors import QueryError
+from deixis.memory.semantic.queries.results import QueryKind, QueryResult
+from deixis.memory.semantic.queries.tokens import Kind, Token, ambiguous, decoded, given_offset, tokens
+from deixis.memory.semantic.queries.union import default_graph
+from deixis.memory.semantic.rdf.files import PREFIXES
+from deixis.memory.semantic.rdf.graphs import CANONICAL
+from deixis.ontology.relation import nearest
+
+_UPDATES = {"INSERT", "DELETE", "LOAD", "CLEAR", "CREATE", "DROP", "COPY", "MOVE", "ADD", "WITH", "USING"}
+_FORMS = {"SELECT", "ASK", "CONSTRUCT", "DESCRIBE"}
+_PROLOGUE = {"PREFIX", "BASE"}
+
+
+@dataclass(frozen=True)
+class Checked:
+    """A query that may be run: its text, its form, and what it says of graphs and order."""
+
+    text: str
+    kind: QueryKind
+    names_graphs: bool  # by FROM
+    asks_graphs: bool  # by GRAPH
+    ordered: bool
+    prefixes: Mapping[str, str]  # of those that need no declaration, the ones that it uses
+
+
+class _Text:
+    """A query's text, decoded, and the places in it as its writer sees them."""
+
+    def __init__(self, given: str) -> None:
+        self.given = given
+        self.text, self._places = decoded(given)
+
+    def error(self, offset: int, message: str) -> QueryError:
+        """An error at an offset of the decoded text, with the line and a caret."""
+        offset = given_offset(offset, self._places)
+        before = self.given[:offset]
+        line = before.count("\n") + 1
+        start = before.rfind("\n") + 1
+        shown = self.given[start:].split("\n", 1)[0].rstrip("\r")
+        caret = re.sub(r"[^\t]", " ", shown[: offset - start]) + "^"
+        return QueryError(f"query:{line}:{offset - start + 1}: {message}\n  {shown}\n  {caret}")
+
+    def offset(self, line: int, column: int) -> int:
+        """The offset in the decoded text of a line and a column in it."""
+        lines = self.text.split("\n")
+        return min(sum(len(before) + 1 for before in lines[: line - 1]) + column - 1, len(self.text))
+
+
+def run_query(store: ox.Store, sparql: str, union: list[ox.NamedNode] | None = None) -> QueryResult:
+    """Runs a query over a memory's store. Raises QueryError for what is refused or cannot be understood.
+
+    ``union`` is what :func:`deixis.memory.semantic.queries.union.default_graph` says of the store, where the caller
+    knows it already.
+    """
+    checked = _admitted(sparql)
+    graphs = {} if checked.names_graphs else {"default_graph": union or default_graph(store)}
+    if checked.asks_graphs and graphs:
+        graphs["named_graphs"] = [*CANONICAL]
+    try:
+        answer = store.query(checked.text, prefixes=dict(checked.prefixes), **graphs)  # type: ignore[arg-type]
+        return QueryResult.of(checked.kind, answer, checked.ordered)
+    except SyntaxError as error:
+        raise _syntax_error(_Text(sparql), error) from None
+    except ValueError as error:
+        raise QueryError(f"query: {error}") from error
+
+
+@lru_cache(maxsize=256)
+def _admitted(sparql: str) -> Checked:
+    """What :func:`check_query` says of a query, looked at once: programs ask the same again and again."""
+    return check_query(sparql)
+
+
+def check_query(sparql: str, prefixes: Mapping[str, str] = PREFIXES) -> Checked:
+    """What a query would do, without running it; ``prefixes`` need no declaration.
+
+    Raises QueryError for what is refused.
+
+    >>> check_query("ASK { ?s ?p ?o }").kind
+    <QueryKind.ASK: 'ask'>
+    """
+    return _check(_Text(sparql), prefixes)
+
+
+def _check(text: _Text, prefixes: Mapping[str, str]) -> Checked:
+    found = list(tokens(text.text))
+    declared = _declared(found)
+    known = {**prefixes, **declared}
+    for position, token in enumerate(found):
+        _refuse(text, token, found[position - 1 : position], found[position + 1 : position + 2], known)
+    form = next((token for token in _body(found) if token.kind is Kind.WORD and token.upper in _FORMS), None)
+    if form is None:
+        raise text.error(0, "no query: it must begin with SELECT, ASK, CONSTRUCT or DESCRIBE")
+    names_graphs = _check_from(text, found, known)
+    asks_graphs = any(token.kind is Kind.WORD and token.upper == "GRAPH" for token in found)
+    used = {token.text.partition(":")[0] for token in found if token.kind is Kind.NAME}
+    mine = {prefix: base for prefix, base in prefixes.items() if prefix in used and prefix not in declared}
+    return Checked(text.text, QueryKind(form.text.lower()), names_graphs, asks_graphs, _ordered(found), mine)
+
+
+def _declared(found: list[Token]) -> dict[str, str]:
+    """The prefixes that a query declares."""
+    declared = {}
+    for word, name, iri in zip(found, found[1:], found[2:], strict=False):
+        if word.kind is Kind.WORD and word.upper == "PREFIX" and name.text.endswith(":"):
+            declared[name.text[:-1]] = iri.text[1:-1]
+    return declared
+
+
+def _body(found: list[Token]) -> list[Token]:
+    """The tokens after the prologue."""
+    start = 0
+    while start < len(found) and found[start].upper in _PROLOGUE:
+        start += 3 if found[start].upper == "PREFIX" else 2
+    return found[start:]
+
+
+def _refuse(text: _Text, token: Token, before: list[Token], after: list[Token], known: dict[str, str]) -> None:
+    if token.kind is Kind.WORD:
+        if "SERVICE" in token.upper:
+            raise text.error(token.start, "SERVICE is refused: a query stays in the memory and asks no other")
+        if token.upper in _UPDATES:
+            raise text.error(token.start, f"{token.upper} is refused: a query asks and changes nothing")
+    elif token.kind is Kind.NAME and not token.text.startswith("_:"):
+        prefix = token.text.partition(":")[0]
+        opens = after and after[0].text == "{" and not (before and before[0].upper == "GRAPH")
+        if "SERVICE" in prefix.upper() and opens:
+            raise text.error(token.start, "SERVICE is refused: a query stays in the memory and asks no other")
+        if prefix not in known and not (before and before[0].upper == "PREFIX"):
+            raise text.error(token.start, _unknown_prefix(prefix, known))
+    elif token.kind is Kind.IRI and ambiguous(token, set(known)):
+        raise text.error(
+            token.start,
+            "this can be read as an IRI or as a comparison: write the IRI in full, or put spaces around '<'",
+        )
+
+
+def _unknown_prefix(prefix: str, known: dict[str, str]) -> str:
+    near = nearest(prefix, sorted(known))
+    hint = f"did you mean '{near}:'?" if near else f"known without being declared are {', '.join(sorted(PREFIXES))};"
+    return f"the prefix '{prefix}:' is not known; {hint} else declare it: PREFIX {prefix}: <…>"
+
+
+def _check_from(text: _Text, found: list[Token], known: dict[str, str]) -> bool:
+    """Whether the query names its graphs with FROM; raises QueryError for any but the memory's own."""
+    own, named = {iri.value for iri in CANONICAL}, False
+    for position, token in enumerate(found):
+        if token.kind is not Kind.WORD or token.upper != "FROM":
+            continue
+        rest = found[position + 1 :]
+        graph = rest[1] if rest and rest[0].upper == "NAMED" and len(rest) > 1 else rest[0] if rest else token
+        if _iri(graph, known) not in own:
+            listed = ", ".join(f"dxg:{name}" for name in CANONICAL.values())
+            raise text.error(graph.start, f"the memory has no such graph, and none is fetched; it has {listed}")
+        named = True
+    return named
+
+
+def _iri(token: Token, known: dict[str, str]) -> str:
+    if token.kind is Kind.IRI:
+        return token.text[1:-1]
+    prefix, _, local = token.text.partition(":")
+    return known.get(prefix, "") + local
+
+
+def _ordered(found: list[Token]) -> bool:
+    """Whether the outermost query states an order."""
+    depth = 0
+    for token in found:
+        if token.kind is Kind.SIGN:
+            depth += (token.text == "{") - (token.text == "}")
+        elif token.kind is Kind.WORD and token.upper == "ORDER" and depth == 0:
+            return True
+    return False
+
+
+def _syntax_error(text: _Text, error: SyntaxError) -> QueryError:
+    found = re.match(r"error at (\d+):(\d+): (.*)", " ".join(str(error).split()))
+    if not found:
+        return QueryError(f"query: {' '.join(str(error).split())}")
+    line, column, what = int(found.group(1)), int(found.group(2)), found.group(3)
+    return text.error(text.offset(line, column), f"not understood here{_expected(what)}")
+
+
+def _expected(what: str) -> str:
+    """Of what the parser expected, the part that helps: its words, and not its character classes."""
+    names = re.sub(r"\[[^\]]*\]( \|)?|'[^']*'\.\.='[^']*'", "", what.removeprefix("expected ").removeprefix("one of "))
+    told = next((name for name in names.split(", ") if " " in name.strip() and "not found" not in name), None)
+    if told:
+        return f": {told.strip()}"
+    words = [name.strip() for name in names.split(",") if re.fullmatch(r'[A-Z]+|"[^"]+"', name.strip())]
+    return f"; expected {' or '.join(words[:8])}" if words else ""

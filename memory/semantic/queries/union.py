@@ -1,0 +1,69 @@
+"""The union of the asserted, inferred and learned graphs, as a query sees it: each triple once.
+
+Asked over several graphs at once, Oxigraph gives a triple that is in two of them twice, which SPARQL does not. So as
+soon as the three overlap anywhere, their union is kept as a graph of its own, and queries look at that; as long as they
+do not, which is so for what is loaded in bulk, nothing is written twice.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pyoxigraph as ox
+
+from deixis.memory.semantic.rdf.graphs import MERGED, UNION, GraphName, graph_iri
+from deixis.memory.semantic.rdf.ledger import Triples, deletion, insertion, quad_of
+
+_BUILD = (
+    f"INSERT {{ GRAPH {MERGED} {{ ?s ?p ?o }} }} WHERE {{ VALUES ?g {{ "
+    f"{' '.join(str(graph_iri(name)) for name in UNION)} }} GRAPH ?g {{ ?s ?p ?o }} }}"
+)
+
+
+def default_graph(store: ox.Store) -> list[ox.NamedNode]:
+    """The graphs that a query without GRAPH looks at, without a triple in two of them, and without empty ones."""
+    if store.contains_named_graph(MERGED):
+        return [MERGED]
+    graphs = [graph_iri(name) for name in UNION]
+    return [graph for graph in graphs if any(store.quads_for_pattern(None, None, None, graph))] or graphs
+
+
+def merging(store: ox.Store, added: Triples, removed: Triples) -> Iterator[str]:
+    """The operations that keep the union right under a change; they come after those of the change itself."""
+    if store.contains_named_graph(MERGED):
+        gone = {triple for name in UNION for triple in removed.get(name, ())}
+        yield from deletion(MERGED, [t for t in gone if not any(_after(store, n, t, added, removed) for n in UNION)])
+        yield from insertion(MERGED, {triple for name in UNION for triple in added.get(name, ())})
+    elif any(
+        _after(store, other, triple, added, removed)
+        for name in UNION
+        for triple in added.get(name, ())
+        for other in UNION
+        if other is not name
+    ):
+        yield _BUILD
+
+
+def _after(store: ox.Store, name: GraphName, triple: ox.Triple, added: Triples, removed: Triples) -> bool:
+    """Whether a graph will hold a triple after the change."""
+    if triple in added.get(name, ()):
+        return True
+    return triple not in removed.get(name, ()) and quad_of(triple, graph_iri(name)) in store
+
+
+def merge_if_overlapping(store: ox.Store) -> None:
+    """Builds the union of a store that was filled in bulk, where the three graphs overlap."""
+    if store.contains_named_graph(MERGED):
+        return
+    by_size = sorted(UNION, key=lambda name: _size(store, name))
+    for position, small in enumerate(by_size[:-1]):
+        for quad in store.quads_for_pattern(None, None, None, graph_iri(small)):
+            if any(quad_of(quad.triple, graph_iri(large)) in store for large in by_size[position + 1 :]):
+                store.update(_BUILD)
+                return
+
+
+def _size(store: ox.Store, name: GraphName) -> int:
+    solutions = store.query("SELECT (COUNT(*) AS ?n) { ?s ?p ?o }", default_graph=graph_iri(name))
+    assert isinstance(solutions, ox.QuerySolutions)
+    return int(next(solutions)["n"].value)

@@ -1,0 +1,109 @@
+"""One change of a memory, worked out before it is written: what comes, what goes, and the update that does it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import chain
+
+import pyoxigraph as ox
+
+from deixis.memory.errors import RejectedWriteError
+from deixis.memory.semantic.rdf import ledger
+from deixis.memory.semantic.rdf.graphs import GraphName, ModelSet, graph_iri, lesson_graph, models_graph
+from deixis.ontology.triples import content_key, skolem
+
+Models = Mapping[ModelSet, Sequence[ox.Triple]]
+"""Sets of learned models, each to stand in the place of the one that is there; sets that are left out stay."""
+
+
+@dataclass(frozen=True)
+class Change:
+    """What a write adds to and removes from the canonical graphs, and the operations of its one update."""
+
+    added: ledger.Triples = field(default_factory=dict)
+    removed: ledger.Triples = field(default_factory=dict)
+    statements: tuple[str, ...] = ()
+
+
+def together(*changes: Change) -> Change:
+    """Changes that are written in one step, in this order."""
+    added: dict[GraphName, frozenset[ox.Triple]] = {}
+    removed: dict[GraphName, frozenset[ox.Triple]] = {}
+    for change in changes:
+        for name, triples in change.added.items():
+            added[name] = added.get(name, frozenset()) | triples
+        for name, triples in change.removed.items():
+            removed[name] = removed.get(name, frozenset()) | triples
+    return Change(added, removed, tuple(chain.from_iterable(change.statements for change in changes)))
+
+
+def arriving(store: ox.Store, lesson: str, said: Mapping[GraphName, Sequence[ox.Triple]]) -> Change:
+    """The change that a new lesson makes, but for what follows from it."""
+    added = {name: frozenset(triples) for name, triples in said.items()}
+    return Change(added=added, statements=tuple(ledger.arrival(store, lesson, said)))
+
+
+def departing(store: ox.Store, lesson: str) -> Change:
+    """The change that forgetting a lesson makes, but for what followed from it."""
+    removed: dict[GraphName, frozenset[ox.Triple]] = {}
+    statements: list[str] = []
+    for name, triples in ledger.copies(store, lesson).items():
+        copy = lesson_graph(lesson, name)
+        only = ledger.only_of(store, copy, name, triples)
+        removed[name] = frozenset(only)
+        statements += [*ledger.deletion(graph_iri(name), only), f"DROP SILENT GRAPH {copy}"]
+    return Change({}, removed, tuple(statements))
+
+
+def concluding(store: ox.Store, inferred: Iterable[ox.Triple]) -> Change:
+    """The change that replaces the inferred graph."""
+    graph = graph_iri(GraphName.INFERRED)
+    gone, come = ledger.difference(store, graph, named("inferred", inferred))
+    statements = (*ledger.deletion(graph, gone), *ledger.insertion(graph, come))
+    return Change({GraphName.INFERRED: frozenset(come)}, {GraphName.INFERRED: frozenset(gone)}, statements)
+
+
+def modelling(store: ox.Store, models: Models) -> Change:
+    """The change that replaces sets of learned models."""
+    return together(*(_modelling(store, models_graph(which), triples) for which, triples in models.items()))
+
+
+def _modelling(store: ox.Store, copy: ox.NamedNode, triples: Iterable[ox.Triple]) -> Change:
+    gone, come = ledger.difference(store, copy, triples)
+    only = ledger.only_of(store, copy, GraphName.LEARNED, gone)
+    return Change(
+        {GraphName.LEARNED: frozenset(come)},
+        {GraphName.LEARNED: frozenset(only)},
+        tuple(ledger.replacement(store, copy, GraphName.LEARNED, gone, come)),
+    )
+
+
+def incoming(lesson: str, contributions: Mapping[GraphName, Iterable[ox.Triple]]) -> dict[GraphName, list[ox.Triple]]:
+    """Contributions as they will be stored. Raises RejectedWriteError for what no lesson may say."""
+    if not lesson.strip():
+        raise RejectedWriteError("a lesson needs a name")
+    if GraphName.INFERRED in contributions:
+        raise RejectedWriteError(f"lesson '{lesson}' cannot say what is inferred: pass it as the inferred triples")
+    key = content_key(lesson)
+    return {GraphName(name): ledger.as_stored(named(key, triples)) for name, triples in contributions.items()}
+
+
+def named(key: str, triples: Iterable[ox.Triple]) -> Iterable[ox.Triple]:
+    """Triples whose blank nodes have become names under ``key``; raises RejectedWriteError for triples in triples."""
+    for triple in triples:
+        subject, object = triple.subject, triple.object
+        if isinstance(subject, ox.NamedNode) and isinstance(object, ox.NamedNode | ox.Literal):
+            yield triple
+        else:
+            named_subject = _name(key, subject)
+            assert not isinstance(named_subject, ox.Literal)
+            yield ox.Triple(named_subject, triple.predicate, _name(key, object))
+
+
+def _name(key: str, term: ox.NamedNode | ox.BlankNode | ox.Literal | ox.Triple) -> ox.NamedNode | ox.Literal:
+    if isinstance(term, ox.BlankNode):
+        return skolem(f"{key}.{term.value}")
+    if isinstance(term, ox.Triple):
+        raise RejectedWriteError(f"a triple inside a triple cannot be kept: {term}")
+    return term

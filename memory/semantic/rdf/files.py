@@ -1,0 +1,204 @@
+"""RDF files: read without trust, and written as sorted Turtle and TriG; the prefixes of both.
+
+>>> import pyoxigraph as ox
+>>> print(turtle([ox.Triple(ox.NamedNode("urn:a"), ox.NamedNode("urn:p"), ox.Literal("x"))]).splitlines()[-2:])
+['<urn:a>', '    <urn:p> "x" .']
+
+Nothing that a file names is fetched: ``owl:imports`` is a triple like any other.
+"""
+
+from __future__ import annotations
+
+import codecs
+import re
+from collections.abc import Iterable, Iterator
+from functools import cache
+from itertools import groupby
+from pathlib import Path
+from urllib.parse import quote
+
+import pyoxigraph as ox
+
+from deixis.memory.errors import ImportFormatError
+from deixis.memory.semantic.rdf.graphs import GRAPHS
+from deixis.ontology.triples import LEARNED, with_blank
+from deixis.ontology.vocabulary import BASE, W3C
+
+PREFIXES = {
+    "dcterms": "http://purl.org/dc/terms/",
+    "dx": BASE,
+    "dxg": GRAPHS,
+    "lx": LEARNED,
+    "owl": "http://www.w3.org/2002/07/owl#",
+    "prov": "http://www.w3.org/ns/prov#",
+    "rdf": "http://www.w3.org/1999/02/22-rdf-syntax-ns#",
+    "rdfs": "http://www.w3.org/2000/01/rdf-schema#",
+    "sh": "http://www.w3.org/ns/shacl#",
+    "skos": "http://www.w3.org/2004/02/skos/core#",
+    "xsd": "http://www.w3.org/2001/XMLSchema#",
+}
+
+_SAFE_LOCAL = re.compile(r"[A-Za-z_][A-Za-z0-9_-]*")
+
+
+def short(iri: str) -> str:
+    """An IRI for people to read: by prefix where there is one, else in angle brackets.
+
+    >>> short("https://w3id.org/deixis/learned/layout/dinner-1")
+    'lx:layout/dinner-1'
+    """
+    for prefix, base in PREFIXES.items():
+        if iri.startswith(base):
+            return f"{prefix}:{iri.removeprefix(base)}"
+    return f"<{iri}>"
+
+
+def turtle_name(iri: str) -> str:
+    """An IRI in Turtle: by prefix where what follows is plain, else in angle brackets.
+
+    >>> turtle_name("https://w3id.org/deixis/learned/layout/dinner-1")
+    '<https://w3id.org/deixis/learned/layout/dinner-1>'
+    """
+    for prefix, base in PREFIXES.items():
+        if iri.startswith(base) and _SAFE_LOCAL.fullmatch(iri, len(base)):
+            return f"{prefix}:{iri.removeprefix(base)}"
+    return f"<{iri}>"
+
+
+_STRINGS = {PREFIXES["xsd"] + "string", PREFIXES["rdf"] + "langString", PREFIXES["rdf"] + "dirLangString"}
+
+
+def turtle(triples: Iterable[ox.Triple]) -> str:
+    """A Turtle document; names that stand for blank nodes become blank nodes."""
+    return "\n".join([*_prefixes(), "", *_statements(triples, "")]) + "\n"
+
+
+def trig(graphs: Iterable[tuple[ox.NamedNode, Iterable[ox.Triple]]]) -> str:
+    """A TriG document of named graphs, in the order given; empty ones are left out."""
+    lines = [*_prefixes()]
+    for graph, triples in graphs:
+        statements = list(_statements(triples, "    "))
+        if statements:
+            lines += ["", f"{turtle_name(graph.value)} {{", *statements, "}"]
+    return "\n".join(lines) + "\n"
+
+
+def _prefixes() -> Iterator[str]:
+    for prefix, base in PREFIXES.items():
+        yield f"@prefix {prefix}: <{base}> ."
+
+
+def _statements(triples: Iterable[ox.Triple], indent: str) -> Iterator[str]:
+    subject, predicate, term = cache(_subject), cache(_predicate), cache(_term)  # most terms stand in many triples
+    rows = sorted({(subject(t.subject), predicate(t.predicate), term(t.object)) for t in triples})
+    for (_, name), about in groupby(rows, key=lambda row: row[0]):
+        said = [f"{verb} {object}" for _, (_, verb), object in about]
+        yield indent + name
+        for line in said[:-1]:
+            yield f"{indent}    {line} ;"
+        yield f"{indent}    {said[-1]} ."
+
+
+def _subject(term: ox.NamedNode | ox.BlankNode) -> tuple[bool, str]:
+    """Named subjects first."""
+    return isinstance(with_blank(term), ox.BlankNode), _term(term)
+
+
+def _predicate(term: ox.NamedNode) -> tuple[bool, str]:
+    """The type first."""
+    return (False, "a") if term.value == W3C.RDF_TYPE else (True, turtle_name(term.value))
+
+
+def _term(term: ox.NamedNode | ox.BlankNode | ox.Literal | ox.Triple) -> str:
+    term = with_blank(term)
+    if isinstance(term, ox.NamedNode):
+        return turtle_name(term.value)
+    if isinstance(term, ox.Literal) and term.datatype.value not in _STRINGS:
+        return f"{ox.Literal(term.value)}^^{turtle_name(term.datatype.value)}"
+    return str(term)
+
+
+MAX_BYTES = 2**30
+
+FORMATS = {
+    ".trig": ox.RdfFormat.TRIG,
+    ".nq": ox.RdfFormat.N_QUADS,
+    ".ttl": ox.RdfFormat.TURTLE,
+    ".nt": ox.RdfFormat.N_TRIPLES,
+    ".rdf": ox.RdfFormat.RDF_XML,
+    ".owl": ox.RdfFormat.RDF_XML,
+    ".xml": ox.RdfFormat.RDF_XML,
+}
+
+_BASE = "https://w3id.org/deixis/imported/"
+_DTD = re.compile(r"<!\s*(DOCTYPE|ENTITY|ELEMENT|ATTLIST|NOTATION)", re.IGNORECASE)
+_DECLARATION = re.compile(r"\s*<\?xml\b[^>]*?\?>")
+_ENCODING = re.compile(r"encoding\s*=\s*[\"']([^\"']*)[\"']")
+_BOMS = (
+    (codecs.BOM_UTF32_LE, "utf-32-le"),
+    (codecs.BOM_UTF32_BE, "utf-32-be"),
+    (codecs.BOM_UTF8, "utf-8"),
+    (codecs.BOM_UTF16_LE, "utf-16-le"),
+    (codecs.BOM_UTF16_BE, "utf-16-be"),
+)
+_BARE = ((b"<\0\0\0", "utf-32-le"), (b"\0\0\0<", "utf-32-be"), (b"<\0", "utf-16-le"), (b"\0<", "utf-16-be"))
+
+
+def read_quads(file: Path) -> Iterator[ox.Quad]:
+    """The statements of a file. Raises ImportFormatError, with the place where it is malformed."""
+    format = FORMATS.get(file.suffix.lower())
+    if format is None:
+        raise ImportFormatError(f"{file}: of no known format; it must end in {', '.join(FORMATS)}; views in .zip")
+    content = _bytes(file)
+    text = _xml(file, content) if format is ox.RdfFormat.RDF_XML else content
+    try:
+        yield from ox.parse(input=text, format=format, base_iri=_BASE + quote(file.stem, safe="") + "/")
+    except SyntaxError as error:
+        place = f"{error.lineno}:{error.offset}: " if error.lineno else ""
+        raise ImportFormatError(f"{file}:{place or ' '}{' '.join(str(error.msg).split())}") from None
+    except (OSError, ValueError) as error:
+        raise ImportFormatError(f"{file}: {error}") from error
+
+
+def _bytes(file: Path) -> bytes:
+    if not file.is_file():
+        raise ImportFormatError(f"{file}: there is no such file")
+    size = file.stat().st_size
+    if size > MAX_BYTES:
+        raise ImportFormatError(f"{file}: {size} bytes are too many; at most {MAX_BYTES} are read, so split the file")
+    try:
+        return file.read_bytes()
+    except OSError as error:
+        raise ImportFormatError(f"{file}: cannot be read: {error.strerror}") from error
+
+
+def _xml(file: Path, content: bytes) -> str:
+    """XML as text, in whatever encoding; refused where it has a DTD or is in an encoding that could hide one."""
+    text = _decoded(file, content)
+    found = _DTD.search(text)
+    if found:
+        line = text.count("\n", 0, found.start()) + 1
+        column = found.start() - text.rfind("\n", 0, found.start())
+        raise ImportFormatError(
+            f"{file}:{line}:{column}: a DTD (<!{found.group(1)}) is refused; take it out of the file"
+        )
+    return text
+
+
+def _decoded(file: Path, content: bytes) -> str:
+    start = next(((len(bom), name) for bom, name in _BOMS if content.startswith(bom)), None)
+    start = start or next(((0, name) for bare, name in _BARE if content.startswith(bare)), (0, "utf-8"))
+    try:
+        text = content[start[0] :].decode(start[1])
+    except UnicodeDecodeError as error:
+        raise ImportFormatError(f"{file}: is not {start[1].upper()} at byte {error.start}; save it as UTF-8") from None
+    declaration = _DECLARATION.match(text)
+    named = _ENCODING.search(declaration.group()) if declaration else None
+    if named and named.group(1).lower() not in ("utf-8", "us-ascii", start[1], start[1][:6]):
+        raise ImportFormatError(f"{file}: the encoding '{named.group(1)}' is not read; save it as UTF-8")
+    # the text is handed on as UTF-8, whatever it was: its declaration goes, and lines stay where they are
+    return (
+        text[: declaration.start()] + "\n" * declaration.group().count("\n") + text[declaration.end() :]
+        if declaration
+        else text
+    )

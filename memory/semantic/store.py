@@ -1,0 +1,272 @@
+"""Semantic memory: what is known, as RDF in named graphs that outlive the process.
+
+>>> import tempfile
+>>> with SemanticMemory.open(Path(tempfile.mkdtemp()) / "memory", create=True) as memory:
+...     memory.lessons()
+()
+"""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pyoxigraph as ox
+
+from deixis.memory import folder as files
+from deixis.memory.errors import MemoryFormatError, RejectedWriteError, UnknownLessonError
+from deixis.memory.folder import committed, reading
+from deixis.memory.owner import Closing
+from deixis.memory.semantic.opening import Opened, open_memory
+from deixis.memory.semantic.queries.union import default_graph, merge_if_overlapping, merging
+from deixis.memory.semantic.rdf import ledger
+from deixis.memory.semantic.rdf.change import (
+    Change,
+    Models,
+    arriving,
+    concluding,
+    departing,
+    incoming,
+    modelling,
+    named,
+    together,
+)
+from deixis.memory.semantic.rdf.graphs import MERGED, UNION, GraphName, ModelSet, graph_iri, loaded_graph, models_graph
+from deixis.memory.semantic.stats import MemoryStats, count
+from deixis.ontology.relation import nearest
+
+if TYPE_CHECKING:
+    import rdflib
+
+    from deixis.memory.semantic.queries.results import QueryResult
+
+
+def load_aside(opened: Opened, contributions: Mapping[GraphName, Iterable[ox.Triple]]) -> None:
+    """See :meth:`deixis.memory.semantic.store.SemanticMemory.load`."""
+    from deixis.memory.semantic.validation.validate import check_store
+
+    if GraphName.INFERRED in contributions:
+        raise RejectedWriteError("what is inferred cannot be loaded: it follows from the rest")
+    aside = opened.folder / files.NEW
+    with committed(opened.folder):
+        shutil.rmtree(aside, ignore_errors=True)
+        opened.store.flush()
+        opened.store.backup(aside)
+        try:
+            store = ox.Store(aside)
+            for name, triples in contributions.items():
+                store.bulk_extend(_quads(opened.store, GraphName(name), triples))
+            merge_if_overlapping(store)
+            check_store(store)
+            store.flush()
+            del store
+        except BaseException:
+            shutil.rmtree(aside, ignore_errors=True)
+            raise
+        opened.shut()
+        try:
+            files.swap(opened.folder, files.read_mark(opened.folder))
+        finally:
+            opened.reopen()
+
+
+def _quads(store: ox.Store, name: GraphName, triples: Iterable[ox.Triple]) -> Iterator[ox.Quad]:
+    """The quads to write: where the graph has content, a triple that is there already is marked as loaded too."""
+    graph, mark = graph_iri(name), loaded_graph(name)
+    merged = name in UNION and store.contains_named_graph(MERGED)
+    held = any(store.quads_for_pattern(None, None, None, graph))
+    for triple in named(f"loaded.{name}", triples):
+        quad = ox.Quad(triple.subject, triple.predicate, triple.object, graph)
+        if held and quad in store:
+            yield ox.Quad(triple.subject, triple.predicate, triple.object, mark)
+        if merged:
+            yield ox.Quad(triple.subject, triple.predicate, triple.object, MERGED)
+        yield quad
+
+
+class SemanticMemory(Closing):
+    """The semantic memory in one folder, owned by this process until it is closed."""
+
+    def __init__(self, opened: Opened) -> None:
+        self._opened: Opened | None = opened
+        self._views: list[rdflib.Dataset] = []
+        self._union: list[ox.NamedNode] | None = None  # the graphs that a query looks at, since the last write
+
+    @classmethod
+    def open(cls, path: str | Path, create: bool = False) -> SemanticMemory:
+        """Opens a memory, or makes one with ``create``.
+
+        Raises MemoryBusyError where somebody has it open, MemoryFormatError where there is none or it cannot be
+        believed, MemoryWriteError where the folder cannot be written. A failed open changes nothing.
+        """
+        return cls(open_memory(Path(path), create))
+
+    def close(self) -> None:
+        """Lets go of the folder; views made by :meth:`dataset` are of no use any more."""
+        if self._opened is not None:
+            opened, self._opened = self._opened, None
+            self._drop_views()
+            opened.close()
+
+    @property
+    def path(self) -> Path:
+        """The folder."""
+        return self._open.folder
+
+    @property
+    def store(self) -> ox.Store:
+        """The Oxigraph store; read it, and leave writing to this class."""
+        return self._open.store
+
+    @property
+    def _open(self) -> Opened:
+        if self._opened is None:
+            raise MemoryFormatError("this memory is closed: open it again")
+        return self._opened
+
+    def learn(
+        self,
+        lesson: str,
+        contributions: Mapping[GraphName, Sequence[ox.Triple]],
+        inferred: Sequence[ox.Triple],
+        models: Models | None = None,
+    ) -> None:
+        """Writes a lesson, and what now follows from everything, in one step; see :meth:`learn_all`."""
+        self.learn_all({lesson: contributions}, inferred, models)
+
+    def learn_all(
+        self,
+        lessons: Mapping[str, Mapping[GraphName, Sequence[ox.Triple]]],
+        inferred: Sequence[ox.Triple],
+        models: Models | None = None,
+    ) -> None:
+        """Writes lessons, and what now follows from everything, in one step.
+
+        ``inferred`` replaces the inferred graph, ``models`` the sets of models that are given. Blank nodes become
+        names. Raises RejectedWriteError, having written nothing, where a lesson is known already, says nothing, or
+        would break the shapes.
+        """
+        changes, known = [], self.lessons()
+        for lesson, contributions in lessons.items():
+            if lesson in known:
+                raise RejectedWriteError(f"lesson '{lesson}' is known already: forget it first, or choose another name")
+            said = incoming(lesson, contributions)
+            if not any(said.values()):
+                raise RejectedWriteError(f"lesson '{lesson}' says nothing: give at least one triple")
+            changes.append(arriving(self.store, lesson, said))
+        self.commit(together(*changes, concluding(self.store, inferred), modelling(self.store, models or {})))
+
+    def forget(self, lesson: str, inferred: Sequence[ox.Triple], models: Models | None = None) -> None:
+        """Takes back what only this lesson contributed, and replaces the inferred graph and models, in one step.
+
+        Raises UnknownLessonError, naming the nearest one, where there is no such lesson; RejectedWriteError where
+        something that stays depends on what would go.
+        """
+        self._known(lesson)
+        gone = departing(self.store, lesson)
+        self.commit(together(gone, concluding(self.store, inferred), modelling(self.store, models or {})))
+
+    def conclude(self, inferred: Sequence[ox.Triple], models: Models | None = None) -> None:
+        """Replaces the inferred graph, and the models that are given, in one step."""
+        change = together(concluding(self.store, inferred), modelling(self.store, models or {}))
+        if change.statements:
+            self.commit(change)
+
+    def keep_models(self, models: Models) -> None:
+        """Replaces the sets of learned models that are given, in one step; an empty set takes them away."""
+        change = modelling(self.store, models)
+        if change.statements:
+            self.commit(change)
+
+    def models(self, which: ModelSet) -> list[ox.Triple]:
+        """The triples of a set of learned models."""
+        with reading(self.path):
+            return list(ledger.triples_in(self.store, models_graph(which)))
+
+    def remaining(self, lesson: str) -> dict[GraphName, list[ox.Triple]]:
+        """What the canonical graphs would hold without that lesson; raises UnknownLessonError where there is none."""
+        self._known(lesson)
+        with reading(self.path):
+            gone = departing(self.store, lesson).removed
+            return {
+                name: [triple for triple in self.triples(name) if triple not in gone.get(name, frozenset())]
+                for name in GraphName
+            }
+
+    def load(self, contributions: Mapping[GraphName, Iterable[ox.Triple]]) -> None:
+        """Writes much at once that belongs to no lesson: fast, all or nothing, guarded by the same shapes.
+
+        Raises RejectedWriteError where the shapes would be broken, and writes nothing then.
+        """
+
+        self._drop_views()
+        self._union = None
+        load_aside(self._open, contributions)
+
+    def lessons(self) -> tuple[str, ...]:
+        """The lessons in the order learned."""
+        with reading(self.path):
+            return ledger.lessons(self.store)
+
+    def contributions(self, lesson: str) -> dict[GraphName, list[ox.Triple]]:
+        """What one lesson contributed, by graph; raises UnknownLessonError where there is none."""
+        self._known(lesson)
+        with reading(self.path):
+            return ledger.copies(self.store, lesson)
+
+    def triples(self, name: GraphName) -> Iterator[ox.Triple]:
+        """The triples of a canonical graph, in no stated order."""
+        with reading(self.path):
+            yield from ledger.triples_in(self.store, graph_iri(GraphName(name)))
+
+    def query(self, sparql: str) -> QueryResult:
+        """Asks SELECT, ASK, CONSTRUCT or DESCRIBE of the asserted, inferred and learned graphs together.
+
+        ``GRAPH ?g`` reaches all six canonical graphs. Raises QueryError, with the place, for anything else.
+        """
+        from deixis.memory.semantic.queries.sparql import run_query
+
+        with reading(self.path):
+            if self._union is None:
+                self._union = default_graph(self.store)
+            return run_query(self.store, sparql, self._union)
+
+    def dataset(self) -> rdflib.Dataset:
+        """A live view of the six canonical graphs for rdflib; to be read only."""
+        from deixis.memory.semantic.queries.rdflib_view import dataset_view
+
+        view = dataset_view(self.store)
+        self._views.append(view)
+        return view
+
+    def stats(self) -> MemoryStats:
+        """Counts of what is kept."""
+        with reading(self.path):
+            return count(self.store, self.path, len(self.lessons()))
+
+    def commit(self, change: Change) -> None:
+        """Writes a change in one step, if what comes of it keeps to the shapes; raises RejectedWriteError if not."""
+        from deixis.memory.semantic.validation.validate import check_change
+
+        check_change(self.store, change)
+        self._union = None
+        with committed(self.path):
+            statements = [*change.statements, *merging(self.store, change.added, change.removed)]
+            self.store.update(" ;\n".join(statements))
+            self.store.flush()
+
+    def _known(self, lesson: str) -> None:
+        known = self.lessons()
+        if lesson not in known:
+            near = nearest(lesson, list(known))
+            hint = (
+                f"did you mean '{near}'?" if near else f"it holds: {', '.join(known[-5:])}" if known else "it has none"
+            )
+            raise UnknownLessonError(f"no lesson '{lesson}' in the memory at {self.path}; {hint}")
+
+    def _drop_views(self) -> None:
+        for view in self._views:
+            view.store._store = ox.Store()  # type: ignore[attr-defined]
+        self._views.clear()

@@ -1,0 +1,1 @@
+"""SHACL guards every write to semantic memory."""

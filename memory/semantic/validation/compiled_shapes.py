@@ -1,0 +1,208 @@
+"""SHACL shapes as plain checks, so that what is well formed, which is nearly everything, is let through fast.
+
+A check says True only where it is sure; whatever it doubts goes to pyshacl, which decides and words the report. The
+constraints that ``ontology/shapes.ttl`` uses are known, on paths of one step, and no other compiles. Shapes that only
+warn are left out: they reject nothing.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+
+import pyoxigraph as ox
+
+from deixis.errors import OntologyError
+from deixis.memory.semantic.rdf.package import SHAPES_FILE
+from deixis.memory.semantic.validation.constraints import CONSTRAINTS, Values
+from deixis.memory.semantic.validation.focus_data import TYPE, Node, View
+
+SH = "http://www.w3.org/ns/shacl#"
+_FIRST = ox.NamedNode("http://www.w3.org/1999/02/22-rdf-syntax-ns#first")
+_REST = ox.NamedNode("http://www.w3.org/1999/02/22-rdf-syntax-ns#rest")
+
+Check = Callable[[View, Node], bool]
+Said = dict[ox.NamedNode, list[Node]]
+
+
+def _sh(name: str) -> ox.NamedNode:
+    return ox.NamedNode(SH + name)
+
+
+_NO_CONSTRAINT = {
+    TYPE, _sh("path"), _sh("name"), _sh("message"), _sh("severity"), _sh("property"), _sh("targetClass"),
+    _sh("targetSubjectsOf"), _sh("targetObjectsOf"), ox.NamedNode("http://www.w3.org/2000/01/rdf-schema#label"),
+}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Shape:
+    """A node shape: what it targets, and what must hold of that."""
+
+    classes: tuple[Node, ...]
+    subjects_of: tuple[ox.NamedNode, ...]
+    objects_of: tuple[ox.NamedNode, ...]
+    checks: tuple[Check, ...]
+
+    def targets(self, view: View, node: Node) -> bool:
+        """Whether a node is one of its focus nodes."""
+        return (
+            any(view.is_a(node, kind) for kind in self.classes)
+            or any(view.values(node, predicate) for predicate in self.subjects_of)
+            or any(view.subjects(predicate, node) for predicate in self.objects_of)
+        )
+
+    def sure(self, view: View, node: Node) -> bool:
+        """Whether a focus node surely conforms."""
+        return all(check(view, node) for check in self.checks)
+
+    def focus(self, view: View) -> set[Node]:
+        """All its focus nodes."""
+        found = {node for kind in self.classes for node in view.instances(kind)}
+        for predicate in self.subjects_of:
+            found |= view.subjects_of(predicate)
+        for predicate in self.objects_of:
+            found |= view.objects_of(predicate)
+        return found
+
+
+@dataclass(frozen=True)
+class Shapes:
+    """Compiled shapes, and what in a change may matter to them."""
+
+    shapes: tuple[Shape, ...]
+    classes: frozenset[Node]
+    paths_to_classes: frozenset[ox.NamedNode]
+
+    @property
+    def objects_of(self) -> frozenset[ox.NamedNode]:
+        return frozenset(predicate for shape in self.shapes for predicate in shape.objects_of)
+
+    def sure(self, view: View, node: Node) -> bool:
+        """Whether a node surely conforms to every shape that targets it."""
+        return all(shape.sure(view, node) for shape in self.shapes if shape.targets(view, node))
+
+
+@lru_cache(maxsize=1)
+def packaged_shapes() -> Shapes:
+    """The shapes that come with the package, compiled once."""
+    return compile_shapes(SHAPES_FILE)
+
+
+def compile_shapes(file: Path) -> Shapes:
+    """Compiles a Turtle file of shapes. Raises OntologyError for a constraint that is not known here."""
+    compiler = _Compiler(ox.parse(path=file, format=ox.RdfFormat.TURTLE))
+    shapes = tuple(compiler.node_shape(said) for said in compiler.node_shapes())
+    targets = {kind for shape in shapes for kind in shape.classes}
+    return Shapes(shapes, frozenset(targets | compiler.classes), frozenset(compiler.paths_to_classes))
+
+
+class _Compiler:
+    def __init__(self, quads: Iterable[ox.Quad]) -> None:
+        self._said: dict[Node, Said] = defaultdict(lambda: defaultdict(list))
+        for quad in quads:
+            self._said[quad.subject][quad.predicate].append(quad.object)
+        self.classes: set[Node] = set()
+        self.paths_to_classes: set[ox.NamedNode] = set()
+
+    def node_shapes(self) -> list[Said]:
+        return [said for said in self._said.values() if _sh("NodeShape") in said[TYPE]]
+
+    def node_shape(self, said: Said) -> Shape:
+        checks = [check for part in said[_sh("property")] for check in self._shape(self._said[part])]
+        return Shape(
+            classes=tuple(said[_sh("targetClass")]),
+            subjects_of=_names(said[_sh("targetSubjectsOf")]),
+            objects_of=_names(said[_sh("targetObjectsOf")]),
+            checks=(*self._shape(said), *checks),
+        )
+
+    def condition(self, node: Node) -> Check:
+        """The check that the shape at a node is, whatever it targets."""
+        said = self._said[node]
+        parts = [self._said[part] for part in said[_sh("property")]]
+        return _all_of([check for part in (said, *parts) for check in self._shape(part)])
+
+    def _shape(self, said: Said) -> list[Check]:
+        """The checks of a node shape or a property shape, if it rejects anything."""
+        if said[_sh("severity")] not in ([], [_sh("Violation")]):
+            return []
+        path = said[_sh("path")]
+        values = self._path(path[0]) if path else _itself
+        return [
+            self._constraint(predicate, said, values) for predicate in list(said) if predicate not in _NO_CONSTRAINT
+        ]
+
+    def _path(self, path: Node) -> Values:
+        inverse = self._said[path][_sh("inversePath")] if isinstance(path, ox.BlankNode) else []
+        if inverse:
+            return _backwards(_names(inverse)[0])
+        if not isinstance(path, ox.NamedNode):
+            raise OntologyError("a shape's path must be one step here, forwards or sh:inversePath")
+        return _forwards(path)
+
+    def _constraint(self, predicate: ox.NamedNode, said: Said, values: Values) -> Check:
+        name, arguments = predicate.value.removeprefix(SH), said[predicate]
+        if name == "or":
+            return _all_of([self._or(head, values, said) for head in arguments])
+        if name == "in":
+            arguments = [item for head in arguments for item in self._list(head)]
+        if name == "class":
+            self.classes.update(arguments)
+            self.paths_to_classes.update(_names(said[_sh("path")]))
+        make = CONSTRAINTS.get(name)
+        if make is None:
+            raise OntologyError(
+                f"the constraint <{predicate.value}> is not known to memory/semantic/validation/constraints.py"
+            )
+        return make(values, arguments)
+
+    def _or(self, head: Node, values: Values, outer: Said) -> Check:
+        outer_path = outer[_sh("path")]
+        cases = [self._case(self._said[item], outer_path) for item in self._list(head)]
+        if outer_path:  # an alternative about each value of the outer path
+            return lambda view, node: all(any(case(view, value) for case in cases) for value in values(view, node))
+        return lambda view, node: any(case(view, node) for case in cases)
+
+    def _case(self, said: Said, outer_path: list[Node]) -> Check:
+        """One alternative of sh:or, asked of one value; a class that it asks for is one of the outer path's values."""
+        if said[_sh("path")] or not outer_path:
+            return _all_of(self._shape(said))
+        placed: Said = defaultdict(list, {**said, _sh("path"): outer_path})
+        return _all_of([self._constraint(p, placed, _itself) for p in list(said) if p not in _NO_CONSTRAINT])
+
+    def _list(self, head: Node) -> list[Node]:
+        items = []
+        while first := self._said[head][_FIRST]:
+            items.append(first[0])
+            head = self._said[head][_REST][0]
+        return items
+
+
+def _names(nodes: Iterable[Node]) -> tuple[ox.NamedNode, ...]:
+    return tuple(node for node in nodes if isinstance(node, ox.NamedNode))
+
+
+def _itself(view: View, node: Node) -> Sequence[Node]:
+    return (node,)
+
+
+def _forwards(predicate: ox.NamedNode) -> Values:
+    return lambda view, node: view.values(node, predicate)
+
+
+def _backwards(predicate: ox.NamedNode) -> Values:
+    return lambda view, node: view.subjects(predicate, node)
+
+
+def _all_of(checks: Sequence[Check]) -> Check:
+    return lambda view, node: all(check(view, node) for check in checks)
+
+
+def compile_conditions(quads: Iterable[ox.Quad], nodes: Iterable[Node]) -> dict[Node, Check]:
+    """Checks of the shapes at some nodes of a shapes graph. Raises OntologyError as :func:`compile_shapes` does."""
+    compiler = _Compiler(quads)
+    return {node: compiler.condition(node) for node in nodes}

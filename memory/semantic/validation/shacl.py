@@ -1,0 +1,111 @@
+"""pyshacl, asked about a few triples in a graph of rdflib's own: over a live view it misjudges plain strings."""
+
+from __future__ import annotations
+
+import logging
+import warnings
+from collections.abc import Collection, Iterable, Iterator
+from contextlib import contextmanager
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+import pyoxigraph as ox
+
+from deixis.memory.errors import ShapeResult
+from deixis.memory.semantic.rdf.files import short
+from deixis.memory.semantic.rdf.package import SHAPES_FILE
+
+if TYPE_CHECKING:
+    import rdflib
+
+
+@lru_cache(maxsize=1)
+def shapes_graph() -> rdflib.Graph:
+    """The packaged shapes, parsed once."""
+    import rdflib
+
+    return rdflib.Graph().parse(SHAPES_FILE, format="turtle")
+
+
+def violations(triples: Iterable[ox.Triple], focus: Collection[str] | None = None) -> list[ShapeResult]:
+    """What breaks the packaged shapes, of these focus nodes or of all; warnings left out, sorted."""
+    triples = list(triples)
+    try:
+        results = validate(triples, focus)
+    except (TypeError, ValueError, ArithmeticError, RuntimeError):
+        # pyshacl gives up on values that cannot be compared, such as a time with a zone and one without
+        if focus is None or len(focus) == 1:
+            return [_incomparable(*(focus or ()))]
+        results = [result for node in focus for result in violations(triples, {node})]
+    return sorted({result for result in results if result.severity == "Violation"}, key=str)
+
+
+def _incomparable(node: str = "somewhere") -> ShapeResult:
+    told = "values that are to be compared cannot be: give numbers and times in the datatypes that the ontology states"
+    return ShapeResult(short(node), None, told, "Violation", "comparable values")
+
+
+def validate(triples: Iterable[ox.Triple], focus: Collection[str] | None = None) -> list[ShapeResult]:
+    """Every result of validating these triples, of whatever severity; about some focus nodes or about all."""
+    import pyshacl
+    import rdflib
+
+    with _quiet():
+        data = rdflib.Graph()
+        data.parse(data=(ox.serialize(triples, format=ox.RdfFormat.N_TRIPLES) or b"").decode("utf-8"), format="nt")
+        _, found, _ = pyshacl.validate(
+            data,
+            shacl_graph=shapes_graph(),
+            advanced=False,
+            inference="none",
+            do_owl_imports=False,
+            meta_shacl=False,
+        )
+    if not isinstance(found, rdflib.Graph):
+        raise RuntimeError(f"pyshacl could not validate: {found}")
+    results = [(found.value(node, rdflib.SH.focusNode), node) for node in _results(found)]
+    return [_result(found, node) for about, node in results if focus is None or _asked(about, focus)]
+
+
+def _results(found: rdflib.Graph) -> Iterator[rdflib.term.Node]:
+    import rdflib
+
+    return found.subjects(rdflib.RDF.type, rdflib.SH.ValidationResult)
+
+
+def _asked(about: rdflib.term.Node | None, focus: Collection[str]) -> bool:
+    """Whether a result is about one of these nodes; a literal, which rdflib spells its own way, always is."""
+    import rdflib
+
+    return isinstance(about, rdflib.Literal) or str(about) in focus
+
+
+@contextmanager
+def _quiet() -> Iterator[None]:
+    """Without rdflib's log of each literal that is ill-typed, which the report names, and its warnings about itself."""
+    logger = logging.getLogger("rdflib.term")
+    level = logger.level
+    logger.setLevel(logging.CRITICAL)
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", DeprecationWarning)
+            yield
+    finally:
+        logger.setLevel(level)
+
+
+def _result(found: rdflib.Graph, node: rdflib.term.Node) -> ShapeResult:
+    import rdflib
+
+    sh = rdflib.SH
+    shape = found.value(node, sh.sourceShape)
+    path, value = found.value(node, sh.resultPath), found.value(node, sh.value)
+    names = shapes_graph()
+    return ShapeResult(
+        focus=short(str(found.value(node, sh.focusNode))),
+        path=short(str(path)) if isinstance(path, rdflib.URIRef) else None,
+        message=str(found.value(node, sh.resultMessage)),
+        severity=str(found.value(node, sh.resultSeverity)).rsplit("#", 1)[-1],
+        shape=str(names.value(shape, sh.name) or names.value(shape, rdflib.RDFS.label) or shape),
+        value=None if value is None else short(str(value)) if isinstance(value, rdflib.URIRef) else str(value),
+    )

@@ -1,0 +1,113 @@
+"""SHACL guards every write: what a change touches is checked before it is written.
+
+Only the nodes that a change can have spoilt are looked at: compiled checks let through what is surely well formed, and
+pyshacl decides about the rest, on a copy of those nodes and of what their shapes reach.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+import pyoxigraph as ox
+
+from deixis.memory.errors import RejectedWriteError, ShapeResult
+from deixis.memory.semantic.rdf.change import Change
+from deixis.memory.semantic.validation.compiled_shapes import Shapes, packaged_shapes
+from deixis.memory.semantic.validation.focus_data import DATA, SUB_CLASS_OF, TYPE, Node, View
+
+BATCH = 200
+"""How many doubtful nodes pyshacl is asked about at a time; the first batch with violations ends the search."""
+
+
+def check_change(store: ox.Store, change: Change) -> None:
+    """Raises RejectedWriteError where a change would leave something in the store that breaks the shapes."""
+    shapes, view = packaged_shapes(), View(store, change)
+    _check(shapes, view, touched(shapes, view, change))
+
+
+def check_store(store: ox.Store) -> None:
+    """Raises RejectedWriteError where something in the store breaks the shapes."""
+    shapes, view = packaged_shapes(), View(store)
+    _decide(shapes, view, {node for shape in shapes.shapes for node in shape.focus(view) if not shape.sure(view, node)})
+
+
+def touched(shapes: Shapes, view: View, change: Change) -> set[Node]:
+    """The nodes whose conformance a change may alter."""
+    found: set[Node] = set()
+    for side in (change.added, change.removed):
+        for name in DATA:
+            for triple in side.get(name, ()):
+                found.add(triple.subject)
+                if triple.predicate in shapes.objects_of:
+                    found.add(triple.object)
+                if triple.predicate == TYPE:
+                    found |= _leading_to(shapes, view, triple.subject)
+                elif triple.predicate == SUB_CLASS_OF and view.broader(triple.object) & shapes.classes:
+                    for node in set(view.instances(triple.subject)):
+                        found |= {node, *_leading_to(shapes, view, node)}
+    return found
+
+
+def _leading_to(shapes: Shapes, view: View, node: Node) -> set[Node]:
+    """The nodes of which a shape asks that what they lead to be of some class."""
+    return {other for predicate in shapes.paths_to_classes for other in view.subjects(predicate, node)}
+
+
+def _check(shapes: Shapes, view: View, nodes: Iterable[Node]) -> None:
+    _decide(shapes, view, {node for node in nodes if not shapes.sure(view, node)})
+
+
+def _decide(shapes: Shapes, view: View, nodes: set[Node]) -> None:
+    """Asks pyshacl about the doubtful nodes."""
+    doubtful = sorted(nodes, key=str)
+    for position, batch in enumerate(_batches(doubtful)):
+        results = report(_copy(shapes, view, batch), batch)
+        if results:
+            left = len(doubtful) - (position + 1) * BATCH
+            more = f"; {left} more nodes may be wrong too" if left > 0 else ""
+            raise RejectedWriteError(
+                f"nothing was written: it breaks the shapes in {len(results)} places{more}", results
+            )
+
+
+def _batches(nodes: list[Node]) -> Iterator[list[Node]]:
+    for start in range(0, len(nodes), BATCH):
+        yield nodes[start : start + BATCH]
+
+
+def _copy(shapes: Shapes, view: View, nodes: Iterable[Node]) -> set[ox.Triple]:
+    """What the shapes reach from these nodes: what is said of them, what leads to them, and the classes of the rest."""
+    copied: set[ox.Triple] = set()
+    for node in nodes:
+        copied.update(_about(view, node))
+        copied.update(_classes(view, node))
+        for predicate in shapes.objects_of:
+            copied.update(_triple(other, predicate, node) for other in view.subjects(predicate, node))
+    return copied
+
+
+def _about(view: View, node: Node) -> Iterator[ox.Triple]:
+    for predicate, values in view.about(node).items():
+        for value in values:
+            yield _triple(node, predicate, value)
+            yield from _classes(view, value)
+
+
+def _classes(view: View, node: Node) -> Iterator[ox.Triple]:
+    for kind in view.values(node, TYPE):
+        yield _triple(node, TYPE, kind)
+        for narrow in view.broader(kind):
+            for broad in view.values(narrow, SUB_CLASS_OF):
+                yield _triple(narrow, SUB_CLASS_OF, broad)
+
+
+def _triple(subject: Node, predicate: ox.NamedNode, object: Node) -> ox.Triple:
+    assert not isinstance(subject, ox.Literal)
+    return ox.Triple(subject, predicate, object)
+
+
+def report(triples: Iterable[ox.Triple], nodes: Iterable[Node] | None = None) -> list[ShapeResult]:
+    """The violations that pyshacl finds among these triples, of these focus nodes or of all."""
+    from deixis.memory.semantic.validation.shacl import violations
+
+    return violations(triples, None if nodes is None else {str(getattr(node, "value", "")) for node in nodes})

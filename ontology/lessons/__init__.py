@@ -1,0 +1,1 @@
+"""Lessons: what a grounding taught, as types, as triples and as SHACL shapes."""

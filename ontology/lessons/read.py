@@ -1,0 +1,142 @@
+"""Reads layouts and lessons back from triples."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import pyoxigraph as ox
+
+from deixis.errors import UnknownTermError
+from deixis.ontology.graph import Fact, Source
+from deixis.ontology.lessons.types import LayoutConcept, MatchRecord, Role
+from deixis.ontology.lessons.write import lesson_iri
+from deixis.ontology.relation import Relation, Relations, nearest
+from deixis.ontology.triples import TripleIndex, last_part
+from deixis.ontology.vocabulary import DX, PROV, W3C
+
+
+def layouts(triples: Iterable[ox.Triple], relations: Relations) -> tuple[LayoutConcept, ...]:
+    """Every layout that learned triples describe, by lesson."""
+    index = TripleIndex(triples)
+    return tuple(_layout(layout, index, relations) for layout in index.subjects(W3C.RDFS_SUB_CLASS_OF, DX.LAYOUT))
+
+
+def layout_named(known: Iterable[LayoutConcept], name: str, lessons: tuple[str, ...]) -> LayoutConcept:
+    """The layout of that name, learned last among several; or the one of the lesson with that id.
+
+    ``lessons`` are all lessons in the order learned. Raises UnknownTermError with the nearest name there is.
+    """
+    by_lesson = {layout.lesson: layout for layout in known}
+    if name in by_lesson:
+        return by_lesson[name]
+    for lesson in reversed(lessons):
+        if lesson in by_lesson and by_lesson[lesson].name == name:
+            return by_lesson[lesson]
+    names = sorted({layout.name for layout in by_lesson.values()})
+    if not names:
+        raise UnknownTermError(f"no layout '{name}' has been learned, nor any other")
+    hint = nearest(name, names)
+    told = f"did you mean '{hint}'?" if hint else f"the learned ones are: {', '.join(names)}"
+    raise UnknownTermError(f"no layout '{name}' has been learned; {told}")
+
+
+def _layout(layout: str, index: TripleIndex, relations: Relations) -> LayoutConcept:
+    parts = index.subjects(DX.IN_LAYOUT, layout)
+    roles = _in_order([part for part in parts if DX.ROLE in index.values(part, W3C.RDF_TYPE)], index)
+    facts = _in_order([part for part in parts if DX.RELATION_STATEMENT in index.values(part, W3C.RDF_TYPE)], index)
+    by_iri = {relation.iri: relation for relation in relations.values()}
+    viewpoint = index.value(layout, DX.DESCRIBED_FROM)
+    return LayoutConcept(
+        lesson=last_part(layout),
+        name=index.value(layout, W3C.RDFS_LABEL) or last_part(layout),
+        title=index.value(layout, W3C.DCTERMS_TITLE),
+        viewpoint=last_part(viewpoint) if viewpoint else None,
+        roles=tuple(_role(role, index) for role in roles),
+        facts=tuple(_fact(fact, index, by_iri) for fact in facts),
+        interchangeable=_groups(roles, index),
+    )
+
+
+def _in_order(parts: list[str], index: TripleIndex) -> list[str]:
+    return sorted(parts, key=lambda part: int(index.value(part, DX.POSITION) or 0))
+
+
+def _role(role: str, index: TripleIndex) -> Role:
+    declared = index.value(role, DX.KIND_DECLARED) == "true"
+    return Role(last_part(role), index.value(role, DX.OF_KIND), declared, index.value(role, DX.OF_COLOUR))
+
+
+def _fact(fact: str, index: TripleIndex, by_iri: dict[str, Relation]) -> Fact:
+    ends = [last_part(index.value(fact, end) or "") for end in (DX.SUBJECT, DX.OBJECT)]
+    return Fact(
+        subject=ends[0],
+        relations=tuple(sorted((by_iri[iri] for iri in index.values(fact, DX.RELATION)), key=lambda r: r.index)),
+        object=ends[1],
+        positive=index.value(fact, DX.POSITIVE) == "true",
+        optional=index.value(fact, DX.OPTIONAL) == "true",
+        weight=float(index.value(fact, DX.WEIGHT) or 1),
+        source=_source(index.value(fact, DX.STATED_AT)),
+    )
+
+
+def _source(stated_at: str | None) -> Source | None:
+    """The place that ``file:line:column`` names; of the span only its beginning is kept."""
+    if stated_at is None:
+        return None
+    file, line, column = stated_at.rsplit(":", 2)
+    return Source(file, int(line), int(column), int(line), int(column))
+
+
+def _groups(roles: list[str], index: TripleIndex) -> tuple[tuple[str, ...], ...]:
+    groups: dict[frozenset[str], None] = {}
+    for role in roles:
+        others = index.values(role, DX.INTERCHANGEABLE_WITH)
+        if others:
+            groups[frozenset((role, *others))] = None
+    return tuple(tuple(sorted(last_part(role) for role in group)) for group in groups)
+
+
+@dataclass(frozen=True)
+class LessonRecord:
+    """A lesson as it was kept. ``words_only``: the labels of its scene say who is who, and there are no matches."""
+
+    id: str
+    script_file: str
+    script_text: str
+    scene_text: str
+    matches: tuple[MatchRecord, ...]
+    words_only: bool = False
+
+
+def lesson_records(learned: Iterable[ox.Triple], episodes: Iterable[ox.Triple]) -> tuple[LessonRecord, ...]:
+    """Every lesson that keeps its script and its scene, by id."""
+    told, said = TripleIndex(episodes), TripleIndex(learned)
+    ids = [last_part(lesson) for lesson in told.subjects(W3C.RDF_TYPE, DX.LESSON)]
+    found = (_record(id, told, said) for id in ids)
+    return tuple(record for record in found if record is not None)
+
+
+def _record(id: str, told: TripleIndex, said: TripleIndex) -> LessonRecord | None:
+    lesson = lesson_iri(id)
+    texts = [told.value(lesson, predicate) for predicate in (DX.SCRIPT_TEXT, DX.SCENE_TEXT)]
+    if texts[0] is None or texts[1] is None:
+        return None
+    parts = said.subjects(PROV.WAS_GENERATED_BY, lesson)
+    matches = tuple(_match(part, said) for part in parts if DX.MATCH in said.values(part, W3C.RDF_TYPE))
+    words_only = DX.WORD_LESSON in told.values(lesson, W3C.RDF_TYPE)
+    return LessonRecord(id, told.value(lesson, DX.SCRIPT_FILE) or id, texts[0], texts[1], matches, words_only)
+
+
+def _match(part: str, said: TripleIndex) -> MatchRecord:
+    perceived, likeliest = (said.value(part, predicate) for predicate in (DX.PERCEIVED_AS, DX.LIKELIEST))
+    probability = said.value(part, DX.PROBABILITY)
+    return MatchRecord(
+        role=last_part(said.value(part, DX.OF_ROLE) or ""),
+        perceived=last_part(perceived) if perceived is not None else None,
+        decided=said.value(part, DX.DECIDED) == "true",
+        score=float(said.value(part, DX.SCORE) or 0),
+        could_be=tuple(last_part(thing) for thing in said.values(part, DX.COULD_BE)),
+        probability=None if probability is None else float(probability),
+        likeliest=last_part(likeliest) if likeliest is not None else None,
+    )

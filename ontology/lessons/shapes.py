@@ -1,0 +1,180 @@
+"""A layout as SHACL shapes, and a scene as the data that they are checked on.
+
+A scene conforms to a layout where every role is filled, everything in it fills a role, and every fact holds of what
+fills its roles; facts about an unfilled role are passed over, since the role itself is reported. The focus node of a
+broken fact is the statement itself, which leads to its line. A hedged fact is a warning, an optional one information.
+What fills a role of a stated colour may be of no other.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+import pyoxigraph as ox
+
+from deixis.ontology.graph import Fact, dispensable
+from deixis.ontology.lessons.types import LayoutConcept
+from deixis.ontology.lessons.write import fact_iri, layout_iri, role_iri
+from deixis.ontology.relation import Relation
+from deixis.ontology.triples import Description, content_key, iri, learned_iri, skolem, text, typed
+from deixis.ontology.vocabulary import DX, W3C
+
+SH = "http://www.w3.org/ns/shacl#"
+_RDF = "http://www.w3.org/1999/02/22-rdf-syntax-ns#"
+
+
+def layout_shapes(layout: LayoutConcept) -> Iterator[ox.Triple]:
+    """The shapes graph of a layout; blank nodes as skolem IRIs."""
+    writer = _Shapes(layout)
+    yield from writer.extra()
+    spare = dispensable(layout.facts)
+    for role in layout.roles:
+        yield from writer.missing(role.name, "Info" if role.name in spare else "Violation")
+        if role.colour is not None:
+            yield from writer.miscoloured(role.name, role.colour)
+    for position, fact in enumerate(layout.facts, 1):
+        yield from writer.fact(position, fact)
+
+
+class _Shapes:
+    def __init__(self, layout: LayoutConcept) -> None:
+        self._lesson = layout.lesson
+        self._count = 0
+
+    def extra(self) -> Iterator[ox.Triple]:
+        shape = self._shape("extra", "Violation", "has no place in the layout: take it away")
+        shape.say(SH + "targetSubjectsOf", iri(DX.IN_SCENE))
+        shape.say(SH + "path", iri(DX.FILLS))
+        shape.say(SH + "minCount", typed(1))
+        yield from shape
+
+    def missing(self, role: str, severity: str) -> Iterator[ox.Triple]:
+        shape = self._shape(f"role-{role}", severity, f"{role} is missing: put one in its place")
+        shape.say(SH + "targetNode", iri(role_iri(self._lesson, role)))
+        yield from self._path(shape, [self._inverse(DX.FILLS)])
+        shape.say(SH + "minCount", typed(1))
+        yield from shape
+
+    def miscoloured(self, role: str, colour: str) -> Iterator[ox.Triple]:
+        shape = self._shape(f"colour-{role}", "Violation", f"{role} is of another colour than is said")
+        shape.say(SH + "targetNode", iri(role_iri(self._lesson, role)))
+        yield from self._path(shape, [self._inverse(DX.FILLS), ([], iri(DX.OF_COLOUR))])
+        triples, head = self._list([iri(colour)])
+        yield from triples
+        shape.say(SH + "in", head)
+        yield from shape
+
+    def fact(self, position: int, fact: Fact) -> Iterator[ox.Triple]:
+        severity = "Info" if fact.optional else "Violation" if fact.weight >= 1 else "Warning"
+        line = f"line {fact.source.line}: " if fact.source else ""
+        shape = self._shape(f"fact-{position}", severity, f"{line}{fact} does not hold")
+        shape.say(W3C.RDF_TYPE, iri(SH + "NodeShape"))
+        shape.say(SH + "targetNode", iri(fact_iri(self._lesson, position)))
+        cases: list[ox.NamedNode] = []
+        for end in (DX.SUBJECT, DX.OBJECT):
+            unfilled = self._blank()
+            yield from self._path(unfilled, [([], iri(end)), self._inverse(DX.FILLS)])
+            unfilled.say(SH + "maxCount", typed(0))
+            yield from unfilled
+            cases.append(unfilled.subject)
+        holds = self._blank()
+        related = self._alternatives(fact.relations)
+        yield from self._path(holds, [([], iri(DX.SUBJECT)), self._inverse(DX.FILLS), related, ([], iri(DX.FILLS))])
+        holds.say(SH + "hasValue", iri(role_iri(self._lesson, fact.object)))
+        yield from holds
+        if fact.positive:
+            cases.append(holds.subject)
+        else:
+            denied = self._blank()
+            denied.say(SH + "not", holds.subject)
+            yield from denied
+            cases.append(denied.subject)
+        triples, head = self._list(cases)
+        yield from triples
+        shape.say(SH + "or", head)
+        yield from shape
+
+    def _shape(self, name: str, severity: str, message: str) -> Description:
+        shape = Description(learned_iri("layout", self._lesson, "shape", name))
+        shape.say(SH + "severity", iri(SH + severity))
+        shape.say(SH + "message", text(message))
+        shape.say(SH + "name", text(name))
+        return shape
+
+    def _blank(self) -> Description:
+        self._count += 1
+        return Description(skolem(f"{content_key(self._lesson)}.s{self._count}").value)
+
+    def _inverse(self, prop: str) -> tuple[list[ox.Triple], ox.NamedNode]:
+        node = self._blank()
+        node.say(SH + "inversePath", iri(prop))
+        return list(node), node.subject
+
+    def _alternatives(self, relations: Sequence[Relation]) -> tuple[list[ox.Triple], ox.NamedNode]:
+        if len(relations) == 1:
+            return [], iri(relations[0].iri)
+        triples, head = self._list([iri(relation.iri) for relation in relations])
+        node = self._blank()
+        node.say(SH + "alternativePath", head)
+        return [*triples, *node], node.subject
+
+    def _path(self, shape: Description, steps: list[tuple[list[ox.Triple], ox.NamedNode]]) -> Iterator[ox.Triple]:
+        for triples, _ in steps:
+            yield from triples
+        if len(steps) == 1:
+            shape.say(SH + "path", steps[0][1])
+            return
+        triples, head = self._list([node for _, node in steps])
+        yield from triples
+        shape.say(SH + "path", head)
+
+    def _list(self, items: Sequence[ox.NamedNode]) -> tuple[list[ox.Triple], ox.NamedNode]:
+        """An RDF list, and its head."""
+        triples: list[ox.Triple] = []
+        rest = iri(_RDF + "nil")
+        for item in reversed(items):
+            node = self._blank()
+            node.say(_RDF + "first", item)
+            node.say(_RDF + "rest", rest)
+            triples += node
+            rest = node.subject
+        return triples, rest
+
+
+def scene_data(
+    layout: LayoutConcept,
+    things: Iterable[str],
+    fills: Mapping[str, str],
+    related: Iterable[tuple[str, Relation, str]],
+    coloured: Mapping[str, str],
+) -> Iterator[ox.Triple]:
+    """The data graph of a check: the things of a scene, what role each fills, and the relations that hold of pairs.
+
+    ``fills`` is from thing to role; ``related`` holds every relation that is satisfied, in whatever reading it is
+    stated; ``coloured`` is from thing to the IRI of a colour, where it is of another than is said. The layout's
+    statements stand beside them, as the focus nodes of its shapes.
+    """
+    scene = learned_iri("checked", layout.lesson)
+    yield from _said(scene, (W3C.RDF_TYPE, iri(DX.SCENE)), (W3C.RDF_TYPE, iri(layout_iri(layout.lesson))))
+    for thing in things:
+        node = learned_iri("checked", layout.lesson, thing)
+        yield from _said(node, (W3C.RDF_TYPE, iri(DX.PERCEIVED_OBJECT)), (DX.IN_SCENE, iri(scene)))
+        yield from _said(node, (DX.IDENTIFIER, text(thing)))
+        if thing in fills:
+            yield from _said(node, (DX.FILLS, iri(role_iri(layout.lesson, fills[thing]))))
+        if thing in coloured:
+            yield from _said(node, (DX.OF_COLOUR, iri(coloured[thing])))
+    for subject, relation, object in related:
+        ends = [iri(learned_iri("checked", layout.lesson, thing)) for thing in (subject, object)]
+        yield ox.Triple(ends[0], iri(relation.iri), ends[1])
+    for position, fact in enumerate(layout.facts, 1):
+        node = fact_iri(layout.lesson, position)
+        ends = [iri(role_iri(layout.lesson, role)) for role in (fact.subject, fact.object)]
+        yield from _said(node, (DX.SUBJECT, ends[0]), (DX.OBJECT, ends[1]))
+
+
+def _said(subject: str, *statements: tuple[str, ox.NamedNode | ox.Literal]) -> Iterator[ox.Triple]:
+    about = Description(subject)
+    for predicate, value in statements:
+        about.say(predicate, value)
+    return iter(about)

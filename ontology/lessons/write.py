@@ -1,0 +1,237 @@
+"""A lesson as triples, by the graph that each belongs to."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pyoxigraph as ox
+
+from deixis.ontology.colours import hex_of_rgb
+from deixis.ontology.graph import Fact
+from deixis.ontology.lessons.types import LayoutConcept, Lesson, MatchRecord, Role, SeenObject, WordLesson
+from deixis.ontology.relation import Relations
+from deixis.ontology.triples import (
+    Description,
+    category_iri,
+    content_key,
+    decimal,
+    iri,
+    learned_iri,
+    skolem,
+    text,
+    typed,
+)
+from deixis.ontology.vocabulary import DX, PROV, W3C
+
+_CORNERS = ((DX.MIN_X, DX.MAX_X), (DX.MIN_Y, DX.MAX_Y), (DX.MIN_Z, DX.MAX_Z))
+
+
+def learned_triples(lesson: Lesson, relations: Relations) -> Iterator[ox.Triple]:
+    """The layout as a class with its roles and statements, the categories, and the matches that show them."""
+    layout = lesson.layout
+    yield from _layout(layout, relations)
+    for position, role in enumerate(layout.roles, 1):
+        yield from _role(layout, role, position)
+    for position, fact in enumerate(layout.facts, 1):
+        yield from _statement(layout, fact, position)
+    kinds = {role.name: role.kind for role in layout.roles}
+    for match in lesson.matches:
+        yield from _match(lesson, match)
+    for match in lesson.categories():
+        yield from _category(match.role, kinds.get(match.role), lesson)
+
+
+def asserted_triples(lesson: Lesson | WordLesson) -> Iterator[ox.Triple]:
+    """The scene: its objects with their boxes, the exact relations between them, and what the decided ones are."""
+    record, scene = lesson.scene, scene_iri(lesson)
+    about = Description(scene)
+    about.say(W3C.RDF_TYPE, iri(DX.SCENE))
+    about.say(DX.FRAME, text(record.frame))
+    about.say(DX.UNIT, text(record.unit))
+    about.say(DX.SEEN_FROM, iri(_viewpoint(record.viewpoint)))
+    yield from about
+    yield from _viewpoint_triples(record.viewpoint)
+    for seen in record.objects:
+        yield from _seen(lesson, seen)
+    for subject, relation, object in record.relations:
+        yield ox.Triple(iri(thing_iri(lesson, subject)), iri(relation.iri), iri(thing_iri(lesson, object)))
+    for match in lesson.categories() if isinstance(lesson, Lesson) else ():
+        category = category_iri(match.role)
+        yield ox.Triple(iri(thing_iri(lesson, match.perceived or "")), iri(W3C.RDF_TYPE), iri(category))
+
+
+def episode_triples(lesson: Lesson | WordLesson) -> Iterator[ox.Triple]:
+    """When, from what, and by what the lesson was learned."""
+    about = Description(lesson_iri(lesson.id))
+    about.say(W3C.RDF_TYPE, iri(DX.LESSON))
+    if isinstance(lesson, WordLesson):
+        about.say(W3C.RDF_TYPE, iri(DX.WORD_LESSON))
+    about.say(W3C.RDFS_LABEL, text(lesson.id))
+    about.say(PROV.STARTED_AT_TIME, typed(lesson.started))
+    about.say(PROV.ENDED_AT_TIME, typed(lesson.ended))
+    script, agent = script_iri(lesson.id), learned_iri("agent", f"deixis {lesson.version}")
+    about.say(PROV.USED, iri(scene_iri(lesson)))
+    about.say(PROV.WAS_ASSOCIATED_WITH, iri(agent))
+    yield ox.Triple(iri(script), iri(W3C.RDF_TYPE), iri(PROV.ENTITY))
+    yield ox.Triple(iri(script), iri(W3C.RDFS_LABEL), text(lesson.script_file))
+    yield ox.Triple(iri(agent), iri(W3C.RDF_TYPE), iri(PROV.SOFTWARE_AGENT))
+    yield ox.Triple(iri(agent), iri(W3C.RDFS_LABEL), text(f"Deixis {lesson.version}"))
+    about.say(DX.ENGINE, text(lesson.engine))
+    about.say(DX.PROVED_BEST, typed(lesson.proved_best))
+    about.say(DX.SOFTWARE_VERSION, text(lesson.version))
+    about.say(DX.SCRIPT_FILE, text(lesson.script_file))
+    about.say(DX.SCRIPT_TEXT, text(lesson.script_text))
+    about.say(DX.SCENE_TEXT, text(lesson.scene_text))
+    yield from about
+
+
+def lesson_iri(lesson: str) -> str:
+    return learned_iri("lesson", lesson)
+
+
+def script_iri(lesson: str) -> str:
+    """The script that a lesson was read from, as what its statements are derived from."""
+    return learned_iri("lesson", lesson, "script")
+
+
+def layout_iri(lesson: str) -> str:
+    return learned_iri("layout", lesson)
+
+
+def role_iri(lesson: str, role: str) -> str:
+    return learned_iri("layout", lesson, "role", role)
+
+
+def fact_iri(lesson: str, position: int) -> str:
+    """The statement of a layout's fact, counted from 1."""
+    return learned_iri("layout", lesson, "fact", position)
+
+
+def scene_iri(lesson: Lesson | WordLesson) -> str:
+    """Named by its content, so that two lessons from one scene speak of the same things."""
+    return scene_text_iri(lesson.scene_text)
+
+
+def scene_text_iri(scene_text: str) -> str:
+    """The scene that a lesson's text of it describes."""
+    return learned_iri("scene", content_key(scene_text))
+
+
+def thing_iri(lesson: Lesson | WordLesson, id: str) -> str:
+    return learned_iri("scene", content_key(lesson.scene_text), id)
+
+
+def _viewpoint(name: str) -> str:
+    return learned_iri("viewpoint", name)
+
+
+def _viewpoint_triples(name: str) -> Iterator[ox.Triple]:
+    about = Description(_viewpoint(name))
+    about.say(W3C.RDF_TYPE, iri(DX.VIEWPOINT))
+    about.say(W3C.RDFS_LABEL, text(name))
+    return iter(about)
+
+
+def _layout(layout: LayoutConcept, relations: Relations) -> Iterator[ox.Triple]:
+    about = Description(layout_iri(layout.lesson))
+    about.say(W3C.RDF_TYPE, iri(W3C.OWL_CLASS))
+    about.say(W3C.RDFS_LABEL, text(layout.name))
+    about.say(W3C.RDFS_SUB_CLASS_OF, iri(DX.LAYOUT))
+    about.say(DX.LEARNED_IN, iri(lesson_iri(layout.lesson)))
+    if layout.title:
+        about.say(W3C.DCTERMS_TITLE, text(layout.title))
+    if layout.viewpoint:
+        about.say(DX.DESCRIBED_FROM, iri(_viewpoint(layout.viewpoint)))
+        yield from _viewpoint_triples(layout.viewpoint)
+    kinds = dict.fromkeys(role.kind for role in layout.roles if role.kind)
+    for number, kind in enumerate(kinds, 1):
+        restriction = Description(skolem(f"{content_key(layout.lesson)}.r{number}").value)
+        restriction.say(W3C.RDF_TYPE, iri(W3C.OWL_RESTRICTION))
+        restriction.say(W3C.OWL_ON_PROPERTY, iri(DX.SHOWS))
+        restriction.say(W3C.OWL_SOME_VALUES_FROM, iri(kind))
+        about.say(W3C.RDFS_SUB_CLASS_OF, restriction.subject)
+        yield from restriction
+    yield from about
+
+
+def _role(layout: LayoutConcept, role: Role, position: int) -> Iterator[ox.Triple]:
+    about = Description(role_iri(layout.lesson, role.name))
+    about.say(W3C.RDF_TYPE, iri(DX.ROLE))
+    about.say(W3C.RDFS_LABEL, text(role.name))
+    about.say(DX.IN_LAYOUT, iri(layout_iri(layout.lesson)))
+    about.say(DX.POSITION, typed(position))
+    about.say(DX.KIND_DECLARED, typed(role.declared))
+    about.say(PROV.WAS_GENERATED_BY, iri(lesson_iri(layout.lesson)))
+    about.say(PROV.WAS_DERIVED_FROM, iri(script_iri(layout.lesson)))
+    if role.kind:
+        about.say(DX.OF_KIND, iri(role.kind))
+    if role.colour:
+        about.say(DX.OF_COLOUR, iri(role.colour))
+    for group in layout.interchangeable:
+        if role.name in group:
+            others = (iri(role_iri(layout.lesson, other)) for other in group if other != role.name)
+            about.say(DX.INTERCHANGEABLE_WITH, *others)
+    return iter(about)
+
+
+def _statement(layout: LayoutConcept, fact: Fact, position: int) -> Iterator[ox.Triple]:
+    about = Description(fact_iri(layout.lesson, position))
+    about.say(W3C.RDF_TYPE, iri(DX.RELATION_STATEMENT))
+    about.say(DX.IN_LAYOUT, iri(layout_iri(layout.lesson)))
+    about.say(DX.SUBJECT, iri(role_iri(layout.lesson, fact.subject)))
+    about.say(DX.OBJECT, iri(role_iri(layout.lesson, fact.object)))
+    about.say(DX.RELATION, *(iri(relation.iri) for relation in fact.relations))
+    about.say(DX.POSITIVE, typed(fact.positive))
+    about.say(DX.OPTIONAL, typed(fact.optional))
+    about.say(DX.WEIGHT, decimal(fact.weight))
+    about.say(PROV.WAS_GENERATED_BY, iri(lesson_iri(layout.lesson)))
+    about.say(PROV.WAS_DERIVED_FROM, iri(script_iri(layout.lesson)))
+    about.say(DX.POSITION, typed(position))
+    if fact.source is not None:
+        about.say(DX.STATED_AT, text(str(fact.source)))
+        about.say(DX.LINE, typed(fact.source.line))
+    return iter(about)
+
+
+def _match(lesson: Lesson, match: MatchRecord) -> Iterator[ox.Triple]:
+    about = Description(learned_iri("lesson", lesson.id, "match", match.role))
+    about.say(W3C.RDF_TYPE, iri(DX.MATCH))
+    about.say(DX.OF_ROLE, iri(role_iri(lesson.id, match.role)))
+    about.say(DX.DECIDED, typed(match.decided))
+    about.say(DX.SCORE, decimal(match.score))
+    if match.probability is not None:
+        about.say(DX.PROBABILITY, decimal(match.probability))
+    about.say(PROV.WAS_GENERATED_BY, iri(lesson_iri(lesson.id)))
+    if match.perceived is not None:
+        about.say(DX.PERCEIVED_AS, iri(thing_iri(lesson, match.perceived)))
+    about.say(DX.COULD_BE, *(iri(thing_iri(lesson, other)) for other in match.could_be))
+    if match.likeliest is not None:
+        about.say(DX.LIKELIEST, iri(thing_iri(lesson, match.likeliest)))
+    if match.decided and match.perceived is not None:
+        about.say(DX.CATEGORY, iri(category_iri(match.role)))
+    return iter(about)
+
+
+def _category(name: str, kind: str | None, lesson: Lesson) -> Iterator[ox.Triple]:
+    about = Description(category_iri(name))
+    about.say(W3C.RDF_TYPE, iri(W3C.OWL_CLASS))
+    about.say(W3C.RDFS_LABEL, text(name.replace("_", " ")))
+    about.say(W3C.RDFS_SUB_CLASS_OF, iri(kind or DX.THING))
+    about.say(DX.LEARNED_IN, iri(lesson_iri(lesson.id)))
+    return iter(about)
+
+
+def _seen(lesson: Lesson | WordLesson, seen: SeenObject) -> Iterator[ox.Triple]:
+    about = Description(thing_iri(lesson, seen.id))
+    about.say(W3C.RDF_TYPE, iri(DX.PERCEIVED_OBJECT))
+    about.say(DX.IN_SCENE, iri(scene_iri(lesson)))
+    about.say(DX.IDENTIFIER, text(seen.id))
+    for (least, greatest), low, high in zip(_CORNERS, seen.minimum, seen.maximum, strict=False):
+        about.say(least, typed(float(low)))
+        about.say(greatest, typed(float(high)))
+    if seen.label is not None:
+        about.say(DX.PERCEIVED_LABEL, text(seen.label))
+        about.say(DX.CONFIDENCE, decimal(seen.confidence))
+    if seen.colour is not None:
+        about.say(DX.PERCEIVED_COLOUR, text(hex_of_rgb(seen.colour)))
+    return iter(about)

@@ -1,0 +1,81 @@
+"""Learned sizes of kinds, and their triples: one model per kind, derived (PROV-O) from the scenes that showed it.
+
+They bear no time: the same lessons always come to the same triples. When those were, the lessons say.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+
+import pyoxigraph as ox
+
+from deixis.errors import OntologyError
+from deixis.ontology.triples import LEARNED, Description, TripleIndex, iri, learned_iri, typed
+from deixis.ontology.vocabulary import BASE, DX, PROV, W3C
+
+
+@dataclass(frozen=True, slots=True)
+class SizeModel:
+    """Log-normal length (longer side in the plan) and aspect (shorter by longer side) of a kind of thing.
+
+    ``relative``: as images teach it. The length is in units of the scene's median length, and the aspect is height by
+    width, since what is up stays up.
+    """
+
+    length: tuple[float, float]  # mean and standard deviation of the natural logarithm
+    aspect: tuple[float, float]
+    relative: bool = False
+    views: float = 0.0
+
+
+def size_triples(kind: str, model: SizeModel, scenes: Iterable[str]) -> Iterator[ox.Triple]:
+    """The size of a kind (its class IRI), learned from the scenes of those IRIs."""
+    about = Description(learned_iri("size-model", kind.removeprefix(BASE).removeprefix(LEARNED)))
+    about.say(W3C.RDF_TYPE, iri(DX.SIZE_MODEL))
+    about.say(DX.OF_KIND, iri(kind))
+    about.say(DX.MEDIAN_LENGTH, typed(_median(model.length[0])))
+    about.say(DX.LENGTH_DEVIATION, typed(float(model.length[1])))
+    about.say(DX.MEDIAN_ASPECT, typed(_median(model.aspect[0])))
+    about.say(DX.ASPECT_DEVIATION, typed(float(model.aspect[1])))
+    about.say(DX.RELATIVE_LENGTH, typed(model.relative))
+    about.say(DX.VIEW_COUNT, typed(int(model.views)))
+    about.say(PROV.WAS_DERIVED_FROM, *(iri(scene) for scene in scenes))
+    return iter(about)
+
+
+def _median(logarithm: float) -> float:
+    """What a logarithm is of, to six digits: more than anybody measures, and free of its rounding."""
+    return float(f"{math.exp(logarithm):.6g}")
+
+
+def sizes_from_triples(triples: Iterable[ox.Triple]) -> dict[str, SizeModel]:
+    """Every learned size that the triples state, by class IRI; raises OntologyError where one is not whole."""
+    index = TripleIndex(triples)
+    subjects = index.subjects(W3C.RDF_TYPE, DX.SIZE_MODEL)
+    return dict(sorted(_size(index, subject) for subject in subjects))
+
+
+def _size(index: TripleIndex, subject: str) -> tuple[str, SizeModel]:
+    values = {}
+    for prop in (DX.MEDIAN_LENGTH, DX.LENGTH_DEVIATION, DX.MEDIAN_ASPECT, DX.ASPECT_DEVIATION, DX.VIEW_COUNT):
+        values[prop] = _positive(index, subject, prop)
+    relative = index.only(subject, DX.RELATIVE_LENGTH)
+    return index.only(subject, DX.OF_KIND), SizeModel(
+        (math.log(values[DX.MEDIAN_LENGTH]), values[DX.LENGTH_DEVIATION]),
+        (math.log(values[DX.MEDIAN_ASPECT]), values[DX.ASPECT_DEVIATION]),
+        relative == "true",
+        values[DX.VIEW_COUNT],
+    )
+
+
+def _positive(index: TripleIndex, subject: str, predicate: str) -> float:
+    written = index.only(subject, predicate)
+    try:
+        number = float(written)
+    except ValueError:
+        number = math.nan
+    if not 0 < number < math.inf:
+        raise OntologyError(f"<{subject}>: <{predicate}> must be a number above 0, not '{written}'")
+    return number

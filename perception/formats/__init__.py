@@ -1,0 +1,1 @@
+"""Scenes as files: scene JSON, COCO and LabelMe."""

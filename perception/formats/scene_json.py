@@ -1,0 +1,222 @@
+"""Scenes as files: ``.scene.json``, read with an error that names the place, and written.
+
+Annotation files (COCO, LabelMe) are told by their content and read too: see
+:mod:`deixis.perception.formats.scene_json`.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from deixis.ontology.colours import Rgb, hex_of_rgb, rgb_of_hex
+from deixis.ontology.relation import nearest
+from deixis.ontology.strict_json import parse_json
+from deixis.ontology.tbox import default_ontology
+from deixis.perception.checks import MAX_SHOWN, kind, mapping, number, shown, text
+from deixis.perception.errors import SceneError
+from deixis.perception.formats.coco import coco_scene, is_coco
+from deixis.perception.formats.labelme import is_labelme, labelme_scene
+from deixis.perception.scene import OrientedBox, PerceivedObject, Scene
+
+Reader = Callable[[Mapping[str, Any], str, str | int | None], Scene]
+"""From parsed JSON, the file's name and the chosen image (or None) to a scene; raises SceneError."""
+
+FORMATS: tuple[tuple[Callable[[Any], bool], Reader], ...] = ((is_coco, coco_scene), (is_labelme, labelme_scene))
+
+
+def annotation_reader(data: Any) -> Reader | None:
+    """The reader of the annotation format that parsed JSON is in, or None where it is in none.
+
+    >>> annotation_reader({"images": [], "annotations": [], "categories": []}).__name__
+    'coco_scene'
+    >>> annotation_reader({"objects": []}) is None
+    True
+    """
+    return next((reader for is_format, reader in FORMATS if is_format(data)), None)
+
+
+UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "px": 1.0}
+"""Accepted units, and how many metres one is; pixels stay pixels."""
+
+MAX_BYTES = 256 * 2**20
+_SCENE_KEYS = {"frame", "viewpoint", "unit", "objects"}
+_OBJECT_KEYS = {"id", "min", "max", "label", "confidence", "cloud", "colour", "oriented"}
+_ORIENTED_KEYS = {"centre", "yaw", "extents"}
+
+
+def read_scene(source: str | Path | Mapping[str, Any], image: str | int | None = None) -> Scene:
+    """Reads a scene from a ``.scene.json`` or an annotation file, or takes one that is parsed already.
+
+    ``image`` chooses the image, by file name or id, in a COCO file that has several.
+
+    >>> scene = read_scene({"objects": [{"id": "o1", "min": [0, 0], "max": [20, 1]}], "unit": "cm"})
+    >>> scene.objects[0].maximum
+    (0.2, 0.01)
+
+    Raises SceneError, with the file and the place in it, where it is no such thing.
+    """
+    if isinstance(source, Mapping):
+        return scene_from_dict(source, "<scene>", image)
+    if not isinstance(source, str | Path):
+        raise SceneError(
+            f"a scene is read from a file or from parsed JSON, not from {type(source).__name__};"
+            " what 'perceive' gives in Python has a 'scene', and 'write(file)' writes it with its clouds"
+        )
+    path = Path(source)
+    return scene_from_dict(_parsed(path), str(path), image)
+
+
+def _parsed(path: Path) -> Any:
+    try:
+        if path.is_dir():
+            raise SceneError(f"{path}: this is a folder, and a scene is a .scene.json file")
+        if not path.is_file() and path.exists():
+            raise SceneError(f"{path}: this is no regular file, and a scene is a .scene.json file")
+        if path.stat().st_size > MAX_BYTES:
+            raise SceneError(f"{path}: the file is larger than {MAX_BYTES // 2**20} MiB")
+        content = path.read_text(encoding="utf-8-sig")
+    except OSError as error:
+        raise SceneError(f"{path}: cannot be read: {error.strerror}") from error
+    except UnicodeDecodeError as error:
+        raise SceneError(
+            f"{path}: the file is not UTF-8 (byte {error.start}), as a scene is; of a cloud 'deixis perceive' makes one"
+        ) from error
+    except ValueError as error:
+        raise SceneError(f"{path}: cannot be read: {error}") from error
+    return parse_json(content, str(path), SceneError, no_number=None)
+
+
+def scene_from_dict(data: Any, file: str, image: str | int | None = None) -> Scene:
+    """The scene that parsed JSON describes, whichever of the formats it is in; ``image`` as in :func:`read_scene`.
+
+    In a scene of our own unknown keys are errors, so that a misspelt one is not lost.
+    """
+    reader = annotation_reader(data)
+    if reader is not None:
+        return reader(data, file, image)
+    scene = _own_scene(data, file)
+    if image is not None:
+        raise SceneError(f"{file}: an image ('{shown(image)}') is chosen in annotation files, and this is a scene")
+    return scene
+
+
+def _own_scene(data: Any, file: str) -> Scene:
+    scene = _mapping(data, file, _SCENE_KEYS)
+    if "objects" not in scene:
+        raise SceneError(f"{file}: 'objects' is missing: the list of what was seen")
+    if not isinstance(scene["objects"], list):
+        raise SceneError(f"{file}: 'objects' must be a list")
+    unit = text(scene.get("unit", "m"), f"{file}: 'unit'")
+    if unit not in UNITS:
+        raise SceneError(f"{file}: the unit '{unit}' is not known; use one of {', '.join(UNITS)}")
+    return Scene(
+        objects=tuple(
+            _object(entry, f"{file}: objects[{position}]", UNITS[unit])
+            for position, entry in enumerate(scene["objects"])
+        ),
+        frame=text(scene.get("frame", "table"), f"{file}: 'frame'"),
+        viewpoint=text(scene.get("viewpoint", "chair"), f"{file}: 'viewpoint'"),
+        unit="px" if unit == "px" else "m",
+        file=file,
+    )
+
+
+def _object(data: Any, where: str, scale: float) -> PerceivedObject:
+    entry = _mapping(data, where, _OBJECT_KEYS)
+    _require_keys(entry, ("id", "min", "max"), where)
+    label, confidence, cloud = entry.get("label"), entry.get("confidence", 1.0), entry.get("cloud")
+    colour, oriented = entry.get("colour"), entry.get("oriented")
+    return PerceivedObject(
+        id=text(entry["id"], f"{where}: 'id'"),
+        minimum=_numbers(entry["min"], f"{where}: 'min'", scale, (2, 3)),
+        maximum=_numbers(entry["max"], f"{where}: 'max'", scale, (2, 3)),
+        label=None if label is None else text(label, f"{where}: 'label'"),
+        confidence=1.0 if confidence is None else number(confidence, f"{where}: 'confidence'"),
+        cloud=None if cloud is None else text(cloud, f"{where}: 'cloud'"),
+        colour=None if colour is None else _colour(colour, f"{where}: 'colour'"),
+        oriented=None if oriented is None else _oriented(oriented, f"{where}: 'oriented'", scale),
+    )
+
+
+def _oriented(data: Any, where: str, scale: float) -> OrientedBox:
+    entry = _mapping(data, where, _ORIENTED_KEYS)
+    _require_keys(entry, ("centre", "extents", "yaw"), where)
+    x, y, z = _numbers(entry["centre"], f"{where}: 'centre'", scale, (3,))
+    length, width, height = _numbers(entry["extents"], f"{where}: 'extents'", scale, (3,))
+    return OrientedBox((x, y, z), number(entry["yaw"], f"{where}: 'yaw'"), (length, width, height))
+
+
+def _colour(data: Any, where: str) -> Rgb:
+    """A colour from a word of the ontology (its prototype), from ``#rrggbb``, or from three numbers."""
+    if isinstance(data, list | tuple):
+        parts = [number(part, where) for part in data]
+        if len(parts) != 3 or not all(0 <= part <= 255 for part in parts):
+            raise SceneError(f"{where} as a list is red, green and blue, each from 0 to 255")
+        return round(parts[0]), round(parts[1]), round(parts[2])
+    if not isinstance(data, str):
+        raise SceneError(f"{where} is a word such as red, #rrggbb, or [red, green, blue], not {kind(data)}")
+    said = text(data, where)
+    if said.startswith("#"):
+        if (found := rgb_of_hex(said)) is None:
+            raise SceneError(f"{where}: '{shown(said)}' is no colour; write #rrggbb in hexadecimal digits")
+        return found
+    return _prototype(said, where)
+
+
+def _prototype(word: str, where: str) -> Rgb:
+    colours = default_ontology().colours
+    if (colour := colours.of_word(word)) is not None:
+        return colour.prototype
+    near = nearest(word.casefold(), list(colours.words)) if len(word) <= MAX_SHOWN else None
+    told = f"did you mean '{near}'?" if near else f"say one of {', '.join(c.label for c in colours)}, or #rrggbb"
+    raise SceneError(f"{where}: there is no colour '{shown(word)}'; {told}")
+
+
+def _mapping(data: Any, where: str, known: set[str]) -> Mapping[str, Any]:
+    entry = mapping(data, where)
+    unknown = sorted(set(entry) - known, key=str)
+    if unknown:
+        raise SceneError(f"{where}: '{shown(unknown[0])}' is no key here; the keys are {', '.join(sorted(known))}")
+    return entry
+
+
+def _require_keys(entry: Mapping[str, Any], keys: Sequence[str], where: str) -> None:
+    missing = [key for key in keys if key not in entry]
+    if missing:
+        raise SceneError(f"{where}: '{missing[0]}' is missing")
+
+
+def _numbers(data: Any, where: str, scale: float, counts: Sequence[int]) -> tuple[float, ...]:
+    if not isinstance(data, list | tuple) or len(data) not in counts:
+        raise SceneError(f"{where} must be a list of {' or '.join(map(str, counts))} numbers")
+    return tuple(number(value, where) * scale for value in data)
+
+
+def scene_to_dict(scene: Scene) -> dict[str, Any]:
+    """The scene as :func:`read_scene` takes it, coordinates in metres (or pixels)."""
+    objects = []
+    for thing in scene.objects:
+        entry: dict[str, Any] = {"id": thing.id, "min": list(thing.minimum), "max": list(thing.maximum)}
+        entry["label"] = thing.label
+        if thing.label is not None and thing.confidence < 1:
+            entry["confidence"] = thing.confidence
+        if thing.cloud is not None:
+            entry["cloud"] = thing.cloud
+        if thing.colour is not None:
+            entry["colour"] = hex_of_rgb(thing.colour)
+        if thing.oriented is not None:
+            box = thing.oriented
+            entry["oriented"] = {"centre": list(box.centre), "yaw": box.yaw, "extents": list(box.extents)}
+        objects.append(entry)
+    return {"frame": scene.frame, "viewpoint": scene.viewpoint, "unit": scene.unit, "objects": objects}
+
+
+def write_scene(scene: Scene, path: str | Path) -> None:
+    """Writes a ``.scene.json``, an object a line."""
+    data = scene_to_dict(scene)
+    lines = ",\n".join("    " + json.dumps(entry, ensure_ascii=False) for entry in data.pop("objects"))
+    head = "".join(f'  "{key}": {json.dumps(value, ensure_ascii=False)},\n' for key, value in data.items())
+    Path(path).write_text(f'{{\n{head}  "objects": [\n{lines}\n  ]\n}}\n', encoding="utf-8")

@@ -1,0 +1,352 @@
+"""Checks a table against a layout: what is missing, misplaced and extra, and what cannot be determined.
+
+Identity comes from labels. A thing whose label names a role, and which fits there best, is that role's; where nothing
+but the layout says who is who, its place is *undetermined*, never correct. Two or three labelled things have changed
+places where all that is said of them would hold if they stood in each other's, and more would hold of each. Which end
+of another broken fact is misplaced is settled by how much else is broken about it: the worst share explains the others.
+
+Whatever fills a role that is said to be of a colour, and is plainly of another, is *miscoloured*, misplaced or not.
+
+The likeliest map may give a role the one thing that is left, whatever that is, since sizes rule nothing out. Where no
+label says so, and it stands in none of the role's places, what is plainly higher, larger or smaller than a fork is no
+misplaced fork: the fork is missing, and it is extra.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from enum import StrEnum
+from itertools import combinations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.ontology.colours import Colour, Colours
+from deixis.ontology.graph import RelationGraph, dispensable
+from deixis.ontology.kinds import Kinds, with_article
+from deixis.reasoning.grounding.answer import FactOutcome, Grounding, Outcome
+from deixis.reasoning.grounding.engines import Engine
+from deixis.reasoning.grounding.evidence.colours import other_colours
+from deixis.reasoning.grounding.evidence.evidence import PRESENT, Evidence
+from deixis.reasoning.grounding.evidence.labels import Label, naming
+from deixis.reasoning.grounding.evidence.unary import OUTLIERS
+from deixis.reasoning.grounding.ground import DEFAULT_TIME_LIMIT, ground
+from deixis.reasoning.grounding.matching.problem import UNMATCHED
+
+SURE = 0.9
+"""Confidence from which a label counts as an identity."""
+
+MAX_ROTATED = 30
+"""Labelled roles among which rotations of three are looked for; among more, only swaps."""
+
+
+class Verdict(StrEnum):
+    """What became of a role."""
+
+    CORRECT = "correct"  # its label says that it is there, and what is broken about it is the fault of others
+    MISPLACED = "misplaced"  # it is there, and not where it belongs
+    MISCOLOURED = "miscoloured"  # it is where it belongs, and of another colour than it should be
+    MISSING = "missing"  # nothing fills it
+    ABSENT = "absent"  # nothing fills it, and nothing firm is said of it: it need not be there
+    UNDETERMINED = "undetermined"  # something may fill it, but only the layout says so
+
+
+@dataclass(frozen=True, slots=True)
+class Miscoloured:
+    """The colour that a role's thing should be of, and the one that it plainly is of instead."""
+
+    described: Colour
+    seen: Colour
+
+
+@dataclass(frozen=True)
+class RoleCheck:
+    """A role, the thing that fills it, the verdict, and the broken facts that explain it.
+
+    ``in_place_of`` is the role in whose place its thing stands, where two or three have changed places. What is
+    misplaced may be ``miscoloured`` as well.
+    """
+
+    role: str
+    verdict: Verdict
+    perceived: str | None
+    label: str | None
+    confidence: float | None = None  # of the label
+    broken: tuple[FactOutcome, ...] = ()
+    in_place_of: str | None = None
+    miscoloured: Miscoloured | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Extra:
+    """A thing that has no place in the layout."""
+
+    perceived: str
+    label: str | None
+    reason: str
+
+
+@dataclass(frozen=True)
+class TableCheck:
+    """A whole table against a layout."""
+
+    roles: tuple[RoleCheck, ...]
+    extra: tuple[Extra, ...]
+    broken: tuple[FactOutcome, ...]  # firm facts that do not hold
+    unexpected: tuple[FactOutcome, ...]  # hedged facts that do not hold: no fault
+    grounding: Grounding
+
+    def of(self, verdict: Verdict) -> tuple[RoleCheck, ...]:
+        return tuple(check for check in self.roles if check.verdict is verdict)
+
+    @property
+    def miscoloured(self) -> Iterator[tuple[RoleCheck, Miscoloured]]:
+        """The roles whose things are of another colour, those that are misplaced too among them."""
+        return ((check, check.miscoloured) for check in self.roles if check.miscoloured)
+
+    @property
+    def well(self) -> bool:
+        """Nothing is missing, misplaced, of another colour or extra, as far as can be told."""
+        wrong = (self.of(verdict) for verdict in (Verdict.MISSING, Verdict.MISPLACED, Verdict.MISCOLOURED))
+        return not (any(wrong) or self.extra or self.broken)
+
+
+def check_table(
+    evidence: Evidence,
+    labels: Mapping[str, Label | None],
+    kinds: Kinds,
+    grounding: Grounding,
+    seen: NDArray[np.float64] | None = None,
+    colours: Colours | None = None,
+) -> TableCheck:
+    """Reads a grounding of a layout in a scene as a verdict on every role and every thing.
+
+    ``evidence`` is what was grounded; ``labels`` has one entry for each thing of its scene. ``seen`` are the n2 things'
+    colours in sRGB, shape (n2, 3), NaN where not known, and ``colours`` the known terms.
+    """
+    layout = evidence.description
+    sure = sure_roles(layout, labels, kinds)
+    broken = tuple(entry for entry in grounding.violated if entry.fact.weight >= 1)
+    exchanged = _exchanged(evidence, grounding, sure)
+    explained = [entry for entry in broken if not exchanged.keys() & {entry.fact.subject, entry.fact.object}]
+    misplaced = exchanged.keys() | _blamed(grounding, explained)
+    spare = dispensable(layout.facts())
+    otherwise = _miscoloured(evidence, grounding, seen, colours)
+    roles = []
+    for role in layout.nodes:
+        match = grounding.matches.get(role)
+        if match is None:
+            roles.append(RoleCheck(role, Verdict.ABSENT if role in spare else Verdict.MISSING, None, None))
+            continue
+        label = labels[match.perceived]
+        verdict = Verdict.CORRECT if role in sure[match.perceived] else Verdict.UNDETERMINED
+        verdict = Verdict.MISCOLOURED if role in otherwise else verdict
+        about = tuple(entry for entry in broken if role in (entry.fact.subject, entry.fact.object))
+        roles.append(
+            RoleCheck(
+                role=role,
+                verdict=Verdict.MISPLACED if role in misplaced else verdict,
+                perceived=match.perceived,
+                label=label.text if label else None,
+                confidence=label.confidence if label else None,
+                broken=about,
+                in_place_of=exchanged.get(role),
+                miscoloured=otherwise.get(role),
+            )
+        )
+    unexpected = tuple(entry for entry in grounding.violated if entry.fact.weight < 1)
+    return TableCheck(tuple(roles), _extra(labels, grounding, sure), broken, unexpected, grounding)
+
+
+def _miscoloured(
+    evidence: Evidence, grounding: Grounding, seen: NDArray[np.float64] | None, colours: Colours | None
+) -> dict[str, Miscoloured]:
+    """The roles whose things are plainly of another colour than is said of them."""
+    layout = evidence.description
+    if seen is None or colours is None or not layout.colours:
+        return {}
+    said = [layout.colours[layout.index(role)] for role in grounding.matches]
+    things = [evidence.scene.index(match.perceived) for match in grounding.matches.values()]
+    others = other_colours(said, seen[things], colours)
+    return {
+        role: Miscoloured(colours[iri], other)
+        for role, iri, other in zip(grounding.matches, said, others, strict=True)
+        if iri is not None and other is not None
+    }
+
+
+def _exchanged(evidence: Evidence, grounding: Grounding, sure: Mapping[str, frozenset[str]]) -> dict[str, str]:
+    """Labelled roles that have changed places, each with the role in whose place its thing stands.
+
+    Of all changes among two or three roles that would mend the most broken facts, leave none about them broken and
+    make more hold of each, the smallest is taken first; then the next among the others.
+    """
+    layout, scene = evidence.description, evidence.scene
+    assignment = np.full(len(layout.nodes), UNMATCHED, dtype=np.int64)
+    for role, match in grounding.matches.items():
+        assignment[layout.index(role)] = scene.index(match.perceived)
+    known = [i for i, p in enumerate(assignment) if p != UNMATCHED and layout.nodes[i] in sure[scene.nodes[p]]]
+    found: dict[str, str] = {}
+    while True:
+        left = [i for i in known if layout.nodes[i] not in found]
+        change = _best_change(evidence, assignment, left)
+        if change is None:
+            return found
+        roles, places = change
+        found |= {layout.nodes[i]: layout.nodes[j] for i, j in zip(roles, places, strict=True)}
+        assignment[list(places)] = assignment[list(roles)]
+
+
+def _best_change(
+    evidence: Evidence, assignment: NDArray[np.int64], known: list[int]
+) -> tuple[tuple[int, ...], tuple[int, ...]] | None:
+    """Roles, and the roles in whose places their things stand; None where no change explains what is broken."""
+    firm = evidence.firm()
+    now = evidence.degrees(assignment)
+    broken = set(_ends(evidence, firm & (now <= 0), assignment).tolist())
+    best: tuple[int, int, float] | None = None
+    change = None
+    for roles, places in _changes(known, broken):
+        other = assignment.copy()
+        other[list(places)] = assignment[list(roles)]
+        then = evidence.degrees(other)
+        mended = int((firm & (now <= 0)).sum() - (firm & (then <= 0)).sum())
+        key = (mended, -len(roles), float(then.sum() - now.sum()))
+        if mended > 0 and (best is None or key > best) and _explains(evidence, roles, firm, now, then, other):
+            best, change = key, (roles, places)
+    return change
+
+
+def _changes(known: list[int], broken: set[int]) -> Iterator[tuple[tuple[int, ...], tuple[int, ...]]]:
+    """Swaps and rotations of three among known roles, at least one of them in a broken fact."""
+    sizes = (2, 3) if len(known) <= MAX_ROTATED else (2,)
+    for roles in (roles for size in sizes for roles in combinations(known, size)):
+        if broken & set(roles):
+            yield roles, (*roles[1:], roles[0])
+            if len(roles) == 3:
+                yield roles, (roles[2], *roles[:2])
+
+
+def _explains(
+    evidence: Evidence,
+    roles: tuple[int, ...],
+    firm: NDArray[np.bool_],
+    now: NDArray[np.float64],
+    then: NDArray[np.float64],
+    other: NDArray[np.int64],
+) -> bool:
+    """Whether after the change nothing firm about these roles is broken, and more holds of each of them."""
+    if set(roles) & set(_ends(evidence, firm & (then <= 0), other).tolist()):
+        return False
+    edges = evidence.facts
+    subjects, objects = evidence.description.subjects[edges], evidence.description.objects[edges]
+    gained = np.where(firm, then - now, 0.0)
+    return all(gained[(subjects == i) | (objects == i)].sum() > 0 for i in roles)
+
+
+def _ends(evidence: Evidence, chosen: NDArray[np.bool_], assignment: NDArray[np.int64]) -> NDArray[np.int64]:
+    """The objects of the chosen facts, of those both of whose ends are matched."""
+    edges = evidence.facts[chosen]
+    subjects, objects = evidence.description.subjects[edges], evidence.description.objects[edges]
+    both = (assignment[subjects] != UNMATCHED) & (assignment[objects] != UNMATCHED)
+    return np.concatenate([subjects[both], objects[both]]).astype(np.int64)
+
+
+def sure_roles(layout: RelationGraph, labels: Mapping[str, Label | None], kinds: Kinds) -> dict[str, frozenset[str]]:
+    """The roles that a sure label says its thing fills: those that it fits, or the one that it names."""
+    known = naming(layout, list(labels.values()), kinds)
+    roles = {}
+    for column, (thing, label) in enumerate(labels.items()):
+        named, fitted = (np.flatnonzero(which[:, column]) for which in (known.named, known.fitted))
+        chosen = fitted if len(fitted) else named[: len(named) == 1]
+        sure = label is not None and label.confidence >= SURE
+        roles[thing] = frozenset(layout.nodes[i] for i in chosen if sure)
+    return roles
+
+
+def _blamed(grounding: Grounding, broken: Sequence[FactOutcome]) -> frozenset[str]:
+    """The fewest ends that explain all broken facts, as far as greed finds them: the worst share first.
+
+    A share is an end's broken facts over all that could be compared. Of two ends as bad it is the subject, which is
+    what the script places with respect to the object.
+    """
+    compared: dict[str, int] = {}
+    for entry in grounding.outcomes:
+        if entry.outcome in (Outcome.SATISFIED, Outcome.VIOLATED):
+            for name in (entry.fact.subject, entry.fact.object):
+                compared[name] = compared.get(name, 0) + 1
+    blamed: set[str] = set()
+    left = list(broken)
+    while left:
+        count: dict[str, int] = {}
+        for entry in left:
+            for name in (entry.fact.subject, entry.fact.object):
+                count[name] = count.get(name, 0) + 1
+        subjects = {entry.fact.subject for entry in left}
+        worst = max(count, key=lambda name: (count[name] / compared[name], count[name], name in subjects, name))
+        blamed.add(worst)
+        left = [entry for entry in left if worst not in (entry.fact.subject, entry.fact.object)]
+    return frozenset(blamed)
+
+
+def _extra(
+    labels: Mapping[str, Label | None], grounding: Grounding, sure: Mapping[str, frozenset[str]]
+) -> tuple[Extra, ...]:
+    taken = {match.perceived for match in grounding.matches.values()}
+    found = []
+    for thing, label in labels.items():
+        if thing in taken:
+            continue
+        if label is None and grounding.unmatched_objects:
+            reason = "it fits no place that is left in the layout"
+        elif label is None:
+            reason = "there are more things than the layout has places"
+        elif sure[thing]:
+            reason = f"one {label.text} too many"
+        else:
+            reason = f"the layout has no place left for {with_article(label.text)}"
+        found.append(Extra(thing, label.text if label else None, reason))
+    return tuple(found)
+
+
+IMPOSTOR = float(np.log(OUTLIERS / SURE))
+"""Sizes that say less than this for a match say with probability ``SURE`` that the thing's size is not its kind's; of
+what is too high they say less."""
+
+RULED_OUT = 2 * PRESENT
+"""What such a match counts as then: no facts about it outweigh that."""
+
+
+def checked_table(
+    evidence: Evidence,
+    labels: Mapping[str, Label | None],
+    kinds: Kinds,
+    engine: Engine,
+    time_limit: float = DEFAULT_TIME_LIMIT,
+    seen: NDArray[np.float64] | None = None,
+    colours: Colours | None = None,
+) -> TableCheck:
+    """Grounds a layout and reads the grounding as :func:`check_table` does, as often as an impostor is found."""
+    deadline = time.perf_counter() + time_limit
+    sure = sure_roles(evidence.description, labels, kinds)
+    while True:
+        found = ground(evidence, engine, max(0.0, deadline - time.perf_counter()))
+        table = check_table(evidence, labels, kinds, found, seen, colours)
+        rest = _without_impostors(evidence, sure, table)
+        if rest is None or time.perf_counter() > deadline:
+            return table
+        evidence = rest
+
+
+def _without_impostors(evidence: Evidence, sure: Mapping[str, frozenset[str]], table: TableCheck) -> Evidence | None:
+    """The evidence with the table's impostors ruled out, one match at least; None where there is none."""
+    said = evidence.sizes.copy()
+    for check in table.of(Verdict.MISPLACED):
+        if check.perceived is None or check.role in sure[check.perceived]:
+            continue
+        place = evidence.description.index(check.role), evidence.scene.index(check.perceived)
+        if evidence.labels[place] <= 0 and evidence.sizes[place] < IMPOSTOR:
+            said[place] = RULED_OUT
+    return None if np.array_equal(said, evidence.sizes) else replace(evidence, sizes=said)

@@ -1,0 +1,350 @@
+"""Similarity of a scene and a layout.
+
+A size is as usual as can be within two deviations of the kind's, and less so beyond, as a Gaussian of the logarithm.
+
+A direction is one of the 3 by 3 tiles around a box; two directions are as many steps apart as there are tiles from the
+one to the other, diagonals taking two (Goyal and Egenhofer, "Similarity of Cardinal Directions", SSTD 2001). *On* and
+*under* share the middle tile, two steps apart.
+
+After Nedas and Egenhofer ("Spatial-Scene Similarity Queries", Transactions in GIS 2008): objects and relations that
+correspond are compared by degrees, and what has no counterpart on either side weighs in as incompleteness. Here both
+are Dice's coefficient over the best grounding: twice what corresponds, by degree, divided by what both sides have; two
+thirds of the similarity are that of objects and one third that of relations (all that of objects, where nothing is said
+of relations). So it is 1 just where everything corresponds, and between two fully related scenes of two and more things
+it is symmetric.
+
+- Objects correspond by kind: half with every kind, itself and broader ones, that only one of the two is. A word that
+  stands for no known kind is a kind by itself (:func:`deixis.reasoning.grounding.evidence.labels.classes`): of it is
+  what is called so, numbers aside, and nothing else is like it. An unlabelled thing corresponds as far as its size is
+  usual for the kind (:mod:`deixis.reasoning.comparison.likeness`), in an image beside the others; where nothing is
+  known, nothing counts against it.
+- Relations correspond by the steps between directions (:mod:`deixis.reasoning.comparison.likeness`): half with every
+step
+  from the nearest name that the stated relation admits.
+- A layout states few of the relations there are; a scene shows them all. Of the scene's as many are taken to ask for a
+  counterpart as the layout would state of so many objects.
+
+Each of the two denominators is a constant, and no term is below 0. So the best grounding is the optimum of a matching
+problem whose value is the similarity itself.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.ontology.allen import Allen, allen_mask
+from deixis.ontology.graph import RelationGraph
+from deixis.ontology.kinds import Kinds
+from deixis.ontology.models.sizes import SizeModel
+from deixis.ontology.relation import Reading, Relation, Relations
+from deixis.ontology.sizes import Sizes
+from deixis.ontology.tbox import Ontology
+from deixis.reasoning.grounding.evidence.evidence import exact_names
+from deixis.reasoning.grounding.evidence.labels import category_of, classes
+from deixis.reasoning.grounding.evidence.sizes import Look
+from deixis.reasoning.grounding.evidence.unary import log_sizes, looks_in_image
+from deixis.reasoning.grounding.matching.problem import UNMATCHED, Problem
+
+Array = NDArray[np.float64]
+
+SIZE_SPREAD = 0.35
+"""How far (natural logarithm) a length lies outside the usual range where its similarity has fallen to exp(-1/2)."""
+
+
+def usual_sizes(
+    kinds: Sequence[str], boxes: NDArray[np.float64], sizes: Sizes, learned: Mapping[str, SizeModel], metric: bool
+) -> dict[str, Array]:
+    """How usual n boxes, shape (n, 2, d), are for each of some objects' kinds (class IRIs), each (n,).
+
+    A learned model takes the place of the usual size. Where units are pixels (not ``metric``), sizes in metres say how
+    large the objects are beside each other, from above or from aside, whichever fits the better. A kind of which no
+    size is known may look as it will.
+    """
+    if metric:
+        extents = np.sort(boxes[:, 1, :2] - boxes[:, 0, :2], axis=1)[:, ::-1]
+        logs = np.log(np.maximum(extents, 1e-9))
+        return {kind: _within(logs, *_range(kind, sizes, learned)) for kind in dict.fromkeys(kinds)}
+    logs = log_sizes(boxes, relative=True)
+    views = [
+        {kind: _looking(logs, looks[kind]) if kind in looks else np.ones(len(boxes)) for kind in dict.fromkeys(kinds)}
+        for looks in looks_in_image(kinds, sizes, learned)
+    ]
+    return max(views, key=lambda view: _fit(kinds, view))
+
+
+def _within(logs: Array, least: Array, greatest: Array) -> Array:
+    beyond = np.maximum(0.0, np.maximum(least - logs, logs - greatest))
+    result: Array = np.exp(-(beyond**2).sum(axis=1) / (2 * SIZE_SPREAD**2))
+    return result
+
+
+def _range(kind: str, sizes: Sizes, learned: Mapping[str, SizeModel]) -> tuple[Array, Array]:
+    """Least and greatest logarithms of length and width, each (2,): two deviations off where they were learned."""
+    model = learned.get(kind)
+    if model is None or model.relative:
+        usual = sizes.of(kind)
+        ranges = usual.length, usual.width
+        handle = np.log1p([0.0 if usual.reach is None else usual.reach.greatest, 0.0])
+        return np.log([one.least for one in ranges]), np.log([one.greatest for one in ranges]) + handle
+    (length, spread), (aspect, other) = model.length, model.aspect
+    typical, off = np.array([length, length + aspect]), 2 * np.array([spread, math.hypot(spread, other)])
+    return typical - off, typical + off
+
+
+def _looking(logs: Array, look: Look) -> Array:
+    """The same for a look, by the one of its ways that a thing is nearest to."""
+    ways = [_within(logs, centre - 2 * look.spread, centre + 2 * look.spread) for centre in look.centres]
+    result: Array = np.max(ways, axis=0)
+    return result
+
+
+def _fit(kinds: Sequence[str], usual: Mapping[str, Array]) -> float:
+    """How well a whole scene fits: the sum over the best assignment."""
+    from scipy.optimize import linear_sum_assignment
+
+    table = np.array([usual[kind] for kind in kinds])
+    return float(table[linear_sum_assignment(table, maximize=True)].sum()) if table.size else 0.0
+
+
+STEP = 0.5
+"""By what similarity is multiplied for every step: it falls exponentially with distance (Shepard 1987)."""
+
+
+class Closeness:
+    """How close each exact name is to what a fact admits, by relation index: 1 admitted, half with every step."""
+
+    def __init__(self, vocabulary: Relations) -> None:
+        self._vocabulary = vocabulary
+        exact = vocabulary.of_reading(Reading.EXACT)
+        tiles = {relation.index: _tile(relation) for relation in exact}
+        self._steps = {
+            (a, b): sum(abs(x - y) for x, y in zip(tiles[a], tiles[b], strict=True)) for a in tiles for b in tiles
+        }
+        self._names = tuple(tiles)
+        self._known: dict[tuple[int, bool], Array] = {}
+
+    def __call__(self, mask: int, positive: bool) -> Array:
+        if (mask, positive) not in self._known:
+            self._known[mask, positive] = self._work_out(mask, positive)
+        return self._known[mask, positive]
+
+    def _work_out(self, mask: int, positive: bool) -> Array:
+        members = [relation.index for relation in self._vocabulary.members(mask)]
+        implied = self._vocabulary.degrees[members].max(axis=0, initial=0.0) > 0
+        admitted = [name for name in self._names if implied[name] == positive]
+        result = np.zeros(len(self._vocabulary))
+        for name in self._names:
+            if admitted:
+                result[name] = STEP ** min(self._steps[name, other] for other in admitted)
+        return result
+
+
+def _tile(relation: Relation) -> tuple[int, int, int]:
+    """Where the subject lies about the object: -1, 0 or 1 on x and y, and 1 or -1 on top of it or below."""
+    before, after = allen_mask([Allen.BEFORE, Allen.MEETS]), allen_mask([Allen.AFTER, Allen.MET_BY])
+    x, y = (
+        -1 if not atoms & ~before else 1 if not atoms & ~after else 0 for atoms in (relation.x_atoms, relation.y_atoms)
+    )
+    above = 0 if x or y else 1 if relation.word == "on" else -1
+    return x, y, above
+
+
+OBJECTS_SHARE = 2 / 3
+"""Weight of objects in the similarity, the rest being that of relations: it retrieved best among 1/3, 1/2, 3/5 and 2/3
+in ``benchmarks/bench_retrieval.py`` with seed 2."""
+
+
+@dataclass(frozen=True, eq=False)
+class Described:
+    """A layout made ready: its objects' kinds, and its facts as sets of admitted exact names."""
+
+    name: str
+    graph: RelationGraph
+
+    @cached_property
+    def said(self) -> tuple[tuple[str, str], ...]:
+        """The class of each object and the category of its name, both IRIs."""
+        return tuple(
+            (kind, category_of(node)) for kind, node in zip(classes(self.graph), self.graph.nodes, strict=True)
+        )
+
+    @cached_property
+    def edges(self) -> NDArray[np.int64]:
+        """The facts that can be compared: all but those of an object to itself."""
+        return np.flatnonzero(self.graph.subjects != self.graph.objects)
+
+    @cached_property
+    def weights(self) -> Array:
+        """Of the comparable facts."""
+        return self.graph.net_weights[self.edges]
+
+    @cached_property
+    def total(self) -> float:
+        return float(self.weights.sum())
+
+    @cached_property
+    def densest(self) -> Array:
+        """The weight of what is said of each ordered pair, the largest first."""
+        n = len(self.graph.nodes)
+        pair = self.graph.subjects[self.edges].astype(np.int64) * n + self.graph.objects[self.edges]
+        sums = np.bincount(pair, self.weights).astype(np.float64)
+        result: Array = np.sort(sums[sums > 0])[::-1]
+        return result
+
+
+@dataclass(frozen=True, eq=False)
+class Seen:
+    """A scene made ready: exact names of pairs, the classes that labels say (IRI or None), and boxes or None.
+
+    ``metric`` says whether the boxes are in metres; otherwise they are in pixels.
+    """
+
+    name: str
+    ids: tuple[str, ...]  # (n2,)
+    names: NDArray[np.int16]  # (n2, n2), -1 on the diagonal
+    kinds: tuple[str | None, ...]  # (n2,)
+    boxes: Array | None  # (n2, 2, d)
+    metric: bool = True
+
+    @cached_property
+    def counts(self) -> NDArray[np.int64]:
+        """How many ordered pairs bear each exact name, by relation index."""
+        named = self.names[self.names >= 0]
+        return np.bincount(named) if len(named) else np.zeros(0, np.int64)
+
+
+def seen(name: str, scene: RelationGraph, metric: bool = True) -> Seen:
+    """Makes a scene ready; ``scene.kinds`` are what labels say. Raises GraphError for one not fully related."""
+    kinds = scene.kinds or (None,) * len(scene.nodes)
+    return Seen(name, scene.nodes, exact_names(scene), kinds, scene.boxes, metric)
+
+
+@dataclass(frozen=True, eq=False)
+class Likeness:
+    """How similar a scene is to a layout, 0 to 1, and the grounding by which (n1,).
+
+    ``similarity`` is the weighted mean of ``objects`` and ``relations``, or ``objects`` alone where nothing is related.
+    ``proved``: no other grounding makes it more similar.
+    """
+
+    layout: str
+    scene: str
+    similarity: float
+    objects: float
+    relations: float
+    assignment: NDArray[np.int64]
+    proved: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Shares:
+    """Weights of objects and relations, and what both sides have of them together."""
+
+    objects: float
+    relations: float
+    things: int
+    facts: float
+
+
+class Comparison:
+    """Compares layouts with scenes; keeps what it works out for every relation and kind.
+
+    ``learned`` sizes, by class IRI, take the place of the usual ones of the TBox; those in median lengths of a scene,
+    only where scenes are in pixels.
+    """
+
+    def __init__(self, ontology: Ontology, learned: Mapping[str, SizeModel] | None = None) -> None:
+        self._learned = dict(learned or {})
+        self._kinds: Kinds = ontology.kinds
+        self._sizes: Sizes = ontology.sizes
+        self.closeness = Closeness(ontology.relations)
+        self._of_kinds: dict[tuple[str, str], float] = {}
+
+    def likeness(self, layout: Described, scene: Seen, deadline: float = math.inf) -> Likeness:
+        """The similarity by the best grounding, until ``deadline`` (``time.perf_counter``)."""
+        from deixis.reasoning.grounding.matching.exact import exact
+
+        problem = self.problem(layout, scene)
+        best = exact(problem, deadline)
+        shares = self.shares(layout, scene)
+        matched = np.flatnonzero(best.assignment != UNMATCHED)
+        objects = float(problem.unary[matched, best.assignment[matched]].sum())
+        relations = problem.value(best.assignment) - objects
+        of_objects = objects / shares.objects if shares.objects else 0.0
+        of_relations = relations / shares.relations if shares.relations else 0.0
+        similarity = round(min(1.0, objects + relations), 6)  # tables are of single precision
+        return Likeness(
+            layout.name,
+            scene.name,
+            similarity,
+            round(min(1.0, of_objects), 6),
+            round(min(1.0, of_relations), 6),
+            best.assignment,
+            best.proved,
+        )
+
+    def problem(self, layout: Described, scene: Seen) -> Problem:
+        """The matching problem whose value of a map is the similarity by it."""
+        shares, n2 = self.shares(layout, scene), len(scene.names)
+        graph = layout.graph
+        keys = list(zip(*self._facts(layout), strict=True))
+        distinct = list(dict.fromkeys(keys))
+        tables = np.zeros((len(distinct), n2, n2), dtype=np.float32)
+        for row, (mask, positive, weight) in enumerate(distinct):
+            close = self.closeness(int(mask), bool(positive))
+            said = np.where(scene.names >= 0, close[scene.names], 0.0)
+            tables[row] = said * (2 * shares.relations * weight / shares.facts)
+        positions = {key: row for row, key in enumerate(distinct)}
+        ends = np.stack([graph.subjects[layout.edges], graph.objects[layout.edges]], axis=1).astype(np.int64)
+        kinds = np.array([positions[key] for key in keys], dtype=np.int64)
+        unary = self.objects(layout, scene) * (2 * shares.objects / max(shares.things, 1))
+        return Problem(ends, kinds, tables, unary, np.zeros(len(graph.nodes)))
+
+    def _facts(self, layout: Described) -> tuple[list[int], list[bool], list[float]]:
+        graph, edges = layout.graph, layout.edges
+        return graph.relation_sets[edges].tolist(), graph.affirmed[edges].tolist(), layout.weights.tolist()
+
+    def objects(self, layout: Described, scene: Seen) -> Array:
+        """How far each object corresponds to each thing, shape (n1, n2), 0 to 1."""
+        said = layout.said
+        sized = [kind for kind, _ in said if kind in self._kinds or kind in self._learned]
+        usual: Mapping[str, Array] = {}
+        if scene.boxes is not None and len(scene.boxes):
+            usual = usual_sizes(sized, scene.boxes, self._sizes, self._learned, scene.metric)
+        alike = {pair: self._like(*pair, scene, usual) for pair in dict.fromkeys(said)}
+        return np.array([alike[pair] for pair in said]).reshape(len(said), len(scene.kinds))
+
+    def _like(self, kind: str, name: str, scene: Seen, usual: Mapping[str, Array]) -> Array:
+        """How far each thing (n2,) is what an object is: of its kind, of its size, or of its very name."""
+        found = usual[kind].copy() if kind in usual else np.ones(len(scene.kinds))
+        for p, label in enumerate(scene.kinds):
+            if label is not None:
+                found[p] = 1.0 if label == name else self._kinship(kind, label)
+        return found
+
+    def _kinship(self, a: str, b: str) -> float:
+        """1 for the same kind, times ``STEP`` for every kind, itself and broader ones, that only one of the two is.
+
+        0 where they differ and one is no known kind.
+        """
+        if (a, b) not in self._of_kinds:
+            self._of_kinds[a, b] = float(a == b)
+            if a in self._kinds and b in self._kinds:
+                first, second = ({iri, *self._kinds[iri].broader} for iri in (a, b))
+                self._of_kinds[a, b] = float(STEP ** len(first ^ second))
+        return self._of_kinds[a, b]
+
+    def shares(self, layout: Described, scene: Seen) -> Shares:
+        n1, n2 = len(layout.graph.nodes), len(scene.names)
+        if not layout.total:
+            return Shares(1.0, 0.0, n1 + n2, 1.0)
+        pairs = n2 * (n2 - 1)
+        density = layout.total / (n1 * (n1 - 1))
+        counterpart = max(density * pairs, float(layout.densest[:pairs].sum()))
+        return Shares(OBJECTS_SHARE, 1 - OBJECTS_SHARE, n1 + n2, layout.total + counterpart)

@@ -1,0 +1,100 @@
+"""Which layout is this? The layouts most similar to a scene, and the scenes most similar to a layout.
+
+Comparing takes a grounding. Two upper bounds on the similarity tell which pairs need not be compared: one from counts
+of kinds and names alone, and one from an assignment in which every fact has its way. What is found is the same as if
+all pairs had been compared.
+"""
+
+from __future__ import annotations
+
+import heapq
+import math
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+
+from deixis.reasoning.comparison.likeness import Comparison, Described, Likeness, Seen
+from deixis.reasoning.errors import SettingError
+
+SLACK = 1e-5
+"""How much a bound may fall short of a similarity by rounding."""
+
+
+def rank_layouts(
+    scene: Seen, layouts: Iterable[Described], comparison: Comparison, top: int = 10, deadline: float = math.inf
+) -> list[Likeness]:
+    """The ``top`` layouts most similar to a scene, best first, by name among equals; as if all had been compared."""
+    return _ranked([(layout, scene) for layout in layouts], comparison, top, deadline)
+
+
+def rank_scenes(
+    layout: Described, scenes: Iterable[Seen], comparison: Comparison, top: int = 10, deadline: float = math.inf
+) -> list[Likeness]:
+    """The ``top`` scenes most similar to a layout, best first, by name among equals; as if all had been compared."""
+    return _ranked([(layout, scene) for scene in scenes], comparison, top, deadline)
+
+
+def _ranked(
+    pairs: Sequence[tuple[Described, Seen]], comparison: Comparison, top: int, deadline: float
+) -> list[Likeness]:
+    """Compares pair by pair, the one of the largest bound next, until no bound reaches the last of the best."""
+    if top < 1:
+        raise SettingError(f"so many as are to be found is 1 or more, not {top}")
+    open_ = [(-quick_bound(comparison, *pair), k, False) for k, pair in enumerate(pairs)]
+    heapq.heapify(open_)
+    found: list[Likeness] = []
+    least = -math.inf
+    while open_ and -open_[0][0] >= least - SLACK:
+        bound, k, tight = heapq.heappop(open_)
+        if not tight:
+            heapq.heappush(open_, (max(bound, -assignment_bound(comparison, *pairs[k])), k, True))
+            continue
+        found.append(comparison.likeness(*pairs[k], deadline))
+        if len(found) >= top:
+            least = sorted((one.similarity for one in found), reverse=True)[top - 1]
+    return sorted(found, key=lambda one: (-one.similarity, one.layout, one.scene))[:top]
+
+
+def quick_bound(comparison: Comparison, layout: Described, scene: Seen) -> float:
+    """No less than the similarity, from counts alone: of kinds that are alike, and of pairs that bear a name."""
+    shares, alike = comparison.shares(layout, scene), comparison.objects(layout, scene)
+    objects = min(alike.max(axis=1, initial=0.0).sum(), alike.max(axis=0, initial=0.0).sum())
+    bound = 2 * shares.objects * float(objects) / max(shares.things, 1)
+    return bound + 2 * shares.relations * _most_facts(comparison, layout, scene) / shares.facts
+
+
+def _most_facts(comparison: Comparison, layout: Described, scene: Seen) -> float:
+    """The most that facts could correspond to, if each kind of fact had its choice of all pairs."""
+    graph, edges = layout.graph, layout.edges
+    said: dict[tuple[int, bool], dict[tuple[int, int], float]] = {}
+    for edge, weight in zip(edges.tolist(), layout.weights.tolist(), strict=True):
+        key = (int(graph.relation_sets[edge]), bool(graph.positive[edge]))
+        pair = (int(graph.subjects[edge]), int(graph.objects[edge]))
+        by_pair = said.setdefault(key, {})
+        by_pair[pair] = by_pair.get(pair, 0.0) + weight
+    total = 0.0
+    for (mask, positive), by_pair in said.items():
+        close = comparison.closeness(mask, positive)[: len(scene.counts)]
+        order = np.argsort(-close)
+        available = np.repeat(close[order], np.minimum(scene.counts[order], len(by_pair)))[: len(by_pair)]
+        heaviest = sorted(by_pair.values(), reverse=True)
+        total += float(np.dot(heaviest[: len(available)], available))
+    return total
+
+
+def assignment_bound(comparison: Comparison, layout: Described, scene: Seen) -> float:
+    """No less than the similarity: the best assignment where each fact chooses its other end freely.
+
+    Each object counts a half of every fact that it is in (Gilmore 1962, Lawler 1963).
+    """
+    from scipy.optimize import linear_sum_assignment
+
+    problem = comparison.problem(layout, scene)
+    if not problem.unary.size:
+        return 0.0
+    gains = problem.unary.copy()
+    forth, back = problem.tables.max(axis=2) / 2, problem.tables.max(axis=1) / 2
+    np.add.at(gains, problem.ends[:, 0], forth[problem.kinds])
+    np.add.at(gains, problem.ends[:, 1], back[problem.kinds])
+    rows, columns = linear_sum_assignment(gains, maximize=True)
+    return float(gains[rows, columns].sum())

@@ -1,0 +1,1 @@
+"""Constraints shared by all engines of entailment and time."""

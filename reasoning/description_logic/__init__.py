@@ -1,0 +1,1 @@
+"""Description logic: consistency, classification, entailment and justifications of OWL ontologies."""

@@ -1,0 +1,187 @@
+"""An ontology's triples as axioms: each axiom a group of triples that mean something only together.
+
+Source: OWL 2 Web Ontology Language Mapping to RDF Graphs (second edition). A class expression, a list or a negative
+assertion is written with blank nodes; the triples of those belong to the axiom that leads to them. Declarations say
+what a name is, and annotations say nothing that follows: both are kept apart.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from deixis.reasoning.description_logic.terms import (
+    ANNOTATION_PROPERTY,
+    CLASS,
+    DATATYPE_PROPERTY,
+    DIFFERENT_FROM,
+    FIRST,
+    IMPORTS,
+    NAMED_INDIVIDUAL,
+    NOTHING,
+    OBJECT_PROPERTY,
+    ONTOLOGY,
+    PREFIXES,
+    REST,
+    SAME_AS,
+    THING,
+    TYPE,
+    Triple,
+    is_blank,
+    is_literal,
+    term,
+)
+
+_BUILT_IN = tuple(f"<{base}" for base in PREFIXES.values())
+_ANNOTATIONS = {term(f"rdfs:{name}") for name in ("label", "comment", "seeAlso", "isDefinedBy")} | {
+    term(f"owl:{name}")
+    for name in (
+        "versionInfo", "versionIRI", "priorVersion", "backwardCompatibleWith", "incompatibleWith", "deprecated",
+        "annotatedSource", "annotatedProperty", "annotatedTarget",
+    )
+}  # fmt: skip
+_CLASSES = {CLASS, term("rdfs:Class"), term("rdfs:Datatype")}
+_OBJECT_PROPERTIES = {OBJECT_PROPERTY} | {
+    term(f"owl:{name}Property")
+    for name in ("Transitive", "Symmetric", "Asymmetric", "Reflexive", "Irreflexive", "InverseFunctional")
+}
+_TERMS = {*_CLASSES, *_OBJECT_PROPERTIES, DATATYPE_PROPERTY}
+_SYNTAX = (f"<{PREFIXES['owl']}", f"<{PREFIXES['rdfs']}sub")
+_OF_INDIVIDUALS = (THING, NOTHING, NAMED_INDIVIDUAL)
+_DECLARING = {
+    *_CLASSES, OBJECT_PROPERTY, DATATYPE_PROPERTY, ANNOTATION_PROPERTY, NAMED_INDIVIDUAL, term("rdf:Property"),
+}  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
+class Axiom:
+    """The triples of one axiom: the one that it begins with, then those of the blank nodes that it leads to."""
+
+    triples: tuple[Triple, ...]
+
+    @property
+    def root(self) -> Triple:
+        return self.triples[0]
+
+    @property
+    def signature(self) -> frozenset[str]:
+        """The names that it uses, those of RDF, RDFS and OWL left out."""
+        parts = {part for triple in self.triples for part in triple}
+        return frozenset(part for part in parts if not is_literal(part) and not part.startswith(_BUILT_IN))
+
+
+@dataclass(frozen=True, slots=True)
+class Axioms:
+    """An ontology in parts: what says something, what names are, and what is only for people."""
+
+    axioms: tuple[Axiom, ...]
+    declarations: tuple[Triple, ...]
+    annotations: tuple[Triple, ...]
+
+
+def split_axioms(triples: Iterable[Triple]) -> Axioms:
+    """The axioms of some triples, in their order.
+
+    ``owl:imports`` is dropped, so that nobody follows it. A property that is used between things and declared as
+    nothing is declared here, since a description-logic reasoner would take it for an annotation.
+    """
+    triples = list(dict.fromkeys(triples))
+    about: dict[str, list[Triple]] = defaultdict(list)
+    for triple in triples:
+        about[triple.subject].append(triple)
+    kinds = _Kinds(triples)
+    structural = {node for node, said in about.items() if is_blank(node) and _is_structural(said)}
+    led_to = {triple.object for triple in triples if triple.object in structural}
+    axioms, declarations, annotations = [], [], []
+    for triple in triples:
+        if kinds.is_declaration(triple):
+            if triple.subject not in structural:
+                declarations.append(triple)
+        elif kinds.is_annotation(triple):
+            annotations.append(triple)
+        elif triple.subject not in structural and triple.predicate != IMPORTS:
+            axioms.append(Axiom((triple, *_expression(triple.object, about, structural))))
+    for node in about:
+        if node in structural and node not in led_to and _stands_alone(about[node]):
+            axioms.append(Axiom(tuple(_typed_first(_expression(node, about, structural)))))
+    return Axioms(tuple(axioms), (*declarations, *kinds.implied()), tuple(annotations))
+
+
+class _Kinds:
+    """What the names of an ontology are."""
+
+    def __init__(self, triples: list[Triple]) -> None:
+        typed: dict[str, set[str]] = defaultdict(set)
+        for triple in triples:
+            if triple.predicate == TYPE:
+                typed[triple.subject].add(triple.object)
+        self._typed = typed
+        self._triples = triples
+
+    def _any(self, name: str, kinds: set[str]) -> bool:
+        return not kinds.isdisjoint(self._typed.get(name, ()))
+
+    def is_declaration(self, triple: Triple) -> bool:
+        return triple.predicate == TYPE and triple.object in _DECLARING
+
+    def is_annotation(self, triple: Triple) -> bool:
+        subject, predicate, object = triple
+        return (
+            predicate in _ANNOTATIONS
+            or self._any(predicate, {ANNOTATION_PROPERTY})
+            or self._any(subject, {ONTOLOGY, ANNOTATION_PROPERTY, term("owl:Axiom"), term("owl:Annotation")})
+            or (predicate == TYPE and object == ONTOLOGY)
+            or (self._undeclared(predicate) and self._any(subject, _TERMS))
+        )
+
+    def _undeclared(self, predicate: str) -> bool:
+        return not predicate.startswith(_BUILT_IN) and not self._any(
+            predicate, {*_OBJECT_PROPERTIES, DATATYPE_PROPERTY, ANNOTATION_PROPERTY}
+        )
+
+    def implied(self) -> list[Triple]:
+        """Declarations of properties that are used and not declared."""
+        used = {
+            (triple.predicate, DATATYPE_PROPERTY if is_literal(triple.object) else OBJECT_PROPERTY): None
+            for triple in self._triples
+            if self._undeclared(triple.predicate) and not self.is_annotation(triple)
+        }
+        return [Triple(predicate, TYPE, kind) for predicate, kind in used]
+
+
+def _is_structural(said: list[Triple]) -> bool:
+    """Whether a blank node is part of an axiom's syntax, and no individual."""
+    return any(
+        triple.predicate in (FIRST, REST)
+        or (triple.predicate.startswith(_SYNTAX) and triple.predicate not in (SAME_AS, DIFFERENT_FROM))
+        or (triple.predicate == TYPE and triple.object.startswith(_BUILT_IN) and triple.object not in _OF_INDIVIDUALS)
+        for triple in said
+    )
+
+
+def _stands_alone(said: list[Triple]) -> bool:
+    """Whether a blank node that nothing leads to is an axiom: a set of members, a negative one, a general one."""
+    predicates = {triple.predicate for triple in said}
+    alone = {term(f"owl:{name}") for name in ("members", "distinctMembers", "sourceIndividual", "disjointWith")}
+    return not predicates.isdisjoint({*alone, term("rdfs:subClassOf"), term("owl:equivalentClass")})
+
+
+def _expression(node: str, about: dict[str, list[Triple]], structural: set[str]) -> list[Triple]:
+    """The triples of a blank node and of those that it leads to."""
+    found: list[Triple] = []
+    todo, seen = [node], {node}
+    while todo:
+        node = todo.pop()
+        if node not in structural:
+            continue
+        found += about[node]
+        for triple in reversed(about[node]):
+            if triple.object not in seen:
+                seen.add(triple.object)
+                todo.append(triple.object)
+    return found
+
+
+def _typed_first(triples: list[Triple]) -> list[Triple]:
+    return sorted(triples, key=lambda triple: (triple.subject != triples[0].subject, triple.predicate != TYPE))

@@ -1,0 +1,150 @@
+"""What follows from an ontology, and whether it can hold at all: the engines of description logic behind one call.
+
+``rl`` is the rules of OWL 2 RL: facts by the ten thousand, but not everything that OWL 2 DL entails. ``hermit`` and
+``pellet`` are complete for OWL 2 DL and slow where facts are many. ``auto`` gives the facts to the rules and the
+classes alone to HermiT, which is where each is good; figures are in ``docs/description_logic.md``.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Iterable
+from dataclasses import dataclass
+from enum import StrEnum
+
+from deixis.reasoning.description_logic.axioms import Axioms, split_axioms
+from deixis.reasoning.description_logic.justification import Justification, justify
+from deixis.reasoning.description_logic.materialisation import Materialisation
+from deixis.reasoning.description_logic.reasoners import Reasoner, classify
+from deixis.reasoning.description_logic.terms import (
+    CLASS,
+    NOTHING,
+    PREFIXES,
+    SUB_CLASS_OF,
+    TYPE,
+    Triple,
+    is_blank,
+    read_ntriples,
+    write_ntriples,
+)
+from deixis.reasoning.errors import InconsistencyError, SettingError
+
+EXPLAINED = 5
+"""Unsatisfiable classes that are explained; those after them usually fail for the same reasons."""
+
+_WORDS_OF_OWL = tuple(f"<{base}" for base in PREFIXES.values())
+
+
+class LogicEngine(StrEnum):
+    """Who reasons."""
+
+    AUTO = "auto"
+    RL = "rl"
+    HERMIT = "hermit"
+    PELLET = "pellet"
+
+
+@dataclass(frozen=True)
+class Entailment:
+    """What an engine found.
+
+    ``complete`` says whether the whole of OWL 2 DL was decided: of the rules alone, an ontology without a contradiction
+    is one in which they find none. ``inferred`` is empty where the ontology is inconsistent.
+    """
+
+    engine: LogicEngine
+    complete: bool
+    inferred: tuple[Triple, ...]
+    unsatisfiable: tuple[str, ...]
+    inconsistency: Justification | None
+    impossible: tuple[Justification, ...]
+
+    @property
+    def consistent(self) -> bool:
+        return self.inconsistency is None
+
+
+def entail(ntriples: str, engine: LogicEngine | str = LogicEngine.AUTO, time_limit: float = 60.0) -> Entailment:
+    """What follows between named things, and why the ontology, or a class of it, is impossible where it is.
+
+    Raises LimitError where ``time_limit`` (seconds) is up, SettingError for an engine of another name, and what
+    :func:`deixis.reasoning.description_logic.reasoners.classify` raises of bad input.
+    """
+    if engine not in list(LogicEngine):
+        raise SettingError(f"an engine is one of {', '.join(LogicEngine)}, not '{engine}'")
+    engine = LogicEngine(engine)
+    deadline = time.monotonic() + time_limit
+    complete = engine in (LogicEngine.HERMIT, LogicEngine.PELLET)
+    try:
+        found = _by_reasoner(ntriples, engine, time_limit) if complete else _by_rules(ntriples, engine, time_limit)
+    except InconsistencyError:
+        why = justify(ntriples, None, _left(deadline))
+        return Entailment(engine, complete, (), (), why, ())
+    inferred, unsatisfiable = found
+    explained = [Triple(f"<{iri}>", SUB_CLASS_OF, NOTHING) for iri in unsatisfiable[:EXPLAINED]]
+    impossible = tuple(justify(ntriples, statement, _left(deadline)) for statement in explained)
+    return Entailment(engine, complete, inferred, unsatisfiable, None, impossible)
+
+
+def _left(deadline: float) -> float:
+    return max(0.0, deadline - time.monotonic())
+
+
+Found = tuple[tuple[Triple, ...], tuple[str, ...]]
+
+
+def _by_reasoner(ntriples: str, engine: LogicEngine, time_limit: float) -> Found:
+    found = classify(ntriples, Reasoner(engine.value), time_limit, properties=True)
+    return tuple(read_ntriples(found.inferred)), found.unsatisfiable
+
+
+def _by_rules(ntriples: str, engine: LogicEngine, time_limit: float) -> Found:
+    triples = read_ntriples(ntriples)
+    parts = split_axioms(triples)
+    deadline = time.monotonic() + time_limit
+    known = Materialisation([*(t for axiom in parts.axioms for t in axiom.triples), *parts.declarations], time_limit)
+    if known.contradictions:
+        raise InconsistencyError("the rules of OWL 2 RL find a contradiction")
+    inferred = {triple for triple in known.inferred if _is_telling(triple)}
+    if engine is LogicEngine.RL:
+        return tuple(sorted(inferred)), unsatisfiable_by_rules(triples, _left(deadline))
+    classes = classify(write_ntriples(_schema(parts)), Reasoner.HERMIT, _left(deadline), properties=True)
+    inferred.update(read_ntriples(classes.inferred))
+    return tuple(sorted(inferred.difference(triples))), classes.unsatisfiable
+
+
+def _is_telling(triple: Triple) -> bool:
+    """Whether a triple relates named things, and none of the words of OWL."""
+    subject, _, object = triple
+    blank = is_blank(subject) or is_blank(object)
+    return not blank and not subject.startswith(_WORDS_OF_OWL) and not object.startswith(_WORDS_OF_OWL)
+
+
+def _schema(parts: Axioms) -> Iterable[Triple]:
+    """The axioms about classes and properties, without the facts about individuals."""
+    for axiom in parts.axioms:
+        root = axiom.root
+        says_of_terms = root.predicate.startswith(_WORDS_OF_OWL) and root.predicate != TYPE
+        if says_of_terms or (root.predicate == TYPE and root.object.startswith(_WORDS_OF_OWL)):
+            yield from axiom.triples
+    yield from parts.declarations
+
+
+def unsatisfiable_by_rules(triples: Iterable[Triple], time_limit: float = math.inf) -> tuple[str, ...]:
+    """The IRIs of the named classes of which the rules see that nothing can belong to them, sorted.
+
+    Each class is given a member of its own: a contradiction that needs one of these members only condemns its class.
+    Raises LimitError after about ``time_limit`` seconds.
+    """
+    triples = list(triples)
+    classes = {t.subject for t in triples if t.predicate == TYPE and t.object == CLASS and not is_blank(t.subject)}
+    classes |= {t.subject for t in triples if t.predicate == SUB_CLASS_OF and not is_blank(t.subject)}
+    members = {Triple(f"_:member{i}", TYPE, name): name for i, name in enumerate(sorted(classes))}
+    known = Materialisation([*triples, *members], time_limit)
+    condemned = set()
+    for contradiction in known.contradictions:
+        needed = {members[s.triple] for s in known.derivation(contradiction.premises) if s.triple in members}
+        if len(needed) == 1:
+            condemned |= needed
+    return tuple(sorted(name[1:-1] for name in condemned - {NOTHING}))

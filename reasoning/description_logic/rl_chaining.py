@@ -1,0 +1,318 @@
+"""Semi-naive forward chaining over facts as numbers, with transitive closures kept incrementally.
+
+Source: Italiano, *Amortized efficiency of a path retrieval data structure*, Theoretical Computer Science 48 (1986):
+a new pair (x, y) joins what reaches x with what y reaches, and only pairs that are new are looked at.
+
+A rule is specialised by the axioms that it is about (a domain becomes a rule about one property), so that a fact meets
+only the rules about its own predicate and class, and adding facts costs in proportion to what they entail.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections import defaultdict, deque
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from deixis.reasoning.description_logic.rl_facts import (
+    Atom,
+    Binding,
+    Fact,
+    FactIndex,
+    copied,
+    copy_of,
+    substituted,
+    unified,
+)
+from deixis.reasoning.description_logic.rl_rules import EXPANSIONS, TermAtom, TextRule, list_members, rules
+from deixis.reasoning.description_logic.terms import (
+    EQUIVALENT_CLASS,
+    EQUIVALENT_PROPERTY,
+    FIRST,
+    NIL,
+    REST,
+    SAME_AS,
+    SUB_CLASS_OF,
+    SUB_PROPERTY_OF,
+    TYPE,
+    Triple,
+    is_literal,
+)
+from deixis.reasoning.errors import LimitError
+
+Pair = tuple[int, int]
+
+
+class TransitiveClosure:
+    """A transitive relation.
+
+    >>> closure = TransitiveClosure()
+    >>> list(closure.add(1, 2)), list(closure.add(2, 3))
+    ([], [((1, 3), (1, 2), (2, 3))])
+    """
+
+    def __init__(self) -> None:
+        self._after: dict[int, set[int]] = {}
+        self._before: dict[int, set[int]] = {}
+
+    def add(self, x: int, y: int) -> Iterator[tuple[Pair, Pair, Pair]]:
+        """Adds a pair; gives each pair that is now in the closure, after the two that it follows from."""
+        after, before = self._after, self._before
+        if y in after.get(x, ()):
+            return
+        later = {y, *after.get(y, ())}
+        for a in (x, *before.get(x, ())):
+            reached = after.setdefault(a, set())
+            new = later - reached
+            reached |= new
+            for b in new:
+                before.setdefault(b, set()).add(a)
+            if y in new and a != x:
+                yield (a, y), (a, x), (x, y)
+            yield from (((a, b), (a, y), (y, b)) for b in new if b != y)
+
+
+BATCH = 1000
+"""Facts between two looks at the clock."""
+
+_REFLEXIVE = (SAME_AS, SUB_CLASS_OF, SUB_PROPERTY_OF, EQUIVALENT_CLASS, EQUIVALENT_PROPERTY)
+
+
+class Terms:
+    """Terms as numbers, counted from 0 in the order met."""
+
+    def __init__(self) -> None:
+        self._number: dict[str, int] = {}
+        self._terms: list[str] = []
+        self.literals: set[int] = set()
+
+    def number(self, term: str) -> int:
+        known = self._number.get(term)
+        if known is None:
+            known = self._number[term] = len(self._terms)
+            self._terms.append(term)
+            if is_literal(term):
+                self.literals.add(known)
+        return known
+
+    def term(self, number: int) -> str:
+        return self._terms[number]
+
+    def fact(self, triple: Triple) -> Fact:
+        return self.number(triple.subject), self.number(triple.predicate), self.number(triple.object)
+
+    def known_fact(self, triple: Triple) -> Fact | None:
+        """The fact of a triple all of whose terms were met, else None."""
+        s, p, o = (self._number.get(term) for term in triple)
+        return None if s is None or p is None or o is None else (s, p, o)
+
+    def triple(self, fact: Fact) -> Triple:
+        s, p, o = fact
+        return Triple(self._terms[s], self._terms[p], self._terms[o])
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Clause:
+    """A rule, specialised by the facts ``given``: patterns, and what follows where all of them are facts.
+
+    What follows is a fact, or a contradiction (no head), or, where ``then`` is set, a clause with that body.
+    """
+
+    name: str
+    given: tuple[Fact, ...]
+    body: tuple[Atom, ...]
+    head: Atom | None
+    then: tuple[Atom, ...] | None = None
+
+
+class Watcher(NamedTuple):
+    """A clause, the pattern of it that a fact may fit, the patterns that are left then, and the short cut, if any."""
+
+    clause: Clause
+    atom: Atom
+    rest: tuple[Atom, ...]
+    copy: Atom | None
+
+
+Watchers = list[Watcher]
+
+
+class ForwardChaining:
+    """Facts, the clauses about them, and why each fact holds: the rule and its premises, or None where it is stated."""
+
+    def __init__(self) -> None:
+        self.terms = Terms()
+        self.why: dict[Fact, tuple[str, tuple[Fact, ...]] | None] = {}
+        self.contradictions: dict[tuple[str, frozenset[Fact]], tuple[Fact, ...]] = {}
+        self._index = FactIndex()
+        self._queue: deque[Fact] = deque()
+        self._found: list[Fact] = []
+        self._by_predicate: dict[int, Watchers] = defaultdict(list)
+        self._by_object: dict[tuple[int, int], Watchers] = defaultdict(list)
+        self._by_node: dict[tuple[str, int], Watchers] = defaultdict(list)  # patterns with a variable predicate
+        self._closures: dict[int, tuple[TransitiveClosure, Clause]] = {}
+        self._unread: list[Fact] = []  # axioms whose lists are not whole yet
+        number = self.terms.number
+        self._list_predicates = {number(predicate): predicate for predicate, _ in EXPANSIONS}
+        self._reflexive = {number(name) for name in _REFLEXIVE}
+        self._type, self._first, self._rest, self._nil = (number(name) for name in (TYPE, FIRST, REST, NIL))
+        for rule in rules():
+            self._learn(rule)
+
+    def add(self, facts: Iterable[Fact], deadline: float = math.inf) -> list[Fact]:
+        """Adds stated facts; gives the facts that follow now and did not before.
+
+        Raises LimitError where the deadline (``time.monotonic``) passes; what was found stays, and is not all.
+        """
+        self._found = []
+        for fact in facts:
+            if fact not in self.why:
+                self._queue.append(fact)
+            self.why[fact] = None
+        while self._queue:
+            for _ in range(min(len(self._queue), BATCH)):
+                self._process(self._queue.popleft())
+            if time.monotonic() > deadline:
+                raise LimitError(f"undecided: the time was up after {len(self.why)} triples; allow it more")
+            if not self._queue:
+                self._read_lists()
+        return [fact for fact in self._found if self.why[fact] is not None]
+
+    # ---- facts
+
+    def _process(self, fact: Fact) -> None:
+        s, p, o = fact
+        self._index.add(fact)
+        if p in self._list_predicates:
+            self._unread.append(fact)
+        if p in self._closures:
+            self._extend(p, s, o)
+        if p in self._by_predicate:
+            self._fire(fact, self._by_predicate[p])
+        if (p, o) in self._by_object:
+            self._fire(fact, self._by_object[p, o])
+        if self._by_node:
+            for key in (("subject", s), ("object", o)):
+                if key in self._by_node:
+                    self._fire(fact, self._by_node[key])
+
+    def _fire(self, fact: Fact, watchers: Watchers) -> None:
+        for clause, atom, rest, copy in tuple(watchers):
+            if copy is not None:
+                head = copied(copy, fact)
+                if head not in self.why:
+                    self._infer(head, clause.name, (*clause.given, fact))
+                continue
+            bound = unified(atom, fact, {})
+            if bound is None:
+                continue
+            if not rest:
+                self._conclude(clause, bound, (fact,))
+                continue
+            for binding, facts in self._joined(rest, bound, {atom: fact}):
+                self._conclude(clause, binding, facts)
+
+    def _joined(
+        self, atoms: Sequence[Atom], bound: Binding, found: dict[Atom, Fact]
+    ) -> list[tuple[Binding, tuple[Fact, ...]]]:
+        """All solutions at once, so that what they conclude does not change what is being looked at."""
+        return [(binding, tuple(found.values())) for binding in self._index.solutions(atoms, bound, found)]
+
+    def _conclude(self, clause: Clause, binding: Binding, facts: tuple[Fact, ...]) -> None:
+        head = None if clause.head is None else substituted(clause.head, binding)
+        if clause.then is not None:
+            body = tuple(substituted(atom, binding) for atom in clause.then)
+            self._install(Clause(clause.name, (*clause.given, *facts), body, head))
+        elif head is None:
+            premises = tuple(dict.fromkeys((*clause.given, *facts)))
+            self.contradictions.setdefault((clause.name, frozenset(premises)), premises)
+        elif head not in self.why:
+            self._infer(head, clause.name, (*clause.given, *facts))
+
+    def _infer(self, fact: Fact, name: str, premises: tuple[Fact, ...]) -> None:
+        s, p, o = fact
+        if fact in self.why or s in self.terms.literals or (s == o and p in self._reflexive):
+            return
+        self.why[fact] = name, premises
+        self._found.append(fact)
+        self._queue.append(fact)
+
+    def _extend(self, predicate: int, x: int, y: int) -> None:
+        closure, clause = self._closures[predicate]
+        for (a, d), (a1, b), (c, d1) in closure.add(x, y):
+            self._infer((a, predicate, d), clause.name, (*clause.given, (a1, predicate, b), (c, predicate, d1)))
+
+    # ---- rules
+
+    def _learn(self, rule: TextRule, given: tuple[Fact, ...] = ()) -> None:
+        """Takes in a rule; where it has a schema, the axioms that match it make the clauses about facts."""
+        variables: dict[str, int] = {}
+        schema, body = (tuple(self._atom(atom, variables) for atom in part) for part in (rule.schema, rule.body))
+        head = None if rule.head is None else self._atom(rule.head, variables)
+        self._install(Clause(rule.name, given, schema, head, body) if schema else Clause(rule.name, given, body, head))
+
+    def _atom(self, atom: TermAtom, variables: dict[str, int]) -> Atom:
+        s, p, o = (
+            variables.setdefault(word, -1 - len(variables)) if word.startswith("?") else self.terms.number(word)
+            for word in atom
+        )
+        return s, p, o
+
+    def _install(self, clause: Clause) -> None:
+        """Watches for facts that a clause's patterns fit, and applies it to those that are there."""
+        if _is_transitivity(clause):
+            self._close(clause)
+            return
+        for atom in clause.body:
+            rest = tuple(other for other in clause.body if other is not atom)
+            copy = None if rest or clause.head is None or clause.then is not None else copy_of(clause.head, atom)
+            self._watchers(atom).append(Watcher(clause, atom, rest, copy))
+        for binding, facts in self._joined(clause.body, {}, {}):
+            self._conclude(clause, binding, facts)
+
+    def _watchers(self, atom: Atom) -> Watchers:
+        s, p, o = atom
+        if p < 0:
+            return self._by_node[("subject", s) if s >= 0 else ("object", o)]
+        return self._by_object[p, o] if o >= 0 else self._by_predicate[p]
+
+    def _close(self, clause: Clause) -> None:
+        predicate = clause.body[0][1]
+        if predicate not in self._closures:
+            self._closures[predicate] = TransitiveClosure(), clause
+            for x, _, y in self._index.matches((-1, predicate, -2)):
+                self._extend(predicate, x, y)
+
+    # ---- lists
+
+    def _read_lists(self) -> None:
+        """Learns the rules of those axioms whose lists have become whole."""
+        unread, self._unread = self._unread, []
+        for axiom in unread:
+            expanded = list(self._expanded(axiom))
+            if not expanded:
+                self._unread.append(axiom)
+            for rule, given in expanded:
+                self._learn(rule, given)
+
+    def _expanded(self, axiom: Fact) -> Iterator[tuple[TextRule, tuple[Fact, ...]]]:
+        node, predicate, head = axiom
+        whole = list_members(self._index, head, self._first, self._rest, self._nil)
+        if whole is None:
+            return
+        members, links = whole
+        for (name, kind), expand in EXPANSIONS.items():
+            given = (axiom,) if kind is None else (axiom, (node, self._type, self.terms.number(kind)))
+            if name == self._list_predicates[predicate] and given[-1] in self._index.facts:
+                for rule in expand(self.terms.term(node), [self.terms.term(member) for member in members]):
+                    yield rule, (*given, *links)
+
+
+def _is_transitivity(clause: Clause) -> bool:
+    """Whether a clause says of one predicate that it is transitive."""
+    if clause.then is not None or clause.head is None or len(clause.body) != 2:
+        return False
+    (x, p, y), (y2, q, z), (a, r, b) = *clause.body, clause.head
+    return p >= 0 and p == q == r and (y, a, b) == (y2, x, z) and max(x, y, z) < 0 and len({x, y, z}) == 3

@@ -1,0 +1,192 @@
+"""Axioms and statements in words: plain English over the labels of an ontology.
+
+>>> from deixis.reasoning.description_logic.terms import Triple
+>>> from deixis.reasoning.description_logic.terms import SUB_CLASS_OF
+>>> Words({"<urn:Fork>": "fork"}).triple(Triple("<urn:Fork>", SUB_CLASS_OF, "<urn:t#Cutlery>"))
+'every fork is Cutlery'
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Mapping
+from urllib.parse import unquote
+
+from deixis.reasoning.description_logic.axioms import Axiom
+from deixis.reasoning.description_logic.terms import (
+    DISTINCT_MEMBERS,
+    FIRST,
+    LABEL,
+    MEMBERS,
+    NEGATIVE_PROPERTY_ASSERTION,
+    NIL,
+    NOTHING,
+    REST,
+    SUB_CLASS_OF,
+    THING,
+    TYPE,
+    Triple,
+    is_blank,
+    is_literal,
+    term,
+)
+
+_STATEMENTS = {
+    SUB_CLASS_OF: "every {0} is {1}",
+    term("owl:equivalentClass"): "{0} and {1} are the same",
+    term("owl:disjointWith"): "{0} and {1} have nothing in common",
+    term("owl:complementOf"): "whatever is not {1} is {0}",
+    term("rdfs:subPropertyOf"): "whatever is related by '{0}' is related by '{1}'",
+    term("owl:equivalentProperty"): "'{0}' and '{1}' say the same",
+    term("owl:propertyDisjointWith"): "nothing is related by both '{0}' and '{1}'",
+    term("owl:inverseOf"): "'{0}' is '{1}' the other way round",
+    term("rdfs:domain"): "whatever is '{0}' of something is {1}",
+    term("rdfs:range"): "whatever something is '{0}' of is {1}",
+    term("owl:sameAs"): "{0} and {1} are one thing",
+    term("owl:differentFrom"): "{0} and {1} are two things",
+    term("owl:propertyChainAxiom"): "a chain of {1} makes '{0}'",
+    term("owl:hasKey"): "things that are {0} and agree in {1} are one thing",
+    term("owl:unionOf"): "{0} is whatever is one of {1}",
+    term("owl:intersectionOf"): "{0} is whatever is all of {1}",
+    term("owl:oneOf"): "{0} is one of {1}",
+}
+_CHARACTERISTICS = {
+    term("owl:TransitiveProperty"): "'{0}' is transitive",
+    term("owl:SymmetricProperty"): "'{0}' holds both ways or not at all",
+    term("owl:AsymmetricProperty"): "'{0}' never holds both ways",
+    term("owl:ReflexiveProperty"): "everything is related to itself by '{0}'",
+    term("owl:IrreflexiveProperty"): "nothing is related to itself by '{0}'",
+    term("owl:FunctionalProperty"): "nothing is related by '{0}' to more than one thing",
+    term("owl:InverseFunctionalProperty"): "no two things are related by '{0}' to the same thing",
+}
+_MEMBERS = {
+    term("owl:AllDisjointClasses"): "nothing is more than one of {0}",
+    term("owl:AllDisjointProperties"): "nothing is related by more than one of {0}",
+    term("owl:AllDifferent"): "all of these are different: {0}",
+}
+_RESTRICTIONS = {
+    term("owl:someValuesFrom"): "something that is '{p}' of some {v}",
+    term("owl:allValuesFrom"): "something that is '{p}' only of {v}",
+    term("owl:hasValue"): "something that is '{p}' of {v}",
+    term("owl:minCardinality"): "something that is '{p}' of at least {v} things",
+    term("owl:maxCardinality"): "something that is '{p}' of at most {v} things",
+    term("owl:cardinality"): "something that is '{p}' of exactly {v} things",
+    term("owl:minQualifiedCardinality"): "something that is '{p}' of at least {v} {c}",
+    term("owl:maxQualifiedCardinality"): "something that is '{p}' of at most {v} {c}",
+    term("owl:qualifiedCardinality"): "something that is '{p}' of exactly {v} {c}",
+    term("owl:hasSelf"): "something that is '{p}' of itself",
+}
+_JOINED = {term("owl:unionOf"): " or ", term("owl:intersectionOf"): " and ", term("owl:oneOf"): " or "}
+
+
+def labels_of(triples: Iterable[Triple]) -> dict[str, str]:
+    """The label of each thing that has one, an English one or one in no language rather than another."""
+    found: dict[str, tuple[bool, str]] = {}
+    for subject, predicate, object in triples:
+        if predicate == LABEL and is_literal(object):
+            text, _, language = object[1:].rpartition('"')
+            other = language.startswith("@") and not language.startswith("@en")
+            found[subject] = min(found.get(subject, (True, "\U0010ffff")), (other, text))
+    return {subject: text for subject, (_, text) in found.items()}
+
+
+class Words:
+    """Words for axioms and statements, with a label for each term that has one."""
+
+    def __init__(self, labels: Mapping[str, str]) -> None:
+        self._labels = labels
+
+    def axiom(self, axiom: Axiom) -> str:
+        """An axiom in one sentence."""
+        return _Sentence(self, axiom.triples).of(axiom.root)
+
+    def triple(self, triple: Triple) -> str:
+        """A statement in one sentence."""
+        return _Sentence(self, (triple,)).of(triple)
+
+    def name(self, name: str) -> str:
+        """What people call a term: its label, or else the last part of its IRI; a literal's own text."""
+        if name in self._labels:
+            return self._labels[name]
+        if is_literal(name):
+            return name[1:].rpartition('"')[0]
+        if is_blank(name):
+            return "something"
+        iri = name[1:-1]
+        return unquote(iri.rpartition("#" if "#" in iri else "/" if "/" in iri else ":")[2]) or iri
+
+
+class _Sentence:
+    """One axiom's triples, put into words."""
+
+    def __init__(self, words: Words, triples: Iterable[Triple]) -> None:
+        self._words = words
+        self._said: dict[str, dict[str, str]] = defaultdict(dict)
+        for subject, predicate, object in triples:
+            self._said[subject].setdefault(predicate, object)
+
+    def of(self, root: Triple) -> str:
+        subject, predicate, object = root
+        if is_blank(subject) and predicate == TYPE:
+            return self._of_blank(subject, object)
+        if predicate == TYPE:
+            characteristic = _CHARACTERISTICS.get(object)
+            if characteristic:
+                return characteristic.format(self._expression(subject))
+            return f"{self._expression(subject)} is {_a(self._expression(object))}"
+        if predicate == SUB_CLASS_OF and object == NOTHING:
+            return f"nothing can be {_a(self._expression(subject))}"
+        if predicate in _STATEMENTS:
+            return _STATEMENTS[predicate].format(self._expression(subject), self._expression(object))
+        return f"{self._words.name(predicate)}({self._expression(subject)}, {self._expression(object)})"
+
+    def _of_blank(self, node: str, kind: str) -> str:
+        said = self._said[node]
+        if kind in _MEMBERS:
+            return _MEMBERS[kind].format(self._listed(said.get(MEMBERS, said.get(DISTINCT_MEMBERS, NIL)), ", "))
+        if kind == NEGATIVE_PROPERTY_ASSERTION:
+            parts = (said.get(term(f"owl:{name}"), "") for name in ("sourceIndividual", "targetIndividual"))
+            source, target = (self._expression(part or said.get(term("owl:targetValue"), NIL)) for part in parts)
+            return f"not {self._words.name(said.get(term('owl:assertionProperty'), node))}({source}, {target})"
+        for predicate in _STATEMENTS:
+            if predicate in said:
+                return _STATEMENTS[predicate].format(self._expression(node), self._expression(said[predicate]))
+        return f"something is {_a(self._expression(kind))}"
+
+    def _expression(self, node: str) -> str:
+        """A class expression, a list, or a name."""
+        said = self._said.get(node, {}) if is_blank(node) else {}
+        if FIRST in said:
+            return self._listed(node, ", ")
+        if term("owl:onProperty") in said:
+            return self._restriction(said)
+        if term("owl:complementOf") in said:
+            return f"something that is not {self._expression(said[term('owl:complementOf')])}"
+        if term("owl:inverseOf") in said:
+            return f"{self._expression(said[term('owl:inverseOf')])} the other way round"
+        for predicate, between in _JOINED.items():
+            if predicate in said:
+                return f"({self._listed(said[predicate], between)})"
+        return {THING: "thing", NOTHING: "nothing"}.get(node) or self._words.name(node)
+
+    def _restriction(self, said: Mapping[str, str]) -> str:
+        property = self._expression(said[term("owl:onProperty")])
+        kind = self._expression(said.get(term("owl:onClass"), said.get(term("owl:onDataRange"), THING)))
+        for predicate, form in _RESTRICTIONS.items():
+            if predicate in said:
+                return form.format(p=property, v=self._expression(said[predicate]), c=kind)
+        return f"something with '{property}'"
+
+    def _listed(self, head: str, between: str) -> str:
+        members, seen = [], set()
+        while head in self._said and head not in seen:
+            seen.add(head)
+            members.append(self._expression(self._said[head].get(FIRST, NIL)))
+            head = self._said[head].get(REST, NIL)
+        return between.join(members)
+
+
+def _a(name: str) -> str:
+    if name.startswith("something"):
+        return name
+    return f"{'an' if name[:1].lower() in 'aeiou' else 'a'} {name}"

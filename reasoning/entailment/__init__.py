@@ -1,0 +1,1 @@
+"""Entailment: what a script implies, why, why not, and its contradictions."""

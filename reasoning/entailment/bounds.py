@@ -1,0 +1,178 @@
+"""What a relation says of end points: every convex Allen relation is a conjunction of bounds between them.
+
+On each axis a box has a low and a high edge, the low one before the high one. A *bound* says that one edge lies before
+another, or not after it. A set of Allen relations that is convex (:mod:`deixis.reasoning.geometry.allen`) is a
+conjunction of bounds, any other one a disjunction of such conjunctions, its *alternatives*. A relation word is one
+product of Allen relations, so that it is a conjunction of bounds over two axes, or three: what lies *on* something lies
+within its outline and reaches higher. The denial of a conjunction is the disjunction of the bounds' denials.
+
+A *point* is a number: ``(2 * axis + side) * n + object`` for n objects, side 0 low and 1 high.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+from itertools import product
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.ontology.allen import ALL_ALLEN
+from deixis.ontology.graph import Fact
+from deixis.ontology.relation import Relation
+from deixis.reasoning.geometry.allen import EndOrder, admitted, convex_hull, convex_pieces
+
+AXES = 3
+"""x to the viewer's right, y away from the viewer, z up."""
+
+EDGES = (("left edge", "right edge"), ("near edge", "far edge"), ("underside", "top side"))
+"""What the low and the high edge of a box are called on each axis."""
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Bound:
+    """One edge is before another (``strict``) or not after it; 0 is the subject of the relation, 1 its object."""
+
+    axis: int
+    tail: int  # whose edge comes first
+    tail_side: int
+    head: int
+    head_side: int
+    strict: bool
+
+    def denied(self) -> Bound:
+        """What holds where this does not."""
+        return Bound(self.axis, self.head, self.head_side, self.tail, self.tail_side, not self.strict)
+
+    def reversed(self) -> Bound:
+        """The same with subject and object exchanged."""
+        return Bound(self.axis, 1 - self.tail, self.tail_side, 1 - self.head, self.head_side, self.strict)
+
+    def points(self, subject: int, object: int, n: int) -> tuple[int, int]:
+        """The two points for given objects, of n."""
+        ends = (subject, object)
+        return (
+            (2 * self.axis + self.tail_side) * n + ends[self.tail],
+            (2 * self.axis + self.head_side) * n + ends[self.head],
+        )
+
+
+Conjunction = tuple[Bound, ...]
+Alternatives = tuple[Conjunction, ...]
+"""A disjunction of conjunctions of bounds; empty where nothing can hold."""
+
+
+@dataclass(frozen=True, slots=True)
+class Order:
+    """A bound between the edges of two named things, as a claim that can be derived."""
+
+    subject: str
+    object: str
+    bound: Bound
+
+    def __str__(self) -> str:
+        ends = (self.subject, self.object)
+        names = EDGES[self.bound.axis]
+        tail = f"{names[self.bound.tail_side]} of {ends[self.bound.tail]}"
+        head = f"{names[self.bound.head_side]} of {ends[self.bound.head]}"
+        return f"{tail} {'<' if self.bound.strict else '<='} {head}"
+
+
+@dataclass(frozen=True, eq=False)
+class Bounds:
+    """k bounds between points: ``tail`` is before ``head``, or not after it where not ``strict``.
+
+    ``premise`` says which premise each comes from, as a position in a list of the caller's.
+    """
+
+    tail: NDArray[np.int64]  # (k,)
+    head: NDArray[np.int64]  # (k,)
+    strict: NDArray[np.bool_]  # (k,)
+    premise: NDArray[np.int64]  # (k,)
+
+    def __len__(self) -> int:
+        return len(self.tail)
+
+    def of_premises(self, chosen: NDArray[np.bool_]) -> Bounds:
+        """The bounds of the chosen premises, a mask over them."""
+        keep = chosen[self.premise]
+        return Bounds(self.tail[keep], self.head[keep], self.strict[keep], self.premise[keep])
+
+    def joined(self, other: Bounds) -> Bounds:
+        return Bounds(
+            np.concatenate([self.tail, other.tail]),
+            np.concatenate([self.head, other.head]),
+            np.concatenate([self.strict, other.strict]),
+            np.concatenate([self.premise, other.premise]),
+        )
+
+
+def bounds_of(rows: list[tuple[int, int, bool, int]]) -> Bounds:
+    """Bounds from rows of tail, head, strict and premise."""
+    tail, head, strict, premise = zip(*rows, strict=True) if rows else ((), (), (), ())
+    return Bounds(
+        np.array(tail, np.int64), np.array(head, np.int64), np.array(strict, np.bool_), np.array(premise, np.int64)
+    )
+
+
+@lru_cache(maxsize=256)
+def meaning(relation: Relation) -> Alternatives:
+    """What a relation says: one conjunction of bounds where it is convex on every axis.
+
+    >>> from deixis.ontology.tbox import default_ontology
+    >>> r = default_ontology().relations
+    >>> [str(Order("a", "b", bound)) for bound in meaning(r["top_left"])[0]]
+    ['right edge of a <= left edge of b', 'far edge of b <= near edge of a']
+    """
+    masks = (relation.x_atoms, relation.y_atoms, relation.z_atoms or ALL_ALLEN)
+    axes = [convex_parts(axis, mask) for axis, mask in enumerate(masks)]
+    return tuple(tuple(bound for part in parts for bound in part) for parts in product(*axes))
+
+
+@lru_cache(maxsize=256)
+def denial(relation: Relation) -> Alternatives:
+    """What the denial of a relation says: of every alternative one bound fails."""
+    parts = product(*([bound.denied() for bound in conjunction] for conjunction in meaning(relation)))
+    return tuple(tuple(dict.fromkeys(part)) for part in parts)
+
+
+@lru_cache(maxsize=1024)
+def common(alternatives: Alternatives) -> Conjunction:
+    """What holds whichever alternative does, as far as bounds can say it: the convex hull on every axis.
+
+    >>> from deixis.ontology.tbox import default_ontology
+    >>> r = default_ontology().relations
+    >>> [str(Order("a", "b", bound)) for bound in common((*meaning(r["left"]), *meaning(r["top_left"])))]
+    ['right edge of a <= left edge of b']
+    """
+    shared: list[Bound] = []
+    for axis in range(AXES):
+        mask = 0
+        for part in alternatives:
+            mask |= admitted(tuple(_end_order(bound) for bound in part if bound.axis == axis))
+        shared += [_bound(axis, order) for order in convex_hull(mask).orders] if mask else []
+    return tuple(shared)
+
+
+def claims(fact: Fact) -> tuple[Alternatives, ...]:
+    """What a fact demands, each of which must hold: one demand, but one for every relation that it denies."""
+    if not fact.positive:
+        return tuple(denial(relation) for relation in fact.relations)
+    return (tuple(dict.fromkeys(part for relation in fact.relations for part in meaning(relation))),)
+
+
+@lru_cache(maxsize=1024)
+def convex_parts(axis: int, mask: int) -> Alternatives:
+    """A set of Allen relations as a disjunction of conjunctions of bounds on an axis, the largest parts first."""
+    return tuple(tuple(_bound(axis, order) for order in piece.orders) for piece in convex_pieces(mask))
+
+
+def _end_order(bound: Bound) -> EndOrder:
+    """A bound as an order of two of the four end points."""
+    return EndOrder(2 * bound.tail + bound.tail_side, 2 * bound.head + bound.head_side, bound.strict)
+
+
+def _bound(axis: int, order: EndOrder) -> Bound:
+    """An order of two of the four end points: two are the subject's, then two the object's, the low one first."""
+    return Bound(axis, *divmod(order.lesser, 2), *divmod(order.greater, 2), order.strict)

@@ -1,0 +1,233 @@
+"""Orders on the axes, closed by bit sets: what bounds between edges imply of every pair of edges.
+
+Bounds of the kinds < and <= between points are the convex part of the point algebra, for which reachability, with or
+without a strict step, is the whole truth (Vilain, Kautz and van Beek 1990): two points are related in every picture
+just as a path says. The points of objects that no fact connects are never compared, so that each connected group has
+bit rows of its own; they are closed in one pass from the last points to the first, a point's row being the union of
+the rows it leads to. Time grows with bounds times objects / 64, memory with the square of a group's objects.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.ontology.relation import Relation
+from deixis.reasoning.entailment.bounds import AXES, Bound, Bounds, meaning
+from deixis.reasoning.errors import LimitError
+
+MAX_CONNECTED = 12_000
+"""Objects that facts connect to one another, at the most: memory grows with the square of this."""
+
+Words = NDArray[np.uint64]
+
+
+@dataclass(frozen=True, eq=False)
+class Groups:
+    """n objects in g connected groups, each group's objects side by side."""
+
+    label: NDArray[np.int64]  # (n,): the group of each object
+    place: NDArray[np.int64]  # (n,): where in its group each object stands
+    nodes: NDArray[np.int64]  # (n,): the objects by group
+    start: NDArray[np.int64]  # (g + 1,): where each group begins in ``nodes``
+
+    @cached_property
+    def sizes(self) -> NDArray[np.int64]:
+        return np.diff(self.start)
+
+    @cached_property
+    def words(self) -> NDArray[np.int64]:
+        """How many words hold one bit an object, by group."""
+        return (self.sizes + 63) >> 6
+
+    @cached_property
+    def pair_start(self) -> NDArray[np.int64]:
+        """Where each group's (objects, objects) bit matrix begins, shape (g + 1,)."""
+        return np.concatenate([[0], np.cumsum(self.sizes * self.words)])
+
+    def members(self, group: int) -> NDArray[np.int64]:
+        return self.nodes[self.start[group] : self.start[group + 1]]
+
+
+def groups_of(subjects: NDArray[np.integer], objects: NDArray[np.integer], n: int) -> Groups:
+    """The connected groups of n objects; raises LimitError where one has more than ``MAX_CONNECTED``."""
+    from deixis.reasoning.entailment.kernels import connected
+
+    label, count = connected(subjects.astype(np.int64), objects.astype(np.int64), n)
+    sizes = np.bincount(label, minlength=count)
+    if n and sizes.max() > MAX_CONNECTED:
+        raise LimitError(
+            f"the facts connect {sizes.max()} objects to one another; what follows is worked out for up to "
+            f"{MAX_CONNECTED}: describe the table in parts"
+        )
+    nodes = np.argsort(label, kind="stable")
+    start = np.concatenate([[0], np.cumsum(sizes)])
+    place = np.empty(n, np.int64)
+    place[nodes] = np.arange(n) - start[label[nodes]]
+    return Groups(label, place, nodes, start)
+
+
+@dataclass(frozen=True, eq=False)
+class AxisRows:
+    """The closed bit rows of one axis, all groups in one flat array.
+
+    Group k has 2 m rows for its m objects, the low edges first, of 2 ``words[k]`` words: the low edges, then the high.
+    """
+
+    weak: Words  # bit set: the row's point is not after the column's
+    strong: Words  # bit set: the row's point is before the column's
+    start: NDArray[np.int64]  # (g + 1,): where each group begins
+
+
+@dataclass(frozen=True, eq=False)
+class Orders:
+    """What bounds imply. ``axes[k]`` is None where nothing is said of axis k."""
+
+    groups: Groups
+    axes: tuple[AxisRows | None, ...]
+
+    def implies(self, bound: Bound, subject: int, object: int) -> bool:
+        """Whether the bound holds of two objects in every picture."""
+        rows = self.axes[bound.axis]
+        label, place = self.groups.label, self.groups.place
+        if rows is None or label[subject] != label[object]:
+            return False
+        ends = (place[subject], place[object])
+        group = label[subject]
+        size, words = int(self.groups.sizes[group]), int(self.groups.words[group])
+        row = rows.start[group] + (bound.tail_side * size + ends[bound.tail]) * 2 * words
+        column = int(ends[bound.head])
+        bits = (rows.strong if bound.strict else rows.weak)[row + bound.head_side * words + (column >> 6)]
+        return bool(int(bits) >> (column & 63) & 1)
+
+    def relation_bits(self, relation: Relation) -> Words:
+        """Of which pairs the relation holds in every picture: every group's (objects, objects) bit matrix, flat.
+
+        Nothing bears a relation to itself here. A relation that is no single conjunction of bounds is found of no pair.
+        """
+        if relation not in self._found:
+            self._found[relation] = self._relation_bits(relation)
+        return self._found[relation]
+
+    @cached_property
+    def _found(self) -> dict[Relation, Words]:
+        return {}
+
+    def _relation_bits(self, relation: Relation) -> Words:
+        from deixis.reasoning.entailment.kernels import and_block, clear_diagonal
+
+        groups = self.groups
+        alternatives = meaning(relation)
+        total = int(groups.pair_start[-1])
+        if len(alternatives) != 1 or any(self.axes[bound.axis] is None for bound in alternatives[0]):
+            return np.zeros(total, np.uint64)
+        bits = np.full(total, ~np.uint64(0))
+        for bound in alternatives[0]:
+            rows = self.axes[bound.axis]
+            assert rows is not None
+            flat = rows.strong if bound.strict else rows.weak
+            sides = (bound.tail_side, bound.head_side)
+            and_block(bits, flat, groups.sizes, groups.pair_start, rows.start, *sides, bound.tail == 1)
+        clear_diagonal(bits, groups.sizes, groups.pair_start)
+        return bits
+
+    def pairs(self, relation: Relation) -> NDArray[np.int64]:
+        """The pairs of which the relation holds in every picture, shape (k, 2), by subject, then by object."""
+        from deixis.reasoning.entailment.kernels import count_bits, list_pairs
+
+        bits = self.relation_bits(relation)
+        pairs = np.empty((count_bits(bits), 2), np.int64)
+        groups = self.groups
+        list_pairs(bits, groups.sizes, groups.pair_start, groups.start, groups.nodes, pairs)
+        if len(groups.sizes) > 1:
+            pairs = pairs[np.argsort(pairs[:, 0], kind="stable")]
+        return pairs
+
+    def count(self, relation: Relation) -> int:
+        """Of how many pairs the relation holds in every picture."""
+        from deixis.reasoning.entailment.kernels import count_bits
+
+        return int(count_bits(self.relation_bits(relation)))
+
+
+@dataclass(frozen=True, eq=False)
+class PointGraph:
+    """Points and the bounds between them as rows of edges; every object's low edge is before its high edge."""
+
+    size: int
+    first: NDArray[np.int64]  # (points + 1,)
+    heads: NDArray[np.int64]
+    strict: NDArray[np.bool_]
+    premise: NDArray[np.int64]  # -1: an object's own edges
+
+
+def point_graph(bounds: Bounds, n: int) -> PointGraph:
+    """The graph of bounds between the 6 n points of n objects."""
+    from deixis.reasoning.entailment.kernels import rows_of
+
+    low = (np.arange(AXES)[:, None] * 2 * n + np.arange(n)).ravel()
+    tails = np.concatenate([bounds.tail, low])
+    first, order = rows_of(tails, 2 * AXES * n)
+    heads = np.concatenate([bounds.head, low + n])[order]
+    strict = np.concatenate([bounds.strict, np.ones(len(low), np.bool_)])[order]
+    premise = np.concatenate([bounds.premise, np.full(len(low), -1)])[order]
+    return PointGraph(n, first, heads, strict, premise)
+
+
+def contradictory(graph: PointGraph) -> bool:
+    """Whether some bounds go round in a circle with a strict one among them, so that no picture satisfies them."""
+    from deixis.reasoning.entailment.kernels import strict_within, strong_parts
+
+    part, _ = strong_parts(graph.first, graph.heads)
+    return bool(strict_within(graph.first, graph.heads, graph.strict, part) >= 0)
+
+
+def is_bare_circle(graph: PointGraph) -> bool:
+    """Whether the edges between points that are forced to be equal are one circle, which any one edge opens."""
+    from deixis.reasoning.entailment.kernels import strong_parts
+
+    part, _ = strong_parts(graph.first, graph.heads)
+    tails = np.repeat(part, np.diff(graph.first))
+    inside = tails == part[graph.heads]
+    large = np.flatnonzero(np.bincount(part) > 1)
+    return len(large) == 1 and int(inside.sum()) == int((part == large[0]).sum())
+
+
+def orders_of(bounds: Bounds, groups: Groups) -> Orders | None:
+    """Closes bounds between the edges of objects; None where no picture satisfies them."""
+    axes: list[AxisRows | None] = []
+    n = len(groups.label)
+    axis_of = bounds.tail // (2 * n) if n else bounds.tail
+    for axis in range(AXES):
+        chosen = axis_of == axis
+        rows = _axis_rows(bounds, chosen, axis, groups) if chosen.any() else None
+        if rows is None and chosen.any():
+            return None
+        axes.append(rows)
+    return Orders(groups, tuple(axes))
+
+
+def _axis_rows(bounds: Bounds, chosen: NDArray[np.bool_], axis: int, groups: Groups) -> AxisRows | None:
+    """The closed rows of an axis; None where its bounds contradict each other."""
+    from deixis.reasoning.entailment.kernels import close, rows_of, strict_within, strong_parts
+
+    n = len(groups.label)
+    base, low = 2 * axis * n, np.arange(n)
+    tails = np.concatenate([bounds.tail[chosen] - base, low])
+    first, order = rows_of(tails, 2 * n)
+    heads = np.concatenate([bounds.head[chosen] - base, low + n])[order]
+    strict = np.concatenate([bounds.strict[chosen], np.ones(n, np.bool_)])[order]
+    part, members = strong_parts(first, heads)
+    if strict_within(first, heads, strict, part) >= 0:
+        return None
+    start = np.concatenate([[0], np.cumsum(4 * groups.sizes * groups.words)])
+    words, sizes = groups.words[groups.label], groups.sizes[groups.label]
+    bit = np.concatenate([groups.place, 64 * words + groups.place])
+    row = start[groups.label] + 2 * words * groups.place
+    rows = np.concatenate([row, row + 2 * words * sizes])
+    weak, strong = np.zeros(start[-1], np.uint64), np.zeros(start[-1], np.uint64)
+    close(first, heads, strict, part, members, bit, rows, np.tile(2 * words, 2), weak, strong)
+    return AxisRows(weak, strong, start)

@@ -1,0 +1,208 @@
+"""What a relation graph implies, and why: everything that all its pictures share.
+
+A picture gives every object a box, and bears out every firm fact: those that are neither optional nor hedged. The facts
+are orders between the edges of boxes (:mod:`deixis.reasoning.entailment`). Where they leave no choice they are closed
+by bit sets; the rest goes through the pieces of the rectangle algebra. Sound always; complete for facts that are convex
+on every axis, as every single relation of the TBox is, and with choices too, unless the time limit strikes
+(``complete`` says so).
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.errors import GraphError
+from deixis.ontology.export import node_iris, pairs_to_ntriples
+from deixis.ontology.graph import Fact, RelationGraph
+from deixis.ontology.relation import Relation, Relations
+from deixis.reasoning.entailment.bounds import meaning
+from deixis.reasoning.entailment.cases import derive_by_cases, needed_facts
+from deixis.reasoning.entailment.closing import Closed, close
+from deixis.reasoning.entailment.demands import Demands, EdgeFacts, demands_of
+from deixis.reasoning.entailment.derivation import Derivation, Rule
+from deixis.reasoning.entailment.derivations import OrderDerivations
+
+TIME_LIMIT = 10.0
+"""Seconds for weighing the choices in the facts; facts that leave no choice need no search."""
+
+
+@dataclass(frozen=True, slots=True)
+class Support:
+    """What the shortest derivation of a fact rests on, without the derivation."""
+
+    rule: Rule
+    edges: tuple[int, ...]  # of the graph, in the order of use
+
+
+class Implications:
+    """Everything that follows from a relation graph; closed at once, explained on demand.
+
+    >>> from deixis.ontology.tbox import default_ontology
+    >>> r = default_ontology().relations
+    >>> facts = [Fact("fork", (r["left"],), "plate"), Fact("napkin", (r["on"],), "plate")]
+    >>> implied = Implications(RelationGraph.from_facts(r, ["fork", "plate", "napkin"], facts))
+    >>> print(*implied.derive(r["left"], "fork", "napkin").lines(), sep="\\n")
+    left(fork, napkin)   by composition
+        left(fork, plate)   by stated
+        under(plate, napkin)   by inverse
+            on(napkin, plate)   by stated
+
+    From facts that contradict each other nothing is inferred (``consistent`` is False). Raises LimitError where facts
+    connect more objects to one another than can be closed.
+    """
+
+    def __init__(self, graph: RelationGraph, time_limit: float = TIME_LIMIT) -> None:
+        self.graph = graph
+        self.vocabulary: Relations = graph.vocabulary
+        self.time_limit = time_limit
+        self.demands: Demands = demands_of(graph)
+        self.closed: Closed = close(self.demands, time.monotonic() + time_limit)
+
+    @property
+    def consistent(self) -> bool:
+        """Whether there is a picture of the facts; True, too, where the time limit struck (see ``decided``)."""
+        return self.closed.orders is not None
+
+    @property
+    def decided(self) -> bool:
+        """Whether it is known that there is a picture, or that there is none."""
+        return self.closed.decided
+
+    @property
+    def complete(self) -> bool:
+        """Whether everything that all pictures share was found."""
+        return self.closed.complete
+
+    def holds(self, relation: Relation, subject: str, object: str) -> bool:
+        """Whether the fact holds in every picture."""
+        s, o = self.graph.index(subject), self.graph.index(object)
+        alternatives = meaning(relation)
+        if self.closed.orders is None or s == o or len(alternatives) != 1:
+            return False
+        orders = self.closed.orders
+        return all(orders.implies(bound, s, o) for bound in alternatives[0])
+
+    def derive(self, relation: Relation, subject: str, object: str) -> Derivation | None:
+        """The shortest derivation found of a fact, or None where it does not follow.
+
+        Raises OutOfTimeError where it takes choices, and the time limit strikes.
+        """
+        if not self.holds(relation, subject, object):
+            return None
+        found = self._derivations.derive(relation, subject, object)
+        return found if found is not None else self._by_cases(Fact(subject, (relation,), object))
+
+    def _by_cases(self, goal: Fact) -> Derivation | None:
+        facts = [self.graph.fact(edge) for edge in self._edges_around(goal.subject)]
+        return derive_by_cases(facts, goal, self.vocabulary, time.monotonic() + self.time_limit)
+
+    def _edges_around(self, name: str) -> list[int]:
+        """The firm facts of everything that is connected with an object."""
+        label, firm = self.closed.groups.label, self.demands.firm
+        edges: list[int] = firm[label[self.graph.subjects[firm]] == label[self.graph.index(name)]].tolist()
+        return edges
+
+    @cached_property
+    def _derivations(self) -> OrderDerivations:
+        facts = EdgeFacts(self.graph)
+        return OrderDerivations(self.vocabulary, self.graph.nodes, facts, self.demands.bounds, len(facts))
+
+    def prepare_explanations(self) -> None:
+        """Builds the graph in which derivations are searched; the first derivation does it otherwise."""
+        self._derivations.paths.prepare()
+
+    def pairs(self, relation: Relation) -> NDArray[np.int64]:
+        """The pairs of nodes of which the relation holds in every picture, shape (k, 2), by subject, then by object."""
+        orders = self.closed.orders
+        return np.empty((0, 2), np.int64) if orders is None else orders.pairs(relation)
+
+    def triples(self) -> Iterator[tuple[Relation, str, str]]:
+        """Every fact that is stated or implied, by relation, subject and object in node order."""
+        nodes = self.graph.nodes
+        for relation in self.vocabulary.values():
+            for subject, object in self.pairs(relation).tolist():
+                yield relation, nodes[subject], nodes[object]
+
+    def ntriples(self) -> str:
+        """Every fact that is stated firmly or implied, a plain N-Triples line each, with the IRIs of the Turtle."""
+        iris = node_iris(self.graph)
+        return "".join(pairs_to_ntriples(r, self.pairs(r), iris) for r in self.vocabulary.values())
+
+    def inferred(self) -> Iterator[Derivation]:
+        """Every implied fact that is not stated itself, with its shortest derivation."""
+        for fact in self.implied():
+            derivation = self.derive(fact.relations[0], fact.subject, fact.object)
+            assert derivation is not None
+            yield derivation
+
+    def implied(self) -> Iterator[Fact]:
+        """Every implied fact that is not stated itself, without its derivation: cheap, however long that may be."""
+        nodes = self.graph.nodes
+        for relation in self.vocabulary.values():
+            for subject, object in self._unstated(relation).tolist():
+                yield Fact(nodes[subject], (relation,), nodes[object])
+
+    def unstated(self) -> int:
+        """How many facts are implied without being stated."""
+        return sum(len(self._unstated(relation)) for relation in self.vocabulary.values())
+
+    def _unstated(self, relation: Relation) -> NDArray[np.int64]:
+        pairs, n = self.pairs(relation), len(self.graph.nodes)
+        firm = self.demands.firm
+        same = firm[self.graph.positive[firm] & (self.graph.relation_sets[firm] == relation.bit)]
+        stated = self.graph.subjects[same].astype(np.int64) * n + self.graph.objects[same]
+        return pairs[~np.isin(pairs[:, 0] * n + pairs[:, 1], stated)]
+
+    def implied_with_steps(self) -> Iterator[tuple[Fact, int]]:
+        """Every implied fact that is not stated, and how many facts the longest of its shortest paths takes.
+
+        0 stands for one that follows by no path, but by cases.
+        """
+        nodes = self.graph.nodes
+        for relation in self.vocabulary.values():
+            pairs = self._unstated(relation)
+            begins = np.flatnonzero(np.diff(pairs[:, 0], prepend=-1))
+            for some in np.split(pairs, begins[1:]) if len(pairs) else ():
+                subject, objects = int(some[0, 0]), some[:, 1]
+                steps = self._steps(relation, subject, objects)
+                for object, count in zip(objects.tolist(), steps.tolist(), strict=True):
+                    yield Fact(nodes[subject], (relation,), nodes[object]), count
+
+    def _steps(self, relation: Relation, subject: int, objects: NDArray[np.int64]) -> NDArray[np.int64]:
+        paths = self._derivations.paths
+        costs = np.stack([paths.costs(bound, subject, objects) for bound in meaning(relation)[0]]).max(axis=0)
+        return np.where(costs > len(self.graph), 0, costs)
+
+    def support(self, fact: Fact, deadline: float | None = None) -> Support:
+        """By what rule an implied fact follows last, and the edges of the graph that its derivation rests on.
+
+        The same as :meth:`derive` says. A search ends at ``deadline`` (``time.monotonic``; without one, after the time
+        limit). Raises GraphError where the fact does not follow, and OutOfTimeError.
+        """
+        relation, subject, object = fact.relations[0], fact.subject, fact.object
+        if not self.holds(relation, subject, object):
+            raise GraphError(f"{fact} does not follow")
+        chains = self._derivations.chains(relation, subject, object)
+        if chains is not None:
+            used = dict.fromkeys(edge for path in chains.values() for edge in path)
+            return Support(self._derivations.of_chains(chains, relation, subject, object).rule, tuple(used))
+        until = time.monotonic() + self.time_limit if deadline is None else deadline
+        edges = self._edges_around(subject)
+        facts = [self.graph.fact(edge) for edge in edges]
+        needed = {id(chosen) for chosen in needed_facts(facts, fact, self.vocabulary, until)}
+        return Support(Rule.CASES, tuple(e for e, f in zip(edges, facts, strict=True) if id(f) in needed))
+
+    def counts(self) -> dict[Relation, int]:
+        """How many pairs are stated or implied to bear each relation."""
+        orders = self.closed.orders
+        return {relation: 0 if orders is None else orders.count(relation) for relation in self.vocabulary.values()}
+
+    def count(self) -> int:
+        """How many facts are stated or implied."""
+        return sum(self.counts().values())

@@ -1,0 +1,204 @@
+"""Where the edges of boxes are best put among all places that the chosen constraints leave: a linear program.
+
+What is liked: usual sizes, round things round, gaps between what is apart, things that a fact relates near and in
+line, what lies on a thing in its middle, and a small table. All of it is soft; the constraints are not.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.reasoning.entailment.realisation.demands import high, low
+from deixis.reasoning.entailment.realisation.differences import Difference, Differences
+from deixis.reasoning.entailment.realisation.things import Things
+
+SIZE, ROUND, GAP, NEAR, MIDDLE, INSIDE, IN_LINE, TABLE = 8.0, 30.0, 20.0, 1.0, 3.0, 5.0, 0.7, 0.8
+"""What a millimetre costs by which a wish is not met."""
+
+PULLS = 4.0
+"""How many facts about one thing count in full for where it is: all together, more do not count for more. Else the
+many that want to be near would press together what lies between, which :data:`SIZE` should withstand."""
+
+RIM = 5
+"""Millimetres that are liked between the edge of a thing and what lies on it."""
+
+
+@dataclass(frozen=True, eq=False)
+class Wishes:
+    """What a picture should look like, besides what it must."""
+
+    things: Things
+    lengthwise: NDArray[np.bool_]  # (n,) whether the length is the side along y
+    related: tuple[tuple[int, int], ...]  # pairs of things that a fact relates
+    apart: tuple[tuple[int, int], ...]  # pairs of things that should not touch
+    gap: float  # millimetres liked between them
+
+
+@dataclass(slots=True)
+class _Program:
+    """A linear program in the making: rows ``coefficients · x <= bound``, and the cost of each variable."""
+
+    costs: list[float]
+    rows: list[tuple[dict[int, float], float]] = field(default_factory=list)
+
+    def at_least(self, terms: dict[int, float], bound: float, cost: float) -> None:
+        """The sum of terms should be at least ``bound``; what lacks is paid for."""
+        slack = self._variable(cost)
+        self.rows.append(({**{v: -c for v, c in terms.items()}, slack: -1.0}, -bound))
+
+    def equal(self, terms: dict[int, float], value: float, cost: float) -> None:
+        """The sum of terms should be ``value``; what lacks or is too much is paid for."""
+        slack = self._variable(cost)
+        self.rows.append(({**terms, slack: -1.0}, value))
+        self.rows.append(({**{v: -c for v, c in terms.items()}, slack: -1.0}, -value))
+
+    def _variable(self, cost: float) -> int:
+        self.costs.append(cost)
+        return len(self.costs) - 1
+
+    def solution(self, deadline: float) -> NDArray[np.float64] | None:
+        from scipy.optimize import linprog
+        from scipy.sparse import csr_array
+
+        entries = [(i, v, c) for i, (terms, _) in enumerate(self.rows) for v, c in terms.items()]
+        rows, columns, values = (np.array(part) for part in zip(*entries, strict=True))
+        matrix = csr_array((values, (rows, columns)), shape=(len(self.rows), len(self.costs)))
+        bounds = np.array([bound for _, bound in self.rows])
+        seconds = max(deadline - time.monotonic(), 0.01)
+        found = linprog(self.costs, matrix, bounds, method="highs", options={"time_limit": seconds})
+        return None if found.x is None else np.asarray(found.x, dtype=np.float64)
+
+
+def compose(differences: Differences, wishes: Wishes, deadline: float) -> NDArray[np.int64]:
+    """Places of all edges in millimetres, shape (2, 2 n), which satisfy every constraint exactly.
+
+    What the program finds is rounded, and then moved to the nearest solution of the constraints, so that nothing
+    rests on its arithmetic. Where it finds nothing before the deadline, of ``time.monotonic()``, the things stand where
+    they can.
+    Round things are made as long as wide where that can be; ``differences`` has these constraints afterwards.
+    """
+    points = 2 * len(wishes.things)
+    if not points:
+        return np.zeros((2, 0), dtype=np.int64)
+    found = _program(differences, wishes, points).solution(deadline) if time.monotonic() < deadline else None
+    if found is None:
+        return differences.nearest(np.zeros((2, points), dtype=np.int64))
+    return _made_round(differences, wishes.things, _whole(found[: 2 * points].reshape(2, points)))
+
+
+def _whole(edges: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Edges (2, 2 n) in whole millimetres, so that sides are rounded rather than both their ends."""
+    whole = np.rint(edges)
+    whole[:, 1::2] = whole[:, 0::2] + np.rint(edges[:, 1::2] - edges[:, 0::2])
+    return whole.astype(np.int64)
+
+
+def _made_round(differences: Differences, things: Things, wanted: NDArray[np.int64]) -> NDArray[np.int64]:
+    for thing in np.flatnonzero(things.round).tolist():
+        side = int(np.min(wanted[:, high(thing)] - wanted[:, low(thing)]))
+        length = len(differences)
+        fixed = [
+            Difference(axis, tail, head, bound)
+            for axis in (0, 1)
+            for tail, head, bound in ((low(thing), high(thing), side), (high(thing), low(thing), -side))
+        ]
+        if any(differences.add(difference, -1) is not None for difference in fixed):
+            differences.back(length)
+        else:
+            wanted[:, high(thing)] = wanted[:, low(thing)] + side
+    return differences.nearest(wanted)
+
+
+def _program(differences: Differences, wishes: Wishes, points: int) -> _Program:
+    program = _Program([0.0] * (2 * points) + [TABLE, TABLE])
+    for axis, tail, head, bound in differences.constraints():
+        program.rows.append(({axis * points + head: 1.0, axis * points + tail: -1.0}, bound))
+    for axis in (0, 1):
+        for thing in range(points // 2):
+            program.rows.append(({axis * points + high(thing): 1.0, 2 * points + axis: -1.0}, 0.0))
+    _wish_sizes(program, wishes, points)
+    for a, b in wishes.apart:
+        _wish_gap(program, differences, a, b, wishes.gap)
+    partners = np.bincount(np.array(wishes.related, dtype=np.int64).reshape(-1), minlength=points // 2)
+    pulls = np.minimum(1.0, PULLS / np.maximum(partners, 1))
+    for axis in (0, 1):
+        apart = _between(differences, axis)
+        for a, b in wishes.related:
+            if not apart[a, b]:
+                _wish_near(program, differences, wishes, axis, a, b, float(min(pulls[a], pulls[b])))
+    return program
+
+
+def _between(differences: Differences, axis: int) -> NDArray[np.bool_]:
+    """The pairs (n, n) of things between which a third lies: it is near to both, and they need not be."""
+    before = differences.distances[axis, 0::2, 1::2].T <= 0  # [first, second]: see _before
+    chains = before.astype(np.float32) @ before.astype(np.float32)
+    found: NDArray[np.bool_] = (chains > 0) | (chains.T > 0)
+    return found
+
+
+def _wish_sizes(program: _Program, wishes: Wishes, points: int) -> None:
+    things = wishes.things
+    for thing in range(len(things)):
+        sides = [{axis * points + high(thing): 1.0, axis * points + low(thing): -1.0} for axis in (0, 1)]
+        along = (1, 0) if wishes.lengthwise[thing] else (0, 1)
+        for axis in (0, 1):
+            program.equal(sides[axis], float(things.wanted[thing, along[axis]]), SIZE)
+        if things.round[thing]:
+            program.equal({**sides[0], **{v: -c for v, c in sides[1].items()}}, 0.0, ROUND)
+
+
+def _before(differences: Differences, axis: int, first: int, second: int) -> bool:
+    """Whether ``first`` ends where ``second`` begins, or before."""
+    return bool(differences.distances[axis, low(second), high(first)] <= 0)
+
+
+def _wish_gap(program: _Program, differences: Differences, a: int, b: int, gap: float) -> None:
+    points = differences.distances.shape[1]
+    for axis in (0, 1):
+        for first, second in ((a, b), (b, a)):
+            if _before(differences, axis, first, second):
+                program.at_least({axis * points + low(second): 1.0, axis * points + high(first): -1.0}, gap, GAP)
+                return
+
+
+def _wish_near(
+    program: _Program, differences: Differences, wishes: Wishes, axis: int, a: int, b: int, pull: float
+) -> None:
+    """Two things that a fact relates: near where they are apart, else in line, or one in the middle of the other."""
+    points = differences.distances.shape[1]
+    start = axis * points
+    for first, second in ((a, b), (b, a)):
+        if _before(differences, axis, first, second):
+            between = {start + low(second): 1.0, start + high(first): -1.0}
+            program.at_least(between, wishes.gap, GAP)
+            program.equal(between, wishes.gap, NEAR * pull)
+            return
+    centres = {start + low(a): 0.5, start + high(a): 0.5, start + low(b): -0.5, start + high(b): -0.5}
+    for inner, outer in ((a, b), (b, a)):
+        if within(differences, axis, inner, outer):
+            program.equal(centres, 0.0, MIDDLE * pull)
+            program.at_least({start + low(inner): 1.0, start + low(outer): -1.0}, RIM, INSIDE)
+            program.at_least({start + high(outer): 1.0, start + high(inner): -1.0}, RIM, INSIDE)
+            return
+    oblong = ~wishes.things.round[[a, b]] & wishes.lengthwise[[a, b]]
+    if axis == 1 and oblong.all():
+        program.equal({start + low(a): 1.0, start + low(b): -1.0}, 0.0, IN_LINE * pull)
+    else:
+        program.equal(centres, 0.0, IN_LINE * pull)
+
+
+def within(differences: Differences, axis: int, inner: int, outer: int) -> bool:
+    """Whether the constraints say that one projection lies within another."""
+    begins = differences.distances[axis, low(inner), low(outer)] <= 0
+    return bool(begins and differences.distances[axis, high(outer), high(inner)] <= 0)
+
+
+def in_line(pairs: Iterable[tuple[int, int]]) -> tuple[tuple[int, int], ...]:
+    """Pairs each once, whichever way round."""
+    return tuple(dict.fromkeys((min(pair), max(pair)) for pair in pairs if pair[0] != pair[1]))

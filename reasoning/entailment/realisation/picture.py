@@ -1,0 +1,258 @@
+"""Facts to a picture: the firm ones proved possible or not, the others where they fit, and boxes that show it."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.ontology.graph import RelationGraph
+from deixis.ontology.sizes import SizeRange
+from deixis.reasoning.entailment.realisation.composition import Wishes, compose, in_line, within
+from deixis.reasoning.entailment.realisation.demands import (
+    About,
+    Demand,
+    apart_demand,
+    fact_demands,
+    high,
+    is_firm,
+    low,
+    name_demands,
+    proper_boxes,
+    size_demands,
+)
+from deixis.reasoning.entailment.realisation.differences import Differences
+from deixis.reasoning.entailment.realisation.relaxation import (
+    Contradiction,
+    Dropped,
+    Relaxed,
+    minimised,
+    relaxed,
+    satisfy,
+)
+from deixis.reasoning.entailment.realisation.search import Solved, TimedOut
+from deixis.reasoning.entailment.realisation.things import Things, things_of
+from deixis.reasoning.entailment.realisation.verification import (
+    facts_that_are_named,
+    facts_that_hold,
+    partly_overlapping,
+)
+from deixis.reasoning.errors import LimitError
+
+ROUNDS = 25
+"""How often things that overlap are told apart before the rest is left as it is."""
+
+
+MOST = 500
+"""Objects of a picture: the memory grows with their square, the time somewhat faster."""
+
+
+@dataclass(frozen=True)
+class GivenUp:
+    """A fact that need not hold and does not, by its edge; the edges of facts, and the objects whose sizes, exclude
+    it: empty where it only was not found to fit."""
+
+    edge: int
+    because: tuple[int, ...]
+    sizes: tuple[int, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Picture:
+    """A box for every object, and what it does not show.
+
+    ``boxes`` (n, 2, 2) are least and greatest corners in metres, x to the right, y away from the viewer; every firm
+    fact was seen to hold of them. ``overlapping`` are pairs that overlap in part, ``named_otherwise`` denials that
+    hold though the exact name of such a pair says otherwise. ``finished`` is false where the time was up before all
+    that is only liked was tried.
+    """
+
+    boxes: NDArray[np.float64]
+    given_up: tuple[GivenUp, ...]
+    overlapping: tuple[tuple[int, int], ...]
+    named_otherwise: tuple[int, ...]
+    finished: bool
+
+
+@dataclass(frozen=True)
+class Impossible:
+    """There is no picture: firm facts, by their edges, and objects whose sizes do not go together.
+
+    Without sizes, no table of whatever sizes satisfies the facts. ``minimal`` where the rest was seen to be possible
+    without any one of them.
+    """
+
+    edges: tuple[int, ...]
+    sizes: tuple[int, ...]
+    minimal: bool
+
+
+@dataclass(frozen=True)
+class Undecided:
+    """The time was up before a picture was found or proved impossible."""
+
+
+def realise(
+    graph: RelationGraph,
+    sizes: Sequence[SizeRange],
+    *,
+    lying: Sequence[bool] | None = None,
+    any_size: bool = False,
+    time_limit: float = 10.0,
+    rng: np.random.Generator | None = None,
+) -> Picture | Impossible | Undecided:
+    """Boxes that satisfy every firm fact of a graph, in the stated reading; or the proof that there are none.
+
+    ``sizes`` has one range a node; with ``any_size`` they are only liked. ``lying`` says which things rather lie
+    along x. ``rng`` draws sizes, gaps and arrangements; without it the picture is the same each time. Facts that are
+    optional or hedged hold where they can, the heavier ones first. The answer comes within about ``time_limit``
+    seconds. Raises LimitError for more than ``MOST`` objects, whose edges cannot all be related in bounded memory.
+    """
+    if len(graph.nodes) > MOST:
+        raise LimitError(f"a picture of {len(graph.nodes)} objects is more than can be worked out; {MOST} are the most")
+    deadline = time.monotonic() + time_limit
+    things = things_of(sizes, lying if lying is not None else [False] * len(graph.nodes), rng)
+    task = _Task(graph, things, any_size, rng)
+    impossible = task.impossible(deadline)
+    return task.picture(deadline) if impossible is None else impossible
+
+
+class _Task:
+    def __init__(self, graph: RelationGraph, things: Things, any_size: bool, rng: np.random.Generator | None) -> None:
+        self.graph, self.things, self.rng = graph, things, rng
+        self.points = 2 * len(graph.nodes)
+        self.base = proper_boxes(len(graph.nodes))
+        facts = fact_demands(graph)
+        self.firm = [d for d in facts if is_firm(graph.fact(d.key[0]))]
+        self.soft = sorted((d for d in facts if not is_firm(graph.fact(d.key[0]))), key=lambda d: -d.weight)
+        self.sizes = () if any_size else size_demands(things)
+        self.gap = 12.0 if rng is None else float(rng.uniform(8, 25))
+
+    def impossible(self, deadline: float) -> Impossible | Undecided | None:
+        """The proof that there is no picture: with whatever sizes if it can be, else with those that are usual."""
+        found = satisfy(self.points, self.base, [*self.firm, *self.sizes], deadline)
+        if isinstance(found, TimedOut):
+            return Undecided()
+        if isinstance(found, Solved):
+            self.solved = found
+            return None
+        if any(demand.about is About.SIZE for demand in found):
+            without = satisfy(self.points, self.base, self.firm, deadline)
+            found = without if isinstance(without, tuple) else found
+        return _impossible(minimised(self.points, self.base, found, deadline))
+
+    def picture(self, deadline: float) -> Picture:
+        """Boxes, made better in rounds: what overlaps is told apart, and all is put in its place again."""
+        named = name_demands(self.graph, [d.key[0] for d in self.firm])
+        best = self._liked([*self.soft, *named], deadline)
+        soft, apart = [d for d in best.kept if d.about is not About.APART], list[Demand]()
+        edges, finished = self._composed(best, apart, deadline), best.finished
+        dropped = list(best.dropped)
+        for _ in range(ROUNDS):
+            new = self._overlaps(edges, best.solved.differences, {d.key for d in apart})
+            if not new or not finished:
+                break
+            apart += new
+            given_up = {d.demand.key for d in dropped}
+            closer = self._relaxed([*soft, *(d for d in apart if d.key not in given_up)], deadline)
+            if isinstance(closer, TimedOut):
+                finished = False
+                break
+            best = closer
+            dropped += closer.dropped
+            edges, finished = self._composed(best, apart, deadline), closer.finished and time.monotonic() < deadline
+        return self._checked(edges, dropped, finished)
+
+    def _liked(self, soft: Sequence[Demand], deadline: float) -> Relaxed:
+        """What of all that is liked holds; what is known to be possible where there is nothing more or no time."""
+        found = self._relaxed(soft, deadline) if soft else Relaxed(self.solved, (), ())
+        return Relaxed(self.solved, (), (), finished=False) if isinstance(found, TimedOut) else found
+
+    def _relaxed(self, soft: Sequence[Demand], deadline: float) -> Relaxed | TimedOut:
+        found = relaxed(self.points, self.base, [*self.firm, *self.sizes], soft, deadline)
+        if isinstance(found, tuple):
+            raise AssertionError("firm demands that were seen to be possible are not any more")
+        return found
+
+    def _composed(self, best: Relaxed, apart: Sequence[Demand], deadline: float) -> NDArray[np.int64]:
+        differences = best.solved.differences
+        kept = {demand.key[0] for demand in (*self.firm, *best.kept) if demand.about is About.FACT}
+        related = [
+            (int(self.graph.subjects[edge]), int(self.graph.objects[edge]))
+            for edge in sorted(kept)
+            if self.graph.positive[edge]
+        ]
+        wishes = Wishes(
+            things=self.things,
+            lengthwise=self._lengthwise(differences),
+            related=in_line(related),
+            apart=tuple((d.key[0], d.key[1]) for d in apart),
+            gap=self.gap,
+        )
+        return compose(differences, wishes, deadline)
+
+    def _lengthwise(self, differences: Differences) -> NDArray[np.bool_]:
+        """Which things have their length along y: as was chosen, or as is preferred where it was not."""
+        found = np.ones(len(self.things), dtype=np.bool_)
+        for thing in range(len(self.things)):
+            tall = -differences.distances[:, high(thing), low(thing)]  # the least sides that follow
+            least = self.things.least[thing]
+            rather = not self.things.lying[thing]
+            if not self.sizes or least[0] == least[1]:
+                found[thing] = rather
+            else:
+                found[thing] = tall[1] >= least[0] if rather else not tall[0] >= least[0]
+        return found
+
+    def _overlaps(
+        self, edges: NDArray[np.int64], differences: Differences, known: set[tuple[int, ...]]
+    ) -> list[Demand]:
+        """Demands to tell apart what overlaps, but for what is said to lie on one another and what was tried."""
+        boxes = _boxes(edges)
+        low_corner, high_corner = boxes[:, 0], boxes[:, 1]
+        share = ((low_corner[:, None] < high_corner[None]) & (low_corner[None] < high_corner[:, None])).all(axis=2)
+        found = []
+        for a, b in np.argwhere(np.triu(share, 1)).tolist():
+            nested = any(all(within(differences, k, i, o) for k in (0, 1)) for i, o in ((a, b), (b, a)))
+            if not nested and (a, b) not in known:
+                noise = np.zeros(4) if self.rng is None else self.rng.uniform(0, 60, 4)
+                found.append(apart_demand(a, b, edges, noise))
+        return found
+
+    def _checked(self, edges: NDArray[np.int64], dropped: Sequence[Dropped], finished: bool) -> Picture:
+        """The picture, after a look at every fact."""
+        boxes = _boxes(edges - edges.min(axis=1, keepdims=True) if self.points else edges) / 1000.0
+        held, named = facts_that_hold(self.graph, boxes), facts_that_are_named(self.graph, boxes)
+        wrong = [d.key[0] for d in self.firm if not held[d.key[0]]]
+        if wrong or (boxes[:, 1] <= boxes[:, 0]).any():
+            raise AssertionError(f"the picture breaks the facts {[str(self.graph.fact(edge)) for edge in wrong]}")
+        reasons = {d.demand.key: d.because for d in dropped if d.demand.about is About.FACT}
+        given_up = tuple(GivenUp(d.key[0], *_keys(reasons.get(d.key, ()))) for d in self.soft if not held[d.key[0]])
+        overlapping = np.argwhere(np.triu(partly_overlapping(boxes), 1)).tolist()
+        firm = [d.key[0] for d in self.firm]
+        return Picture(
+            boxes=boxes,
+            given_up=given_up,
+            overlapping=tuple((a, b) for a, b in overlapping),
+            named_otherwise=tuple(edge for edge in firm if not named[edge]),
+            finished=finished,
+        )
+
+
+def _boxes(edges: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Edges (2, 2 n) as corners (n, 2, 2)."""
+    return np.moveaxis(edges.reshape(2, -1, 2), 0, 2)
+
+
+def _keys(demands: Sequence[Demand]) -> tuple[tuple[int, ...], tuple[int, ...]]:
+    """The edges of the facts and the objects of the sizes among demands."""
+    edges = sorted(d.key[0] for d in demands if d.about is About.FACT)
+    return tuple(edges), tuple(sorted(d.key[0] for d in demands if d.about is About.SIZE))
+
+
+def _impossible(found: Contradiction) -> Impossible:
+    edges, sizes = _keys(found.demands)
+    return Impossible(edges, sizes, found.minimal)

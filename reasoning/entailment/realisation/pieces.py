@@ -1,0 +1,120 @@
+"""Relations as choices between conjunctions of end-point inequalities.
+
+A set of rectangle-algebra atoms is covered by products of two
+convex sets, and each product is one *piece*: inequalities all of which hold. So every fact is a choice of pieces.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.ontology.allen import mask_array
+from deixis.ontology.graph import Fact
+from deixis.ontology.relation import Relation
+from deixis.reasoning.geometry.allen import ConvexSet, EndOrder, admitted, convex_hull, convex_sets
+
+X, Y = 0, 1
+
+
+class Inequality(NamedTuple):
+    """``greater`` is at least ``lesser``, and above it where ``strict``: end points of two boxes on one axis."""
+
+    axis: int
+    lesser: int
+    greater: int
+    strict: bool
+
+
+Piece = tuple[Inequality, ...]
+
+
+def region(fact: Fact) -> NDArray[np.bool_]:
+    """The atoms that a fact admits, shape (13, 13), axes x and y, by Allen code.
+
+    Where a relation and its inverse share an atom, heights tell them apart: of two boxes that are alike one lies on
+    the other, and a plan does not say which. No fact is pictured by such an atom. Nothing is lost by that: where a
+    chain of *on* does not come back to where it began, its boxes can be made to shrink along it.
+    """
+    admitted = np.zeros((13, 13), dtype=np.bool_)
+    shared = np.zeros((13, 13), dtype=np.bool_)
+    for relation in fact.relations:
+        own = relation.admits()
+        admitted |= own
+        if relation.inverse != relation.name:
+            shared |= own & _converse(relation)
+    return (admitted if fact.positive else ~admitted) & ~shared
+
+
+def _converse(relation: Relation) -> NDArray[np.bool_]:
+    """The atoms that the inverse of a relation admits: the code of a converse is 12 minus the code."""
+    return relation.admits()[::-1, ::-1]
+
+
+@dataclass(frozen=True, slots=True)
+class Choice:
+    """What holds in any case, and pieces of which one holds besides: none where nothing is admitted."""
+
+    always: Piece
+    pieces: tuple[Piece, ...]
+
+
+def choice(wanted: NDArray[np.bool_]) -> Choice:
+    """Inequalities that admit just the wanted atoms (13, 13): those of the convex hull, and a choice of pieces.
+
+    Pieces may overlap, and the largest come first: the cover is greedy, each piece admits as many atoms that are not
+    yet covered as any can. What the hull says already is left out of them.
+
+    >>> from deixis.ontology.tbox import default_ontology
+    >>> choice(default_ontology().relations["left"].admits())
+    Choice(always=(Inequality(axis=0, lesser=1, greater=2, strict=False),), pieces=((),))
+    """
+    return _choice(np.ascontiguousarray(wanted, dtype=np.bool_).tobytes())
+
+
+@lru_cache(maxsize=4096)
+def _choice(key: bytes) -> Choice:
+    wanted = np.frombuffer(key, dtype=np.bool_).reshape(13, 13)
+    if not wanted.any():
+        return Choice((), ())
+    used_x, used_y = np.flatnonzero(wanted.any(axis=1)), np.flatnonzero(wanted.any(axis=0))
+    always = _inequalities(X, convex_hull(_mask(used_x))) + _inequalities(Y, convex_hull(_mask(used_y)))
+    pieces = tuple(tuple(i for i in piece if i not in always) for piece in _cover(wanted))
+    return Choice(always, ((),) if () in pieces else pieces)
+
+
+def _mask(codes: NDArray[np.int64]) -> int:
+    return sum(1 << code for code in codes.tolist())
+
+
+def _inequalities(axis: int, convex: ConvexSet) -> Piece:
+    return tuple(Inequality(axis, *order) for order in convex.orders)
+
+
+def _cover(wanted: NDArray[np.bool_]) -> Iterator[Piece]:
+    sets = convex_sets()
+    member = (np.array([s.mask for s in sets])[:, None] >> np.arange(13) & 1).astype(np.int64)
+    outside = member @ (~wanted).astype(np.int64) @ member.T
+    left = wanted.copy()
+    while left.any():
+        gain = np.where(outside == 0, member @ left.astype(np.int64) @ member.T, 0)
+        best = np.argwhere(gain == gain.max())
+        x, y = max(best.tolist(), key=lambda pair: (_size(sets[pair[0]], sets[pair[1]]), -pair[0], -pair[1]))
+        yield _inequalities(X, sets[x]) + _inequalities(Y, sets[y])
+        left &= ~(member[x][:, None] & member[y][None, :]).astype(np.bool_)
+
+
+def _size(x: ConvexSet, y: ConvexSet) -> int:
+    return x.mask.bit_count() * y.mask.bit_count()
+
+
+def admitted_by(piece: Piece) -> NDArray[np.bool_]:
+    """The atoms that inequalities admit together, shape (13, 13): the inverse of :func:`choice`."""
+    masks = [admitted(tuple(EndOrder(*i[1:]) for i in piece if i.axis == axis)) for axis in (X, Y)]
+    found: NDArray[np.bool_] = mask_array(masks[X])[:, None] & mask_array(masks[Y])[None, :]
+    return found

@@ -1,0 +1,60 @@
+"""Whether boxes satisfy facts: looked up from their atoms, without anything that the search has used."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.ontology.graph import RelationGraph
+from deixis.reasoning.geometry.allen import allen_relations
+from deixis.reasoning.geometry.rectangle import box_relations
+
+
+def facts_that_hold(graph: RelationGraph, boxes: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Which edges of a graph hold of the boxes of its nodes (n, 2, 2), as what each relation admits says.
+
+    Of two boxes that are alike nothing holds that says which lies on the other.
+    """
+    x, y = _atoms(graph, boxes)
+    held = np.zeros(len(graph), dtype=np.bool_)
+    for edge in range(len(graph)):
+        atom = (x[edge], y[edge])
+        relations = graph.vocabulary.members(int(graph.relation_sets[edge]))
+        admitted = [relation for relation in relations if relation.admits()[atom]]
+        undecided = any(graph.vocabulary[r.inverse].admits()[atom] for r in admitted if r.inverse != r.name)
+        held[edge] = not undecided and bool(admitted) == bool(graph.positive[edge])
+    return held
+
+
+def _atoms(graph: RelationGraph, boxes: NDArray[np.float64]) -> tuple[NDArray[np.int8], NDArray[np.int8]]:
+    a, b = boxes[graph.subjects], boxes[graph.objects]
+    codes = [allen_relations(a[:, 0, axis], a[:, 1, axis], b[:, 0, axis], b[:, 1, axis]) for axis in (0, 1)]
+    return codes[0], codes[1]
+
+
+def facts_that_are_named(graph: RelationGraph, boxes: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Which edges hold as grounding and checking see it: by the one exact name of each pair.
+
+    It differs from :func:`facts_that_hold` only for boxes that overlap in part or are alike.
+    """
+    vocabulary = graph.vocabulary
+    order = np.argsort(np.argsort(np.array(graph.nodes, dtype=np.str_)))
+    names = box_relations(boxes, vocabulary, ranks=order).names if len(graph.nodes) else np.zeros((0, 0), np.int8)
+    degrees = vocabulary.degrees
+    held = np.zeros(len(graph), dtype=np.bool_)
+    for edge in np.flatnonzero(graph.subjects != graph.objects):
+        name = names[graph.subjects[edge], graph.objects[edge]]
+        members = [relation.index for relation in vocabulary.members(int(graph.relation_sets[edge]))]
+        held[edge] = bool((degrees[members, name] > 0).any()) == bool(graph.positive[edge])
+    to_itself = np.flatnonzero(graph.subjects == graph.objects)
+    held[to_itself] = ~graph.positive[to_itself]
+    return held
+
+
+def partly_overlapping(boxes: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Which ordered pairs of boxes (n, 2, 2) share a part of the plan, neither within the other, shape (n, n)."""
+    low, high = boxes[:, 0], boxes[:, 1]
+    share = ((low[:, None] < high[None]) & (low[None] < high[:, None])).all(axis=2)
+    inside = ((low[:, None] >= low[None]) & (high[:, None] <= high[None])).all(axis=2)
+    found: NDArray[np.bool_] = np.logical_and(share, ~(inside | inside.T))
+    return found

@@ -1,0 +1,1 @@
+"""Geometry of boxes: Allen relations, the rectangle algebra, and scale-free features of pairs."""

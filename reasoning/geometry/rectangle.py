@@ -1,0 +1,172 @@
+"""The rectangle algebra of boxes: every ordered pair's atom, and which of ten exact names it bears.
+
+An atom is a pair of Allen relations, one between the projections on x and one between those on y (Balbiani, Condotta
+and Fariñas del Cerro 1998); where heights are known there is a third on z. The name is read off the atom by what the
+TBox says each exact relation admits. Three kinds of pairs need more than the planar atom, and get it in this order:
+
+1. projections that overlap on both axes, with known heights: *on* or *under*, where z settles it;
+2. boxes that overlap in part (neither within the other): the larger offset of the two centres names the pair, the x
+   axis where both are as large;
+3. boxes with the same centre that are alike or cross: the one listed later lies on the one listed earlier.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.errors import GraphError
+from deixis.ontology.allen import SYMBOLS, Allen
+from deixis.ontology.graph import RelationGraph
+from deixis.ontology.relation import Reading, Relation, Relations
+from deixis.reasoning.geometry.allen import allen_relations
+
+
+@dataclass(frozen=True, eq=False)
+class BoxRelations:
+    """The atoms and exact names of all ordered pairs of n boxes; row: subject, column: object."""
+
+    x: NDArray[np.int8]  # (n, n) Allen codes
+    y: NDArray[np.int8]  # (n, n) Allen codes
+    z: NDArray[np.int8] | None  # (n, n) Allen codes, or None where heights are not known
+    names: NDArray[np.int8]  # (n, n) relation indices of the exact reading; -1 on the diagonal
+
+    def atom(self, subject: int, object: int) -> str:
+        """The atom as QSRlib writes it: the Allen signs on x and y (and z), with a comma between."""
+        axes = (self.x, self.y) if self.z is None else (self.x, self.y, self.z)
+        return ",".join(SYMBOLS[axis[subject, object]] for axis in axes)
+
+
+def box_relations(
+    boxes: NDArray[np.float64],
+    vocabulary: Relations,
+    tolerance: float = 0.0,
+    ranks: NDArray[np.int64] | None = None,
+) -> BoxRelations:
+    """Relates every ordered pair of boxes.
+
+    ``boxes`` has shape (n, 2, d): least and greatest corner, d = 2 or 3, x to the viewer's right, y away from the
+    viewer, z up, metres. End points that differ by at most ``tolerance`` count as equal. ``ranks`` (n,) stand for the
+    order of listing, where that has to decide. Raises GraphError for another shape, a corner that is not finite, or a
+    greatest corner below the least.
+
+    >>> from deixis.ontology.tbox import default_ontology
+    >>> relations = default_ontology().relations
+    >>> fork, plate = [[0.0, 0.0], [0.02, 0.2]], [[0.05, -0.02], [0.32, 0.25]]
+    >>> related = box_relations(np.array([fork, plate]), relations)
+    >>> related.atom(0, 1), relations.members(1 << int(related.names[0, 1]))[0].name
+    ('<,d', 'exactly_left')
+    """
+    require_boxes(boxes)
+    low, high = boxes[:, 0], boxes[:, 1]
+    codes = [
+        allen_relations(low[:, None, axis], high[:, None, axis], low[None, :, axis], high[None, :, axis], tolerance)
+        for axis in range(boxes.shape[2])
+    ]
+    z = codes[2] if len(codes) == 3 else None
+    order = np.arange(len(boxes)) if ranks is None else ranks
+    names = _names(codes[0], codes[1], z, boxes, vocabulary, order)
+    return BoxRelations(codes[0], codes[1], z, names)
+
+
+def perceived_graph(
+    ids: Sequence[str],
+    boxes: NDArray[np.float64],
+    vocabulary: Relations,
+    kinds: Sequence[str | None] = (),
+    tolerance: float = 0.0,
+) -> RelationGraph:
+    """The complete relation graph of a scene: for every ordered pair one edge with its exact name.
+
+    ``boxes``: as for :func:`box_relations`. The graph has n (n - 1) edges, by subject, then by object. Where the order
+    of listing has to decide, that of the ids does, so that a scene means the same in whatever order it is listed.
+    """
+    n = len(ids)
+    ranks = np.argsort(np.argsort(np.array(ids, dtype=np.str_)))
+    related = box_relations(boxes, vocabulary, tolerance, ranks)
+    subjects, objects = np.nonzero(~np.eye(n, dtype=bool))
+    m = len(subjects)
+    return RelationGraph(
+        vocabulary=vocabulary,
+        nodes=tuple(ids),
+        subjects=subjects.astype(np.int32),
+        objects=objects.astype(np.int32),
+        relation_sets=np.int64(1) << related.names[subjects, objects].astype(np.int64),
+        positive=np.ones(m, dtype=bool),
+        optional=np.zeros(m, dtype=bool),
+        weights=np.ones(m),
+        kinds=tuple(kinds),
+        boxes=boxes,
+    )
+
+
+def require_boxes(boxes: NDArray[np.float64]) -> None:
+    if boxes.ndim != 3 or boxes.shape[1] != 2 or boxes.shape[2] not in (2, 3):
+        raise GraphError(f"boxes must have shape (n, 2, 2) or (n, 2, 3), not {boxes.shape}")
+    if not np.isfinite(boxes).all():
+        bad = int(np.flatnonzero(~np.isfinite(boxes).all(axis=(1, 2)))[0])
+        raise GraphError(f"box {bad} has a corner that is not finite")
+    if (boxes[:, 1] < boxes[:, 0]).any():
+        bad = int(np.flatnonzero((boxes[:, 1] < boxes[:, 0]).any(axis=1))[0])
+        raise GraphError(f"box {bad} has a greatest corner below its least corner")
+
+
+def _names(
+    x: NDArray[np.int8],
+    y: NDArray[np.int8],
+    z: NDArray[np.int8] | None,
+    boxes: NDArray[np.float64],
+    vocabulary: Relations,
+    ranks: NDArray[np.int64],
+) -> NDArray[np.int8]:
+    exact = vocabulary.of_reading(Reading.EXACT)
+    table = _name_table(exact)
+    names = table[x, y]
+    overlapping = _overlap_mask()[x] & _overlap_mask()[y]
+    undecided = names < 0
+    if z is not None:
+        for relation in exact:
+            if relation.z_atoms:
+                settled = overlapping & (relation.z_atoms >> z.astype(np.int64) & 1).astype(bool)
+                names = np.where(settled, np.int8(relation.index), names)
+                undecided &= ~settled
+    offset = _offset_names(boxes, table, ranks)
+    names = np.where(undecided, offset, names)
+    np.fill_diagonal(names, -1)
+    return names
+
+
+def _name_table(exact: Sequence[Relation]) -> NDArray[np.int8]:
+    """The one exact relation that admits each planar atom, shape (13, 13); -1 where none or more than one does."""
+    admitted = np.stack([relation.admits() for relation in exact])
+    table = np.full((13, 13), -1, dtype=np.int8)
+    single = admitted.sum(axis=0) == 1
+    indices = np.array([relation.index for relation in exact], dtype=np.int8)
+    table[single] = indices[admitted.argmax(axis=0)[single]]
+    return table
+
+
+def _overlap_mask() -> NDArray[np.bool_]:
+    """Which Allen relations have more than an end point in common, shape (13,)."""
+    codes = np.arange(13)
+    return (codes > Allen.MEETS) & (codes < Allen.MET_BY)
+
+
+def _offset_names(boxes: NDArray[np.float64], table: NDArray[np.int8], ranks: NDArray[np.int64]) -> NDArray[np.int8]:
+    """A name by the larger offset of the centres on x and y; by rank where both are zero."""
+    centres = boxes.mean(axis=1)[:, :2]
+    dx = centres[:, None, 0] - centres[None, :, 0]
+    dy = centres[:, None, 1] - centres[None, :, 1]
+    left, right = table[Allen.BEFORE, Allen.EQUALS], table[Allen.AFTER, Allen.EQUALS]
+    bottom, top = table[Allen.EQUALS, Allen.BEFORE], table[Allen.EQUALS, Allen.AFTER]
+    on, under = table[Allen.DURING, Allen.DURING], table[Allen.CONTAINS, Allen.CONTAINS]
+    by_x = np.where(dx < 0, left, right)
+    by_y = np.where(dy < 0, bottom, top)
+    later = ranks[:, None] > ranks[None, :]
+    by_order = np.where(later, on, under)
+    names = np.where(np.abs(dx) >= np.abs(dy), by_x, by_y)
+    named: NDArray[np.int8] = np.where((dx == 0) & (dy == 0), by_order, names).astype(np.int8)
+    return named

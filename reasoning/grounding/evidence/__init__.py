@@ -1,0 +1,1 @@
+"""Evidence for matches: facts, labels, sizes and colours as log-likelihood ratios."""

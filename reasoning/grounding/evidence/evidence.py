@@ -1,0 +1,225 @@
+"""What grounding goes by: the facts, what labels, sizes and colours say, and how far each stated fact holds of a pair.
+
+What an engine searches is :attr:`Evidence.problem`: facts, labels, sizes and colours as log-likelihood ratios that add
+up, with what leaving an object out costs. Beside it stands the crisp reading, by which an answer says what holds: a
+stated fact holds of a pair to the degree 1 where the pair's exact name is the word itself, 0.5 where the name only
+implies the word in its wide reading, else 0. A choice (``or``) holds as far as its best alternative; a denial holds (1)
+where none of its relations does, even widely. A fact is *satisfied* where its degree is above 0.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.errors import GraphError
+from deixis.ontology.colours import Colours
+from deixis.ontology.graph import RelationGraph
+from deixis.ontology.kinds import Kinds
+from deixis.ontology.relation import Reading
+from deixis.ontology.sizes import Sizes
+from deixis.reasoning.grounding.evidence.colours import colour_evidence
+from deixis.reasoning.grounding.evidence.degrees import log_likelihood_ratio
+from deixis.reasoning.grounding.evidence.facts import fact_tables, hedged
+from deixis.reasoning.grounding.evidence.labels import Label, classes
+from deixis.reasoning.grounding.evidence.meaning import OUTLIERS, SHIPPED, Meaning
+from deixis.reasoning.grounding.evidence.unary import label_ratios, size_evidence
+from deixis.reasoning.grounding.matching.problem import UNMATCHED, Problem
+
+RARELY = 0.015
+"""The odds at most that an object is absent from a scene that has room for all."""
+
+PRESENT = -30.0
+"""What leaving an object out costs where a certain label says that it is there."""
+
+
+@dataclass(frozen=True, eq=False)
+class Evidence:
+    """Two graphs side by side: a description of n1 objects by m facts, and a scene of n2 objects, fully related.
+
+    ``labels``, ``sizes`` and ``colours`` (n1, n2) are log-likelihood ratios of each object being each perceived thing,
+    -inf in ``labels`` where that is ruled out; no ``colours`` where none are known.
+    """
+
+    description: RelationGraph
+    scene: RelationGraph
+    labels: NDArray[np.float64]
+    sizes: NDArray[np.float64]
+    meaning: Meaning = SHIPPED
+    colours: NDArray[np.float64] | None = None
+
+    @cached_property
+    def allowed(self) -> NDArray[np.bool_]:
+        """Which object may be which perceived thing, shape (n1, n2)."""
+        result: NDArray[np.bool_] = ~np.isneginf(self.labels)
+        return result
+
+    @property
+    def unary(self) -> NDArray[np.float64]:
+        """What speaks for each match besides the facts, shape (n1, n2)."""
+        total: NDArray[np.float64] = self.labels + self.sizes
+        return total if self.colours is None else total + self.colours
+
+    @cached_property
+    def problem(self) -> Problem:
+        """What there is to be searched. A scene without boxes is taken literally, by the names of its pairs."""
+        certain = (self.labels > 0) & np.any(~self.allowed, axis=0)[None, :]
+        absent = np.where(certain.any(axis=1), PRESENT, absence(*self.labels.shape))
+        boxes = self.scene.boxes
+        if boxes is None or not self.meaning.graded:
+            return Problem(*self._literal_tables(), self.unary, absent)
+        facts = fact_tables(self.description, boxes, self.meaning.models, unary=self.unary, absent=absent)
+        return Problem(facts.ends, facts.kinds, facts.tables, self.unary, absent)
+
+    def _literal_tables(self) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float32]]:
+        """Ends, kinds and tables of the facts in the crisp reading, chance being one pair for each of the names."""
+        graph, edges = self.description, self.facts
+        said = np.column_stack([self.degree_table, graph.net_weights[edges]])
+        rows, kinds = np.unique(said, axis=0, return_inverse=True)
+        exact = [relation.index for relation in graph.vocabulary.of_reading(Reading.EXACT)]
+        tables = np.zeros((len(rows), len(self.scene.nodes), len(self.scene.nodes)), dtype=np.float32)
+        for table, row in zip(tables, rows, strict=True):
+            degrees = row[:-1][self.names]
+            table[:] = hedged(log_likelihood_ratio(degrees, OUTLIERS, float(row[exact].mean())), float(row[-1]))
+            np.fill_diagonal(table, 0.0)
+        ends = np.stack([graph.subjects[edges], graph.objects[edges]], axis=1).astype(np.int64)
+        return ends, kinds.ravel().astype(np.int64), tables
+
+    @cached_property
+    def names(self) -> NDArray[np.int16]:
+        """The exact name of every ordered perceived pair, shape (n2, n2): relation indices, -1 on the diagonal."""
+        return exact_names(self.scene)
+
+    @cached_property
+    def facts(self) -> NDArray[np.int64]:
+        """The edges of the description that can be compared: all but those of an object to itself."""
+        return np.flatnonzero(self.description.subjects != self.description.objects)
+
+    def firm(self) -> NDArray[np.bool_]:
+        """Which comparable facts must hold: neither optional nor hedged."""
+        must: NDArray[np.bool_] = ~self.description.optional[self.facts] & (self.description.weights[self.facts] >= 1)
+        return must
+
+    @cached_property
+    def degree_table(self) -> NDArray[np.float64]:
+        """The degree of each comparable fact by the pair's exact name, shape (facts, relations + 1); last column 0."""
+        degrees = self.description.vocabulary.degrees
+        sets = self.description.relation_sets[self.facts]
+        member = (sets[:, None] >> np.arange(len(degrees))[None, :] & 1).astype(bool)
+        best = np.where(member[:, :, None], degrees[None, :, :], 0.0).max(axis=1, initial=0.0)
+        denied = np.where(best > 0, 0.0, 1.0)
+        table = np.where(self.description.affirmed[self.facts][:, None], best, denied)
+        return np.concatenate([table, np.zeros((len(table), 1))], axis=1)
+
+    def degrees(self, assignment: NDArray[np.int64]) -> NDArray[np.float64]:
+        """How far each comparable fact holds, 0 where an object of it is unmatched.
+
+        ``assignment`` has shape (…, n1), the result (…, facts).
+        """
+        subjects = assignment[..., self.description.subjects[self.facts]]
+        objects = assignment[..., self.description.objects[self.facts]]
+        matched = (subjects != UNMATCHED) & (objects != UNMATCHED)
+        names = np.where(matched, self.names[subjects, objects], -1) if len(self.names) else subjects
+        degrees: NDArray[np.float64] = np.where(matched, self.degree_table[np.arange(len(self.facts)), names], 0.0)
+        return degrees
+
+    def total(self, assignment: NDArray[np.int64]) -> float:
+        """The sum of degrees times weights, plus what labels say for each match."""
+        return float(self.totals(assignment[None])[0])
+
+    def totals(self, assignments: NDArray[np.int64]) -> NDArray[np.float64]:
+        """The total of each of k assignments (k, n1)."""
+        matched = assignments != UNMATCHED
+        totals: NDArray[np.float64] = self.degrees(assignments) @ self.description.affirmed_weights[self.facts]
+        if self.labels.size:
+            said = self.labels[np.arange(assignments.shape[1]), np.where(matched, assignments, 0)]
+            totals += np.where(matched, said, 0.0).sum(axis=1)
+        return totals
+
+    def reordered(self, rows: NDArray[np.int64], columns: NDArray[np.int64]) -> Evidence:
+        """The same evidence with the objects and the perceived things in another order."""
+        return Evidence(
+            self.description.subgraph([self.description.nodes[i] for i in rows]),
+            self.scene.subgraph([self.scene.nodes[i] for i in columns]),
+            self.labels[np.ix_(rows, columns)],
+            self.sizes[np.ix_(rows, columns)],
+            self.meaning,
+            None if self.colours is None else self.colours[np.ix_(rows, columns)],
+        )
+
+
+def absence(objects: int, things: int) -> float:
+    """What leaving one of n1 objects out is worth in log-likelihood, beside n2 things.
+
+    Whoever leaves an object out says that it is not there, and that one thing more was not described. The odds of
+    either are those of Jeffreys' rule, (k + 1/2) / (n - k + 1/2), for the k that there are at least: all but as many
+    as there are on the other side. And of k objects and k things there are k times as many maps that match all as of
+    k - 1 and k - 1, so that each of the former is as many times less likely. But a few words about a full table are no
+    sign that what they name is missing: where none has to be absent, its odds are ``RARELY`` at most, and where most
+    things are not described anyway, one more says nothing.
+
+    >>> round(absence(12, 12), 1), round(absence(15, 12), 1), round(absence(2, 300), 1)
+    (-4.9, -2.0, -4.2)
+    """
+    absent, extra = max(0, objects - things), max(0, things - objects)
+    of_objects = (absent + 0.5) / (objects - absent + 0.5) if absent else min(0.5 / (objects + 0.5), RARELY)
+    of_things = (extra + 0.5) / (things - extra + 0.5) * max(1, min(objects, things))
+    return math.log(of_objects) + min(0.0, math.log(of_things))
+
+
+def exact_names(scene: RelationGraph) -> NDArray[np.int16]:
+    """The exact name of every ordered pair of a scene's graph, shape (n, n), -1 on the diagonal.
+
+    Raises GraphError where a pair has no exact name, or more than one.
+    """
+    n = len(scene.nodes)
+    exact = sum(relation.bit for relation in scene.vocabulary.of_reading(Reading.EXACT))
+    sets = scene.relation_sets
+    single = (np.bitwise_count(sets) == 1) & ((sets & ~np.int64(exact)) == 0) & scene.positive
+    names = np.full((n, n), -1, dtype=np.int16)
+    names[scene.subjects[single], scene.objects[single]] = np.round(np.log2(sets[single])).astype(np.int16)
+    missing = (names < 0) & ~np.eye(n, dtype=bool)
+    if missing.any() or len(scene) != n * (n - 1):
+        where = np.argwhere(missing)
+        pair = f" ({scene.nodes[where[0][0]]}, {scene.nodes[where[0][1]]})" if len(where) else ""
+        raise GraphError(f"a scene's graph needs one exact relation for every ordered pair{pair}")
+    return names
+
+
+def no_unary_evidence(description: RelationGraph, scene: RelationGraph, meaning: Meaning = SHIPPED) -> Evidence:
+    """The evidence of the facts alone: everything is allowed, and nothing else speaks for a match."""
+    nothing = np.zeros((len(description.nodes), len(scene.nodes)))
+    return Evidence(description, scene, nothing, nothing, meaning)
+
+
+def evidence_from(
+    description: RelationGraph,
+    scene: RelationGraph,
+    labels: Sequence[Label | None],
+    kinds: Kinds,
+    sizes: Sizes,
+    *,
+    metric: bool = True,
+    meaning: Meaning = SHIPPED,
+    seen: NDArray[np.float64] | None = None,
+    colours: Colours | None = None,
+) -> Evidence:
+    """Facts, labels, sizes and colours together, each by its weight; ``metric`` where the scene's boxes are in metres.
+
+    ``seen`` are the things' colours in sRGB, shape (n2, 3), NaN where not known; ``colours`` are the known terms.
+    """
+    weights, shape = meaning.weights, (len(description.nodes), len(scene.nodes))
+    said, measured = np.zeros(shape), np.zeros(shape)
+    if weights.labels > 0:
+        said = weights.labels * label_ratios(description, labels, kinds)
+    if weights.sizes > 0 and scene.boxes is not None:
+        measured = weights.sizes * size_evidence(classes(description), scene.boxes, sizes, meaning.sizes, metric)
+    shades = None
+    if weights.colours > 0 and seen is not None and colours is not None and description.colours:
+        shades = weights.colours * colour_evidence(description.colours, seen, colours)
+    return Evidence(description, scene, said, measured, meaning, shades)

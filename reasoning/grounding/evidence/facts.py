@@ -1,0 +1,243 @@
+"""What stated facts weigh for every pair of perceived boxes: graded (or crisp) tables for matching.
+
+A saying model gives the probability that a fact is said of a pair, up to a constant that cancels against chance:
+
+- a word: outliers + (1 - outliers) * s * d, with d the word's degree and s how readily the pair is spoken of;
+- a choice (``or``): the mixture of its words, each as likely as the next: d is the mean of theirs;
+- a denial (``not``): d is the product of the complements 1 - d of its words, where a word that holds widely of a pair
+  counts as fitting, however far apart the two are: what is far to the left is no less left, only said less often;
+- a fact that is meant literally is said of any pair, near or far, as readily as its name fits: 1 where the name is the
+  word, ``IMPLIED`` where it only implies it, else 0; by chance one name in ten fits. The share of such facts is judged
+  from the whole description (:mod:`deixis.reasoning.grounding.evidence.literalness`);
+- a hedge of weight w: it holds with probability w, else it says nothing: log(w exp(l) + 1 - w), with l its evidence;
+  below one half (*rarely*) it is the opposite that is said, with the weight 1 - w;
+- ``optional``: a fact that need not hold is one that holds every other time: w is halved.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import prod
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.ontology.graph import RelationGraph
+from deixis.ontology.models.relations import SAYING, RelationModels
+from deixis.ontology.relation import Relation, Relations
+from deixis.reasoning.errors import SettingError
+from deixis.reasoning.geometry.pairs import PairGeometry, pair_geometry
+from deixis.reasoning.geometry.rectangle import box_relations
+from deixis.reasoning.grounding.evidence.degrees import WordDegrees, log_likelihood_ratio, saying_degree
+from deixis.reasoning.grounding.evidence.literalness import LITERAL, literal_share
+from deixis.reasoning.grounding.evidence.meaning import OUTLIERS, shipped_models
+from deixis.reasoning.grounding.matching.problem import Problem
+
+Array = NDArray[np.float64]
+
+IMPLIED = 0.1
+"""How readily a literal speaker says *left* of a pair whose name is *top left*: nine times in ten, the name is said."""
+
+LITERAL_CHANCE = 0.1
+"""The degree by chance of a word taken literally: it is one of ten names."""
+
+AWAY = -30.0
+"""What leaving an object out is worth to the judgement of how literal words are, where nothing is said of it."""
+
+
+@dataclass(frozen=True, eq=False)
+class FactTables:
+    """The facts of a description as :class:`deixis.reasoning.grounding.matching.problem.Problem` takes them (m facts, k
+    tables).
+
+    ``edges`` are the description's edges that are compared: all but those of an object to itself.
+    """
+
+    edges: NDArray[np.int64]  # (m,)
+    ends: NDArray[np.int64]  # (m, 2)
+    kinds: NDArray[np.int64]  # (m,)
+    tables: NDArray[np.float32]  # (k, n2, n2), log-likelihood ratios, finite, 0 on the diagonal
+
+
+def fact_tables(
+    description: RelationGraph,
+    boxes: NDArray[np.float64],
+    models: RelationModels | None = None,
+    *,
+    saying: bool = True,
+    literal: float | None = None,
+    unary: Array | None = None,
+    absent: Array | None = None,
+) -> FactTables:
+    """The evidence of every fact for every ordered pair of n2 boxes (n2, 2, d).
+
+    ``saying`` takes into account which pairs people speak of; without it only the words count. ``literal`` is the share
+    of facts that are meant literally; where it is None, it is judged from the description by the shipped models, with
+    what is known of things by themselves (``unary``, shape (n1, n2)) and of their absence (``absent``, (n1,)), both as
+    in :class:`deixis.reasoning.grounding.matching.problem.Problem`. Raises GraphError for boxes that are none,
+    UnknownTermError for a word that has no model, SettingError for a weight or a share beyond 0 to 1.
+    """
+    if literal is not None and not 0 <= literal <= 1:
+        raise SettingError(f"the share of facts that are meant literally lies between 0 and 1, not at {literal:g}")
+    edges = np.flatnonzero(description.subjects != description.objects).astype(np.int64)
+    keys = _statements(description, edges)
+    distinct = sorted(set(keys))
+    places = {key: place for place, key in enumerate(distinct)}
+    kinds = np.array([places[key] for key in keys], dtype=np.int64)
+    ends = _ends(description, edges)
+    order = _by_place(boxes)
+    names = box_relations(np.asarray(boxes, dtype=np.float64), description.vocabulary).names[np.ix_(order, order)]
+    pairs = pair_geometry(boxes[order])
+    said = _Said(pairs, names, models or shipped_models(), description.vocabulary, saying, distinct)
+    if literal is None:
+        usual = _Said(pairs, names, shipped_models(), description.vocabulary, saying, distinct) if models else said
+        shape = len(description.nodes), len(boxes)
+        alone = np.zeros(shape) if unary is None else np.ascontiguousarray(unary[:, order])
+        away = np.full(shape[0], AWAY) if absent is None else absent
+        graded, exact = (Problem(ends, kinds, usual.tables(share), alone, away) for share in (0.0, LITERAL))
+        literal = literal_share(graded, exact, np.argsort(np.array(description.nodes, dtype=str)))
+    return FactTables(edges, ends, kinds, said.tables(literal, np.argsort(order)))
+
+
+def _statements(description: RelationGraph, edges: NDArray[np.int64]) -> list[tuple[int, bool, float]]:
+    """What each fact says: its relations, whether it is stated or denied, and its weight."""
+    columns = (description.relation_sets, description.affirmed, description.net_weights)
+    return list(zip(*(column[edges].tolist() for column in columns), strict=True))
+
+
+def _by_place(boxes: NDArray[np.float64]) -> NDArray[np.int64]:
+    """The boxes in the order of their coordinates."""
+    return np.lexsort(np.reshape(boxes, (len(boxes), -1)).T[::-1]) if len(boxes) else np.zeros(0, dtype=np.int64)
+
+
+class _Said:
+    """What k different facts (relations, sign, weight) say of the pairs of one scene, to either speaker.
+
+    Kept as likelihood ratios, not as their logarithms: speakers mix and hedges weaken by sums of them.
+    """
+
+    def __init__(
+        self,
+        pairs: PairGeometry,
+        names: NDArray[np.integer],
+        models: RelationModels,
+        vocabulary: Relations,
+        saying: bool,
+        distinct: Sequence[tuple[int, bool, float]],
+    ) -> None:
+        self.names = np.where(names < 0, len(vocabulary), names).astype(np.intp)
+        self.models, self.vocabulary = models, vocabulary
+        self.degrees = WordDegrees(pairs, models)
+        self.spoken = saying_degree(pairs, models).astype(np.float32) if saying else np.float32(1.0)
+        self.spoken_by_chance = models[SAYING].chance if saying else 1.0
+        self.said = [(vocabulary.members(mask), positive, weight) for mask, positive, weight in distinct]
+        self.graded = [self._graded(relations, positive) for relations, positive, _ in self.said]
+        self.literal = [self._literal(relations, positive) for relations, positive, _ in self.said]
+
+    def tables(self, share: float, order: NDArray[np.int64] | None = None) -> NDArray[np.float32]:
+        """The evidence where ``share`` of facts is meant literally, shape (k, n2, n2), 0 on the diagonals.
+
+        ``order`` (n2,) lists the things as they shall stand.
+        """
+        n = len(self.names)
+        tables, said = np.empty((len(self.said), n, n), dtype=np.float32), np.empty((n, n), dtype=np.float32)
+        moved = None if order is None else order[:, None] * n + order
+        for table, (_, _, weight), graded, literal in zip(tables, self.said, self.graded, self.literal, strict=True):
+            offset = (weight * share * literal + (1 - weight)).astype(np.float32)
+            np.take(offset, self.names, out=said, mode="clip")
+            said += np.multiply(graded, np.float32(weight * (1 - share)), out=table)
+            np.log(said, out=said)
+            np.fill_diagonal(said, 0.0)
+            if moved is None:
+                table[:] = said
+            else:
+                np.take(said, moved, out=table, mode="clip")
+        return tables
+
+    def _graded(self, relations: tuple[Relation, ...], positive: bool) -> NDArray[np.float32]:
+        """By pair, shape (n2, n2)."""
+        outliers = float(np.mean([self.models.of(relation).outliers for relation in relations]))
+        chances = np.array([self.models.of(relation).chance for relation in relations])
+        fitting = [self.degrees.of(relation) for relation in relations]
+        if not positive:
+            holds = [np.append(self.vocabulary.degrees[relation.index] > 0, False) for relation in relations]
+            chances = np.maximum(chances, [LITERAL_CHANCE * names.sum() for names in holds])
+            fitting = [np.maximum(degree, names[self.names]) for degree, names in zip(fitting, holds, strict=True)]
+        chance = float(combined(chances, positive)) * self.spoken_by_chance
+        by_chance = outliers + (1 - outliers) * chance
+        degrees = combined(fitting, positive)
+        ratio: NDArray[np.float32] = degrees.astype(np.float32)
+        ratio *= self.spoken
+        ratio *= np.float32((1 - outliers) / by_chance)
+        ratio += np.float32(outliers / by_chance)
+        return ratio
+
+    def _literal(self, relations: tuple[Relation, ...], positive: bool) -> Array:
+        """By the exact name of the pair, shape (relations + 1,): the last one of no name, -1."""
+        names = np.append(np.arange(len(self.vocabulary)), -1)
+        degree = literal_degree(relations, positive, names, self.vocabulary, IMPLIED)
+        chance = min(LITERAL_CHANCE * len(relations), 1.0)
+        return np.exp(log_likelihood_ratio(degree, OUTLIERS, chance if positive else 1 - chance))
+
+
+def literal_degree(
+    relations: tuple[Relation, ...],
+    positive: bool,
+    names: NDArray[np.integer],
+    vocabulary: Relations,
+    implied: float = 0.5,
+) -> Array:
+    """By the exact name that each pair bears (-1: none), shape (n2, n2): 1, ``implied`` by it, or 0."""
+    best = vocabulary.degrees[[relation.index for relation in relations]].max(axis=0)
+    degree = np.where((best > 0) & (best < 1), implied, best) if positive else (best == 0).astype(np.float64)
+    result: Array = np.where(names >= 0, degree[names], 0.0)
+    return result
+
+
+def combined(degrees: Sequence[Array] | Array, positive: bool) -> Array:
+    """The degree of a choice between words (axis 0), or of the denial of all of them.
+
+    >>> combined(np.array([0.8, 0.2]), True).item(), round(combined(np.array([0.8, 0.5]), False).item(), 3)
+    (0.5, 0.1)
+    """
+    if positive:
+        return np.asarray(sum(degrees[1:], start=degrees[0]) / len(degrees))
+    return np.asarray(prod([1 - degree for degree in degrees]))
+
+
+def hedged(evidence: Array, weight: float) -> Array:
+    """The evidence of a fact that holds with probability ``weight`` and otherwise says nothing.
+
+    >>> hedged(np.array([3.0, -3.0]), 1.0).tolist(), hedged(np.array([3.0, -3.0]), 0.8).round(2).tolist()
+    ([3.0, -3.0], [2.79, -1.43])
+
+    Raises SettingError for a weight that is not above 0 and at most 1.
+    """
+    if not 0 < weight <= 1:
+        raise SettingError(f"a fact weighs above 0 and at most 1, not {weight:g}")
+    if weight == 1:
+        return evidence
+    result: Array = np.logaddexp(evidence + np.log(weight), np.log1p(-weight))
+    return result
+
+
+def crisp_tables(description: RelationGraph, names: NDArray[np.int16]) -> FactTables:
+    """The crisp reading as the special case: 1, 0.5 or 0 by the pair's exact name, times the weight.
+
+    ``names`` (n2, n2): relation indices, -1 on the diagonal, as
+    :attr:`deixis.reasoning.grounding.evidence.evidence.Evidence.names` has.
+    """
+    vocabulary = description.vocabulary
+    edges = np.flatnonzero(description.subjects != description.objects)
+    tables = np.zeros((len(edges), *names.shape), dtype=np.float32)
+    for row, edge in enumerate(edges.tolist()):
+        relations = vocabulary.members(int(description.relation_sets[edge]))
+        degree = literal_degree(relations, bool(description.affirmed[edge]), names, vocabulary)
+        tables[row] = degree * description.affirmed_weights[edge]
+    kinds = np.arange(len(edges), dtype=np.int64)
+    return FactTables(edges.astype(np.int64), _ends(description, edges), kinds, tables)
+
+
+def _ends(description: RelationGraph, edges: NDArray[np.intp]) -> NDArray[np.int64]:
+    return np.stack([description.subjects[edges], description.objects[edges]], axis=1).astype(np.int64)

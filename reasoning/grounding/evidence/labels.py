@@ -1,0 +1,157 @@
+"""Labels: which objects of a description the labels of perceived things name.
+
+A label names the object that bears it as its name (``wine_glass`` names ``wine_glass_1``), else every object of a kind
+that the label stands for. A narrower label names the broader objects, too: a dinner fork is a fork. But who is called
+by name comes first: where a thing is called plain fork, the dinner fork beside it is not the one fork of a script, and
+where a script has a dinner fork, what is called so is no other fork of it. Only what names leave over is named so, on
+both sides: of two dinner forks, one can be the fork. What all that weighs:
+:func:`deixis.reasoning.grounding.evidence.unary.label_ratios`.
+"""
+
+from __future__ import annotations
+
+import unicodedata
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.ontology.graph import RelationGraph
+from deixis.ontology.kinds import Kind, Kinds, plain_name
+from deixis.ontology.triples import category_iri
+
+
+def spare_rows(pairs: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Which rows some largest matching leaves over, shape (n,), of the ``pairs`` that may be matched, shape (n, m).
+
+    From one largest matching, all others are reached by alternating paths from what it leaves over (Dulmage and
+    Mendelsohn 1958).
+
+    >>> spare_rows(np.array([[1, 0], [1, 0], [0, 1], [0, 0]], bool)).tolist()
+    [True, True, False, True]
+    """
+    if not pairs.any():
+        return np.ones(len(pairs), dtype=bool)
+    from scipy.sparse import csr_array
+    from scipy.sparse.csgraph import maximum_bipartite_matching
+
+    partner = maximum_bipartite_matching(csr_array(pairs), perm_type="column")
+    spare: NDArray[np.bool_] = partner < 0
+    while True:
+        wanted: NDArray[np.bool_] = np.any(pairs[spare], axis=0)
+        more = spare | (wanted[partner] & (partner >= 0))
+        if (more == spare).all():
+            return spare
+        spare = more
+
+
+@dataclass(frozen=True, slots=True)
+class Label:
+    """A name that perception gives a thing, right with probability ``confidence`` (0 to 1; 1 is certain)."""
+
+    text: str
+    confidence: float = 1.0
+
+
+@dataclass(frozen=True, eq=False)
+class Naming:
+    """Which of n1 objects the labels of n2 things name, shape (n1, n2).
+
+    Of those that are ``named``, an object is ``fitted`` where whatever the label says is such an object: called by its
+    name, or of its kind or a narrower one. A broader label names objects (cutlery: the fork) that it does not fit.
+    """
+
+    named: NDArray[np.bool_]
+    fitted: NDArray[np.bool_]
+
+
+def naming(description: RelationGraph, labels: Sequence[Label | None], kinds: Kinds) -> Naming:
+    """What the labels of all things of a scene name, one label (or None) a thing."""
+    said = [label.text if label is not None and label.confidence > 0 else None for label in labels]
+    nothing = np.zeros(len(description.nodes), dtype=bool)
+    texts = {
+        text: _columns(description, text, kinds) if text is not None else (nothing, nothing)
+        for text in dict.fromkeys(said)
+    }
+    columns = [texts[text] for text in said]
+    shape = (len(columns), len(nothing))
+    named = np.array([column[0] for column in columns], dtype=bool).reshape(shape).T
+    fitting = np.array([column[1] for column in columns], dtype=bool).reshape(shape).T
+    sureness = np.array([label.confidence if label is not None else 0.0 for label in labels])
+    named = named | _left_over(named & fitting, fitting & ~named, sureness)
+    return Naming(named, named & fitting)
+
+
+def _left_over(
+    by_name: NDArray[np.bool_], narrower: NDArray[np.bool_], sureness: NDArray[np.float64]
+) -> NDArray[np.bool_]:
+    """Of the objects that labels are narrower than, which they name (n1, n2): the spare objects, by the spare things.
+
+    Against a label count the names that are at least as sure.
+    """
+    found = np.zeros_like(narrower)
+    for level in np.unique(sureness[narrower.any(axis=0)]):
+        claims, at_level = by_name & (sureness >= level), sureness == level
+        spare = spare_rows(claims)[:, None] & spare_rows(claims.T)[None, :]
+        found[:, at_level] = (narrower & spare)[:, at_level]
+    return found
+
+
+def _columns(description: RelationGraph, label: str, kinds: Kinds) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """Which objects a label by itself names, by name or as the broader word; and which it fits; each of shape (n1,)."""
+    called, kind = objects_called(description, label), kinds.of_word(label)
+    fitting = called | _fitting(description, label, kinds)
+    if called.any() or kind is None:
+        return called, fitting
+    return np.array([_is_a(iri, kind, kinds) for iri in _kinds(description)], dtype=bool), fitting
+
+
+def _fitting(description: RelationGraph, label: str, kinds: Kinds) -> NDArray[np.bool_]:
+    """Which objects a thing can be that is what a label says, its number aside, shape (n1,).
+
+    A number tells things of one name apart, so that ``fork_2`` is a ``fork``, but no ``fork_1``.
+    """
+    bare, kind = plain_name(label), kinds.of_word(plain_name(label))
+    found = []
+    for node, iri in zip(description.nodes, _kinds(description), strict=True):
+        if _plain(plain_name(node)) == _plain(bare):
+            found.append(bare == label or plain_name(node) == node)
+        else:
+            found.append(kind is not None and iri is not None and kinds.is_a(kind, kinds[iri]))
+    return np.array(found, dtype=bool)
+
+
+def objects_called(description: RelationGraph, name: str) -> NDArray[np.bool_]:
+    """Which objects bear a name, or a number of it: ``wine_glass`` calls ``wine_glass_1`` and ``wine_glass_2``."""
+    plain = _plain(name)
+    same = np.array([_plain(node) == plain for node in description.nodes], dtype=bool)
+    if same.any():
+        return same
+    return np.array([_plain(plain_name(node)) == plain for node in description.nodes], dtype=bool)
+
+
+def category_of(name: str) -> str:
+    """The class of things that bear a name, with whatever number: the category that is learned where it is no kind's.
+
+    >>> category_of("fish_knife_2") == category_of("Fish knife")
+    True
+    """
+    return category_iri(_plain(plain_name(name)).replace(" ", "_"))
+
+
+def classes(description: RelationGraph) -> tuple[str, ...]:
+    """The class of each object of a description, an IRI: its kind, else the category of its name."""
+    return tuple(kind or category_of(node) for kind, node in zip(_kinds(description), description.nodes, strict=True))
+
+
+def _kinds(description: RelationGraph) -> tuple[str | None, ...]:
+    return description.kinds or (None,) * len(description.nodes)
+
+
+def _is_a(iri: str | None, kind: Kind, kinds: Kinds) -> bool:
+    return iri is not None and kinds.is_a(kinds[iri], kind)
+
+
+def _plain(name: str) -> str:
+    return " ".join(unicodedata.normalize("NFC", name).casefold().replace("_", " ").split())

@@ -1,0 +1,149 @@
+"""A pair of boxes as a word looks at it: features in the word's own frame.
+
+*Left* looks along -x, *top left* along both -x and y; what is found is named the same for all, so that words that
+mirror each other share a model, and an inverse looks at the exchanged pair and sees the same.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from functools import reduce
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.reasoning.geometry.pairs import PairGeometry
+
+Array = NDArray[np.float64]
+View = Mapping[str, Array]
+
+HEADINGS = {
+    "left": (-1, 0),
+    "right": (1, 0),
+    "top": (0, 1),
+    "bottom": (0, -1),
+    "top_left": (-1, 1),
+    "top_right": (1, 1),
+    "bottom_left": (-1, -1),
+    "bottom_right": (1, -1),
+}
+
+NEARBY = 0.5
+"""Offset below which a direction counts for less and less: boxes with one centre lie in no direction (90 degrees)."""
+
+
+def view(pairs: PairGeometry, word: str) -> View:
+    """The features of every ordered pair for a word of the ten, or for ``saying``; arrays of shape (n, n).
+
+    Of a direction: ``deviation`` (radians from where the word points), ``clear`` (how far the near edges are apart),
+    ``trail`` and ``lead`` (which is less, which more far along: the starts or the ends of the boxes), ``forward`` and
+    ``lateral`` (offsets along and across), ``abreast`` (share of the smaller extent across that the
+    other covers), ``gap``, ``alike`` (difference of sizes). Of support: see :func:`_support`. Of saying: ``crowd`` and
+    ``figure``.
+    """
+    if word == "saying":
+        return {"crowd": pairs.crowd, "figure": pairs.smaller}
+    if word == "on":
+        return _support(pairs)
+    if word == "under":
+        return {name: feature.T for name, feature in _support(pairs).items()}
+    return _direction(pairs, HEADINGS[word])
+
+
+def _direction(pairs: PairGeometry, heading: tuple[int, int]) -> View:
+    axes = [axis for axis in (0, 1) if heading[axis]]
+    to = np.array(heading) / np.hypot(*heading)
+    forward = pairs.offset[:, :, 0] * to[0] + pairs.offset[:, :, 1] * to[1]
+
+    def least(feature: Callable[[PairGeometry, int, int], Array]) -> Array:
+        return reduce(np.minimum, (feature(pairs, axis, heading[axis]) for axis in axes))
+
+    def deviation() -> Array:
+        result: Array = np.arccos(np.clip(forward / np.maximum(pairs.distance, NEARBY), -1.0, 1.0))
+        return result
+
+    def lateral() -> Array:
+        off = np.abs(pairs.offset[:, :, 1] * to[0] - pairs.offset[:, :, 0] * to[1])
+        result: Array = off / (1 + off)
+        return result
+
+    def abreast() -> Array:
+        covers = [pairs.inside[:, :, axis] for axis in ((0, 1) if len(axes) == 2 else (1 - axes[0],))]
+        return reduce(np.maximum, [share for one in covers for share in (one, one.T)])
+
+    return _Features(
+        {
+            "deviation": deviation,
+            "clear": lambda: least(_clear),
+            "trail": lambda: least(_trail),
+            "lead": lambda: least(_lead),
+            "forward": lambda: forward / (1 + np.abs(forward)),
+            "lateral": lateral,
+            "abreast": abreast,
+            "gap": lambda: pairs.gap,
+            "alike": lambda: np.abs(pairs.smaller),
+        }
+    )
+
+
+class _Features(Mapping[str, Array]):
+    """Features that are worked out when they are looked at; most models look at few of them."""
+
+    def __init__(self, features: Mapping[str, Callable[[], Array]]) -> None:
+        self._features = features
+
+    def __getitem__(self, name: str) -> Array:
+        return self._features[name]()
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._features
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._features)
+
+    def __len__(self) -> int:
+        return len(self._features)
+
+
+def _clear(pairs: PairGeometry, axis: int, sign: int) -> Array:
+    """Near edges along one axis."""
+    return _along(pairs.edges[0, :, :, axis], sign)
+
+
+def _trail(pairs: PairGeometry, axis: int, sign: int) -> Array:
+    """The lesser of the offsets of starts and ends."""
+    return np.minimum(_along(pairs.edges[1, :, :, axis], sign), _along(pairs.edges[2, :, :, axis], sign))
+
+
+def _lead(pairs: PairGeometry, axis: int, sign: int) -> Array:
+    """The greater of the two."""
+    return np.maximum(_along(pairs.edges[1, :, :, axis], sign), _along(pairs.edges[2, :, :, axis], sign))
+
+
+def _along(distances: Array, sign: int) -> Array:
+    return distances.T if sign < 0 else distances
+
+
+def _support(pairs: PairGeometry) -> View:
+    """How the subject lies on the object.
+
+    ``across`` and ``along``: shares of its extents on x and y within the object's; ``bears`` and
+    ``spans``: shares of the object's within its own; ``foot`` and, with heights, ``rise``: see the geometry; ``rest``:
+    its lower edge less the object's upper one; ``upper`` and ``lower``: less the edge of the same side;
+    ``level``: offset on y; ``gap``.
+    """
+    found = {
+        "across": pairs.inside[:, :, 0],
+        "along": pairs.inside[:, :, 1],
+        "bears": pairs.inside[:, :, 0].T,
+        "foot": pairs.foot,
+        "rest": pairs.edges[0, :, :, 1],
+        "upper": pairs.edges[1, :, :, 1],
+        "lower": pairs.edges[2, :, :, 1],
+        "spans": pairs.inside[:, :, 1].T,
+        "level": pairs.offset[:, :, 1] / (1 + np.abs(pairs.offset[:, :, 1])),
+        "gap": pairs.gap,
+    }
+    if pairs.rise is not None:
+        found["rise"] = pairs.rise
+    return found

@@ -1,0 +1,189 @@
+"""What is known of the things themselves, as log-likelihood ratios against chance: labels, sizes and proportions.
+
+Each source of evidence weighs as stated in :class:`UnaryWeights`; all are added up. Densities are mixed with
+``OUTLIERS`` of chance, so that a size never rules a thing out; only a certain label does (-inf).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.ontology.graph import RelationGraph
+from deixis.ontology.kinds import Kinds
+from deixis.ontology.models.sizes import SizeModel
+from deixis.ontology.sizes import Sizes
+from deixis.ontology.vocabulary import DX
+from deixis.reasoning.errors import SettingError
+from deixis.reasoning.geometry.pairs import pair_geometry
+from deixis.reasoning.grounding.evidence.labels import Label, naming
+from deixis.reasoning.grounding.evidence.sizes import (
+    Look,
+    beside_each_other,
+    from_above,
+    in_image_from_above,
+    in_image_from_aside,
+    usual_size,
+)
+
+Array = NDArray[np.float64]
+
+OUTLIERS = 0.05
+"""Share of things whose size says nothing of their kind."""
+
+HIGHER, MEASURED = 2.0, 0.02
+"""A thing is plainly too high for a kind where it is so many times as high as the highest ones, and so many metres."""
+
+
+@dataclass(frozen=True, slots=True)
+class UnaryWeights:
+    """By how much labels, sizes and colours are multiplied; 1 takes them at their word, 0 leaves them out."""
+
+    labels: float = 1.0
+    sizes: float = 1.0
+    colours: float = 1.0
+
+    def __post_init__(self) -> None:
+        if not all(0 <= weight < np.inf for weight in (self.labels, self.sizes, self.colours)):
+            raise SettingError("a weight of evidence is finite and at least 0")
+
+
+def log_sizes(boxes: NDArray[np.float64], relative: bool) -> Array:
+    """Natural logarithms of length and aspect of n boxes, shape (n, 2); of nothing's length, a millionth is taken.
+
+    The aspect is the shorter by the longer side. ``relative``, as for an image: lengths are in units of their median,
+    and the aspect is height by width.
+    """
+    extents = pair_geometry(boxes).boxes[:, 1, :2] - boxes[:, 0, :2]
+    length = extents.max(axis=1)
+    scale = float(np.median(length)) if relative and len(length) else 1.0
+    sides = np.log(np.maximum(extents, 1e-6 * np.where(length > 0, length, 1.0)[:, None]))
+    aspect = sides[:, 1] - sides[:, 0]
+    lengths = np.log(np.maximum(length / (scale or 1.0), 1e-6))
+    logs: Array = np.stack([lengths, aspect if relative else -np.abs(aspect)], axis=1)
+    return logs
+
+
+def size_evidence(
+    kinds: Sequence[str],
+    boxes: NDArray[np.float64],
+    sizes: Sizes,
+    learned: Mapping[str, SizeModel] | None = None,
+    metric: bool = True,
+) -> Array:
+    """What sizes say of n1 objects of some kinds (class IRIs) being each of n2 boxes, shape (n1, n2), finite.
+
+    A learned model takes the place of the usual size; a kind of which no size is known says nothing. Where units are
+    pixels (not ``metric``), sizes in metres say how large the objects are beside each other, seen from above or from
+    aside, whichever fits the whole scene. Chance is the scene itself: a thing weighs as much as it fits the kind better
+    than the things around do, log n2 at the most, and nothing where all are alike. Heights say only which things are
+    :func:`too_high`.
+    """
+    known = _known(kinds, sizes, learned)
+    if not known or not len(boxes):
+        return np.zeros((len(kinds), len(boxes)))
+    if metric:
+        looks = {kind: from_above(model, _reach(kind, sizes, learned)) for kind, model in known.items()}
+        return np.where(too_high(kinds, boxes, sizes, learned), np.log(OUTLIERS), _ratios(kinds, boxes, looks))
+    return _whichever_view([_ratios(kinds, boxes, looks) for looks in looks_in_image(kinds, sizes, learned)])
+
+
+def too_high(
+    kinds: Sequence[str],
+    boxes: NDArray[np.float64],
+    sizes: Sizes,
+    learned: Mapping[str, SizeModel] | None = None,
+) -> NDArray[np.bool_]:
+    """Which of n2 boxes in metres are plainly higher than things of n1 kinds (class IRIs) usually are, (n1, n2).
+
+    Lower than usual is whatever something else hides in part. Of flat boxes no height is known, and of kinds whose size
+    was learned none is usual.
+    """
+    if boxes.shape[2] < 3:
+        return np.zeros((len(kinds), len(boxes)), dtype=bool)
+    usual = [None if kind in (learned or {}) else sizes.of(kind) for kind in kinds]
+    most = [
+        np.inf if size is None or size.stated_of == DX.THING else HIGHER * size.height.greatest + MEASURED
+        for size in usual
+    ]
+    result: NDArray[np.bool_] = boxes[None, :, 1, 2] - boxes[None, :, 0, 2] > np.array(most)[:, None]
+    return result
+
+
+def looks_in_image(
+    kinds: Sequence[str], sizes: Sizes, learned: Mapping[str, SizeModel] | None = None
+) -> tuple[dict[str, Look], dict[str, Look]]:
+    """How the known ones of some objects' kinds look beside each other: in an image from above, and from aside."""
+    known = _known(kinds, sizes, learned)
+    above = {kind: in_image_from_above(model) for kind, model in known.items()}
+    aside = {kind: in_image_from_aside(kind, model, sizes) for kind, model in known.items()}
+    return beside_each_other(above, kinds), beside_each_other(aside, kinds)
+
+
+def _known(kinds: Sequence[str], sizes: Sizes, learned: Mapping[str, SizeModel] | None) -> dict[str, SizeModel]:
+    different = dict.fromkeys(kinds)
+    return {kind: model for kind in different if (model := (learned or {}).get(kind) or usual_size(kind, sizes))}
+
+
+def _reach(kind: str, sizes: Sizes, learned: Mapping[str, SizeModel] | None) -> float:
+    """How far a handle stands out that the kind's length leaves out; a learned length has it."""
+    reach = None if kind in (learned or {}) else sizes.of(kind).reach
+    return 0.0 if reach is None else reach.typical
+
+
+def _whichever_view(views: Sequence[Array]) -> Array:
+    """The mixture of what is said from each view, each as likely as the whole scene fits it, by its best assignment."""
+    from scipy.optimize import linear_sum_assignment
+
+    fits = np.array([view[linear_sum_assignment(view, maximize=True)].sum() for view in views])
+    shares = fits - np.logaddexp.reduce(fits)
+    mixed: Array = np.logaddexp.reduce([share + view for share, view in zip(shares, views, strict=True)], axis=0)
+    return mixed
+
+
+def _ratios(kinds: Sequence[str], boxes: NDArray[np.float64], looks: Mapping[str, Look]) -> Array:
+    """What looks say of n1 objects being each of n2 boxes, shape (n1, n2), nothing of a kind that has none."""
+    measured = {relative: log_sizes(boxes, relative) for relative in {look.relative for look in looks.values()}}
+    ratios = {kind: _density_ratio(measured[look.relative], look) for kind, look in looks.items()}
+    silent = np.zeros(len(boxes))
+    return np.array([ratios.get(kind, silent) for kind in kinds])
+
+
+def _density_ratio(measured: Array, look: Look) -> Array:
+    """log of (1 - outliers) * p(size | kind) / p(size) + outliers, for n boxes (n, 2), log n at the most.
+
+    p(size) is the mean of normal kernels at the things of the scene (Parzen 1962), their width by Scott's rule (1992),
+    but never narrower than the kind's spread.
+    """
+    n = len(measured)
+    fits = np.logaddexp.reduce(np.log(look.shares) + _log_kernel(measured, look.centres, look.spread), axis=1)
+    width = np.maximum(look.spread, measured.std(axis=0) * n ** (-1 / 6))
+    chance = np.logaddexp.reduce(_log_kernel(measured, measured, width), axis=1) - np.log(n)
+    ratio = np.minimum(fits - chance, np.log(n))
+    result: Array = np.logaddexp(np.log1p(-OUTLIERS) + ratio, np.log(OUTLIERS))
+    return result
+
+
+def _log_kernel(at: Array, centres: Array, spread: Array) -> Array:
+    """Log density of n places (n, 2) under k normal kernels (k, 2), up to a constant, shape (n, k)."""
+    apart = (at[:, None] - centres[None]) / spread
+    result: Array = -0.5 * (apart**2).sum(axis=2) - np.log(spread).sum()
+    return result
+
+
+def label_ratios(description: RelationGraph, labels: Sequence[Label | None], kinds: Kinds) -> Array:
+    """What labels say of n1 objects being each of n2 things, shape (n1, n2); -inf where a certain one rules it out.
+
+    A label of confidence c names k of n1 objects: it is right with probability c, else drawn from all objects, so that
+    its ratio is c n1 / k + 1 - c for those, and 1 - c for the others.
+    """
+    n1 = len(description.nodes)
+    named = naming(description, labels, kinds).named
+    confidence = np.array([label.confidence if label is not None else 0.0 for label in labels])
+    ratios = 1 - confidence + confidence * named * n1 / np.maximum(named.sum(axis=0), 1)
+    with np.errstate(divide="ignore"):
+        logs: Array = np.log(ratios)
+    return logs

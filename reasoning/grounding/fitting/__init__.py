@@ -1,0 +1,1 @@
+"""Fits graded models of relation words and sizes to examples."""

@@ -1,0 +1,163 @@
+"""The likelihood of graded models: examples of words said of pairs, and its gradient by the parameters."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.errors import GraphError
+from deixis.ontology.graph import RelationGraph
+from deixis.ontology.models.relations import FAMILIES, SAYING, RelationModel
+from deixis.reasoning.errors import SettingError
+from deixis.reasoning.geometry.pairs import PairGeometry, pair_geometry
+from deixis.reasoning.grounding.evidence.pair_features import View, view
+from deixis.reasoning.grounding.fitting.parameters import LARGEST_STEP, Layout
+
+
+@dataclass(frozen=True, eq=False)
+class SaidPairs:
+    """One scene whose words and boxes are both known: the word ``words[i]`` was said of the pair ``ends[i]``.
+
+    ``weights`` count: 1 for what somebody annotated, less for what a grounding takes to be so.
+    """
+
+    pairs: PairGeometry
+    words: tuple[str, ...]  # (m,) of the ten words
+    ends: NDArray[np.int64]  # (m, 2): subject, object
+    weights: NDArray[np.float64]  # (m,), at least 0
+
+
+def said_pairs(
+    description: RelationGraph,
+    boxes: NDArray[np.float64],
+    things: Sequence[int | None],
+    confidence: Sequence[float] | Mapping[int, float] | None = None,
+) -> SaidPairs:
+    """The pairs that a grounded description teaches.
+
+    ``boxes`` (n2, 2, d); ``things[i]`` is the box of the description's i-th object, or None where it has none, and
+    ``confidence`` how sure that is (0 to 1; 1 where none is given), so that a posterior of grounding can teach: a fact
+    counts with its own weight times the confidences of both ends. Choices, denials and optional facts teach nothing.
+    Raises GraphError for a box that is not there, SettingError for a confidence beyond 0 to 1.
+    """
+    pairs = pair_geometry(boxes)
+    if len(things) != len(description.nodes):
+        raise GraphError(f"there are {len(description.nodes)} objects, and boxes are named for {len(things)}")
+    outside = [thing for thing in things if thing is not None and not 0 <= thing < len(pairs)]
+    if outside:
+        raise GraphError(f"there is no box {outside[0]}; the scene has {len(pairs)}")
+    sure = [1.0 if confidence is None else float(confidence[i]) for i in range(len(things))]
+    if not all(0 <= value <= 1 for value in sure):
+        raise SettingError("a confidence lies between 0 and 1")
+    words, ends, weights = [], [], []
+    index = {name: i for i, name in enumerate(description.nodes)}
+    for fact in description.facts():
+        subject, object = index[fact.subject], index[fact.object]
+        first, second = things[subject], things[object]
+        said = fact.plain and not fact.optional  # what is rarely so, not plain either, shows what is not meant
+        if said and first is not None and second is not None and first != second:
+            words.append(fact.relations[0].word)
+            ends.append((first, second))
+            weights.append(fact.weight * sure[subject] * sure[object])
+    return SaidPairs(pairs, tuple(words), np.array(ends, dtype=np.int64).reshape(-1, 2), np.array(weights))
+
+
+Array = NDArray[np.float64]
+
+
+class Likelihood:
+    """The log-likelihood of all scenes and its gradient by the values."""
+
+    def __init__(self, scenes: Sequence[SaidPairs], layout: Layout, word_contrast: float) -> None:
+        self.layout, self.word_contrast = layout, word_contrast
+        self.scenes = [_Designed(scene, layout, word_contrast > 0) for scene in scenes if len(scene.words)]
+
+    def __call__(self, values: Array) -> tuple[float, Array]:
+        total, gradient = 0.0, np.zeros_like(values)
+        for scene in self.scenes:
+            scores, slopes = {}, {}
+            for word, (design, columns, outliers) in scene.designs.items():
+                degree = (1 - outliers) * np.exp(np.minimum(design @ values[columns], LARGEST_STEP))
+                scores[word] = np.log(outliers + degree)
+                slopes[word] = degree / (outliers + degree)
+            found, pull = scene.contrast_pairs(scores)
+            if self.word_contrast > 0:
+                more, also = scene.contrast_words(scores)
+                found += self.word_contrast * more
+                pull = {word: pull[word] + self.word_contrast * also[word] for word in pull}
+            total += found
+            for word, (design, columns, _) in scene.designs.items():
+                gradient[columns] += np.einsum("p,pk->k", pull[word] * slopes[word], design)
+        return total, gradient
+
+
+class _Designed:
+    """One scene with the hat functions of every word that is needed, for all ordered pairs (p of them)."""
+
+    def __init__(self, scene: SaidPairs, layout: Layout, all_words: bool) -> None:
+        apart = ~np.eye(len(scene.pairs), dtype=bool)
+        saying = view(scene.pairs, SAYING)
+        known = {model.name for model in layout.models}
+        words = [word for word in FAMILIES if FAMILIES[word] in known] if all_words else dict.fromkeys(scene.words)
+        self.designs = {}
+        for word in words:
+            model = layout.model(FAMILIES[word])
+            parts = [_hats(model, view(scene.pairs, word), apart), _hats(layout.model(SAYING), saying, apart)]
+            columns = np.concatenate([layout.columns(model.name), layout.columns(SAYING)])
+            self.designs[word] = (np.concatenate(parts, axis=1), columns, model.outliers)
+        position = np.full(apart.shape, -1)
+        position[apart] = np.arange(apart.sum())
+        self.said = [
+            (word, int(position[a, b]), float(weight))
+            for word, (a, b), weight in zip(scene.words, scene.ends.tolist(), scene.weights.tolist(), strict=True)
+        ]
+
+    def contrast_pairs(self, scores: dict[str, Array]) -> tuple[float, dict[str, Array]]:
+        """Each word's pair among all pairs of the scene: log-likelihood, and its slope by the scores."""
+        total, pull = 0.0, {word: np.zeros_like(score) for word, score in scores.items()}
+        share = {word: _softmax(score) for word, score in scores.items()}
+        for word, pair, weight in self.said:
+            total += weight * float(np.log(share[word][pair]))
+            pull[word] -= weight * share[word]
+            pull[word][pair] += weight
+        return total, pull
+
+    def contrast_words(self, scores: dict[str, Array]) -> tuple[float, dict[str, Array]]:
+        """Each pair's word among all words: log-likelihood, and its slope by the scores."""
+        total, pull = 0.0, {word: np.zeros_like(score) for word, score in scores.items()}
+        words = list(scores)
+        share = np.stack([scores[word] for word in words])
+        share = np.exp(share - share.max(axis=0))
+        share /= share.sum(axis=0)
+        for word, pair, weight in self.said:
+            total += weight * float(np.log(share[words.index(word), pair]))
+            for other, part in zip(words, share[:, pair].tolist(), strict=True):
+                pull[other][pair] += weight * ((other == word) - part)
+        return total, pull
+
+
+def _hats(model: RelationModel, features: View, apart: NDArray[np.bool_]) -> Array:
+    """The weight of every knot of every term for every pair, shape (p, knots): linear interpolation."""
+    parts = []
+    for term in model.terms:
+        knots = np.array(term.knots)
+        if term.feature not in features:
+            parts.append(np.zeros((int(apart.sum()), len(knots))))
+            continue
+        at = np.clip(features[term.feature][apart], knots[0], knots[-1])
+        right = np.clip(np.searchsorted(knots, at, side="right"), 1, len(knots) - 1)
+        share = (at - knots[right - 1]) / (knots[right] - knots[right - 1])
+        hats = np.zeros((len(at), len(knots)))
+        rows = np.arange(len(at))
+        hats[rows, right - 1], hats[rows, right] = 1 - share, share
+        parts.append(hats)
+    return np.concatenate(parts, axis=1)
+
+
+def _softmax(scores: Array) -> Array:
+    shifted = np.exp(scores - scores.max())
+    result: Array = shifted / shifted.sum()
+    return result

@@ -1,0 +1,245 @@
+"""Who is who: a description aligned with a scene, and everything that qualifies the answer."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import replace
+from types import MappingProxyType
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.ontology.graph import Fact
+from deixis.reasoning.grounding.alternatives import WORTH_NAMING, alternatives, left_out_objects, left_out_things
+from deixis.reasoning.grounding.answer import (
+    FactOutcome,
+    Grounding,
+    Match,
+    Outcome,
+    Pivotal,
+    Standing,
+    is_decided,
+)
+from deixis.reasoning.grounding.engines import Alignment, Engine
+from deixis.reasoning.grounding.evidence.evidence import Evidence
+from deixis.reasoning.grounding.matching.problem import UNMATCHED
+from deixis.reasoning.grounding.sensitivity import MOST as MOST_DROPPED
+from deixis.reasoning.grounding.sensitivity import Dropped, without_each
+from deixis.reasoning.grounding.symmetry import interchangeable
+
+DEFAULT_TIME_LIMIT = 10.0
+
+DROPPING = 0.1
+"""Share of the time limit for finding out what would change without each fact."""
+
+NO_TIME = "there was no time to find out what rests on which fact"
+
+NOT_ASKED = "whether it would be so without one of the facts was not looked for"
+
+
+def ground(
+    evidence: Evidence, engine: Engine, time_limit: float = DEFAULT_TIME_LIMIT, notes: tuple[str, ...] = ()
+) -> Grounding:
+    """Aligns, and says what the alignment rests on.
+
+    The evidence is first put in the order of its names, so that the answer does not depend on the order in which
+    objects and facts were stated or things perceived: where the evidence leaves several answers, names decide, and
+    the result says so (``interchangeable``, ``decided``).
+    """
+    started = time.perf_counter()
+    rows = np.array(sorted(range(len(evidence.description.nodes)), key=lambda i: evidence.description.nodes[i]), int)
+    columns = np.array(sorted(range(len(evidence.scene.nodes)), key=lambda i: evidence.scene.nodes[i]), int)
+    in_order, stated = _facts_in_order(evidence.reordered(rows, columns))
+    alignment = engine.align(in_order, started + (1 - DROPPING) * time_limit)
+    groups = _groups(in_order)
+    outcomes = _outcomes(in_order, alignment, stated)
+    matches = _matches(in_order, alignment, outcomes, groups)
+    names = evidence.description.nodes
+    posterior = alignment.posterior
+    pivotal = _pivotal(in_order, alignment, matches, time.perf_counter() + DROPPING * time_limit)
+    return Grounding(
+        engine=alignment.engine,
+        matches=MappingProxyType({name: matches[name] for name in names if name in matches}),
+        unmatched_objects=left_out_objects(in_order, alignment, names),
+        unmatched_perceived=left_out_things(in_order, alignment, evidence.scene.nodes),
+        interchangeable=groups,
+        graph_similarity=alignment.graph_similarity,
+        outcomes=outcomes,
+        proved_best=alignment.proved_best,
+        finished=alignment.finished,
+        gap=alignment.gap,
+        converged=alignment.converged,
+        notes=notes + _notes(evidence, alignment) + (_why_not_pivotal(in_order, alignment) if pivotal is None else ()),
+        pivotal=pivotal,
+        probabilities=Standing.NONE if posterior is None else (Standing.EXACT if posterior.exact else Standing.SAMPLED),
+        probability_error=0.0 if posterior is None else posterior.error,
+        seconds=time.perf_counter() - started,
+    )
+
+
+def _facts_in_order(evidence: Evidence) -> tuple[Evidence, NDArray[np.int64]]:
+    """The same evidence with its facts by what they say, and where each was stated (edges,).
+
+    Sums in another order could break a tie by rounding.
+    """
+    graph = evidence.description
+    keys = (graph.weights, graph.optional, graph.positive, graph.relation_sets, graph.objects, graph.subjects)
+    order = np.lexsort(keys)
+    description = replace(
+        graph,
+        subjects=graph.subjects[order],
+        objects=graph.objects[order],
+        relation_sets=graph.relation_sets[order],
+        positive=graph.positive[order],
+        optional=graph.optional[order],
+        weights=graph.weights[order],
+        sources=tuple(graph.sources[edge] for edge in order) if graph.sources else (),
+    )
+    return replace(evidence, description=description), order.astype(np.int64)
+
+
+def _groups(evidence: Evidence) -> tuple[tuple[str, ...], ...]:
+    return tuple(interchangeable(evidence.description, [row.tobytes() for row in evidence.unary]))
+
+
+def _outcomes(evidence: Evidence, alignment: Alignment, stated: NDArray[np.int64]) -> tuple[FactOutcome, ...]:
+    """What became of the facts that can be compared, in the order in which they were stated."""
+    degrees = evidence.degrees(alignment.assignment)
+    vocabulary = evidence.description.vocabulary
+    outcomes = []
+    for edge, degree in zip(evidence.facts, degrees, strict=True):
+        fact = evidence.description.fact(int(edge))
+        p = alignment.assignment[evidence.description.subjects[edge]]
+        q = alignment.assignment[evidence.description.objects[edge]]
+        if UNMATCHED in (p, q):
+            outcomes.append(FactOutcome(fact, Outcome.OPEN, 0.0, None, None))
+            continue
+        missed = Outcome.WAIVED if fact.optional else Outcome.VIOLATED
+        outcomes.append(
+            FactOutcome(
+                fact,
+                Outcome.SATISFIED if degree > 0 else missed,
+                float(degree),
+                (evidence.scene.nodes[p], evidence.scene.nodes[q]),
+                vocabulary.members(1 << int(evidence.names[p, q]))[0],
+            )
+        )
+    return tuple(outcomes[place] for place in np.argsort(stated[evidence.facts]).tolist())
+
+
+def _matches(
+    evidence: Evidence,
+    alignment: Alignment,
+    outcomes: tuple[FactOutcome, ...],
+    groups: tuple[tuple[str, ...], ...],
+) -> dict[str, Match]:
+    grouped = {name for group in groups for name in group}
+    said, held = dict.fromkeys(evidence.description.nodes, 0.0), dict.fromkeys(evidence.description.nodes, 0.0)
+    for entry in outcomes:
+        if entry.outcome in (Outcome.SATISFIED, Outcome.VIOLATED):
+            for name in (entry.fact.subject, entry.fact.object):
+                said[name] += entry.fact.affirmed_weight
+                held[name] += entry.fact.affirmed_weight * entry.degree
+    matches = {}
+    for i in np.flatnonzero(alignment.assignment != UNMATCHED):
+        name, p = evidence.description.nodes[i], int(alignment.assignment[i])
+        probability = None if alignment.posterior is None else float(alignment.posterior.marginals[i, p])
+        matches[name] = Match(
+            object=name,
+            perceived=evidence.scene.nodes[p],
+            score=held[name] / said[name] if said[name] else 1.0,
+            similarity=float(alignment.matrix[i, p]),
+            decided=_decided(evidence, alignment, int(i), name in grouped),
+            alternatives=alternatives(evidence, alignment, int(i), groups),
+            probability=probability,
+        )
+    return matches
+
+
+def _decided(evidence: Evidence, alignment: Alignment, i: int, grouped: bool) -> bool:
+    """Whether a match is probable enough; without probabilities, whether nothing else is as similar."""
+    if alignment.posterior is None:
+        similar = alignment.margins is not None and bool(alignment.margins[i] > 1e-9)
+        return bool(evidence.allowed[i].sum() == 1) or (similar and not grouped)
+    probability = alignment.posterior.marginals[i, alignment.assignment[i]]
+    return bool(is_decided(probability, alignment.posterior.error))
+
+
+def _pivotal(
+    evidence: Evidence, alignment: Alignment, matches: dict[str, Match], deadline: float
+) -> tuple[Pivotal, ...] | None:
+    """The facts without which something would be otherwise; None where there was no time to look at all.
+
+    None, too, where nothing was found as of another scene: the likeliest maps without a fact do not say whether it
+    would be so still.
+    """
+    if alignment.posterior is None or not alignment.proved_best or alignment.of_another:
+        return None
+    found, seen, probable = [], 0, alignment.posterior.exact and alignment.sides == 1
+    for dropped in without_each(evidence.problem, alignment.assignment, probable, deadline):
+        seen += 1
+        pivotal = _without(evidence, alignment, matches, dropped)
+        if pivotal.changes or pivotal.unsettled or pivotal.settled:
+            found.append(pivotal)
+    if seen < len(evidence.facts):
+        return None
+    return tuple(sorted(found, key=lambda pivotal: _place(pivotal.fact)))
+
+
+def _why_not_pivotal(evidence: Evidence, alignment: Alignment) -> tuple[str, ...]:
+    """What is to be said where a proved answer, with its probabilities, is without the facts that it rests on."""
+    if len(evidence.description.nodes) > MOST_DROPPED or alignment.posterior is None or not alignment.proved_best:
+        return ()
+    return (NOT_ASKED if alignment.of_another else NO_TIME,)
+
+
+def _place(fact: Fact) -> tuple[str, int, str]:
+    """Where a fact stands, for listing."""
+    return ("", 0, str(fact)) if fact.source is None else (fact.source.file, fact.source.line, str(fact))
+
+
+def _without(evidence: Evidence, alignment: Alignment, matches: dict[str, Match], dropped: Dropped) -> Pivotal:
+    nodes, things = evidence.description.nodes, evidence.scene.nodes
+    other = dropped.assignment != alignment.assignment
+    if not dropped.better:
+        other[:] = False
+    sure = is_decided(dropped.probability, 0.0)
+    decided = np.array([name in matches and matches[name].decided for name in nodes], dtype=bool)
+    known = ~np.isnan(dropped.probability) & ~other & (alignment.assignment != UNMATCHED)
+    targets = zip(nodes, dropped.assignment.tolist(), strict=True)
+    return Pivotal(
+        fact=evidence.description.fact(int(evidence.facts[dropped.fact])),
+        changes={
+            name: None if p == UNMATCHED else things[p] for (name, p), new in zip(targets, other, strict=True) if new
+        },
+        unsettled=_named(nodes, known & decided & ~sure),
+        settled=_named(nodes, known & ~decided & sure),
+    )
+
+
+def _named(nodes: tuple[str, ...], chosen: NDArray[np.bool_]) -> tuple[str, ...]:
+    return tuple(nodes[i] for i in np.flatnonzero(chosen))
+
+
+def _any_of_many(evidence: Evidence, alignment: Alignment) -> tuple[str, ...]:
+    """The objects that are matched to something, though no thing is probable enough to be worth naming."""
+    if alignment.posterior is None:
+        return ()
+    least = alignment.posterior.marginals.max(axis=1, initial=0.0) < WORTH_NAMING
+    return _named(evidence.description.nodes, least & (alignment.assignment != UNMATCHED))
+
+
+def _notes(evidence: Evidence, alignment: Alignment) -> tuple[str, ...]:
+    notes = list(alignment.notes)
+    nothing = alignment.matrix.size and not alignment.matrix.any()
+    if not alignment.converged and not nothing:
+        notes.append("the similarity did not converge; its figures are those of the last iteration")
+    if alignment.converged and nothing:
+        notes.append("the paper's similarity is zero: no exact name of the description is one of the scene's")
+    vague = _any_of_many(evidence, alignment)
+    if vague:
+        notes.append(f"any of many things is about as likely, and none of them likely, to be: {', '.join(vague)}")
+    hidden = [str(fact) for fact in evidence.description.facts() if not fact.plain]
+    if hidden:
+        notes.append("not seen by the similarity, being no single affirmed relation: " + "; ".join(hidden))
+    return tuple(notes)

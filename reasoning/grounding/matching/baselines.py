@@ -1,0 +1,126 @@
+"""Two node similarities from the literature: Blondel et al. (2004), and Heymans and Singh (2003).
+
+Both see graphs with weights: the description has an edge for every fact, the scene one for every pair that a fact's
+table says something for (the table over its largest entry; what speaks against a pair counts as nothing). Facts of
+several kinds are several such pairs of graphs, whose updates are added. Neither knows of unary terms but those that
+rule a match out. An iteration ends at a deadline (``time.perf_counter``) where there is one. As engines, with the
+Hungarian method: :class:`deixis.reasoning.grounding.map_engines.BaselineEngine`.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.reasoning.grounding.matching.problem import Problem
+
+Matrix = NDArray[np.float64]
+
+ITERATIONS = 100
+TOLERANCE = 1e-8
+
+
+@dataclass(frozen=True, eq=False)
+class NodeSimilarity:
+    """How alike every object and every thing are (n1, n2), and whether the iteration came to its end."""
+
+    matrix: Matrix
+    finished: bool
+
+
+def blondel_similarity(problem: Problem, deadline: float = math.inf) -> NodeSimilarity:
+    """Frobenius norm 1: the limit of the even iterates of S <- B S A' + B' S A from ones.
+
+    Blondel, Gajardo, Heymans, Senellart and Van Dooren, "A measure of similarity between graph vertices", SIAM Review
+    46 (2004); here summed over the kinds of facts.
+    """
+
+    def update(s: Matrix) -> Matrix:
+        total = np.zeros_like(s)
+        for a, b in _graphs(problem):
+            total += a @ s @ b.T + a.T @ s @ b
+        return total
+
+    return _iterate(lambda s: _normalised(update(_normalised(update(s)))), problem, deadline)
+
+
+def heymans_singh_similarity(problem: Problem, deadline: float = math.inf) -> NodeSimilarity:
+    """Frobenius norm 1: what neighbours have in common, less what sets them apart.
+
+    Heymans and Singh, "Deriving phylogenetic trees from the similarity analysis of metabolic pathways",
+    Bioinformatics 19 (2003): S <- (A1 + A2 + A3 + A4 - D1 - D2 - D3 - D4) / 4. A1 and A2 are the mean similarity of
+    the nodes that the two have edges from and to, A3 and A4 of those that neither has; D1 to D4 of those that one of
+    the two has and the other has not. A mean over no nodes is 0, but where neither of the two has any, A is the mean
+    of all. Summed over the kinds of facts, which the paper does not have.
+    """
+
+    def update(s: Matrix) -> Matrix:
+        total = np.zeros_like(s)
+        for a, b in _graphs(problem):
+            for one, two in ((a, b), (a.T, b.T)):
+                apart_one, apart_two = _complement(one), _complement(two)
+                total += _alike(one, s, two) + _alike(apart_one, s, apart_two)  # A2 and A4; turned round, A1 and A3
+                total -= _mean(one, s, apart_two) + _mean(apart_one, s, two)  # D2 and D4; turned round, D1 and D3
+        return total / 4
+
+    return _iterate(lambda s: _normalised(update(s)), problem, deadline)
+
+
+def _allowed(problem: Problem) -> NDArray[np.bool_]:
+    allowed: NDArray[np.bool_] = ~np.isneginf(problem.unary)
+    return allowed
+
+
+def _graphs(problem: Problem) -> Iterator[tuple[Matrix, Matrix]]:
+    """Of each kind of facts the adjacency of the description (n1, n1) and of the scene (n2, n2), 0 to 1."""
+    n1 = len(problem.absent)
+    for kind in np.unique(problem.kinds):
+        described = np.zeros((n1, n1))
+        np.add.at(described, tuple(problem.ends[problem.kinds == kind].T), 1.0)
+        seen = np.maximum(problem.tables[kind].astype(np.float64), 0.0)
+        np.fill_diagonal(seen, 0.0)
+        yield np.minimum(described, 1.0), seen / max(seen.max(initial=0.0), 1e-300)
+
+
+def _complement(graph: Matrix) -> Matrix:
+    other = 1.0 - graph
+    np.fill_diagonal(other, 0.0)
+    return other
+
+
+def _mean(one: Matrix, s: Matrix, two: Matrix) -> Matrix:
+    """The weighted mean of ``s`` over the neighbours of each node of either graph (n1, n2), 0 where one has none."""
+    weight = one.sum(axis=1)[:, None] * two.sum(axis=1)[None, :]
+    mean: Matrix = np.divide(one @ s @ two.T, weight, out=np.zeros_like(s), where=weight > 0)
+    return mean
+
+
+def _alike(one: Matrix, s: Matrix, two: Matrix) -> Matrix:
+    """The same; two nodes that have no neighbours are alike in that, and get the mean of all."""
+    neither = (one.sum(axis=1)[:, None] == 0) & (two.sum(axis=1)[None, :] == 0)
+    alike: Matrix = np.where(neither, s.mean(), _mean(one, s, two))
+    return alike
+
+
+def _iterate(step: Callable[[Matrix], Matrix], problem: Problem, deadline: float) -> NodeSimilarity:
+    """Repeats a step from a matrix of ones, where nothing is ruled out, until nothing changes, or it is too late."""
+    allowed = _allowed(problem)
+    s = _normalised(allowed.astype(np.float64))
+    for _ in range(ITERATIONS):
+        if time.perf_counter() > deadline:
+            return NodeSimilarity(s, finished=False)
+        following = _normalised(step(s) * allowed) if s.size else s
+        if np.abs(following - s).max(initial=0.0) <= TOLERANCE:
+            return NodeSimilarity(following, finished=True)
+        s = following
+    return NodeSimilarity(s, finished=True)
+
+
+def _normalised(matrix: Matrix) -> Matrix:
+    norm = float(np.linalg.norm(matrix))
+    return matrix / norm if norm > 0 else matrix

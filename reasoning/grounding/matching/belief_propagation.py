@@ -1,0 +1,147 @@
+"""A map by belief propagation: messages between facts, objects and things, while the model is slowly cooled.
+
+Every fact tells each of its two objects what it makes of each thing, given what the other object is by all else that is
+known of it; every thing tells the objects how much in demand it is, since it can be only one of them. On a tree such
+messages end at the exact marginals; on the graph of a long description, in which a cycle takes many facts, they come
+near. Cooled step by step they settle on one of the best maps ("cavity approach" to aligning graphs: Bradde et al. 2010,
+EPL 89, 37009; the messages of one-to-one maps: Huang and Jebara 2009, arXiv:0908.1769).
+
+All messages of facts that read one table go by one product of matrices, so that it is dense linear algebra throughout.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csr_matrix
+
+from deixis.reasoning.grounding.matching.assignment import solve_assignment
+from deixis.reasoning.grounding.matching.problem import Compiled
+
+FIRST, LAST = 4.0, 20.0  # coldness, times the mean range of a table
+LEVELS = 80  # steps of coldness, fewer where all of them would multiply more cells than MOST_CELLS
+MOST_CELLS = 1.2e11
+FEWEST_LEVELS = 12  # with fewer, the map is no better than that of a short annealing
+CELLS_A_SECOND = 3e10  # what a core multiplies, about
+DAMPING = 0.3  # the share of a message that stays as it was
+LEAST = -69.0  # of a message's logarithms; their products stay within single precision
+RULED_OUT = -1e4  # in place of -inf
+TIES = 1e-3  # random numbers that set equal things apart
+
+Messages = NDArray[np.float32]
+
+
+class _Wiring(NamedTuple):
+    """Slots (see ``compiled.py``) sorted by the table that they read."""
+
+    other: NDArray[np.int64]  # (2m,): the object at the other end
+    twin: NDArray[np.int64]  # (2m,): the same fact's slot there
+    runs: list[tuple[int, int, int]]  # table, first slot, end: all slots that read it
+    adder: csr_matrix  # (n1, 2m): sums the messages of each object's slots
+
+
+def propagate(
+    problem: Compiled, scale: float, deadline: float = math.inf, *, effort: float = 1.0, seed: int = 0
+) -> NDArray[np.int64] | None:
+    """Each object's thing (n1,), n2 for what is left out; None where ``deadline`` or ``effort`` leave too few steps.
+
+    ``scale`` is the unit of temperature, what a fact's table ranges over (``scalable.mean_range``); ``effort``
+    multiplies the steps. Where time is short, it cools faster.
+    """
+    slots, width, now = len(problem.kind), problem.unary.shape[1], time.perf_counter()
+    cells = 1.0 + slots * width**2
+    levels = effort * min(LEVELS, MOST_CELLS / cells)
+    if levels < FEWEST_LEVELS or FEWEST_LEVELS * cells > CELLS_A_SECOND * (deadline - now):
+        return None
+    wiring, costs = _wire(problem), _costs(problem)
+    unary = np.maximum(problem.unary, RULED_OUT).astype(np.float32)
+    field = np.random.default_rng(seed).normal(0.0, TIES, unary.shape).astype(np.float32)
+    facts, demand, weights = np.zeros((slots, width), np.float32), np.zeros_like(unary), np.empty_like(costs)
+    belief, done = field, 0.0
+    while done < 1.0:
+        coldness = FIRST * (LAST / FIRST) ** done / scale
+        np.exp(np.multiply(costs, np.float32(coldness), out=weights), out=weights)
+        known = wiring.adder @ facts + np.float32(coldness) * unary + field
+        _update_demand(demand, known)
+        belief = _normalised(known + demand)
+        _update_facts(facts, belief, weights, wiring)
+        before, now = now, time.perf_counter()
+        if (deadline - now) < FEWEST_LEVELS * (now - before) * (1.0 - done):
+            return None
+        done += max(1.0 / levels, (now - before) / (deadline - now))
+    return _one_to_one(belief, problem)
+
+
+def _wire(problem: Compiled) -> _Wiring:
+    n1, slots = len(problem.unary), len(problem.kind)
+    order = np.argsort(problem.kind, kind="stable")
+    position = np.empty(slots, dtype=np.int64)
+    position[order] = np.arange(slots)
+    tables, first = np.unique(problem.kind[order], return_index=True)
+    ends = np.append(first, slots)[1:]
+    owner = np.repeat(np.arange(n1), np.diff(problem.first))[order]
+    return _Wiring(
+        problem.other[order],
+        position[problem.twin[order]],
+        [(int(table), int(a), int(b)) for table, a, b in zip(tables, first, ends, strict=True)],
+        csr_matrix((np.ones(slots, np.float32), (owner, np.arange(slots))), shape=(n1, slots)),
+    )
+
+
+def _costs(problem: Compiled) -> Messages:
+    """What a pair of things has less than the best pair of its table, (k, n2 + 1, n2 + 1); no thing is two objects."""
+    tables = problem.tables[: len(problem.tables) // 2]  # each comes again transposed
+    costs: Messages = tables - tables.max(axis=(1, 2), keepdims=True)
+    things = np.arange(tables.shape[1] - 1)
+    costs[:, things, things] = RULED_OUT
+    return costs
+
+
+def _update_demand(demand: Messages, known: Messages) -> None:
+    """What each thing tells each object, the logarithm of (n1, n2 + 1), in place: that no other object is it.
+
+    The odds of each object's being the thing, by all but the thing's own word, add up; 1 over 1 more than those of the
+    others is the message. Leaving an object out takes nothing from anybody.
+    """
+    belief = _normalised(known + demand)
+    share = np.exp(belief)
+    odds = np.exp(np.minimum(belief - demand, 60.0))
+    odds /= np.maximum(share.sum(axis=1, keepdims=True) - share, 1e-20)
+    wanted = np.minimum(odds[:, :-1], 1e8).astype(np.float64)  # single precision would lose the others beside one
+    told = np.log((1.0 + np.maximum(wanted.sum(axis=0) - wanted, 0.0)).astype(np.float32))
+    demand *= np.float32(DAMPING)
+    demand[:, :-1] -= np.float32(1.0 - DAMPING) * told
+
+
+def _update_facts(facts: Messages, belief: Messages, weights: Messages, wiring: _Wiring) -> None:
+    """What each fact tells the owner of each slot, the logarithm of (2m, n2 + 1), in place."""
+    said = belief[wiring.other]
+    said -= facts[wiring.twin]  # what the other object is by all but the fact itself
+    np.exp(said, out=said)
+    told = np.empty_like(facts)
+    for table, first, end in wiring.runs:
+        matrix = weights[table].T if table < len(weights) else weights[table - len(weights)]
+        np.matmul(said[first:end], matrix, out=told[first:end])
+    np.log(np.maximum(told, math.exp(LEAST), out=told), out=told)
+    told = np.maximum(_normalised(told), LEAST, out=told)
+    facts *= np.float32(DAMPING)
+    told *= np.float32(1.0 - DAMPING)
+    facts += told
+
+
+def _normalised(messages: Messages) -> Messages:
+    """The largest logarithm of each row made 0, in place."""
+    messages -= messages.max(axis=1, keepdims=True)
+    return messages
+
+
+def _one_to_one(belief: Messages, problem: Compiled) -> NDArray[np.int64]:
+    """The map with the largest product of beliefs."""
+    gain = np.where(np.isneginf(problem.unary), -np.inf, belief.astype(np.float64))
+    labels, price, profit = np.empty(len(gain), np.int64), np.empty(gain.shape[1] - 1), np.empty(len(gain))
+    solve_assignment(gain, labels, price, profit)
+    return labels

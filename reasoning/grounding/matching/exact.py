@@ -1,0 +1,190 @@
+"""The exact engine: the best map with its proof, or how far from the best it may be; and all maps within a margin."""
+
+from __future__ import annotations
+
+import math
+import time
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.reasoning.grounding.matching.branch_and_bound import (
+    BUDGET,
+    DONE,
+    FULL,
+    Record,
+    Stack,
+    child_bound,
+    evaluate,
+    new_stack,
+    node_at,
+    search,
+    tighten,
+)
+from deixis.reasoning.grounding.matching.problem import Compiled, MatchingError, Problem, to_assignment
+from deixis.reasoning.grounding.matching.scalable import search_from
+
+SLACK = 1e-7
+"""Values nearer than this count as equal."""
+
+CELLS = 6e7
+"""What the search may hold at once, in numbers of 8 bytes."""
+
+WORK = 1e9
+"""Cells of tables that one pass over the facts may read; beyond, only a loose bound is given."""
+
+ROOT_PASSES, ROOT_PATIENCE = 200, 100
+WARM = 3e-4  # effort of the scalable engine before the search, times objects squared: proofs get that much harder
+
+
+@dataclass(frozen=True, eq=False)
+class Optimum:
+    """The best map found (n1,), its value, an upper bound on the value of any map, and nodes of the search."""
+
+    assignment: NDArray[np.int64]
+    value: float
+    bound: float
+    nodes: int
+
+    @property
+    def proved(self) -> bool:
+        """Whether no map is better (by more than SLACK)."""
+        return self.bound <= self.value + 2 * SLACK
+
+    @property
+    def gap(self) -> float:
+        """By how much another map could be better at most."""
+        return max(0.0, self.bound - self.value)
+
+
+@dataclass(frozen=True, eq=False)
+class Maps:
+    """Different maps (c, n1) and their values (c,), best first.
+
+    ``complete``: no other map is within the margin. If not, it was the limit (``limited``) or the deadline.
+    """
+
+    assignments: NDArray[np.int64]
+    values: NDArray[np.float64]
+    complete: bool
+    limited: bool
+
+
+def exact(problem: Problem, deadline: float = math.inf, *, seed: int = 0) -> Optimum:
+    """The best map, proved as far as the time until ``deadline`` (``time.perf_counter``) allows.
+
+    >>> tables = np.array([[[0, 1], [0, 0]]], np.float32)
+    >>> problem = Problem(np.array([[0, 1]]), np.array([0]), tables, np.zeros((2, 2)), np.full(2, -1.0))
+    >>> best = exact(problem)
+    >>> best.assignment.tolist(), best.value, best.proved
+    ([0, 1], 1.0, True)
+    """
+    n1, n2 = problem.unary.shape
+    if n1 == 0 or n2 == 0:
+        nobody = np.full(n1, -1)
+        return Optimum(nobody, problem.value(nobody), problem.value(nobody), 0)
+    compiled = problem.compiled
+    labels, _ = search_from(np.full(n1, n2), compiled, deadline, seed, min(1.0, WARM * n1**2), 1)
+    step = max(_grid(problem) - 1e-3, 0.0) or SLACK
+    value = evaluate(labels, compiled)
+    record = _record(1, n1, value + step, step)
+    record.labels[0], record.values[0], record.found[0] = labels, value, 1
+    bound = loose_bound(problem)
+    if bound >= record.sought[0]:
+        bound, _ = _run(compiled, record, deadline, bound)
+    assignment = to_assignment(record.labels[0], n2)
+    value = problem.value(assignment)
+    return Optimum(assignment, value, value if bound < record.sought[0] else bound, int(record.nodes[0]))
+
+
+def maps_within(problem: Problem, margin: float = 0.0, deadline: float = math.inf, *, limit: int = 10_000) -> Maps:
+    """All maps worth at most ``margin`` less than the best, up to a limit and a deadline (``time.perf_counter``).
+
+    A margin of 0 gives all optima. Raises MatchingError for a margin below 0 or a limit below 1.
+
+    >>> problem = Problem(np.zeros((0, 2), np.int64), np.zeros(0, np.int64), np.zeros((0, 2, 2), np.float32),
+    ...                   np.array([[1.0, 1.0]]), np.zeros(1))
+    >>> maps_within(problem).assignments.tolist(), maps_within(problem, 1.0).values.tolist()
+    ([[0], [1]], [1.0, 1.0, 0.0])
+    """
+    if not margin >= 0 or limit < 1:
+        raise MatchingError(f"a margin is 0 or more and a limit 1 or more, not {margin} and {limit}")
+    best = exact(problem, deadline)
+    n1, n2 = problem.unary.shape
+    if n1 == 0 or n2 == 0 or not best.proved:
+        return Maps(best.assignment[None], np.array([best.value]), complete=best.proved, limited=False)
+    record = _record(limit, n1, best.value - margin - SLACK, np.inf)
+    _, state = _run(problem.compiled, record, deadline, loose_bound(problem))
+    count = int(record.found[0])
+    if count == 0 or (state != DONE and record.values[:count].max() < best.value - SLACK):
+        return Maps(best.assignment[None], np.array([best.value]), complete=False, limited=state == FULL)
+    found, values = to_assignment(record.labels[:count], n2), record.values[:count]
+    order = np.lexsort([*found.T[::-1], -np.round(values / SLACK)])
+    return Maps(found[order], values[order], complete=state == DONE, limited=state == FULL)
+
+
+def warm() -> None:
+    """Compiles the engine, or loads it compiled, so that a time limit is spent on searching."""
+    tables = np.array([[[0, 1], [0, 0]]], np.float32)
+    problem = Problem(np.array([[0, 1]]), np.array([0]), tables, np.zeros((2, 2)), np.full(2, -1.0))
+    maps_within(problem, 5.0)
+
+
+def loose_bound(problem: Problem) -> float:
+    """What no map is worth more than, at sight: the best of every object and of every fact by itself."""
+    alone = np.concatenate([problem.unary, problem.absent[:, None]], axis=1).max(axis=1)
+    facts = np.maximum(problem.tables.max(axis=(1, 2), initial=0.0), 0.0)[problem.kinds]
+    return float(alone.sum() + facts.sum(dtype=np.float64))
+
+
+def _record(limit: int, n1: int, sought: float, step: float) -> Record:
+    return Record(
+        np.zeros((limit, n1), dtype=np.int64),
+        np.zeros(limit),
+        np.zeros(1, dtype=np.int64),
+        np.array([sought]),
+        np.array([step]),
+        np.zeros(1, dtype=np.int64),
+    )
+
+
+def _run(compiled: Compiled, record: Record, deadline: float, bound: float) -> tuple[float, int]:
+    """Searches until it is over or has to stop; returns an upper bound on what was not found, and how it ended."""
+    work = len(compiled.kind) * compiled.unary.shape[1] ** 2
+    if work > WORK or time.perf_counter() > deadline:
+        return bound, BUDGET
+    stack = new_stack(compiled, CELLS)
+    _tighten_root(compiled, stack, record, deadline)
+    state = BUDGET
+    while state == BUDGET and time.perf_counter() <= deadline:
+        state = search(compiled, stack, record, max(1, int(2e6 / (work + 1000))))
+    return min(bound, _open_bound(stack)), state
+
+
+def _tighten_root(compiled: Compiled, stack: Stack, record: Record, deadline: float) -> None:
+    """More passes than a node gets: what they drop at the root is dropped everywhere."""
+    root, column_of = node_at(0, stack), np.empty(len(compiled.unary), dtype=np.int64)
+    for _ in range(ROOT_PASSES):
+        before = stack.bound[0]
+        stack.bound[0] = tighten(root, compiled, record.sought[0], before, 2, 0, column_of)
+        left = stack.bound[0] - record.sought[0]
+        if left < 0 or (before - stack.bound[0]) * ROOT_PATIENCE < left or time.perf_counter() > deadline:
+            return
+
+
+def _open_bound(stack: Stack) -> float:
+    """An upper bound on what a stopped search has not looked at: that of the open nodes on its stack."""
+    bound = -np.inf
+    for d in range(int(stack.depth[0]) + 1):
+        bound = max(bound, child_bound(d, stack) if stack.branch[d] >= 0 else stack.bound[d])
+    return float(bound)
+
+
+def _grid(problem: Problem) -> float:
+    """The coarsest of a few steps of which all numbers are multiples, or 0: values that differ do so by a step."""
+    numbers = np.concatenate([np.unique(problem.tables), problem.unary[np.isfinite(problem.unary)], problem.absent])
+    for step in (1.0, 0.5, 0.25, 0.2, 0.1, 0.05):
+        if np.abs(numbers / step - np.round(numbers / step)).max(initial=0.0) < 1e-6:
+            return step
+    return 0.0

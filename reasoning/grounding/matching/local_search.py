@@ -1,0 +1,318 @@
+"""Local search over maps: incremental gains, annealing, hill climbing, reassignment and recombination; compiled.
+
+Most exchanges that a search looks at are not made. With the gains kept, looking takes a few numbers, whatever the
+facts; only an exchange that is made costs a row of a table for each fact of the two objects.
+
+For an object, all exchanges are looked at: each thing, or none, and to whoever has it what the object had. One is drawn
+with a probability that grows exponentially with what it gains over the temperature, as the largest of the gains with
+Gumbel noise on them (perturb and maximise, Papandreou and Yuille 2011).
+
+What such objects are worth as each thing does not depend on one another while all others stay as they are, so that the
+best way to deal out their things, and those that nobody has, is a linear assignment: the best of exponentially many
+neighbours of a map (very large-scale neighbourhood search; Ahuja, Ergun, Orlin and Punnen 2002).
+
+Where two maps differ, the objects that differ fall into parts with no fact and no thing in common. Each part may be
+taken from either map, whatever is taken elsewhere, so that the best of all such combinations is found part by part
+(partition crossover; Whitley, Hains and Howe 2009 for tours, Tinos, Whitley and Chicano 2015 for sums of terms).
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from deixis.reasoning.grounding.matching.assignment import solve_assignment
+from deixis.reasoning.grounding.matching.problem import Compiled
+
+
+class KeptMap(NamedTuple):
+    """A map and its gains, in single precision: :func:`refresh` now and then keeps the error of sums small."""
+
+    labels: NDArray[np.int64]  # (n1,): n2 for what is left out
+    holder: NDArray[np.int64]  # (n2 + 1,): who has the thing, -1 where nobody has; -1 for n2
+    gains: NDArray[np.float32]  # (n1, n2 + 1): what object i is worth as thing p, the others as they are
+
+
+def keep(labels: NDArray[np.int64], problem: Compiled) -> KeptMap:
+    """A copy of a map (n1,), with its gains."""
+    n1, width = problem.unary.shape
+    state = KeptMap(labels.copy(), np.empty(width, dtype=np.int64), np.empty((n1, width), dtype=np.float32))
+    refresh(state, problem)
+    return state
+
+
+@njit(cache=True, nogil=True)
+def refresh(state, problem):  # type: ignore[no-untyped-def]
+    """Computes all but the labels anew."""
+    labels, gains, holder = state.labels, state.gains, state.holder
+    holder[:] = -1
+    for i in range(len(labels)):
+        holder[labels[i]] = i
+        gains[i] = problem.unary[i]
+        for slot in range(problem.first[i], problem.first[i + 1]):
+            gains[i] += problem.tables[problem.kind[problem.twin[slot]], labels[problem.other[slot]]]
+    holder[-1] = -1
+
+
+@njit(cache=True)
+def said_twice(i, j, state, problem):  # type: ignore[no-untyped-def]
+    """What an exchange of the things of two objects is worth beyond the two gains, for the facts between the two."""
+    more, p, q = np.float32(0.0), state.labels[i], state.labels[j]
+    for slot in range(problem.first[i], problem.first[i + 1]):
+        if problem.other[slot] == j:
+            kind = problem.kind[slot]
+            more += problem.tables[kind, q, p] + problem.tables[kind, p, q]
+    return more
+
+
+@njit(cache=True)
+def exchange(i, p, state, problem):  # type: ignore[no-untyped-def]
+    """Gives object i thing p (n2: leaves it out), and whoever had it what i had."""
+    old, j = state.labels[i], state.holder[p]
+    out = len(state.holder) - 1
+    _give(i, p, state, problem)
+    if j >= 0:
+        _give(j, old, state, problem)
+    if p < out:
+        state.holder[p] = i
+    if old < out:
+        state.holder[old] = j
+
+
+@njit(cache=True)
+def _give(i, p, state, problem):  # type: ignore[no-untyped-def]
+    old = state.labels[i]
+    for slot in range(problem.first[i], problem.first[i + 1]):
+        j, kind = problem.other[slot], problem.kind[slot]
+        for q in range(state.gains.shape[1]):
+            state.gains[j, q] += problem.tables[kind, p, q] - problem.tables[kind, old, q]
+    state.labels[i] = p
+
+
+@njit(cache=True, nogil=True)
+def climb(labels, problem):  # type: ignore[no-untyped-def]
+    """Moves and swaps of one object after another, each the best there is, until none helps."""
+    out = problem.unary.shape[1] - 1
+    holder = np.full(out + 1, -1)
+    for i in range(len(labels)):
+        holder[labels[i]] = i
+    holder[out] = -1
+    gain, better = np.empty(out + 1), True
+    while better:
+        better = False
+        for i in range(len(labels)):
+            gains_of(i, labels, problem, gain)
+            best, chosen = 1e-9, -1
+            for p in range(out + 1):
+                if p != labels[i] and gain[p] > -np.inf:
+                    gained = _exchange_gain(i, p, holder[p], gain, labels, problem)
+                    if gained > best:
+                        best, chosen = gained, p
+            if chosen >= 0:
+                better = True
+                _exchange(i, chosen, labels, holder, out)
+
+
+@njit(cache=True)
+def gains_of(i, labels, problem, gain):  # type: ignore[no-untyped-def]
+    """What object i is worth as each thing, with the others as they are, into ``gain`` (n2 + 1,)."""
+    gain[:] = problem.unary[i]
+    for slot in range(problem.first[i], problem.first[i + 1]):
+        kind, q = problem.kind[problem.twin[slot]], labels[problem.other[slot]]
+        for p in range(len(gain)):
+            gain[p] += problem.tables[kind, q, p]
+
+
+@njit(cache=True)
+def _exchange_gain(i, p, j, gain, labels, problem):  # type: ignore[no-untyped-def]
+    """What it gains to give object i thing p, and i's thing to j, who had p (or had nobody, -1)."""
+    old = labels[i]
+    gained = gain[p] - gain[old]
+    if j < 0:
+        return gained
+    gained += problem.unary[j, old] - problem.unary[j, p]
+    for slot in range(problem.first[j], problem.first[j + 1]):
+        table, k = problem.tables[problem.kind[slot]], problem.other[slot]
+        if k == i:  # counted at i's end with j still at p
+            gained += np.float64(table[old, p]) - np.float64(table[p, p])
+        else:
+            gained += np.float64(table[old, labels[k]]) - np.float64(table[p, labels[k]])
+    return gained
+
+
+@njit(cache=True)
+def _exchange(i, p, labels, holder, out):  # type: ignore[no-untyped-def]
+    old, j = labels[i], holder[p]
+    labels[i] = p
+    if p < out:
+        holder[p] = i
+    if j >= 0:
+        labels[j] = old
+    if old < out:
+        holder[old] = j
+
+
+NOISE = 1 << 13  # Gumbel numbers in a table, read from random places on
+MIN_GAIN_SINGLE = 1e-4  # what a map has to be better by: more than the error of gains in single precision
+
+
+@njit(cache=True, nogil=True)
+def anneal(state, best, ahead, problem, sweeps, temperature, noise, seed):  # type: ignore[no-untyped-def]
+    """So many sweeps over all objects, from a map that is worth ``ahead`` more than ``best`` (n1,).
+
+    ``best`` takes every map that is better. Returns by how much the last map is. ``noise`` (NOISE + n2 + 1,) holds
+    Gumbel numbers in single precision.
+    """
+    np.random.seed(seed)
+    refresh(state, problem)
+    order, facts = np.arange(len(state.labels)), np.zeros(len(state.holder), np.float32)
+    for _ in range(sweeps):
+        for a in range(len(order)):
+            b = a + np.random.randint(len(order) - a)
+            order[a], order[b] = order[b], order[a]
+            at = np.random.randint(NOISE)
+            p, gained = _draw(order[a], state, problem, np.float32(temperature), noise, at, facts)
+            if p != state.labels[order[a]]:
+                exchange(order[a], p, state, problem)
+                ahead += gained
+                if ahead > MIN_GAIN_SINGLE:
+                    ahead = 0.0
+                    best[:] = state.labels
+    return ahead
+
+
+@njit(cache=True)
+def _draw(i, state, problem, temperature, noise, at, facts):  # type: ignore[no-untyped-def]
+    """A thing for object i, and what the exchange gains; ``facts`` (n2 + 1,) is all 0 before and after."""
+    old, out = state.labels[i], len(state.holder) - 1
+    for slot in range(problem.first[i], problem.first[i + 1]):
+        q, kind = state.labels[problem.other[slot]], problem.kind[slot]
+        if q < out:  # what kept_gains.said_twice adds up for one pair
+            facts[q] += problem.tables[kind, q, old] + problem.tables[kind, old, q]
+    holder, gains, own = state.holder, state.gains, state.gains[i]
+    base = own[old]
+    top, chosen, gained = temperature * noise[at + old], old, np.float32(0.0)
+    for p in range(out + 1):
+        gain, j = own[p] - base, holder[p]
+        if j >= 0:
+            gain += gains[j, old] - gains[j, p] + facts[p]
+        score = gain + temperature * noise[at + p]
+        if score > top:
+            top, chosen, gained = score, p, gain
+    for slot in range(problem.first[i], problem.first[i + 1]):
+        facts[state.labels[problem.other[slot]]] = 0.0
+    return chosen, gained
+
+
+MIN_GAIN = 1e-6  # what a map has to be better by
+
+
+@njit(cache=True, nogil=True)
+def reassign(labels, problem, patience, seed):  # type: ignore[no-untyped-def]
+    """One random set of objects after another, until ``patience`` in a row do not help; returns what that gained."""
+    np.random.seed(seed)
+    n1, width = problem.unary.shape
+    cells, row, things = np.empty(n1 * width), np.empty(width), np.empty(width, np.int64)
+    column_of, profit, price = np.empty(n1, np.int64), np.empty(n1), np.empty(width)
+    total, failed = 0.0, 0
+    while failed < patience:
+        chosen = _without_facts_between(problem)
+        many = _free(labels, chosen, things)
+        gain = cells[: len(chosen) * (many + 1)].reshape(len(chosen), many + 1)
+        before = 0.0
+        for a in range(len(chosen)):
+            gains_of(chosen[a], labels, problem, row)
+            before += row[labels[chosen[a]]]
+            for b in range(many + 1):
+                gain[a, b] = row[things[b]]
+        columns = column_of[: len(chosen)]
+        gained = solve_assignment(gain, columns, price[:many], profit[: len(chosen)]) - before
+        failed += 1
+        if gained > MIN_GAIN:
+            labels[chosen] = things[columns]
+            total, failed = total + gained, 0
+    return total
+
+
+@njit(cache=True)
+def _without_facts_between(problem):  # type: ignore[no-untyped-def]
+    """Objects of which no two share a fact, as many as a random order gives."""
+    n1 = len(problem.unary)
+    order, taken = np.random.permutation(n1), np.zeros(n1, np.bool_)
+    chosen, count = np.empty(n1, np.int64), 0
+    for i in order:
+        if not taken[i]:
+            chosen[count] = i
+            count += 1
+            for slot in range(problem.first[i], problem.first[i + 1]):
+                taken[problem.other[slot]] = True
+    return chosen[:count]
+
+
+@njit(cache=True)
+def _free(labels, chosen, things):  # type: ignore[no-untyped-def]
+    """Lists what the chosen objects may be: what no other object is, and last of all nothing. Returns how many."""
+    out = len(things) - 1
+    held = np.zeros(out + 1, np.bool_)
+    held[labels] = True
+    held[labels[chosen]] = False
+    count = 0
+    for p in range(out):
+        if not held[p]:
+            things[count] = p
+            count += 1
+    things[count] = out
+    return count
+
+
+@njit(cache=True, nogil=True)
+def combine(labels, other, problem):  # type: ignore[no-untyped-def]
+    """Takes into ``labels`` (n1,) each part of the other map that is worth more there; returns what that gained."""
+    part = _parts(labels, other, problem)
+    gain = np.zeros(len(labels))
+    for i in range(len(labels)):
+        if labels[i] == other[i]:
+            continue
+        root = _root(part, i)
+        gain[root] += problem.unary[i, other[i]] - problem.unary[i, labels[i]]
+        for slot in range(problem.first[i], problem.first[i + 1]):
+            j, kind = problem.other[slot], problem.kind[slot]
+            if j > i or labels[j] == other[j]:  # a fact within the part counts once
+                said = np.float64(problem.tables[kind, other[i], other[j]])
+                gain[root] += said - problem.tables[kind, labels[i], labels[j]]
+    total = 0.0
+    for i in range(len(labels)):
+        if gain[_root(part, i)] > 1e-9:
+            labels[i] = other[i]
+            total += max(gain[i], 0.0)
+    return total
+
+
+@njit(cache=True)
+def _parts(labels, other, problem):  # type: ignore[no-untyped-def]
+    """A forest of the objects (n1,): those that differ are in one tree with what shares a fact or a thing with them."""
+    part, out = np.arange(len(labels)), problem.unary.shape[1] - 1
+    wanted_by = np.full(out + 1, -1)
+    for i in range(len(labels)):
+        wanted_by[other[i]] = i
+    for i in range(len(labels)):
+        if labels[i] == other[i]:
+            continue
+        if labels[i] < out and wanted_by[labels[i]] >= 0:
+            part[_root(part, i)] = _root(part, wanted_by[labels[i]])
+        for slot in range(problem.first[i], problem.first[i + 1]):
+            j = problem.other[slot]
+            if labels[j] != other[j]:
+                part[_root(part, i)] = _root(part, j)
+    return part
+
+
+@njit(cache=True)
+def _root(part, i):  # type: ignore[no-untyped-def]
+    while part[i] != i:
+        part[i] = part[part[i]]
+        i = part[i]
+    return i

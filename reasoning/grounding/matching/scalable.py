@@ -1,0 +1,186 @@
+"""The scalable engine: annealing from several starts, the best reheated, then moves and swaps until none helps.
+
+Of many objects, a second search anneals what belief propagation finds, and the best parts of both are taken. It proves
+nothing, and is for any size: its work for a step grows with the things and the facts of an object, and it holds little
+more than the tables. What it finds does not depend on the clock, unless the deadline cuts it short, nor in quality on
+the order of the objects.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from threadpoolctl import threadpool_limits
+
+from deixis.reasoning.grounding.matching.belief_propagation import propagate
+from deixis.reasoning.grounding.matching.local_search import NOISE, anneal, climb, combine, keep, reassign
+from deixis.reasoning.grounding.matching.problem import Compiled, Problem, to_assignment, to_labels
+
+HOT, WARM, COLD = 0.25, 0.2, 0.06  # temperatures in units of the mean range of a table: first, reheated, and last
+LEVELS, WARM_LEVELS = 15, 10  # temperatures on the way down from the first, and from the second
+ONE_TURN_LEVELS = 40  # where there is one turn only
+QUICK_HOT = 0.35  # the first temperature where sweeps are few: what cools fast freezes sooner
+SWEEPS = 3600  # over all objects, in all; small problems and large ones get more, those of many cells get fewer
+SMALL, MOST_SWEEPS, MANY, CELLS = 180_000, 6_000, 100, 8e8
+MOST_TURNS, TURN_CELLS = 13, 11_700  # many short turns for few objects, one long one for many
+FRESH = 0.3  # the share of turns that start anew; the others reheat the best map
+PATIENCE = 20  # reassignments in a row that do not help, at the end
+LAST_SWEEPS = 3  # without noise, where the deadline struck
+PROPAGATED, ANNEALED = 50, 400  # objects from which on, and up to which, there is the one search, and the other
+BESIDE, AFTERWARDS = 0.8, 0.4  # of the sweeps, where there are both: to anneal from nothing, and what the other finds
+LEAST_EFFORT = 0.2  # below, belief propagation has too few steps
+HURRY = 1.25  # times its equal share of the time left that a temperature may take
+PART = 2e6  # cells of the sweeps between two looks at the clock
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """The best map found (n1,), its value, and whether the deadline left time for the whole search."""
+
+    assignment: NDArray[np.int64]
+    value: float
+    finished: bool
+
+
+def scalable(
+    problem: Problem,
+    deadline: float = math.inf,
+    *,
+    seed: int = 0,
+    effort: float = 1.0,
+    start: NDArray[np.int64] | None = None,
+) -> Found:
+    """A map of high value until ``deadline`` (``time.perf_counter``), never worse than ``start`` (default: nobody).
+
+    ``effort`` multiplies the steps. Raises MatchingError where ``start`` is no map of the problem.
+
+    >>> tables = np.array([[[0, 1], [0, 0]]], np.float32)
+    >>> problem = Problem(np.array([[0, 1]]), np.array([0]), tables, np.zeros((2, 2)), np.full(2, -1.0))
+    >>> found = scalable(problem)
+    >>> found.assignment.tolist(), found.value
+    ([0, 1], 1.0)
+    """
+    n1, n2 = problem.unary.shape
+    if start is not None:
+        problem.require_map(start)
+    best = np.full(n1, n2) if start is None else to_labels(start, n2)
+    finished = True
+    if n1 and n2:
+        best, finished = search_from(best, problem.compiled, deadline, seed, effort, MOST_TURNS)
+    assignment = to_assignment(best, n2)
+    return Found(assignment, problem.value(assignment), finished)
+
+
+def search_from(
+    labels: NDArray[np.int64], compiled: Compiled, deadline: float, seed: int, effort: float, most: int
+) -> tuple[NDArray[np.int64], bool]:
+    """The best map found from ``labels`` (n1,) on, and whether the search came to its end.
+
+    There are at most ``most`` turns of annealing. Of many objects, it and belief propagation have a thread each; of
+    very many it is of little use beside it.
+    """
+    if len(labels) < PROPAGATED or effort < LEAST_EFFORT:
+        return _annealed(labels, compiled, deadline, seed, effort, most)
+    if len(labels) > ANNEALED:
+        return _propagated(labels, compiled, deadline, seed, effort, most)
+    with threadpool_limits(1, "blas"), ThreadPoolExecutor(1) as pool:
+        beside = pool.submit(_annealed, labels, compiled, deadline, seed, BESIDE * effort, most)
+        best, finished = _propagated(labels, compiled, deadline, seed, effort, most)
+        other, finished_too = beside.result()
+    if combine(best, other, compiled) > 0.0:
+        climb(best, compiled)
+    return best, finished and finished_too
+
+
+def _annealed(
+    labels: NDArray[np.int64], compiled: Compiled, deadline: float, seed: int, effort: float, most: int
+) -> tuple[NDArray[np.int64], bool]:
+    """At most ``most`` turns, the first from ``labels`` (n1,)."""
+    rng = np.random.default_rng(seed)
+    n1, width = compiled.unary.shape
+    noise = rng.gumbel(size=NOISE + width).astype(np.float32)
+    scale, best, nobody = mean_range(compiled), labels.copy(), np.full(n1, width - 1)
+    plan, sweeps = turns_and_sweeps(n1, width)
+    for turn, (hot, levels) in enumerate(plan[:most]):
+        found = nobody.copy() if turn and hot == HOT else best.copy()
+        schedule = scale * np.append(np.geomspace(hot, COLD, levels), 0.0)
+        finished = _cool(found, compiled, deadline, schedule, max(1, round(effort * sweeps)), noise, rng)
+        if not finished:
+            anneal(keep(found, compiled), found, 0.0, compiled, LAST_SWEEPS, 0.0, noise, seed)
+        combine(best, found, compiled)
+        if not finished:
+            return best, False
+    climb(best, compiled)
+    if reassign(best, compiled, PATIENCE, seed) > 0.0:
+        climb(best, compiled)
+    return best, True
+
+
+def _propagated(
+    labels: NDArray[np.int64], compiled: Compiled, deadline: float, seed: int, effort: float, most: int
+) -> tuple[NDArray[np.int64], bool]:
+    """A shorter annealing of what belief propagation finds, where there is time for it, else a whole one."""
+    half = time.perf_counter() + (deadline - time.perf_counter()) / 2
+    found = propagate(compiled, mean_range(compiled), half, effort=effort, seed=seed)
+    if found is None:
+        return _annealed(labels, compiled, deadline, seed + 1, effort, most)
+    climb(found, compiled)
+    best = labels.copy()
+    combine(best, found, compiled)
+    return _annealed(best, compiled, deadline, seed + 1, AFTERWARDS * effort, most)
+
+
+def turns_and_sweeps(objects: int, width: int) -> tuple[list[tuple[float, int]], int]:
+    """For each turn its first temperature and how many, and how many sweeps at each, at an effort of 1."""
+    turns = int(np.clip(TURN_CELLS / objects**2, 1, MOST_TURNS))
+    fresh = math.ceil(FRESH * turns)
+    enough = max(SWEEPS, SWEEPS * (objects / MANY) ** 0.2, min(SMALL / objects, MOST_SWEEPS))
+    sweeps = min(enough, CELLS / (objects * width))
+    plan = [(HOT, LEVELS)] * fresh + [(WARM, WARM_LEVELS)] * (turns - fresh)
+    if turns == 1:
+        plan = [(HOT if sweeps >= SWEEPS else QUICK_HOT, ONE_TURN_LEVELS)]
+    return plan, max(1, round(sweeps / sum(levels for _, levels in plan)))
+
+
+def _cool(
+    best: NDArray[np.int64],
+    compiled: Compiled,
+    deadline: float,
+    schedule: NDArray[np.float64],
+    sweeps: int,
+    noise: NDArray[np.float32],
+    rng: np.random.Generator,
+) -> bool:
+    """One annealing from ``best`` (n1,), which takes the best map on the way; false where the deadline cut it short.
+
+    No temperature gets more than ``HURRY`` times its share of the time that is left: a search in a hurry cools faster,
+    and is not stopped while it is hot.
+    """
+    state, ahead, finished = keep(best, compiled), 0.0, True
+    part = max(1, int(PART / state.gains.size))
+    for level, temperature in enumerate(schedule):
+        now = time.perf_counter()
+        if now > deadline:
+            return False
+        next_level = now + HURRY * (deadline - now) / (len(schedule) - level)
+        for done in range(0, sweeps, part):
+            if time.perf_counter() > next_level:
+                finished = False
+                break
+            count, seed = min(part, sweeps - done), int(rng.integers(1 << 31))
+            ahead = anneal(state, best, ahead, compiled, count, temperature, noise, seed)
+    return finished
+
+
+def mean_range(compiled: Compiled) -> float:
+    """The mean over all facts of largest less least entry, or 1 where there is no fact that distinguishes."""
+    if len(compiled.kind) == 0:
+        return 1.0
+    tables = compiled.tables[: len(compiled.tables) // 2]  # each comes again transposed
+    spans = tables.max(axis=(1, 2)) - tables.min(axis=(1, 2))
+    return float(spans[compiled.kind % len(tables)].mean()) or 1.0

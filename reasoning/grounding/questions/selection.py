@@ -1,0 +1,220 @@
+"""The question that is expected to resolve most.
+
+What an answer resolves is the entropy of the answer itself, in bits, since every candidate answers every question in
+one way. Among questions that resolve as much the one wins that costs the person least (``Question.effort``): first of
+all one about two things and a word between them that is plainly so or plainly not.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Hashable, Iterator
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.ontology.relation import Relation
+from deixis.reasoning.grounding.matching.problem import UNMATCHED
+from deixis.reasoning.grounding.questions.candidates import Candidates
+from deixis.reasoning.grounding.questions.situation import Situation, spoken
+
+YES, NO = "yes", "no"
+ABSENT = "absent"
+"""The answer where something that the question is about is not there."""
+DONT_KNOW = "don't know"
+
+RELATION_EFFORT, IDENTITY_EFFORT, POINTING_EFFORT = 1.0, 1.5, 2.0
+VAGUE_EFFORT = 1.0  # more, where the word is half true in every candidate
+COMPOUND_EFFORT = 0.25  # more, for a word that says two things at once: bottom left of
+APART_EFFORT = 0.5  # more, where the two lie as far apart as things do
+ID_EFFORT = 1.0  # more, where a thing can be told by its id alone
+
+MOST_PAIRS = 2_000
+"""Pairs of objects about which questions are weighed; those least certain first."""
+
+
+Topic = tuple[Hashable, ...]
+
+
+class QuestionKind(StrEnum):
+    """What a person has to do: look at two things, look at one, or point."""
+
+    RELATION = "relation"  # Is the salad fork left of the dinner fork?
+    IDENTITY = "identity"  # Is the thing at the far left the bread plate?
+    POINTING = "pointing"  # Which one is the fish knife?
+
+
+@dataclass(frozen=True, slots=True)
+class Question:
+    """A question, what its answer is expected to resolve, and what each answer's probability is.
+
+    ``subject`` and ``object`` are described objects, ``thing`` a perceived one, by position; -1 where there is none.
+    ``answers`` are all that some candidate gives, in their order of probability.
+    """
+
+    kind: QuestionKind
+    text: str
+    subject: int
+    relation: Relation | None
+    object: int
+    thing: int
+    answers: tuple[tuple[str, float], ...]
+    bits: float
+    effort: float
+
+    @property
+    def about(self) -> tuple[int, ...]:
+        """The described objects that it is about."""
+        return (self.subject,) if self.object < 0 else (self.subject, self.object)
+
+    @property
+    def topic(self) -> Topic:
+        """What two questions share that are one question in other words: *left of* and, the other way, *right of*."""
+        if self.relation is None:
+            return (self.kind, self.subject, self.thing)
+        if self.subject < self.object:
+            return (self.kind, self.subject, self.relation.name, self.object)
+        return (self.kind, self.object, self.relation.inverse, self.subject)
+
+    @property
+    def look(self) -> Topic:
+        """What two questions share that take one look: who cannot answer the one cannot answer the other.
+
+        Who does not know an object by sight can neither point to it nor say of a thing whether it is the one.
+        """
+        if self.relation is None:
+            return (QuestionKind.POINTING, self.subject)
+        return (self.kind, min(self.subject, self.object), max(self.subject, self.object))
+
+
+def answers_of(question: Question, situation: Situation, assignments: NDArray[np.int64]) -> list[str]:
+    """How each of k maps (k, n1) answers."""
+    things = situation.things
+    subjects = assignments[:, question.subject]
+    if question.kind is QuestionKind.POINTING:
+        return [ABSENT if p == UNMATCHED else things[p] for p in subjects.tolist()]
+    if question.relation is None:
+        return [YES if p == question.thing else NO for p in subjects.tolist()]
+    objects = assignments[:, question.object]
+    holds = situation.degrees[situation.relations.index(question.relation)][subjects, objects] > 0
+    there = (subjects != UNMATCHED) & (objects != UNMATCHED)
+    return [(YES if so else NO) if both else ABSENT for so, both in zip(holds.tolist(), there.tolist(), strict=True)]
+
+
+def best_question(
+    situation: Situation,
+    candidates: Candidates,
+    kinds: Collection[QuestionKind] = tuple(QuestionKind),
+    barred: Collection[Topic] = (),
+) -> Question | None:
+    """The question that is expected to resolve most, the least effort among equals; None where none resolves anything.
+
+    ``barred``: topics and looks of questions that are not to be asked. Neither the order of candidates nor that of
+    objects or things changes the question, up to which of several alike it is.
+    """
+    every, never = questions(situation, candidates, kinds), frozenset(barred)
+    found = [question for question in every if never.isdisjoint((question.topic, question.look))]
+    return min(found, key=lambda q: (-round(q.bits, 9), round(q.effort, 9), q.text), default=None)
+
+
+def questions(
+    situation: Situation, candidates: Candidates, kinds: Collection[QuestionKind] = tuple(QuestionKind)
+) -> Iterator[Question]:
+    """Every question that resolves something, and that the description does not settle."""
+    marginals = _marginals(situation, candidates)
+    asked = [i for i in candidates.stand_ins if marginals[i].max() < 1 - 1e-12]
+    if QuestionKind.POINTING in kinds:
+        yield from (_pointing(i, marginals[i], situation) for i in asked)
+    if QuestionKind.IDENTITY in kinds:
+        yield from (
+            _identity(i, p, float(marginals[i, p]), situation)
+            for i in asked
+            for p in range(len(situation.things))
+            if 0 < marginals[i, p] < 1
+        )
+    if QuestionKind.RELATION in kinds:
+        for i, j in _pairs(asked, candidates, marginals, situation):
+            yield from _relations(i, j, candidates, situation)
+
+
+def _marginals(situation: Situation, candidates: Candidates) -> NDArray[np.float64]:
+    """The probability of each thing for each object (n1, n2 + 1); last, of its being left out."""
+    n1, n2 = len(situation.objects), len(situation.things)
+    found = np.zeros((n1, n2 + 1))
+    for i in range(n1):
+        column = candidates.assignments[:, i]
+        np.add.at(found[i], np.where(column == UNMATCHED, n2, column), candidates.weights)
+    for group in candidates.groups:
+        found[list(group)] = found[list(group)].mean(axis=0)
+    return found
+
+
+def _pairs(
+    asked: list[int], candidates: Candidates, marginals: NDArray[np.float64], situation: Situation
+) -> list[tuple[int, int]]:
+    """Pairs with an uncertain first object; both uncertain: by name. The least certain ones where there are many."""
+    uncertain = set(asked)
+    names, certainty = situation.objects, marginals.max(axis=1)
+    found = [
+        (i, j) for i in asked for j in candidates.stand_ins if i != j and (j not in uncertain or names[i] < names[j])
+    ]
+    found.sort(key=lambda pair: (round(certainty[pair[0]] + certainty[pair[1]], 9), names[pair[0]], names[pair[1]]))
+    return found[:MOST_PAIRS]
+
+
+def _pointing(i: int, marginal: NDArray[np.float64], situation: Situation) -> Question:
+    names = (*situation.things, ABSENT)
+    chances = {names[p]: float(marginal[p]) for p in np.flatnonzero(marginal)}
+    text = f"Which one is the {spoken(situation.objects[i])}?"
+    return _question(QuestionKind.POINTING, text, (i, None, -1, -1), chances, POINTING_EFFORT)
+
+
+def _identity(i: int, p: int, chance: float, situation: Situation) -> Question:
+    text = f"Is {situation.place(p)} the {spoken(situation.objects[i])}?"
+    effort = IDENTITY_EFFORT + (0.0 if situation.places[p] else ID_EFFORT)
+    return _question(QuestionKind.IDENTITY, text, (i, None, -1, p), {YES: chance, NO: 1 - chance}, effort)
+
+
+def _relations(i: int, j: int, candidates: Candidates, situation: Situation) -> Iterator[Question]:
+    pairs, joint, absent = _joint(i, j, candidates, len(situation.things))
+    degrees = situation.degrees.reshape(len(situation.relations), -1)[:, pairs]
+    yes, vague = (degrees > 0) @ joint, (degrees == 0.5) @ joint
+    apart = float(situation.apart.ravel()[pairs] @ joint)
+    subject, object = (spoken(situation.objects[k]) for k in (i, j))
+    for row, relation in enumerate(situation.relations):
+        if situation.settled[row, i, j]:
+            continue
+        chances = {YES: float(yes[row]), NO: max(0.0, 1 - absent - float(yes[row])), ABSENT: absent}
+        text = f"Is the {subject} {relation.phrase} the {object}?"
+        effort = RELATION_EFFORT + VAGUE_EFFORT * float(vague[row]) + APART_EFFORT * apart
+        effort += COMPOUND_EFFORT if relation.broader else 0.0
+        question = _question(QuestionKind.RELATION, text, (i, relation, j, -1), chances, effort)
+        if question.bits > 1e-9:
+            yield question
+
+
+def _joint(i: int, j: int, candidates: Candidates, n2: int) -> tuple[NDArray[np.int64], NDArray[np.float64], float]:
+    """The pairs of things (flat positions) that two objects can be, their probabilities, and that one is left out."""
+    rows = candidates.pinned((i, j))
+    p, q = rows.assignments[:, i], rows.assignments[:, j]
+    there = (p != UNMATCHED) & (q != UNMATCHED)
+    joint = np.bincount(p[there] * n2 + q[there], rows.weights[there], n2 * n2)
+    pairs = np.flatnonzero(joint)
+    return pairs.astype(np.int64), joint[pairs].astype(np.float64), float(rows.weights[~there].sum())
+
+
+def _question(
+    kind: QuestionKind,
+    text: str,
+    about: tuple[int, Relation | None, int, int],
+    chances: dict[str, float],
+    effort: float,
+) -> Question:
+    possible = {answer: chance for answer, chance in chances.items() if chance > 1e-12}
+    bits = -sum(chance * math.log2(chance) for chance in possible.values())
+    ordered = sorted(possible.items(), key=lambda item: (-round(item[1], 9), item[0]))
+    subject, relation, object, thing = about
+    most = math.log2(len(ordered))
+    return Question(kind, text, subject, relation, object, thing, tuple(ordered), min(max(bits, 0.0), most), effort)

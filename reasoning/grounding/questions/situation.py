@@ -1,0 +1,120 @@
+"""What questions can be about: described objects, perceived things, what relates them, and what is already said."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.ontology.graph import RelationGraph
+from deixis.ontology.relation import Reading, Relation
+from deixis.reasoning.entailment.implications import Implications
+from deixis.reasoning.errors import SettingError
+from deixis.reasoning.grounding.evidence.evidence import exact_names
+
+PLACES = (
+    ("at the far left", 0, -1),
+    ("at the far right", 0, 1),
+    ("nearest to the viewer", 1, -1),
+    ("farthest from the viewer", 1, 1),
+)
+
+PLAINLY = 0.02
+"""The share of all that is seen by which something reaches farther than all else."""
+
+
+@dataclass(frozen=True, eq=False)
+class Situation:
+    """n1 objects, n2 things, and the R relations in their wide reading that questions may use."""
+
+    objects: tuple[str, ...]  # (n1,)
+    things: tuple[str, ...]  # (n2,)
+    relations: tuple[Relation, ...]  # (R,)
+    degrees: NDArray[np.float64]  # (R, n2, n2): 1 the pair's exact name, 0.5 holds only widely, 0 does not hold
+    settled: NDArray[np.bool_]  # (R, n1, n1): the script says, implies or rules it out
+    centres: NDArray[np.float64]  # (n2, 2)
+    places: tuple[str | None, ...]  # (n2,): how the thing can be told by its place, where it can
+
+    @cached_property
+    def apart(self) -> NDArray[np.float64]:
+        """How far apart two things lie, as a share of the largest distance, shape (n2, n2)."""
+        distance = np.linalg.norm(self.centres[:, None] - self.centres[None], axis=2)
+        share: NDArray[np.float64] = distance / max(float(distance.max(initial=0.0)), 1e-300)
+        return share
+
+    def place(self, thing: int) -> str:
+        """How a thing is called in a question: by its place with its id, or by its id alone."""
+        where = self.places[thing]
+        return f"the thing {where} ({self.things[thing]})" if where else f"the thing {self.things[thing]}"
+
+
+def situation_of(description: RelationGraph, scene: RelationGraph) -> Situation:
+    """What a description and a scene give to ask about; ``scene`` has boxes and one exact name a pair.
+
+    Raises GraphError for a scene of which that is not so.
+    """
+    if scene.boxes is None:
+        raise SettingError("questions are about perceived things with boxes, and the scene's graph has none")
+    relations = description.vocabulary.of_reading(Reading.WIDE)
+    names = exact_names(scene)
+    table = np.concatenate([description.vocabulary.degrees, np.zeros((len(description.vocabulary), 1))], axis=1)
+    degrees = np.stack([table[relation.index][names] for relation in relations])
+    centres = scene.boxes.mean(axis=1)[:, :2]
+    settled = _settled(description, relations)
+    return Situation(description.nodes, scene.nodes, relations, degrees, settled, centres, _places(scene.boxes))
+
+
+def _settled(description: RelationGraph, relations: tuple[Relation, ...]) -> NDArray[np.bool_]:
+    """What is known of every ordered pair of objects: what holds in all pictures, and what that excludes."""
+    n = len(description.nodes)
+    implied = Implications(description)
+    holds = np.zeros((len(relations), n, n), dtype=bool)
+    for row, relation in enumerate(relations):
+        pairs = implied.pairs(relation)
+        holds[row, pairs[:, 0], pairs[:, 1]] = True
+    denied = np.zeros_like(holds)
+    for edge in implied.demands.firm.tolist():
+        said, subject, object = (
+            int(array[edge]) for array in (description.relation_sets, description.subjects, description.objects)
+        )
+        for row, relation in enumerate(relations):
+            if said & relation.bit and not description.positive[edge]:
+                denied[row, subject, object] = True
+            elif said == relation.bit:
+                holds[row, subject, object] = True
+    excluded = np.array([[_exclude(a, b) for b in relations] for a in relations])
+    ruled_out: NDArray[np.bool_] = np.einsum("ab,bij->aij", excluded.astype(np.int64), holds.astype(np.int64)) > 0
+    backwards = [relations.index(description.vocabulary[relation.inverse]) for relation in relations]
+    known: NDArray[np.bool_] = holds | ruled_out | denied
+    both: NDArray[np.bool_] = known | known[backwards].transpose(0, 2, 1)
+    return both
+
+
+def _exclude(a: Relation, b: Relation) -> bool:
+    """Whether no pair of boxes bears both."""
+    return a.x_atoms & b.x_atoms == 0 or a.y_atoms & b.y_atoms == 0
+
+
+def _places(boxes: NDArray[np.float64]) -> tuple[str | None, ...]:
+    """The one of boxes (n, 2, d) that reaches farthest each way, and plainly so; one that does in two ways is told by
+    the first."""
+    found: list[str | None] = [None] * len(boxes)
+    for words, axis, side in PLACES:
+        reach = side * boxes[:, (1 + side) // 2, axis]
+        if len(reach) > 1:
+            order = np.argsort(-reach, kind="stable")
+            if reach[order[0]] - reach[order[1]] > PLAINLY * np.ptp(boxes[:, :, axis]) and found[order[0]] is None:
+                found[order[0]] = words
+    return tuple(found)
+
+
+def spoken(name: str) -> str:
+    """An object's name as it is said: ``salad_fork`` is "salad fork".
+
+    >>> spoken("wine_glass_2")
+    'wine glass 2'
+    """
+    return re.sub(r"_+", " ", name).strip() or name

@@ -1,0 +1,360 @@
+"""Viewpoints: the side from which a description speaks, recovered together with the matches, and matches averaged over
+sides.
+
+A *viewpoint* is how far the scene has to be turned, and whether it has to be mirrored, so that left is what the speaker
+calls left. For each the matching problem is built anew; its log evidence is the logarithm of the sum over all maps of
+the exponential of their values, as far as maps can be listed. With a prior (uniform over the circle; mirrored with
+probability ``MIRROR_PRIOR``, for speakers do not often stand behind a mirror) that is a posterior.
+
+Quarter turns are exact. For any other angle centres are turned exactly; extents are those of the thing of which the box
+is the enclosing box, on the assumption that things lie parallel to the speaker's axes: of a rectangle w by h that is
+turned by t, the enclosing box has W + H = (w + h)(|cos t| + |sin t|) and W - H = (w - h)(|cos t| - |sin t|). Boxes that
+are about square are taken for round things, whose box does not change. At an eighth of a turn a long thing is square,
+too, and cannot be told from a round one.
+
+The probability of a match is the sum over sides of p(side) p(match | side): what holds from a side that is itself
+doubtful is no more probable than the side.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.reasoning.geometry.rectangle import require_boxes
+from deixis.reasoning.grounding.engines import Alignment, Engine
+from deixis.reasoning.grounding.evidence.evidence import Evidence
+from deixis.reasoning.grounding.matching.posterior import Posterior, posterior
+from deixis.reasoning.grounding.matching.problem import Problem
+
+Array = NDArray[np.float64]
+
+MIRROR_PRIOR = 0.05
+COARSE = 24  # angles that are tried at first: every 15 degrees
+FINE = 5  # by how much the grid is finer where it is worth it
+WORTH = 6.0  # nats below the best, within which an angle is looked at finely
+ROUND = 0.05  # |W - H| / (W + H) below which a box is taken for that of a round thing
+HOPELESS = 12.0  # nats by which its best map lags behind, beyond which a viewpoint's other maps are not listed
+MARGIN = 4.0  # nats below the best, within which maps are listed
+LISTED = 300  # maps at the most
+TIE = 1e-6  # nats within which a description cannot tell
+
+
+@dataclass(frozen=True, eq=False)
+class Viewpoint:
+    """Turn the scene by ``angle`` (radians, counter-clockwise, 0 to 2 pi), having mirrored left and right if so.
+
+    ``log_evidence`` is in nats; ``assignment`` (n1,) is the best map as seen from there. ``concentration`` is the mean
+    resultant length of the angles that were taken together (Mardia and Jupp 2000, 2.3): 1 for a single one, 0 where
+    they are the whole circle, so that their mean says nothing.
+    """
+
+    angle: float
+    mirrored: bool
+    probability: float
+    log_evidence: float
+    assignment: NDArray[np.int64]
+    concentration: float = 1.0
+
+
+@dataclass(frozen=True, eq=False)
+class Viewpoints:
+    """All viewpoints that were told apart, most probable first.
+
+    ``ties`` are those for which the description speaks as much as for the first, itself among them: where there are
+    several, the words cannot tell, and only the prior chooses. ``exact``: every log evidence counts all maps within the
+    margin; if not, it is a lower bound. ``everywhere``: there was time to look from every side.
+    """
+
+    viewpoints: tuple[Viewpoint, ...]
+    exact: bool
+    everywhere: bool = True
+
+    @property
+    def best(self) -> Viewpoint:
+        return self.viewpoints[0]
+
+    @property
+    def ties(self) -> tuple[Viewpoint, ...]:
+        best = self.best.log_evidence
+        return tuple(view for view in self.viewpoints if abs(view.log_evidence - best) <= TIE)
+
+
+def turned(boxes: Array, angle: float, mirrored: bool = False) -> Array:
+    """Boxes (n, 2, d) as seen when the scene is turned about the origin; heights stay. Raises GraphError for none.
+
+    >>> cup = np.array([[[1.0, 0.0], [3.0, 1.0]]])
+    >>> turned(cup, math.pi / 2).tolist()
+    [[[-1.0, 1.0], [0.0, 3.0]]]
+    """
+    require_boxes(boxes)
+    quarters = angle / (math.pi / 2)
+    low, high = boxes[:, 0, :2], boxes[:, 1, :2]
+    if mirrored:
+        flip = np.array([-1.0, 1.0])
+        low, high = np.minimum(low * flip, high * flip), np.maximum(low * flip, high * flip)
+    if abs(quarters - round(quarters)) < 1e-9:
+        low, high = _quarter_turned(low, high, round(quarters) % 4)
+    else:
+        low, high = _freely_turned(low, high, angle)
+    result = boxes.astype(np.float64, copy=True)
+    result[:, 0, :2], result[:, 1, :2] = low, high
+    return result
+
+
+def _quarter_turned(low: Array, high: Array, quarters: int) -> tuple[Array, Array]:
+    for _ in range(quarters):
+        low, high = np.stack([-high[:, 1], low[:, 0]], axis=1), np.stack([-low[:, 1], high[:, 0]], axis=1)
+    return low + 0.0, high + 0.0  # no negative zeros
+
+
+def _freely_turned(low: Array, high: Array, angle: float) -> tuple[Array, Array]:
+    cos, sin = math.cos(angle), math.sin(angle)
+    centres = (low + high) / 2 @ np.array([[cos, sin], [-sin, cos]])
+    width, height = (high - low).T
+    total, difference = width + height, width - height
+    spread, contrast = abs(cos) + abs(sin), abs(cos) - abs(sin)
+    sum_, limit = total / spread, total / spread
+    apart = np.clip(difference / contrast, -limit, limit) if abs(contrast) > 1e-9 else np.zeros(len(total))
+    oblong = np.abs(difference) > ROUND * total
+    extents = np.stack([sum_ + apart, sum_ - apart], axis=1) / 2
+    halves = np.where(oblong[:, None], extents, np.stack([width, height], axis=1)) / 2
+    return centres - halves, centres + halves
+
+
+def recover_viewpoint(
+    boxes: Array,
+    problem_of: Callable[[Array], Problem],
+    *,
+    any_angle: bool = False,
+    mirror: bool = True,
+    deadline: float = math.inf,
+) -> Viewpoints:
+    """The posterior over viewpoints, quarter turns or (``any_angle``) any, until ``deadline`` (``time.perf_counter``).
+
+    The scene is first looked at as it stands, deadline or not, then quarter turned, then from the other sides. Sides
+    for which there was no time are taken to be as likely, but for the prior, as the best that was looked from.
+
+    ``problem_of`` builds the matching problem from boxes (n2, 2, d) as seen from a viewpoint; its values have to be
+    log-likelihood ratios, comparable between viewpoints. Raises GraphError for boxes that are none.
+    """
+    require_boxes(boxes)
+    sides = (False, True) if mirror else (False,)
+    count = COARSE if any_angle else 4
+    tried = [_Tried(step * 2 * math.pi / count, side, 1 / count) for side in sides for step in range(count)]
+    tried.sort(key=lambda one: one.angle % (math.pi / 2) > 1e-9)
+    look = _Looker(boxes, problem_of, deadline)
+    looked = look.at(tried)
+    not_looked = tried[len(looked) :]
+    everywhere = not not_looked
+    if any_angle:
+        looked, closely = look.closer(looked)
+        everywhere = everywhere and closely
+    modes = _modes(looked) if any_angle else [[one] for one in looked]
+    found = [_viewpoint(mode, mirror) for mode in modes]
+    unseen = [math.log(_prior(one.mirrored, mirror) * one.share) for one in not_looked]
+    best = max(view.log_evidence for view, _ in found)
+    total = _log_sum([score for _, score in found] + [best + prior for prior in unseen])
+    views = [replace(view, probability=math.exp(score - total)) for view, score in found]
+    views.sort(key=lambda view: (-round(view.probability, 9), view.mirrored, view.angle))
+    return Viewpoints(tuple(views), everywhere and all(one.complete for one in looked), everywhere)
+
+
+@dataclass(frozen=True)
+class _Tried:
+    """An angle that stands for a share of the circle."""
+
+    angle: float
+    mirrored: bool
+    share: float
+
+
+@dataclass(frozen=True, eq=False)
+class _Looked:
+    tried: _Tried
+    log_evidence: float
+    assignment: NDArray[np.int64]
+    complete: bool
+
+
+@dataclass(frozen=True, eq=False)
+class _Looker:
+    boxes: Array
+    problem_of: Callable[[Array], Problem]
+    deadline: float
+
+    def at(self, tried: Sequence[_Tried]) -> list[_Looked]:
+        """The best map of each until the deadline; where that is not hopeless, the evidence of all maps.
+
+        Each has its share of the time that is left, lest the first search takes it all; the first is always looked at.
+        """
+        found: list[tuple[_Looked, Problem]] = []
+        for one in tried:
+            if found and self.left <= 0:
+                break
+            problem = self.problem_of(turned(self.boxes, one.angle, one.mirrored))
+            found.append((self._best(one, problem, self.left / (len(tried) - len(found))), problem))
+        most = max(one.log_evidence for one, _ in found)
+        return [self._listed(one, problem) if one.log_evidence >= most - HOPELESS else one for one, problem in found]
+
+    @property
+    def left(self) -> float:
+        """Seconds to the deadline."""
+        return self.deadline - time.perf_counter()
+
+    def _best(self, one: _Tried, problem: Problem, seconds: float) -> _Looked:
+        from deixis.reasoning.grounding.matching.exact import exact
+
+        best = exact(problem, time.perf_counter() + seconds)
+        return _Looked(one, best.value, best.assignment, best.proved)
+
+    def _listed(self, one: _Looked, problem: Problem) -> _Looked:
+        from deixis.reasoning.grounding.matching.exact import maps_within
+
+        if self.left <= 0:
+            return replace(one, complete=False)
+        maps = maps_within(problem, MARGIN, self.deadline, limit=LISTED)
+        return _Looked(one.tried, _log_sum(maps.values.tolist()), maps.assignments[0], maps.complete)
+
+    def closer(self, looked: Sequence[_Looked]) -> tuple[list[_Looked], bool]:
+        """Every angle that is worth it replaced by finer ones over the same arc, and whether there was time for all."""
+        best = max(one.log_evidence for one in looked)
+        worth = [one.tried for one in looked if one.log_evidence >= best - WORTH]
+        if self.left <= 0:
+            return list(looked), False
+        fine = [finer for one in worth for finer in _finer(one)]
+        seen = self.at(fine)
+        done = len(seen) // FINE  # an arc of which not all was seen is left as it was
+        replaced = {id(one) for one in worth[:done]}
+        kept = [one for one in looked if id(one.tried) not in replaced]
+        return kept + seen[: done * FINE], len(seen) == len(fine)
+
+
+def _finer(one: _Tried) -> list[_Tried]:
+    """The angles of a finer grid over the same arc."""
+    share = one.share / FINE
+    angles = [one.angle + (k - (FINE - 1) / 2) * 2 * math.pi * share for k in range(FINE)]
+    return [_Tried(angle % (2 * math.pi), one.mirrored, share) for angle in angles]
+
+
+def _modes(looked: Sequence[_Looked]) -> list[list[_Looked]]:
+    """Neighbouring angles that are one viewpoint: those on the slopes of one peak, or with one best map."""
+    modes: list[list[_Looked]] = []
+    for side in (False, True):
+        ring = sorted((one for one in looked if one.tried.mirrored is side), key=lambda one: one.tried.angle)
+        groups: dict[int, list[_Looked]] = {}
+        for home, one in zip(_homes(ring), ring, strict=True):
+            groups.setdefault(home, []).append(one)
+        modes += groups.values()
+    return modes
+
+
+def _homes(ring: list[_Looked]) -> list[int]:
+    """For each angle of a circle the number of its group."""
+    n = len(ring)
+    homes = list(range(n))
+    for i in range(n):
+        after, before = (i + 1) % n, (i - 1) % n
+        higher = max((before, after), key=lambda j: round(ring[j].log_evidence, 9))
+        joined = [after] if np.array_equal(ring[i].assignment, ring[after].assignment) else []
+        joined += [higher] if ring[higher].log_evidence >= ring[i].log_evidence - TIE else []
+        for j in joined:
+            old, new = homes[j], homes[i]
+            homes = [new if home == old else home for home in homes]
+    return homes
+
+
+def _viewpoint(mode: list[_Looked], mirror: bool) -> tuple[Viewpoint, float]:
+    """A peak as one viewpoint at its mean angle, and the logarithm of its prior times its evidence."""
+    prior = _prior(mode[0].tried.mirrored, mirror)
+    peak = max(mode, key=lambda one: (round(one.log_evidence, 9), -one.tried.angle))
+    shares = [one.log_evidence + math.log(one.tried.share) for one in mode]
+    score = _log_sum(shares) + math.log(prior)
+    angle, concentration = _mean_angle(mode)
+    view = Viewpoint(angle, peak.tried.mirrored, 0.0, peak.log_evidence, peak.assignment, concentration)
+    return view, score
+
+
+def _prior(mirrored: bool, mirror: bool) -> float:
+    """Of a side of the mirror, where ``mirror`` leaves the choice."""
+    return (MIRROR_PRIOR if mirrored else 1 - MIRROR_PRIOR) if mirror else 1.0
+
+
+def _mean_angle(mode: list[_Looked]) -> tuple[float, float]:
+    """The circular mean by evidence and the mean resultant length; of a single angle just that, and 1."""
+    if len(mode) == 1:
+        return mode[0].tried.angle, 1.0
+    most = max(one.log_evidence for one in mode)
+    weights = np.array([one.tried.share * math.exp(one.log_evidence - most) for one in mode])
+    angles = np.array([one.tried.angle for one in mode])
+    x, y = float(weights @ np.cos(angles)), float(weights @ np.sin(angles))
+    return round(math.atan2(y, x), 12) % (2 * math.pi), math.hypot(x, y) / float(weights.sum())
+
+
+def _log_sum(values: Sequence[float]) -> float:
+    most = max(values, default=-math.inf)
+    return most + math.log(sum(math.exp(value - most) for value in values)) if most > -math.inf else most
+
+
+FIRST = 0.5
+"""Share of the time for the likeliest side, which is all the answer where there is no time for others."""
+
+
+@dataclass(frozen=True, eq=False)
+class OtherSide:
+    """How probable another side is, and the same description beside the scene as seen from there."""
+
+    probability: float
+    evidence: Evidence
+
+
+@dataclass(frozen=True, eq=False)
+class FromSides:
+    """An engine that aligns as seen from the side of its evidence, which has a ``probability``, with the ``others``."""
+
+    engine: Engine
+    probability: float
+    others: tuple[OtherSide, ...]
+
+    def align(self, evidence: Evidence, deadline: float) -> Alignment:
+        now = time.perf_counter()
+        found = self.engine.align(evidence, now + FIRST * (deadline - now))
+        if found.posterior is None or not self.others:
+            return found
+        parts = [(self.probability, found.posterior), *self._others(evidence, deadline)]
+        looked = sum(share for share, _ in parts)
+        note = f"a match is as probable as from all sides looked from: {len(parts)}, together {looked:.2f} probable"
+        return replace(found, posterior=_mixed(parts), sides=len(parts), notes=(*found.notes, note))
+
+    def _others(self, evidence: Evidence, deadline: float) -> list[tuple[float, Posterior]]:
+        """From each other side, as far as the time allows: its probability, and what it makes of the matches."""
+        found = []
+        for number, side in enumerate(self.others):
+            now = time.perf_counter()
+            if now > deadline:
+                break
+            seen = side.evidence.reordered(*_as_in(evidence, side.evidence)).problem
+            there = posterior(seen, now + (deadline - now) / (len(self.others) - number))
+            if np.isfinite(there.error):
+                found.append((side.probability, there))
+        return found
+
+
+def _mixed(parts: list[tuple[float, Posterior]]) -> Posterior:
+    """The sum by probabilities; sides that nobody looked from add nothing, so that it is at least so probable."""
+    marginals = np.sum([share * there.marginals for share, there in parts], axis=0)
+    return Posterior(
+        marginals, all(there.exact for _, there in parts), sum(share * there.error for share, there in parts)
+    )
+
+
+def _as_in(evidence: Evidence, other: Evidence) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Where the objects and the things of one evidence stand in another."""
+    rows = [other.description.index(name) for name in evidence.description.nodes]
+    columns = [other.scene.index(name) for name in evidence.scene.nodes]
+    return np.array(rows, dtype=np.int64), np.array(columns, dtype=np.int64)

@@ -1,1 +1,0 @@
-"""The rules of OWL 2 RL, applied to facts until nothing new follows."""

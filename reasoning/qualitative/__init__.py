@@ -1,0 +1,1 @@
+"""Qualitative reasoning: calculi, constraint networks over them, and the relations of boxes in each."""

@@ -1,0 +1,232 @@
+"""Bridges between calculi: what a relation in one says of the same two things in another.
+
+Each follows from the geometry of what is related: boxes with sides along the axes, their centres, and regions of which
+they are the bounding boxes.
+
+:mod:`deixis.reasoning.qualitative.calculi.bridges` has them; these are the ones that apply to any network.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cache, cached_property
+from itertools import combinations, product
+from typing import Protocol, cast
+
+import numpy as np
+
+from deixis.ontology.allen import Allen
+from deixis.reasoning.geometry.allen import allen_relations
+from deixis.reasoning.qualitative.calculi.calculus import Calculus, ProductCalculus, bits
+from deixis.reasoning.qualitative.calculi.distance import SAME
+from deixis.reasoning.qualitative.calculi.registry import calculus
+
+
+@dataclass(frozen=True, eq=False)
+class Bridge:
+    """For each atom of ``source`` the relation of ``target`` that two things which bear it may have.
+
+    An atom is admitted just where some two things bear both, so that nothing is lost that the pair alone could tell.
+    """
+
+    source: Calculus
+    target: Calculus
+    admits: tuple[int, ...]
+
+    def forward(self, relation: int) -> int:
+        """What a relation of the source leaves of the target."""
+        mask = 0
+        for code in bits(relation):
+            mask |= self.admits[code]
+        return mask
+
+    def backward(self, relation: int) -> int:
+        """What a relation of the target leaves of the source."""
+        return sum(1 << code for code, admitted in enumerate(self.admits) if admitted & relation)
+
+    @cached_property
+    def inverse(self) -> Bridge:
+        """The same from the other side."""
+        admits = tuple(self.backward(1 << code) for code in range(len(self.target.atoms)))
+        return Bridge(self.target, self.source, admits)
+
+
+@cache
+def boxes_to_directions() -> Bridge:
+    """Rectangle algebra to cardinal directions: where the centre of one box lies from that of the other.
+
+    >>> bridge = boxes_to_directions()
+    >>> bridge.target.members(bridge.forward(bridge.source.relation(["<,d"])))
+    ('SW', 'W', 'NW')
+    """
+    source, target = _product("ra"), _product("cd")
+    orders = _orders_of_centres()
+    admits = tuple(target.of_axes([orders[x], orders[y]]) for x, y in product(range(13), repeat=2))
+    return Bridge(source, target, admits)
+
+
+@cache
+def boxes_to_regions() -> Bridge:
+    """Rectangle algebra to RCC-8 where the regions are the boxes themselves: one atom each.
+
+    >>> bridge = boxes_to_regions()
+    >>> bridge.target.members(bridge.forward(bridge.source.relation(["d,d", "d,s", "<,="])))
+    ('DC', 'TPP', 'NTPP')
+    """
+    return _to_regions(_of_boxes)
+
+
+@cache
+def bounds_to_regions() -> Bridge:
+    """Rectangle algebra to RCC-8 where the boxes are the bounding boxes of the regions, each in one piece.
+
+    Regions are bounded and regular closed. In one piece, each reaches from side to side of its box, so that two must
+    meet where the one box spans the other on x and is spanned by it on y. (For what combining the two calculi takes:
+    Li and Cohn 2012.)
+
+    >>> bridge = bounds_to_regions()
+    >>> bridge.target.members(bridge.forward(bridge.source.relation(["d,d"])))
+    ('DC', 'EC', 'PO', 'TPP', 'NTPP')
+    >>> bridge.target.members(bridge.forward(bridge.source.relation(["=,="])))
+    ('EC', 'PO', 'TPP', 'TPPI', 'EQ')
+    """
+    return _to_regions(_of_bounds)
+
+
+@cache
+def directions_to_distances() -> Bridge:
+    """Cardinal directions to distance: ``EQ`` just where ``same``."""
+    source, target = calculus("cd"), calculus("distance")
+    here = target.relation([SAME])
+    admits = [target.universal & ~here] * len(source.atoms)
+    admits[source.identity] = here
+    return Bridge(source, target, tuple(admits))
+
+
+@cache
+def joint_to_directions() -> Bridge:
+    """The joint calculus of direction and distance to its directions."""
+    return _part(0, "cd")
+
+
+@cache
+def joint_to_distances() -> Bridge:
+    """The joint calculus of direction and distance to its distances."""
+    return _part(1, "distance")
+
+
+@cache
+def names_to_boxes() -> Bridge:
+    """The ten names to the rectangle algebra: the atoms that each admits."""
+    from deixis.ontology.tbox import default_ontology
+    from deixis.reasoning.qualitative.calculi.ten import named_parts
+
+    return Bridge(calculus("ten"), calculus("ra"), tuple(named_parts(default_ontology().relations).values()))
+
+
+def to_ra(names: int) -> int:
+    """A relation of ``ten`` as one of the rectangle algebra, which decides it.
+
+    >>> calculus("ra").members(to_ra(calculus("ten").relation(["top_left"])))
+    ('<,mi', '<,>', 'm,mi', 'm,>')
+    """
+    return names_to_boxes().forward(names)
+
+
+def _product(name: str) -> ProductCalculus:
+    return cast(ProductCalculus, calculus(name))
+
+
+def _orders_of_centres() -> list[int]:
+    """For each Allen relation the orders of the two middles; intervals between six points show all of them."""
+    ends = np.array(list(combinations(range(6), 2)), dtype=np.float64)
+    low, high = ends.T
+    codes = allen_relations(low[:, None], high[:, None], low[None, :], high[None, :])
+    middles = low + high
+    orders = 1 + np.sign(middles[:, None] - middles[None, :]).astype(int)
+    return [sum(1 << int(order) for order in np.unique(orders[codes == code])) for code in range(13)]
+
+
+def _part(position: int, name: str) -> Bridge:
+    source, target = calculus("direction-distance"), calculus(name)
+    admits = tuple(1 << target.code(atom.split(",")[position]) for atom in source.atoms)
+    return Bridge(source, target, admits)
+
+
+_INSIDE = frozenset({Allen.STARTS, Allen.EQUALS, Allen.DURING, Allen.FINISHES})
+_AROUND = frozenset(relation.converse for relation in _INSIDE)
+
+
+def _to_regions(connected: Callable[[Allen, Allen], tuple[str, ...]]) -> Bridge:
+    target = calculus("rcc8")
+    return Bridge(calculus("ra"), target, tuple(target.relation(connected(x, y)) for x, y in product(Allen, repeat=2)))
+
+
+def _of_boxes(x: Allen, y: Allen) -> tuple[str]:
+    axes = {x, y}
+    if axes & {Allen.BEFORE, Allen.AFTER}:
+        return ("DC",)
+    if axes & {Allen.MEETS, Allen.MET_BY}:
+        return ("EC",)
+    if axes == {Allen.EQUALS}:
+        return ("EQ",)
+    if axes <= _INSIDE:
+        return ("NTPP",) if axes == {Allen.DURING} else ("TPP",)
+    if axes <= _AROUND:
+        return ("NTPPI",) if axes == {Allen.CONTAINS} else ("TPPI",)
+    return ("PO",)
+
+
+def _of_bounds(x: Allen, y: Allen) -> tuple[str, ...]:
+    boxes = _of_boxes(x, y)[0]
+    if boxes == "DC":
+        return ("DC",)
+    if boxes == "EC":
+        return ("DC", "EC")
+    crossing = (x in _AROUND and y in _INSIDE) or (x in _INSIDE and y in _AROUND)
+    within = {"NTPP": ("TPP", "NTPP"), "NTPPI": ("TPPI", "NTPPI"), "EQ": ("TPP", "TPPI", "EQ"), "PO": ()}
+    return (*(() if crossing else ("DC",)), "EC", "PO", *within.get(boxes, (boxes,)))
+
+
+class Link(Protocol):
+    """What the atoms of one calculus admit of another's."""
+
+    @property
+    def source(self) -> Calculus:
+        """The calculus that is read."""
+        ...
+
+    @property
+    def target(self) -> Calculus:
+        """The calculus that is narrowed."""
+        ...
+
+    def forward(self, relation: int) -> int:
+        """The target's atoms that some atom of a source relation admits."""
+        ...
+
+    def backward(self, relation: int) -> int:
+        """The source's atoms that admit some atom of a target relation."""
+        ...
+
+
+def links_between(calculi: Sequence[Calculus]) -> tuple[Link, ...]:
+    """The bridges between any two of some calculi; regions of RCC-8 have the boxes as their bounding boxes.
+
+    >>> from deixis.reasoning.qualitative.calculi.registry import calculus
+    >>> [(link.source.name, link.target.name) for link in links_between([calculus("rcc8"), calculus("ra")])]
+    [('ra', 'rcc8')]
+    """
+    from deixis.reasoning.qualitative.calculi import bridges
+
+    known = {
+        frozenset(("ra", "cd")): bridges.boxes_to_directions,
+        frozenset(("ra", "rcc8")): bridges.bounds_to_regions,
+        frozenset(("ten", "ra")): bridges.names_to_boxes,
+        frozenset(("cd", "distance")): bridges.directions_to_distances,
+        frozenset(("direction-distance", "cd")): bridges.joint_to_directions,
+        frozenset(("direction-distance", "distance")): bridges.joint_to_distances,
+    }
+    pairs = (frozenset((a.name, b.name)) for a, b in combinations(calculi, 2))
+    return tuple(known[pair]() for pair in pairs if pair in known)

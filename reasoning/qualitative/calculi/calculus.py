@@ -1,0 +1,304 @@
+"""Qualitative calculi as data: atoms, converse and composition (Ligozat and Renz 2004), and calculi whose atoms are
+unions of another's.
+
+A *relation* is a set of atoms, written as an integer: bit *i* stands for atom *i*. The atoms are jointly exhaustive and
+pairwise disjoint, so that the empty relation (0) is a contradiction and the universal one says nothing.
+
+Two kinds: a :class:`TableCalculus` states its composition in a table; a :class:`ProductCalculus` relates things on
+several independent axes at once, and composes axis by axis. The rectangle algebra is the product of two Allen algebras.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from itertools import product
+from math import prod
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.ontology.relation import nearest
+from deixis.reasoning.errors import UnknownAtomError
+
+Pieces = Callable[[int], tuple[int, ...]]
+"""Splits a relation into relations of a tractable subclass, of which it is the union."""
+
+
+def bits(relation: int) -> Iterator[int]:
+    """The positions of the atoms in a relation, least first.
+
+    >>> list(bits(0b1010))
+    [1, 3]
+    """
+    while relation:
+        low = relation & -relation
+        yield low.bit_length() - 1
+        relation ^= low
+
+
+class Calculus(ABC):
+    """What reasoning needs of any calculus."""
+
+    name: str
+    atoms: tuple[str, ...]
+    identity: int  # the code of the atom that everything bears to itself
+    aliases: Mapping[str, str]  # other signs, to this calculus's
+    any_case: bool  # whether signs are read in upper and lower case alike
+    decided_by_closure: bool
+    """Whether a closed network of tractable relations is consistent. Where it is False even a closed network of atoms
+    may be inconsistent: closure still refutes, and proves nothing (Renz and Ligozat 2005)."""
+
+    @property
+    @abstractmethod
+    def factors(self) -> tuple[TableCalculus, ...]:
+        """The calculi of the single axes; just itself for a table calculus."""
+
+    @abstractmethod
+    def converse(self, relation: int) -> int:
+        """The relation of b to a where ``relation`` is that of a to b."""
+
+    @abstractmethod
+    def compose(self, first: int, second: int) -> int:
+        """The weak composition: the atoms that a may bear to c where a ``first`` b and b ``second`` c."""
+
+    @abstractmethod
+    def pieces(self, relation: int) -> tuple[int, ...]:
+        """A split of the relation into tractable ones: one piece says that it is tractable; none, that it is empty."""
+
+    @property
+    def universal(self) -> int:
+        """The relation that says nothing."""
+        return (1 << len(self.atoms)) - 1
+
+    @cached_property
+    def _codes(self) -> dict[str, int]:
+        codes = {atom: code for code, atom in enumerate(self.atoms)}
+        codes |= {alias: codes[atom] for alias, atom in self.aliases.items()}
+        return {sign.casefold(): code for sign, code in codes.items()} | codes if self.any_case else codes
+
+    def code(self, atom: str) -> int:
+        """The code of an atom by its sign or an alias; raises UnknownAtomError with the nearest sign."""
+        found = self._codes.get(atom)
+        if found is None and self.any_case:
+            found = self._codes.get(atom.casefold())
+        if found is None:
+            hint = nearest(atom, self._codes)
+            raise UnknownAtomError(
+                f"{self.name} has no relation '{atom}'"
+                + (f"; did you mean '{hint}'?" if hint else f"; it has {_listed(self.atoms)}")
+            )
+        return found
+
+    def relation(self, atoms: Iterable[str]) -> int:
+        """The relation that holds these atoms."""
+        mask = 0
+        for atom in atoms:
+            mask |= 1 << self.code(atom)
+        return mask
+
+    def members(self, relation: int) -> tuple[str, ...]:
+        """The signs of a relation's atoms, in the order of their codes."""
+        return tuple(self.atoms[code] for code in bits(relation))
+
+
+@dataclass(frozen=True, eq=False)
+class TableCalculus(Calculus):
+    """A calculus of k atoms, at most 64, by its tables."""
+
+    name: str
+    atoms: tuple[str, ...]
+    converses: NDArray[np.int64]  # (k,): the code of each atom's converse
+    composition: NDArray[np.uint64]  # (k, k): bit masks of atoms; row: a to b, column: b to c
+    identity: int
+    aliases: Mapping[str, str] = field(default_factory=dict)
+    any_case: bool = False
+    split: Pieces | None = None  # None: every relation is tractable
+    decided_by_closure: bool = True
+    source: str = ""  # where the tables and the tractable subclass come from
+
+    @property
+    def factors(self) -> tuple[TableCalculus, ...]:
+        return (self,)
+
+    @cached_property
+    def _table(self) -> list[list[int]]:
+        table: list[list[int]] = self.composition.tolist()
+        return table
+
+    def converse(self, relation: int) -> int:
+        mask = 0
+        for code in bits(relation):
+            mask |= 1 << int(self.converses[code])
+        return mask
+
+    def compose(self, first: int, second: int) -> int:
+        mask = 0
+        for i in bits(first):
+            row = self._table[i]
+            for j in bits(second):
+                mask |= row[j]
+        return mask
+
+    def pieces(self, relation: int) -> tuple[int, ...]:
+        if not relation:
+            return ()
+        return (relation,) if self.split is None else self.split(relation)
+
+
+@dataclass(frozen=True, eq=False)
+class ProductCalculus(Calculus):
+    """Several calculi at once, one an axis; an atom is one atom of each, and its code counts the last axis fastest.
+
+    ``signs`` are names of its own for the atoms, by code; without them, and beside them, an atom is written as those of
+    its axes with a comma between: ``<,m``.
+    """
+
+    name: str
+    axes: tuple[TableCalculus, ...]
+    signs: tuple[str, ...] = ()
+    aliases: Mapping[str, str] = field(default_factory=dict)
+    any_case: bool = False
+    source: str = ""
+
+    @property
+    def factors(self) -> tuple[TableCalculus, ...]:
+        return self.axes
+
+    @property
+    def decided_by_closure(self) -> bool:  # type: ignore[override]
+        return all(axis.decided_by_closure for axis in self.axes)
+
+    @cached_property
+    def atoms(self) -> tuple[str, ...]:  # type: ignore[override]
+        return self.signs or tuple(",".join(signs) for signs in product(*(axis.atoms for axis in self.axes)))
+
+    @cached_property
+    def identity(self) -> int:  # type: ignore[override]
+        return self.code_of([axis.identity for axis in self.axes])
+
+    def code(self, atom: str) -> int:
+        signs = [sign.strip() for sign in atom.strip("()").split(",")]
+        if self.signs and len(signs) == 1:
+            return super().code(atom)
+        if len(signs) != len(self.axes):
+            example = ",".join(axis.atoms[0] for axis in self.axes)
+            raise UnknownAtomError(
+                f"{self.name} has no relation '{atom}': write one sign for each of its {len(self.axes)} axes, "
+                f"like '{example}'"
+            )
+        return self.code_of([axis.code(sign) for axis, sign in zip(self.axes, signs, strict=True)])
+
+    def code_of(self, codes: Sequence[int]) -> int:
+        """The atom's code from the codes on the axes."""
+        total = 0
+        for axis, code in zip(self.axes, codes, strict=True):
+            total = total * len(axis.atoms) + code
+        return total
+
+    def of_axes(self, relations: Sequence[int]) -> int:
+        """The product of one relation an axis.
+
+        >>> from deixis.reasoning.qualitative.calculi.registry import calculus
+        >>> ra = calculus("ra")
+        >>> ra.members(ra.of_axes([ra.axes[0].relation(["<", "m"]), ra.axes[1].relation(["="])]))
+        ('<,=', 'm,=')
+        """
+        total, width = 1, 1
+        for axis, relation in zip(reversed(self.axes), reversed(relations), strict=True):
+            total = _spread(relation, total, width)
+            width *= len(axis.atoms)
+        return total
+
+    def boxes(self, relation: int) -> tuple[tuple[int, ...], ...]:
+        """The relation as a disjoint union of products, one tuple of axis relations each; few, not always fewest."""
+        return _boxes(relation, [len(axis.atoms) for axis in self.axes])
+
+    def converse(self, relation: int) -> int:
+        mask = 0
+        for box in self.boxes(relation):
+            mask |= self.of_axes([axis.converse(r) for axis, r in zip(self.axes, box, strict=True)])
+        return mask
+
+    def compose(self, first: int, second: int) -> int:
+        mask = 0
+        for a in self.boxes(first):
+            for b in self.boxes(second):
+                composed = [axis.compose(r, s) for axis, r, s in zip(self.axes, a, b, strict=True)]
+                mask |= self.of_axes(composed)
+        return mask
+
+    def pieces(self, relation: int) -> tuple[int, ...]:
+        """Products of tractable relations: each axis is a network of its own then, and closure decides it."""
+        return tuple(
+            self.of_axes(parts)
+            for box in self.boxes(relation)
+            for parts in product(*(axis.pieces(r) for axis, r in zip(self.axes, box, strict=True)))
+        )
+
+
+def _spread(relation: int, inner: int, width: int) -> int:
+    """``inner``, ``width`` bits wide, once for every bit of ``relation``."""
+    total = 0
+    for code in bits(relation):
+        total |= inner << (code * width)
+    return total
+
+
+def _boxes(relation: int, sizes: Sequence[int]) -> tuple[tuple[int, ...], ...]:
+    """Groups the first axis's atoms by what they leave to the others, and goes on with each group."""
+    if not relation:
+        return ()
+    if len(sizes) == 1:
+        return ((relation,),)
+    width = prod(sizes[1:])
+    rows: dict[int, int] = {}
+    for code in range(sizes[0]):
+        row = relation >> (code * width) & ((1 << width) - 1)
+        if row:
+            rows[row] = rows.get(row, 0) | 1 << code
+    return tuple((first, *rest) for row, first in rows.items() for rest in _boxes(row, sizes[1:]))
+
+
+def _listed(atoms: Sequence[str]) -> str:
+    shown = ", ".join(atoms[:16])
+    return shown if len(atoms) <= 16 else f"{shown}, … ({len(atoms)} in all)"
+
+
+def coarsening(
+    name: str, atoms: Sequence[str], parts: Sequence[int], fine: Calculus, source: str = ""
+) -> TableCalculus:
+    """The calculus of the atoms whose parts are ``parts``, relations of ``fine`` that share nothing and leave nothing.
+
+    An atom's composition holds every atom that shares one with the composition of the parts: it is exact where the
+    finer one's is. What everything bears to itself is a part of one atom, which need not be neutral. Closure does not
+    decide (two parts of one atom cannot be told apart); translate into the finer calculus to decide.
+    """
+    n = len(parts)
+    converses = [parts.index(fine.converse(part)) for part in parts]
+    table = np.zeros((n, n), dtype=np.uint64)
+    for i, first in enumerate(parts):
+        for j, second in enumerate(parts):
+            composed = fine.compose(first, second)
+            table[i, j] = sum(1 << k for k, part in enumerate(parts) if part & composed)
+    return TableCalculus(
+        name=name,
+        atoms=tuple(atoms),
+        converses=np.array(converses, dtype=np.int64),
+        composition=table,
+        identity=next(i for i, part in enumerate(parts) if part >> fine.identity & 1),
+        split=atoms_of,
+        decided_by_closure=False,
+        source=source,
+    )
+
+
+def atoms_of(relation: int) -> tuple[int, ...]:
+    """A relation split into its atoms.
+
+    >>> atoms_of(0b110)
+    (2, 4)
+    """
+    return tuple(1 << code for code in bits(relation))

@@ -1,0 +1,233 @@
+"""Qualitative distance between points, alone and with direction (Clementini, Di Felice and Hernández 1997).
+
+An atom is a tile of the cardinal directions with a range of distance: ``N,near``. Their composition is tighter than
+that of the two by themselves: far to the west, and near to the north of there, is far to the north-west, and neither
+nearer nor farther round.
+
+It is exact. Three vectors p, q and r = p + q make a triangle. Which of its angles is right, obtuse or flat leaves ten
+*shapes*, and each fixes, to the quarter turn, how far q and r are turned against p. Tiles are quarter turns too (open
+ones, or the half axes between them), so that a shape as a whole fits two tiles or does not. Arcs of at most a quarter
+turn that meet two by two have a common point (Helly): three tiles that fit two by two fit together. What is left is
+whether a triangle of that shape has its sides in the three ranges; the law of cosines answers it by inequalities
+between the bounds or their squares.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from enum import Enum
+from fractions import Fraction
+from itertools import pairwise, product
+from math import inf, isfinite
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.reasoning.errors import SettingError
+from deixis.reasoning.qualitative.calculi.calculus import TableCalculus, atoms_of
+
+Bound = Fraction | float  # exact, or infinite
+SAME = "same"
+
+
+@dataclass(frozen=True)
+class Ranges:
+    """Ordered ranges of distance, in units of a reference length: range *i* reaches from bound *i* to bound *i + 1*.
+
+    The first bound is 0 and the last, infinity, is not given. A range holds its upper bound and not its lower one;
+    distance 0 is ``same`` and in no range. Raises SettingError where bounds do not rise or do not fit the names.
+
+    >>> Ranges(("near", "far"), (2.0,)).intervals
+    ((Fraction(0, 1), Fraction(2, 1)), (Fraction(2, 1), inf))
+    """
+
+    names: tuple[str, ...]
+    bounds: tuple[float, ...]
+
+    def __post_init__(self) -> None:
+        if not 0 < len(self.names) < 64:
+            raise SettingError(f"there are 1 to 63 ranges of distance, not {len(self.names)}")
+        if len(self.bounds) != len(self.names) - 1:
+            raise SettingError(f"{len(self.names)} ranges of distance need {len(self.names) - 1} bounds between them")
+        if SAME in self.names or len(set(self.names)) != len(self.names):
+            raise SettingError(f"ranges of distance need names of their own, and none may be '{SAME}'")
+        if any(not isfinite(bound) for bound in self.bounds) or list(self.bounds) != sorted({0.0, *self.bounds})[1:]:
+            raise SettingError(f"bounds of distance must rise from above 0, not {', '.join(map(str, self.bounds))}")
+
+    @property
+    def intervals(self) -> tuple[tuple[Bound, Bound], ...]:
+        """The lower and the upper bound of each range."""
+        ends: list[Bound] = [Fraction(0), *map(Fraction, self.bounds), inf]
+        return tuple(pairwise(ends))
+
+
+DEFAULT_RANGES = Ranges(("near", "medium", "far"), (1.0, 3.0))
+"""Each range is longer than all before it together, as Clementini and others ask of a frame of reference."""
+
+
+def distance_calculus(ranges: Ranges = DEFAULT_RANGES) -> TableCalculus:
+    """Ranges of distance as a calculus; composed by the triangle inequality, each entry realised in the plane.
+
+    Closure does not decide it: distances that obey the triangle inequality three by three need not fit in the plane.
+
+    >>> distance = distance_calculus()
+    >>> distance.members(distance.compose(distance.relation(["near"]), distance.relation(["near"])))
+    ('same', 'near', 'medium')
+    """
+    atoms = (SAME, *ranges.names)
+    spans = (None, *ranges.intervals)
+    table = [[_composed(spans, i, j) for j in range(len(atoms))] for i in range(len(atoms))]
+    return TableCalculus(
+        name="distance",
+        atoms=atoms,
+        converses=np.arange(len(atoms)),
+        composition=np.array(table, dtype=np.uint64),
+        identity=0,
+        split=atoms_of,
+        decided_by_closure=False,
+        source="Clementini, Di Felice and Hernández 1997",
+    )
+
+
+def _composed(spans: Sequence[tuple[Bound, Bound] | None], i: int, j: int) -> int:
+    first, second = spans[i], spans[j]
+    if first is None or second is None:
+        return 1 << max(i, j)
+    mask = 1 if i == j else 0  # back where it began
+    for k, third in enumerate(spans):
+        if third is not None and _closes_triangle(first, second, third):
+            mask |= 1 << k
+    return mask
+
+
+def _closes_triangle(first: tuple[Bound, Bound], second: tuple[Bound, Bound], third: tuple[Bound, Bound]) -> bool:
+    """Whether a triangle, flat ones included, has one side in each range; open below and closed above.
+
+    The third side takes every length between the least difference of the others, which is not reached, and their
+    greatest sum, which is.
+    """
+    least = max(0, first[0] - second[1], second[0] - first[1])
+    return least < third[1] and third[0] < first[1] + second[1]
+
+
+_AROUND = ("E", "NE", "N", "NW", "W", "SW", "S", "SE")
+"""Tiles by eighths of a turn: an even one is a half axis, an odd one the open quarter turn between two."""
+
+HERE = f"EQ,{SAME}"
+MOST_RANGES = 7
+"""So many atoms as have a bit each in 64."""
+
+Range = tuple[Bound, Bound]
+
+
+class _Shape(Enum):
+    """How p, q and r = p + q lie: the turns from p to q, from p to r and from r to q, in eighths, to the left.
+
+    An even turn is exact, an odd one lies between its neighbours.
+    """
+
+    ACUTE = (3, 1, 1)
+    RIGHT_C = (2, 1, 1)  # the right angle is opposite to r
+    RIGHT_A = (3, 1, 2)  # opposite to p
+    RIGHT_B = (3, 2, 1)  # opposite to q
+    OBTUSE_C = (1, 1, 1)
+    OBTUSE_A = (3, 1, 3)
+    OBTUSE_B = (3, 3, 1)
+    FLAT_C = (0, 0, 0)
+    FLAT_A = (4, 0, 4)
+    FLAT_B = (4, 4, 0)
+
+
+def direction_distance_calculus(ranges: Ranges = DEFAULT_RANGES) -> TableCalculus:
+    """Tiles and ranges as a calculus of ``8 len(ranges.names) + 1`` atoms. Closure does not decide it.
+
+    Raises SettingError for more than seven ranges.
+
+    >>> joint = direction_distance_calculus()
+    >>> joint.members(joint.compose(joint.relation(["W,far"]), joint.relation(["N,near"])))
+    ('NW,far',)
+    """
+    reaches = len(ranges.names)
+    if reaches > MOST_RANGES:
+        raise SettingError(f"direction with distance takes at most {MOST_RANGES} ranges, not {reaches}")
+    codes = [(tile, reach) for tile in range(8) for reach in range(reaches)]
+    here = len(codes)
+    converses = [((tile + 4) % 8) * reaches + reach for tile, reach in codes]
+    closes = _closed_vectors(ranges)
+    table = np.zeros((here + 1, here + 1), dtype=np.uint64)
+    table[:, here] = table[here, :] = np.uint64(1) << np.arange(here + 1, dtype=np.uint64)
+    for i, j in product(range(here), repeat=2):
+        back = 1 << here if j == converses[i] else 0
+        table[i, j] = back | sum(1 << int(k) for k in np.flatnonzero(closes[i, j]))
+    return TableCalculus(
+        name="direction-distance",
+        atoms=(*(f"{_AROUND[tile]},{ranges.names[reach]}" for tile, reach in codes), HERE),
+        converses=np.array([*converses, here], dtype=np.int64),
+        composition=table,
+        identity=here,
+        aliases={"EQ": HERE},
+        any_case=True,
+        split=atoms_of,
+        decided_by_closure=False,
+        source="Clementini, Di Felice and Hernández 1997; the composition is worked out here",
+    )
+
+
+def _closed_vectors(ranges: Ranges) -> NDArray[np.bool_]:
+    """Whether vectors of two atoms can have a sum of a third, shape (m, m, m) for the m atoms with a direction."""
+    spans = ranges.intervals
+    n = len(spans)
+    turned = [[_fits(shape, *tiles) for shape in _Shape] for tiles in product(range(8), repeat=3)]
+    sized = [[_has_sides(shape, *sides) for shape in _Shape] for sides in product(spans, repeat=3)]
+    both = np.einsum("ts,us->tu", np.array(turned), np.array(sized)).reshape(8, 8, 8, n, n, n)
+    closed: NDArray[np.bool_] = both.transpose(0, 3, 1, 4, 2, 5).reshape(8 * n, 8 * n, 8 * n)
+    return closed
+
+
+def _fits(shape: _Shape, p: int, q: int, r: int) -> bool:
+    """Whether vectors in these tiles can be turned so, all to the left or all to the right."""
+    to_q, to_r, r_to_q = shape.value
+    return any(
+        _turns(p, q, side * to_q) and _turns(p, r, side * to_r) and _turns(r, q, side * r_to_q) for side in (1, -1)
+    )
+
+
+def _turns(start: int, end: int, turn: int) -> bool:
+    """Whether something in tile ``start`` and something in ``end`` can have that turn between them."""
+    off = (end - start - turn) % 8
+    both_open = start % 2 == 1 and end % 2 == 1
+    return off == 0 or (both_open and off in (1, 7))
+
+
+def _has_sides(shape: _Shape, p: Range, q: Range, r: Range) -> bool:
+    """Whether a triangle of that shape has its sides in the three ranges."""
+    kind, _, opposite = shape.name.partition("_")
+    first, second, longest = {"A": (q, r, p), "B": (p, r, q)}.get(opposite, (p, q, r))
+    return _SIDES[kind](first, second, longest)
+
+
+def _acute(a: Range, b: Range, c: Range) -> bool:
+    least = max(0, a[0] ** 2 - b[1] ** 2, b[0] ** 2 - a[1] ** 2)
+    return least < c[1] ** 2 and c[0] ** 2 < a[1] ** 2 + b[1] ** 2
+
+
+def _right(a: Range, b: Range, c: Range) -> bool:
+    return a[0] ** 2 + b[0] ** 2 < c[1] ** 2 and c[0] ** 2 < a[1] ** 2 + b[1] ** 2
+
+
+def _obtuse(a: Range, b: Range, c: Range) -> bool:
+    return a[0] ** 2 + b[0] ** 2 < c[1] ** 2 and c[0] < a[1] + b[1]
+
+
+def _flat(a: Range, b: Range, c: Range) -> bool:
+    return a[0] + b[0] < c[1] and c[0] < a[1] + b[1]
+
+
+_SIDES: dict[str, Callable[[Range, Range, Range], bool]] = {
+    "ACUTE": _acute,  # c² < a² + b², and so for each side
+    "RIGHT": _right,  # c² = a² + b²
+    "OBTUSE": _obtuse,  # a² + b² < c² < (a + b)²
+    "FLAT": _flat,  # c = a + b
+}
+"""Whether a and b in their ranges leave a length for c in its own; ranges are open below and closed above."""

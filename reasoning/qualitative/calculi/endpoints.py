@@ -1,0 +1,145 @@
+"""The calculi of ordered numbers: points, intervals, rectangles, blocks and cardinal directions, with tables derived
+from finite models.
+
+A model is *enough* where every way for three things to lie to each other occurs in it. Then the composition that it
+shows is the composition over everything, and not just a part of it.
+
+No composition is typed in. Three numbers have at most three different values, and three intervals at most six
+different end points: the model of all numbers below three, or of all intervals between six of them, is enough.
+"""
+
+from __future__ import annotations
+
+from itertools import combinations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.ontology.allen import SYMBOLS, Allen
+from deixis.reasoning.geometry.allen import allen_relations
+from deixis.reasoning.qualitative.calculi.calculus import ProductCalculus, TableCalculus
+from deixis.reasoning.qualitative.calculi.tractable import ORD_HORN
+
+
+def converses_in(codes: NDArray[np.integer], atoms: int) -> NDArray[np.int64]:
+    """The code of each atom's converse, shape (atoms,), from the atom of every ordered pair, ``codes`` (m, m).
+
+    >>> converses_in(np.array([[1, 0], [2, 1]]), 3).tolist()
+    [2, 1, 0]
+    """
+    found = np.full(atoms, -1, dtype=np.int64)
+    found[codes] = codes.T
+    return found
+
+
+def composition_in(codes: NDArray[np.integer], atoms: int) -> NDArray[np.uint64]:
+    """The composition table, shape (atoms, atoms), bit masks, from the atom of every ordered pair, ``codes`` (m, m).
+
+    An entry holds the atom of (i, k) for every j that bears the row's atom to i's side and the column's to k's.
+
+    >>> order = np.array([[1, 0], [2, 1]])  # of two numbers: 0 for less, 1 for equal, 2 for greater
+    >>> bin(composition_in(order, 3)[0, 1])
+    '0b1'
+    """
+    holds = np.array([codes == atom for atom in range(atoms)], dtype=np.float32)
+    table = np.zeros((atoms, atoms), dtype=np.uint64)
+    for first in range(atoms):
+        for second in range(atoms):
+            reached = holds[first] @ holds[second] > 0
+            table[first, second] = sum(1 << int(code) for code in np.unique(codes[reached]))
+    return table
+
+
+POINT_ATOMS = ("<", "=", ">")
+_POINT_ALIASES = {"lt": "<", "eq": "=", "==": "=", "gt": ">", "before": "<", "equals": "=", "after": ">"}
+
+_ALLEN_ALIASES = {
+    "b": "<",
+    "p": "<",
+    "bi": ">",
+    "a": ">",
+    "pi": ">",
+    "eq": "=",
+    "e": "=",
+    "==": "=",
+    "precedes": "<",
+    "preceded_by": ">",
+} | {relation.name.lower(): relation.symbol for relation in Allen}
+
+_TILES = ("SW", "W", "NW", "S", "EQ", "N", "SE", "E", "NE")
+_TILE_ALIASES = {
+    "north": "N",
+    "northeast": "NE",
+    "east": "E",
+    "southeast": "SE",
+    "south": "S",
+    "southwest": "SW",
+    "west": "W",
+    "northwest": "NW",
+    "=": "EQ",
+    "same": "EQ",
+}
+
+
+def point_algebra() -> TableCalculus:
+    """Two points on a line: ``<``, ``=``, ``>`` (Vilain and Kautz 1986). Every relation is tractable.
+
+    >>> point = point_algebra()
+    >>> point.members(point.compose(point.relation(["<", "="]), point.relation(["<"])))
+    ('<',)
+    """
+    points = np.arange(3)
+    codes = 1 + np.sign(points[:, None] - points[None, :])
+    return TableCalculus(
+        name="point",
+        atoms=POINT_ATOMS,
+        converses=converses_in(codes, 3),
+        composition=composition_in(codes, 3),
+        identity=POINT_ATOMS.index("="),
+        aliases=_POINT_ALIASES,
+        source="Vilain and Kautz 1986; van Beek 1992",
+    )
+
+
+def interval_algebra() -> TableCalculus:
+    """Two intervals on a line, neither a point: Allen's thirteen relations (Allen 1983), codes as in ontology.allen.
+
+    >>> allen = interval_algebra()
+    >>> allen.members(allen.compose(allen.relation(["m"]), allen.relation(["mi"])))
+    ('fi', '=', 'f')
+    """
+    ends = np.array(list(combinations(range(6), 2)), dtype=np.float64)
+    low, high = ends[:, 0], ends[:, 1]
+    codes = allen_relations(low[:, None], high[:, None], low[None, :], high[None, :])
+    return TableCalculus(
+        name="allen",
+        atoms=SYMBOLS,
+        converses=converses_in(codes, len(SYMBOLS)),
+        composition=composition_in(codes, len(SYMBOLS)),
+        identity=Allen.EQUALS,
+        aliases=_ALLEN_ALIASES,
+        split=ORD_HORN.split,
+        source="Allen 1983; Nebel and Bürckert 1995; Ligozat 1996",
+    )
+
+
+def rectangle_algebra(allen: TableCalculus) -> ProductCalculus:
+    """Two rectangles with sides along x and y: an Allen relation an axis (Balbiani and others 1998)."""
+    return ProductCalculus("ra", (allen, allen), source="Balbiani, Condotta and Fariñas del Cerro 1998, 1999")
+
+
+def block_algebra(allen: TableCalculus) -> ProductCalculus:
+    """Two blocks with edges along x, y and z: an Allen relation an axis (Balbiani and others 2002)."""
+    return ProductCalculus("ba", (allen, allen, allen), source="Balbiani, Condotta and Fariñas del Cerro 1999, 2002")
+
+
+def cardinal_directions(point: TableCalculus) -> ProductCalculus:
+    """Two points in the plane, in nine tiles: the order on x and that on y (Frank 1991; Ligozat 1998).
+
+    >>> cd = cardinal_directions(point_algebra())
+    >>> cd.members(cd.compose(cd.relation(["N"]), cd.relation(["SE"])))
+    ('SE', 'E', 'NE')
+    """
+    return ProductCalculus(
+        "cd", (point, point), signs=_TILES, aliases=_TILE_ALIASES, any_case=True, source="Frank 1991; Ligozat 1998"
+    )

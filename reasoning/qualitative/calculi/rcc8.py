@@ -1,0 +1,63 @@
+"""RCC-8: how two regions connect (Randell, Cui and Cohn 1992). Its composition is stated; it follows from no order.
+
+Regions are non-empty regular closed sets of a topological space, in one piece or several.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from deixis.reasoning.qualitative.calculi.calculus import TableCalculus
+from deixis.reasoning.qualitative.calculi.tractable import RCC8_HORN
+
+RCC8_ATOMS = ("DC", "EC", "PO", "TPP", "NTPP", "TPPI", "NTPPI", "EQ")
+_CONVERSES = (0, 1, 2, 5, 6, 3, 4, 7)
+
+_ALIASES = {
+    "disjoint": "DC",
+    "meet": "EC",
+    "overlap": "PO",
+    "coveredBy": "TPP",
+    "inside": "NTPP",
+    "covers": "TPPI",
+    "contains": "NTPPI",
+    "equal": "EQ",
+    "=": "EQ",
+} | {f"rcc8{atom.lower()}": atom for atom in RCC8_ATOMS}
+
+# After Cohn, Bennett, Gooday and Gotts 1997. One letter an atom, in the order of RCC8_ATOMS: d e p t n T N =
+_TABLE = """
+detpnTN=  detpn     detpn     detpn     detpn     d         d         d
+depTN     deptT=    deptn     eptn      ptn       de        d         e
+depTN     depTN     detpnTN=  ptn       ptn       depTN     depTN     p
+d         de        deptn     tn        n         deptT=    depTN     t
+d         d         deptn     n         n         deptn     detpnTN=  n
+depTN     epTN      pTN       ptT=      ptn       TN        N         T
+depTN     pTN       pTN       pTN       ptnTN=    N         N         N
+d         e         p         t         n         T         N         =
+"""
+
+
+def region_connection_calculus() -> TableCalculus:
+    """RCC-8 with its composition table.
+
+    >>> rcc8 = region_connection_calculus()
+    >>> rcc8.members(rcc8.compose(rcc8.relation(["EC"]), rcc8.relation(["NTPP"])))
+    ('PO', 'TPP', 'NTPP')
+    >>> rcc8.members(rcc8.converse(rcc8.relation(["tpp", "ntppi"])))
+    ('NTPP', 'TPPI')
+    """
+    letters = "deptnTN="
+    rows = [line.split() for line in _TABLE.strip().splitlines()]
+    table = [[sum(1 << letters.index(letter) for letter in entry) for entry in row] for row in rows]
+    return TableCalculus(
+        name="rcc8",
+        atoms=RCC8_ATOMS,
+        converses=np.array(_CONVERSES, dtype=np.int64),
+        composition=np.array(table, dtype=np.uint64),
+        identity=RCC8_ATOMS.index("EQ"),
+        aliases=_ALIASES,
+        any_case=True,
+        split=RCC8_HORN.split,
+        source="Randell, Cui and Cohn 1992; Cohn, Bennett, Gooday and Gotts 1997; Renz and Nebel 1999",
+    )

@@ -1,0 +1,48 @@
+"""The ten exact names as a calculus: unions of rectangle-algebra atoms, as the TBox states them.
+
+The eleventh atom, ``overlap``, is what no name settles in the plane: boxes that overlap in part, or are one and the
+same. (Between perceived boxes heights and offsets settle these too: see :mod:`deixis.reasoning.geometry.rectangle`. No
+calculus over the plane can follow them there.)
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.ontology.relation import Reading, Relations
+from deixis.reasoning.qualitative.calculi.calculus import ProductCalculus, TableCalculus, coarsening
+
+UNNAMED = "overlap"
+
+
+def ten_names(vocabulary: Relations, rectangles: ProductCalculus) -> TableCalculus:
+    """The calculus of the ten exact names and what they leave."""
+    parts = named_parts(vocabulary)
+    return coarsening(
+        "ten",
+        tuple(parts),
+        tuple(parts.values()),
+        rectangles,
+        source="Grounding Language in Perception, its ten relations",
+    )
+
+
+def named_parts(vocabulary: Relations) -> dict[str, int]:
+    """For each of the eleven its rectangle-algebra atoms; an atom that several names admit goes to ``overlap``.
+
+    >>> from deixis.ontology.tbox import default_ontology
+    >>> from deixis.reasoning.qualitative.calculi.registry import calculus
+    >>> calculus("ra").members(named_parts(default_ontology().relations)["top_left"])
+    ('<,mi', '<,>', 'm,mi', 'm,>')
+    """
+    exact = vocabulary.of_reading(Reading.EXACT)
+    admitted = np.stack([relation.admits() for relation in exact])
+    single = admitted.sum(axis=0) == 1
+    named = {relation.word: _mask(table & single) for relation, table in zip(exact, admitted, strict=True)}
+    return {**named, UNNAMED: _mask(~single)}
+
+
+def _mask(atoms: NDArray[np.bool_]) -> int:
+    """Codes of the product count y fastest, as a (13, 13) array in C order does."""
+    return sum(1 << int(code) for code in np.flatnonzero(atoms))

@@ -1,0 +1,143 @@
+"""Tractable subclasses: relations among which algebraic closure decides consistency.
+
+A search splits any other relation into these, so that it branches over few large pieces and not over many atoms. Each
+subclass is computed from its definition, and closed under converse, intersection and weak composition.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cache, cached_property
+from itertools import product
+
+from deixis.reasoning.geometry.allen import convex_hull
+from deixis.reasoning.qualitative.calculi.calculus import bits
+
+
+@dataclass(frozen=True, eq=False)
+class Subclass:
+    """A set of relations of one table calculus, by what tells its members; the empty relation is one of them."""
+
+    name: str
+    atoms: int  # of the calculus
+    contains: Callable[[int], bool]
+    source: str
+
+    @cached_property
+    def relations(self) -> frozenset[int]:
+        """Every member, the empty relation included."""
+        return frozenset(relation for relation in range(1 << self.atoms) if self.contains(relation))
+
+    @cached_property
+    def _largest_first(self) -> tuple[int, ...]:
+        return tuple(sorted(self.relations - {0}, key=lambda relation: (-relation.bit_count(), relation)))
+
+    def split(self, relation: int) -> tuple[int, ...]:
+        """Disjoint members of which ``relation`` is the union: the largest that fits, then the largest in the rest.
+
+        >>> from deixis.reasoning.qualitative.calculi.registry import calculus
+        >>> allen = calculus("allen")
+        >>> pieces = ORD_HORN.split(allen.relation(["<", "m", "mi", ">"]))
+        >>> [allen.members(piece) for piece in pieces]
+        [('<', 'm'), ('mi', '>')]
+        """
+        return _split(self, relation)
+
+
+@cache
+def _split(subclass: Subclass, relation: int) -> tuple[int, ...]:
+    if not relation:
+        return ()
+    if subclass.contains(relation):
+        return (relation,)
+    largest = next(member for member in subclass._largest_first if member & ~relation == 0)
+    return (largest, *_split(subclass, relation & ~largest))
+
+
+_PLACES = ((0, 0), (0, 1), (0, 2), (0, 3), (0, 4), (1, 2), (1, 3), (1, 4), (2, 2), (2, 3), (2, 4), (3, 4), (4, 4))
+"""Where a's begin and a's end lie, by Allen code: 0 before b, 1 at its begin, 2 within, 3 at its end, 4 after it."""
+
+
+def _dimension(relation: int) -> int:
+    """The greatest number of a's end points that are free to move; -1 for the empty relation (Ligozat 1996)."""
+    return max((2 - sum(place % 2 for place in _PLACES[code]) for code in bits(relation)), default=-1)
+
+
+def convex_closure(relation: int) -> int:
+    """The least convex Allen relation that holds ``relation``: an interval in the lattice of places (Ligozat 1996).
+
+    >>> bin(convex_closure(0b101))
+    '0b111'
+    """
+    return convex_hull(relation).mask if relation else 0
+
+
+def _is_convex(relation: int) -> bool:
+    return convex_closure(relation) == relation
+
+
+def _is_preconvex(relation: int) -> bool:
+    return not relation or _dimension(convex_closure(relation) & ~relation) < _dimension(relation)
+
+
+@cache
+def _pointizable() -> frozenset[int]:
+    """What conjunctions of point relations between the end points can say: one of eight for each of four pairs."""
+    signs = [[_order(place, end) for end in (1, 3)] for place in range(5)]
+    found = set()
+    for wanted in product(range(8), repeat=4):
+        found.add(
+            sum(
+                1 << code
+                for code, (begin, end) in enumerate(_PLACES)
+                if all(want >> sign & 1 for want, sign in zip(wanted, signs[begin] + signs[end], strict=True))
+            )
+        )
+    return frozenset(found)
+
+
+def _order(place: int, other: int) -> int:
+    """0, 1 or 2: less, equal, greater."""
+    return (place > other) - (place < other) + 1
+
+
+ORD_HORN = Subclass("ORD-Horn", 13, _is_preconvex, "Nebel and Bürckert 1995; as pre-convex relations Ligozat 1996")
+"""The one maximal tractable subclass of Allen's algebra that has all atoms."""
+
+CONVEX = Subclass("convex", 13, _is_convex, "Nökel 1989; Ligozat 1996")
+"""Closure does not only decide these: it leaves just what some solution has (van Beek and Cohen 1990)."""
+
+POINTIZABLE = Subclass("pointizable", 13, lambda relation: relation in _pointizable(), "Vilain and Kautz 1986")
+"""What the point algebra can say of end points."""
+
+_DC, _EC, _PO, _TPP, _NTPP, _TPPI, _NTPPI, _EQ = (1 << code for code in range(8))
+_PARTS, _WHOLES = _TPP | _NTPP, _TPPI | _NTPPI
+
+
+def _both_ways(relation: int) -> bool:
+    """Whether it leaves open which of the two is part of the other, without letting them overlap partially."""
+    return not relation & _PO and bool(relation & _PARTS) and bool(relation & _WHOLES)
+
+
+def _in_h8(relation: int) -> bool:
+    skips = (relation & (_EQ | _NTPP | _TPP) == _EQ | _NTPP) or (relation & (_EQ | _NTPPI | _TPPI) == _EQ | _NTPPI)
+    return not _both_ways(relation) and not skips
+
+
+def _in_c8(relation: int) -> bool:
+    within = relation & (_PARTS | _WHOLES | _EQ)
+    return not _both_ways(relation) and not (relation & _EC and not relation & _PO and within)
+
+
+def _in_q8(relation: int) -> bool:
+    within = relation & (_PARTS | _WHOLES)
+    return not _both_ways(relation) and not (relation & _EQ and not relation & _PO and within)
+
+
+RCC8_HORN = Subclass("Ĥ8", 8, _in_h8, "Renz and Nebel 1999")
+"""The largest set of RCC-8 relations that a Horn formula states; it has all atoms."""
+
+RCC8_C8 = Subclass("C8", 8, _in_c8, "Renz 1999")
+RCC8_Q8 = Subclass("Q8", 8, _in_q8, "Renz 1999")
+"""With Ĥ8 the only maximal tractable subclasses that have all atoms (Renz 1999)."""

@@ -1,0 +1,149 @@
+"""How the relations of a network are laid out in memory, and the compiled loops that go with it."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.reasoning.qualitative.networks.tables import Tables, half_of
+
+Words = NDArray[np.uint64]
+
+
+class Cells(ABC):
+    """The relations of all pairs of n things, and what the loops need to narrow them.
+
+    ``bookkeeping``, below, are the arrays dirty, waiting, clock, trail and count of ``kernels``, in that order.
+    """
+
+    atoms_a_row: int  # how long the trail may grow by one row's narrowing, for each thing
+
+    @abstractmethod
+    def restrict(self, ends: tuple[Any, ...], words: Words, start: int, bookkeeping: tuple[Any, ...]) -> int:
+        """Intersects pairs (firsts, seconds, ids) with relations; returns the first constraint not dealt with."""
+
+    @abstractmethod
+    def advance(self, budget: int, bookkeeping: tuple[Any, ...]) -> int:
+        """Passes changes on; returns CLOSED, EMPTIED, PAUSED or FULL."""
+
+    @abstractmethod
+    def undo(self, length: int, bookkeeping: tuple[Any, ...]) -> None:
+        """Goes back to where the trail was that long."""
+
+    @abstractmethod
+    def relation(self, first: int, second: int) -> int:
+        """What a pair may still be."""
+
+    @abstractmethod
+    def relations(self) -> Words:
+        """What all pairs may still be, (n, n, words of 64 atoms)."""
+
+    @abstractmethod
+    def relations_of(self, firsts: NDArray[np.int64], seconds: NDArray[np.int64]) -> Words:
+        """What pairs (m,), (m,) may still be, (m, words of 64 atoms)."""
+
+    @abstractmethod
+    def next_open(self, start: int) -> int:
+        """The first pair i < k that may be several things, as i * n + k, from ``start`` on; n * n where none is."""
+
+
+class Masks(Cells):
+    """Pair by pair, 16 bits each, for small calculi."""
+
+    atoms_a_row = 1
+
+    def __init__(self, size: int, tables: Tables, identity: int) -> None:
+        self._tables, self._half = tables, half_of(tables.atoms)
+        self.masks = np.full((size, size), (1 << tables.atoms) - 1, dtype=np.uint16)
+        np.fill_diagonal(self.masks, 1 << identity)
+
+    def restrict(self, ends: tuple[Any, ...], words: Words, start: int, bookkeeping: tuple[Any, ...]) -> int:
+        from deixis.reasoning.qualitative.networks.mask_kernels import restrict
+
+        layout = self._half, self.masks, self._tables.mask_converses
+        return int(restrict(*ends, words, start, *layout, *bookkeeping))  # type: ignore[call-arg]
+
+    def advance(self, budget: int, bookkeeping: tuple[Any, ...]) -> int:
+        from deixis.reasoning.qualitative.networks.mask_kernels import advance
+
+        table = self._tables
+        return int(advance(budget, self._half, table.compositions, table.mask_converses, self.masks, *bookkeeping))
+
+    def undo(self, length: int, bookkeeping: tuple[Any, ...]) -> None:
+        from deixis.reasoning.qualitative.networks.mask_kernels import undo
+
+        undo(length, self._half, self.masks, self._tables.mask_converses, *bookkeeping)
+
+    def relation(self, first: int, second: int) -> int:
+        return int(self.masks[first, second])
+
+    def relations(self) -> Words:
+        return self.masks.astype(np.uint64)[:, :, None]
+
+    def relations_of(self, firsts: NDArray[np.int64], seconds: NDArray[np.int64]) -> Words:
+        return self.masks[firsts, seconds].astype(np.uint64)[:, None]
+
+    def next_open(self, start: int) -> int:
+        from deixis.reasoning.qualitative.networks.mask_kernels import next_open
+
+        return int(next_open(self.masks, start))
+
+
+class Planes(Cells):
+    """One bit for each pair and atom, 64 pairs to a word, for calculi of any size."""
+
+    def __init__(self, size: int, tables: Tables, identity: int) -> None:
+        self._tables = tables
+        self.atoms_a_row = tables.atoms
+        self._full = np.full((size + 63) // 64, 0xFFFFFFFFFFFFFFFF, dtype=np.uint64)
+        if size % 64:
+            self._full[-1] = (1 << size % 64) - 1
+        self.planes = np.tile(self._full[:, None], (size, 1, tables.atoms))
+        things = np.arange(size)
+        itself = np.zeros((size, tables.atoms), dtype=np.uint64)
+        itself[:, identity] = np.uint64(1) << (things & 63).astype(np.uint64)
+        others = ~(np.uint64(1) << (things & 63).astype(np.uint64))
+        self.planes[things, things >> 6] = self.planes[things, things >> 6] & others[:, None] | itself
+
+    def restrict(self, ends: tuple[Any, ...], words: Words, start: int, bookkeeping: tuple[Any, ...]) -> int:
+        from deixis.reasoning.qualitative.networks.kernels import restrict
+
+        return int(restrict(*ends, words, start, self.planes, self._tables.converses, *bookkeeping))  # type: ignore[call-arg]
+
+    def advance(self, budget: int, bookkeeping: tuple[Any, ...]) -> int:
+        from deixis.reasoning.qualitative.networks.kernels import advance
+
+        table = self._tables
+        return int(advance(budget, table.sizes, table.needs, table.converses, self._full, self.planes, *bookkeeping))
+
+    def undo(self, length: int, bookkeeping: tuple[Any, ...]) -> None:
+        from deixis.reasoning.qualitative.networks.kernels import undo
+
+        undo(length, self.planes, self._tables.converses, *bookkeeping)
+
+    def relation(self, first: int, second: int) -> int:
+        bit = self.planes[first, second >> 6] >> np.uint64(second & 63) & np.uint64(1)
+        return int.from_bytes(np.packbits(bit.astype(np.uint8), bitorder="little").tobytes(), "little")
+
+    def relations(self) -> Words:
+        from deixis.reasoning.qualitative.networks.kernels import relations
+
+        size = len(self.planes)
+        out = np.empty((size, size, (self._tables.atoms + 63) // 64), dtype=np.uint64)
+        relations(self.planes, out)
+        return out
+
+    def relations_of(self, firsts: NDArray[np.int64], seconds: NDArray[np.int64]) -> Words:
+        from deixis.reasoning.qualitative.networks.kernels import relations_of
+
+        out = np.empty((len(firsts), (self._tables.atoms + 63) // 64), dtype=np.uint64)
+        relations_of(firsts, seconds, self.planes, out)
+        return out
+
+    def next_open(self, start: int) -> int:
+        from deixis.reasoning.qualitative.networks.kernels import next_open
+
+        return int(next_open(self.planes, start))

@@ -1,0 +1,220 @@
+"""Several calculi about the same things, closed together: what one says narrows the others (Wölfl and Westphal 2009).
+
+Each network is closed in its own calculus; bridges carry over what the atoms of one admit of another, both ways; and
+so on until nothing changes. A contradiction of the whole is a proof, and need not be one of any part. That there is
+none proves nothing, except where only one calculus is said anything in: what realises that realises the rest.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.reasoning.errors import NetworkError
+from deixis.reasoning.qualitative.calculi.bridges import Link
+from deixis.reasoning.qualitative.networks.conflict import deletion_minimal
+from deixis.reasoning.qualitative.networks.network import Constraint, Network, compacted
+from deixis.reasoning.qualitative.networks.search import Verdict, solve
+from deixis.reasoning.qualitative.networks.state import Progress, State
+
+
+@dataclass(frozen=True)
+class Contribution:
+    """What one calculus (its name) or one bridge (``a -> b``) did: pairs narrowed, and atoms taken from pairs i < j."""
+
+    name: str
+    pairs: int
+    atoms: int
+
+
+@dataclass(frozen=True, eq=False)
+class JointClosure:
+    """Networks over the same things, closed together as far as ``complete`` says.
+
+    ``emptied`` is the calculus and the pair of which nothing is left.
+    """
+
+    networks: tuple[Network, ...]
+    states: tuple[State, ...]
+    emptied: tuple[str, int, int] | None
+    complete: bool
+    contributions: tuple[Contribution, ...]
+    seconds: float
+
+    @property
+    def consistent(self) -> bool:
+        """Whether no contradiction was found."""
+        return self.emptied is None
+
+    def relation(self, calculus: str, first: int, second: int) -> int:
+        """The relation of two things in the calculus of that name."""
+        for network, state in zip(self.networks, self.states, strict=True):
+            if network.calculus.name == calculus:
+                return state.relation(first, second)
+        raise NetworkError(f"no network here is in {calculus}; there are {_names(self.networks)}")
+
+
+def close_jointly(
+    networks: Sequence[Network],
+    bridges: Sequence[Link],
+    deadline: float | None = None,
+    progress: Progress | None = None,
+) -> JointClosure:
+    """The joint fixpoint of closing each network and crossing each bridge.
+
+    Raises NetworkError where the networks have not the same things, or not each its own calculus.
+    """
+    started = time.perf_counter()
+    _require_alike(networks)
+    states = tuple(State(network.calculus, network.size) for network in networks)
+    place = {network.calculus.name: k for k, network in enumerate(networks)}
+    done = _Ledger()
+    for network, state in zip(networks, states, strict=True):
+        state.add(network)
+    steps = _steps(networks, states, [b for b in bridges if {b.source.name, b.target.name} <= set(place)], place)
+    complete, changed = True, True
+    while changed and complete:
+        changed = False
+        for name, state, step in steps:
+            if any(each.emptied is not None for each in states):
+                break
+            before = state.relations()
+            complete = step(deadline, progress) and complete
+            changed = done.note(name, before, state.relations()) or changed
+            if not complete:
+                break
+    emptied = next(
+        ((n.calculus.name, *s.emptied) for n, s in zip(networks, states, strict=True) if s.emptied is not None), None
+    )
+    seconds = time.perf_counter() - started
+    return JointClosure(
+        tuple(networks), states, emptied, complete or emptied is not None, done.contributions(), seconds
+    )
+
+
+Step = Callable[[float | None, Progress | None], bool]
+
+
+def _steps(
+    networks: Sequence[Network], states: Sequence[State], bridges: Sequence[Link], place: dict[str, int]
+) -> list[tuple[str, State, Step]]:
+    """What to do in each round: a name, the state that it narrows, and how."""
+    steps: list[tuple[str, State, Step]] = [
+        (network.calculus.name, state, state.close) for network, state in zip(networks, states, strict=True)
+    ]
+    for bridge in bridges:
+        source, target = states[place[bridge.source.name]], states[place[bridge.target.name]]
+        there, back = f"{bridge.source.name} -> {bridge.target.name}", f"{bridge.target.name} -> {bridge.source.name}"
+        steps.append((there, target, _crossing(source, target, bridge.forward)))
+        steps.append((back, source, _crossing(target, source, bridge.backward)))
+    return steps
+
+
+def _crossing(source: State, target: State, translate: Callable[[int], int]) -> Step:
+    known: dict[int, int] = {}
+
+    def cross(deadline: float | None, progress: Progress | None) -> bool:
+        relations, ids = source.distinct()
+        for relation in relations:
+            known.setdefault(relation, translate(relation))
+        masks = tuple(known[relation] for relation in relations)
+        telling = np.array([mask != target.calculus.universal for mask in masks])
+        firsts, seconds = np.nonzero(np.triu(telling[ids], 1))
+        target.restrict(firsts, seconds, ids[firsts, seconds], masks)
+        return deadline is None or time.monotonic() <= deadline
+
+    return cross
+
+
+class _Ledger:
+    """Who narrowed how much."""
+
+    def __init__(self) -> None:
+        self._sums: dict[str, tuple[int, int]] = {}
+
+    def note(self, name: str, before: NDArray[np.uint64], after: NDArray[np.uint64]) -> bool:
+        gone = before & ~after
+        atoms = int(np.bitwise_count(gone).sum()) // 2
+        pairs = int(gone.any(axis=2).sum()) // 2
+        old = self._sums.get(name, (0, 0))
+        self._sums[name] = old[0] + pairs, old[1] + atoms
+        return bool(gone.any())
+
+    def contributions(self) -> tuple[Contribution, ...]:
+        return tuple(Contribution(name, pairs, atoms) for name, (pairs, atoms) in self._sums.items())
+
+
+@dataclass(frozen=True, eq=False)
+class JointSolution:
+    """The verdict on several networks together, with the closure it rests on."""
+
+    verdict: Verdict
+    closure: JointClosure
+    reason: str = ""
+
+
+def solve_jointly(
+    networks: Sequence[Network],
+    bridges: Sequence[Link],
+    time_limit: float | None = None,
+    progress: Progress | None = None,
+) -> JointSolution:
+    """Decides several networks together, where closure and each part can."""
+    deadline = None if time_limit is None else time.monotonic() + time_limit
+    closure = close_jointly(networks, bridges, deadline, progress)
+    if closure.emptied is not None:
+        return JointSolution(Verdict.INCONSISTENT, closure)
+    if not closure.complete:
+        return JointSolution(Verdict.UNDECIDED, closure, "the time limit was reached")
+    speaking = [network for network in networks if network.constraints]
+    for network in speaking:
+        left = None if deadline is None else max(0.0, deadline - time.monotonic())
+        solution = solve(network, left, progress)
+        if solution.verdict is Verdict.INCONSISTENT or len(speaking) == 1:
+            return JointSolution(solution.verdict, closure, solution.reason)
+    if not speaking:
+        return JointSolution(Verdict.CONSISTENT, closure)
+    reason = f"no contradiction was found in {_names(networks)} together, and that proves nothing"
+    return JointSolution(Verdict.UNDECIDED, closure, reason)
+
+
+@dataclass(frozen=True)
+class JointConflict:
+    """Constraints, each with the name of its calculus, that cannot all hold.
+
+    ``minimal`` says that joint closure finds no contradiction after leaving out any one of them.
+    """
+
+    constraints: tuple[tuple[str, Constraint], ...]
+    minimal: bool
+
+
+def joint_conflict(
+    networks: Sequence[Network], bridges: Sequence[Link], time_limit: float = 10.0
+) -> JointConflict | None:
+    """A deletion-minimal set of constraints that joint closure refutes; None where it refutes none in time."""
+    deadline = time.monotonic() + time_limit
+    stated = tuple((n.calculus.name, c) for n in networks for c in n.constraints)
+
+    def narrow(kept: tuple[tuple[str, Constraint], ...]) -> tuple[tuple[str, Constraint], ...] | None:
+        chosen, _ = compacted([n.only(c for name, c in kept if name == n.calculus.name) for n in networks])
+        return kept if close_jointly(chosen, bridges, deadline).emptied is not None else None
+
+    if narrow(stated) is None:
+        return None
+    return JointConflict(*deletion_minimal(stated, narrow, deadline))
+
+
+def _require_alike(networks: Sequence[Network]) -> None:
+    if len({network.size for network in networks}) > 1:
+        raise NetworkError("networks that are closed together must be about the same things")
+    if len({network.calculus.name for network in networks}) < len(networks):
+        raise NetworkError(f"networks that are closed together need a calculus each, not {_names(networks)}")
+
+
+def _names(networks: Sequence[Network]) -> str:
+    return ", ".join(network.calculus.name for network in networks)

@@ -1,0 +1,157 @@
+"""Why a network is inconsistent: constraints that cannot all hold, none of them dispensable.
+
+What a failed closure rests on is read off its trail; then constraints are left out, first many at once and then fewer,
+as long as the rest is inconsistent (the deletion filter of Chinneck and Dravnieks 1991, in chunks as Junker 2004).
+Closure does this fast, and where it does not decide, search goes on with what it left.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TypeVar
+
+import numpy as np
+
+from deixis.reasoning.errors import LimitError
+from deixis.reasoning.qualitative.networks.closure import close, closed_states
+from deixis.reasoning.qualitative.networks.network import Constraint, Network
+from deixis.reasoning.qualitative.networks.search import Verdict, decider, solve
+from deixis.reasoning.qualitative.networks.state import State
+
+Core = tuple[Constraint, ...]
+Item = TypeVar("Item")
+
+
+@dataclass(frozen=True)
+class Conflict:
+    """Constraints that cannot all hold.
+
+    ``minimal`` says that after leaving out any one of them no contradiction is left; it is False where time ran out
+    before that was seen. Where the calculus does not decide (``decided_by_closure`` is False), none is left to find.
+    """
+
+    constraints: Core
+    minimal: bool
+
+
+def minimal_conflict(network: Network, time_limit: float = 10.0, inconsistent: bool = False) -> Conflict | None:
+    """A deletion-minimal set of inconsistent constraints; None where none was found within ``time_limit`` seconds.
+
+    ``inconsistent`` says that the whole is known to be so: there is a conflict then, however little time there is.
+
+    >>> from deixis.reasoning.qualitative.calculi.registry import calculus
+    >>> point = calculus("point")
+    >>> before = point.relation(["<"])
+    >>> stated = [(0, 1), (1, 2), (3, 2), (2, 0)]
+    >>> found = minimal_conflict(Network(point, 4, tuple(Constraint(i, j, before) for i, j in stated)))
+    >>> [(c.first, c.second) for c in found.constraints], found.minimal
+    ([(0, 1), (1, 2), (2, 0)], True)
+    """
+    deadline = time.monotonic() + time_limit
+
+    def by_closure(stated: Core) -> Core | None:
+        return refuting(network.only(stated), deadline)
+
+    def by_search(stated: Core) -> Core | None:
+        return _searched(network.only(stated), deadline)
+
+    core = by_closure(network.constraints)
+    if core is not None:
+        core, minimal = deletion_minimal(core, by_closure, deadline)
+        if closure_decides(network.only(core)):
+            return Conflict(core, minimal)
+    else:
+        core = network.constraints if inconsistent else by_search(network.constraints)
+    if core is None:
+        return None
+    try:
+        return Conflict(*deletion_minimal(core, by_search, deadline))
+    except LimitError:  # too long a search
+        return Conflict(core, False)
+
+
+def closure_decides(network: Network) -> bool:
+    """Whether closure alone tells if these constraints, and any part of them, are consistent."""
+    chosen = network.calculus
+    if decider(chosen) is not None or not chosen.decided_by_closure:
+        return False
+    return all(len(chosen.pieces(relation)) <= 1 for relation in network.arrays.relations)
+
+
+def deletion_minimal(
+    core: tuple[Item, ...], narrow: Callable[[tuple[Item, ...]], tuple[Item, ...] | None], deadline: float
+) -> tuple[tuple[Item, ...], bool]:
+    """Leaves out what is not needed; the flag says that all that is left is, False where time ran out before that.
+
+    What was once needed stays needed in every subset, so that one walk through the constraints is enough.
+    """
+    needed, step = 0, max(1, len(core) // 2)
+    while needed < len(core):
+        if time.monotonic() > deadline:
+            return core, False
+        smaller = narrow(core[:needed] + core[needed + step :])
+        if smaller is not None:
+            core = smaller
+            step = max(1, min(step, (len(core) - needed) // 2))
+        elif step > 1:
+            step //= 2
+        else:
+            needed += 1
+    return core, time.monotonic() <= deadline
+
+
+def refuting(network: Network, deadline: float) -> Core | None:
+    """The constraints on which a failed closure rests, in their order; None where closure does not fail in time."""
+    network = network.only(without_leaves(network))
+    if not network.constraints:
+        return None
+    small, _ = network.compact()
+    try:
+        states, _ = closed_states(small, deadline, traced=True)
+    except LimitError:  # too long a trail: no support, and all are suspected
+        return network.constraints if close(small, deadline).emptied is not None else None
+    for state in states:
+        if state.emptied is not None:
+            return resting(network, small, state, *state.emptied)
+    return None
+
+
+def without_leaves(network: Network) -> Core:
+    """The constraints without those that lead to dead ends, as those of a tree all do.
+
+    A thing that a single, satisfiable constraint is about can be placed whatever the others do.
+    """
+    about: dict[int, set[int]] = {}
+    for position, c in enumerate(network.constraints):
+        for thing in (c.first, c.second):
+            about.setdefault(thing, set()).add(position)
+    loose = [thing for thing, positions in about.items() if len(positions) == 1]
+    gone: set[int] = set()
+    while loose:
+        for position in tuple(about[loose.pop()]):
+            c = network.constraints[position]
+            if c.relation and c.first != c.second:
+                gone.add(position)
+                for thing in (c.first, c.second):
+                    about[thing].discard(position)
+                    if len(about[thing]) == 1:
+                        loose.append(thing)
+    return tuple(c for position, c in enumerate(network.constraints) if position not in gone)
+
+
+def resting(network: Network, small: Network, state: State, first: int, second: int) -> Core:
+    """The constraints of ``network`` (``small`` is its compact form) on which a pair's relation in a state rests."""
+    needed = state.support(first, second)
+    firsts, seconds = small.arrays.firsts, small.arrays.seconds
+    chosen = needed[np.minimum(firsts, seconds), np.maximum(firsts, seconds)]
+    return tuple(network.constraints[k] for k in np.flatnonzero(chosen))
+
+
+def _searched(network: Network, deadline: float) -> Core | None:
+    left = deadline - time.monotonic()
+    if not network.constraints or left <= 0:
+        return None
+    small, _ = network.compact()
+    return network.constraints if solve(small, left).verdict is Verdict.INCONSISTENT else None

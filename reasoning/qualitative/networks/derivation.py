@@ -1,0 +1,115 @@
+"""Why a pair bears a relation: a tree of steps down to what was stated.
+
+The constraints on which the pair rests are thinned out until none is dispensable; these few are then closed in rounds,
+so that each relation is derived by as few compositions on top of one another as can be.
+"""
+
+from __future__ import annotations
+
+import time
+from dataclasses import replace
+
+import numpy as np
+
+from deixis.reasoning.errors import NetworkError
+from deixis.reasoning.qualitative.networks.closure import close, closed_states, whole_relation
+from deixis.reasoning.qualitative.networks.conflict import Core, deletion_minimal, refuting, resting
+from deixis.reasoning.qualitative.networks.network import Network
+from deixis.reasoning.qualitative.networks.rounds import Rounds, Step
+
+FEW = 40  # things among which the shortest way is looked for right away
+
+
+def explain(network: Network, first: int, second: int, time_limit: float = 10.0) -> Step | None:
+    """Why closure leaves of a pair what it does; None where it leaves everything, or time ran out."""
+    require_pair(network, first, second)
+    deadline = time.monotonic() + time_limit
+    small, things = network.compact()
+    if first not in things or second not in things:
+        return None
+    i, j = (int(np.searchsorted(things, thing)) for thing in (first, second))
+    closure = close(small, deadline)
+    if not closure.complete or not closure.consistent:
+        return None
+    step = derive(small, i, j, closure.relation(i, j), deadline - time.monotonic())
+    return None if step is None else _renumbered(step, things.tolist())
+
+
+def derive(network: Network, first: int, second: int, goal: int, time_limit: float = 10.0) -> Step | None:
+    """The shortest derivation found of a relation no wider than ``goal``; None where closure does not give that.
+
+    >>> from deixis.reasoning.qualitative.calculi.registry import calculus
+    >>> from deixis.reasoning.qualitative.networks.network import Constraint
+    >>> point = calculus("point")
+    >>> before = point.relation(["<"])
+    >>> network = Network(point, 3, (Constraint(0, 1, before), Constraint(1, 2, before)), ("a", "b", "c"))
+    >>> print("\\n".join(derive(network, 0, 2, before).lines(network)))
+    a ( < ) c   composed
+        a ( < ) b   stated
+        b ( < ) c   stated
+    """
+    require_pair(network, first, second)
+    if first == second or not network.calculus.universal & ~goal:
+        return None
+    deadline = time.monotonic() + time_limit
+
+    def narrow(stated: Core) -> Core | None:
+        return _supporting(network.only(stated), first, second, goal, deadline)
+
+    core = narrow(network.constraints)
+    if core is None:
+        return None
+    nearest = _in_rounds(network, first, second, goal, deadline) if network.size <= FEW else None
+    if nearest is not None:
+        pairs = {frozenset((leaf.first, leaf.second)) for leaf in nearest.stated()}
+        core = tuple(c for c in network.constraints if frozenset((c.first, c.second)) in pairs)
+    core, _ = deletion_minimal(core, narrow, deadline)
+    return _in_rounds(network.only(core), first, second, goal, deadline)
+
+
+def _in_rounds(network: Network, first: int, second: int, goal: int, deadline: float) -> Step | None:
+    """The derivation that closing breadth first finds; of any pair's empty relation where ``first`` is -1."""
+    small, things = network.compact()
+    place = {int(thing): k for k, thing in enumerate(things)} | {-1: -1}
+    found = Rounds(small).derive(place[first], place[second], goal, deadline)
+    return None if found is None else _renumbered(found, things.tolist())
+
+
+def contradiction(network: Network, time_limit: float = 10.0) -> Step | None:
+    """The derivation of the empty relation from constraints that closure refutes, best from a minimal conflict.
+
+    None where closure finds no contradiction, or not in time.
+    """
+    deadline = time.monotonic() + time_limit
+    if refuting(network, deadline) is None:
+        return None
+    return _in_rounds(network, -1, -1, 0, deadline)
+
+
+def require_pair(network: Network, first: int, second: int) -> None:
+    """Raises NetworkError where one of two things is none of the network."""
+    for thing in (first, second):
+        if not 0 <= thing < network.size:
+            raise NetworkError(f"there is no thing {thing}; the network has {network.size}, numbered from 0")
+
+
+def _supporting(network: Network, first: int, second: int, goal: int, deadline: float) -> Core | None:
+    """Constraints from which closure gives a relation within ``goal``, read off its trail; None where it does not."""
+    small, things = network.compact() if network.constraints else (network, np.zeros(0, dtype=np.int64))
+    if first not in things or second not in things:
+        return None
+    i, j = (int(np.searchsorted(things, thing)) for thing in (first, second))
+    states, complete = closed_states(small, deadline, traced=True)
+    emptied = next((state for state in states if state.emptied is not None), None)
+    if emptied is not None and emptied.emptied is not None:
+        reached = set(emptied.emptied) == {i, j}
+        return resting(network, small, emptied, i, j) if reached else None
+    if not complete or whole_relation(network.calculus, states, i, j) & ~goal:
+        return None
+    rests = {id(c) for state in states for c in resting(network, small, state, i, j)}
+    return tuple(c for c in network.constraints if id(c) in rests)
+
+
+def _renumbered(step: Step, things: list[int]) -> Step:
+    premises = tuple(_renumbered(premise, things) for premise in step.premises)
+    return replace(step, first=things[step.first], second=things[step.second], premises=premises)

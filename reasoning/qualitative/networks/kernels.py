@@ -1,0 +1,348 @@
+"""The compiled loops of algebraic closure for calculi of any size, on bit planes.
+
+A network of n things is ``planes`` (n, words, atoms) of 64-bit words: bit b of ``planes[i, w, a]`` says that i may bear
+atom a to thing 64 w + b. The composition of one relation with a whole row of relations is then an OR of planes,
+64 pairs at a time.
+
+Throughout: ``sizes`` (3,) the number of atoms on each axis, padded by ones in front, an atom's code counting the last
+axis fastest; ``needs`` (3, bytes, 256, atoms of an axis) tells, for each byte of the left relation and each atom of
+the result, the right atoms that give it; ``converses`` (atoms,); ``full`` (words,) one bit a thing;
+``dirty`` (n, words) the ordered pairs whose change is still to be passed on, ``waiting`` (n,) how many of them a row
+has; ``clock`` (5,) the row in turn, the passes done, the pair that was emptied and the thing by which (-1: none);
+``trail`` (room, 4) the atoms taken away, in order: row, column, atom, by which thing (-1: stated); ``count`` (1,) how
+many there are, -1 where none is kept.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit, types
+from numba.extending import intrinsic
+
+CLOSED, EMPTIED, PAUSED, FULL = 0, 1, 2, 3
+
+ONE = np.uint64(1)
+NONE = np.uint64(0)
+
+
+@intrinsic
+def _trailing_zeros(typing, word):  # type: ignore[no-untyped-def]
+    def generate(context, builder, signature, arguments):  # type: ignore[no-untyped-def]
+        return builder.cttz(arguments[0], context.get_constant(types.boolean, True))
+
+    return types.uint64(types.uint64), generate
+
+
+@njit(cache=True)
+def low_bit(word):  # type: ignore[no-untyped-def]
+    """The position of the lowest bit of a word that is not 0; unsigned, so that indexing needs no look at its sign."""
+    return _trailing_zeros(word)  # type: ignore[call-arg]
+
+
+@njit(cache=True)
+def mark(i, k, dirty, waiting):  # type: ignore[no-untyped-def]
+    bit = ONE << np.uint64(k & 63)
+    if i != k and not dirty[i, k >> 6] & bit:
+        dirty[i, k >> 6] |= bit
+        waiting[i] += 1
+
+
+@njit(cache=True)
+def support(i, k, count, trail, needed):  # type: ignore[no-untyped-def]
+    """Marks in ``needed`` (n, n) the pairs on which the relation of i and k rests, going back through the trail."""
+    needed[min(i, k), max(i, k)] = True
+    for m in range(count - 1, -1, -1):
+        a, b, by = trail[m, 0], trail[m, 1], trail[m, 3]
+        if by >= 0 and needed[min(a, b), max(a, b)]:
+            needed[min(a, by), max(a, by)] = True
+            needed[min(b, by), max(b, by)] = True
+
+
+@njit(cache=True)
+def may(planes, i, atom, k):  # type: ignore[no-untyped-def]
+    return planes[i, k >> 6, atom] >> np.uint64(k & 63) & ONE
+
+
+@njit(cache=True)
+def empty(planes, i, k):  # type: ignore[no-untyped-def]
+    left = NONE
+    for atom in range(planes.shape[2]):
+        left |= may(planes, i, atom, k)
+    return left == NONE
+
+
+@njit(cache=True)
+def _take(i, k, atom, by, planes, converses, trail, count):  # type: ignore[no-untyped-def]
+    """Takes an atom from a pair, seen from both things."""
+    planes[i, k >> 6, atom] &= ~(ONE << np.uint64(k & 63))
+    planes[k, i >> 6, converses[atom]] &= ~(ONE << np.uint64(i & 63))
+    if count[0] >= 0:
+        trail[count[0], 0] = i
+        trail[count[0], 1] = k
+        trail[count[0], 2] = atom
+        trail[count[0], 3] = by
+        count[0] += 1
+
+
+@njit(cache=True)
+def restrict(firsts, seconds, ids, masks, start, planes, converses, dirty, waiting, clock, trail, count):  # type: ignore[no-untyped-def]
+    """Intersects pairs with relations, from constraint ``start`` on; returns the first constraint not dealt with.
+
+    ``masks`` (relations, 64-bit words) holds the relations; the first constraint that empties its pair ends it.
+    """
+    atoms = planes.shape[2]
+    for m in range(start, len(firsts)):
+        if count[0] >= 0 and count[0] + atoms > len(trail):
+            return m
+        i, k = firsts[m], seconds[m]
+        changed = False
+        for atom in range(atoms):
+            kept = masks[ids[m], atom >> 6] >> np.uint64(atom & 63) & ONE
+            if not kept and may(planes, i, atom, k):
+                _take(i, k, atom, -1, planes, converses, trail, count)
+                changed = True
+        if changed:
+            mark(i, k, dirty, waiting)
+            mark(k, i, dirty, waiting)
+            if empty(planes, i, k):
+                clock[2], clock[3], clock[4] = i, k, -1
+                return len(firsts)
+    return len(firsts)
+
+
+@njit(cache=True)
+def undo(length, planes, converses, dirty, waiting, clock, trail, count):  # type: ignore[no-untyped-def]
+    """Gives back the atoms taken since the trail was ``length`` long; what was closed then is closed again."""
+    for m in range(count[0] - 1, length - 1, -1):
+        i, k, atom = trail[m, 0], trail[m, 1], trail[m, 2]
+        planes[i, k >> 6, atom] |= ONE << np.uint64(k & 63)
+        planes[k, i >> 6, converses[atom]] |= ONE << np.uint64(i & 63)
+    count[0] = length
+    dirty[:] = NONE
+    waiting[:] = 0
+    clock[2] = -1
+
+
+@njit(cache=True)
+def advance(  # type: ignore[no-untyped-def]
+    budget, sizes, needs, converses, full, planes, dirty, waiting, clock, trail, count
+):
+    """Passes changes on, ``budget`` pairs of them: CLOSED, EMPTIED, PAUSED (budget spent) or FULL (the trail is)."""
+    n, words, atoms = planes.shape
+    changed = np.zeros(words, dtype=np.uint64)
+    removed = np.zeros((words, atoms), dtype=np.uint64)
+    scratch = np.zeros((3, atoms), dtype=np.uint64)
+    boxes = np.zeros((max(1, sizes[0] * sizes[1]), 3), dtype=np.uint64)
+    required = np.zeros((3, sizes.max()), dtype=np.uint64)
+    idle = 0
+    while idle <= n:
+        i = clock[0]
+        if waiting[i] == 0:
+            clock[0] = i + 1 if i + 1 < n else 0
+            idle += 1
+            continue
+        idle = 0
+        for w in range(words):
+            while dirty[i, w]:
+                if budget <= 0:
+                    return PAUSED
+                if count[0] >= 0 and count[0] + n * atoms > len(trail):
+                    return FULL
+                j = (w << 6) + int(low_bit(dirty[i, w]))
+                dirty[i, w] &= dirty[i, w] - ONE
+                waiting[i] -= 1
+                budget -= 1
+                clock[1] += 1
+                if atoms == sizes[2]:
+                    some = _remove_table(i, j, needs, planes, required, removed)
+                else:
+                    some = _remove_product(i, j, sizes, needs, planes, required, boxes, scratch, removed)
+                if some and not _apply(
+                    i, j, removed, converses, full, planes, dirty, waiting, clock, changed, trail, count
+                ):
+                    return EMPTIED
+    return CLOSED
+
+
+@njit(cache=True)
+def _require(relation, axis, size, needs, required):  # type: ignore[no-untyped-def]
+    """For each atom of the result, the right atoms that give it together with some atom of ``relation``."""
+    for c in range(size):
+        required[axis, c] = NONE
+    for byte in range((size + 7) >> 3):
+        value = (relation >> np.uint64(8 * byte)) & np.uint64(255)
+        if value:
+            row = needs[axis, byte, value]
+            for c in range(size):
+                required[axis, c] |= row[c]
+
+
+@njit(cache=True)
+def _remove_table(i, j, needs, planes, required, removed):  # type: ignore[no-untyped-def]
+    """removed[a] = the things k that i cannot bear a to, because of j; False where there is none.
+
+    Most of what is looked at is there to stay, and that shows after a few of the right atoms.
+    """
+    _, words, atoms = planes.shape
+    relation = NONE
+    for atom in range(atoms):
+        relation |= may(planes, i, atom, j) << np.uint64(atom)
+    _require(relation, 2, atoms, needs, required)
+    found = NONE
+    for w in range(words):
+        mine, others = planes[i, w], planes[j, w]
+        for c in range(atoms):
+            gone, needed = mine[c], required[2, c]
+            while gone and needed:
+                gone &= ~others[low_bit(needed)]
+                needed &= needed - ONE
+            removed[w, c] = gone
+            found |= gone
+    return found != NONE
+
+
+@njit(cache=True)
+def _remove_product(i, j, sizes, needs, planes, required, boxes, scratch, removed):  # type: ignore[no-untyped-def]
+    """The same for a product calculus: box by box of i's relation to j, and for each box axis by axis."""
+    _, words, atoms = planes.shape
+    removed[:] = planes[i]
+    for box in range(_boxes(i, j, sizes, planes, boxes)):
+        for axis in range(3):
+            if sizes[axis] > 1:
+                _require(boxes[box, axis], axis, sizes[axis], needs, required)
+        for w in range(words):
+            now, before = planes[j, w], 1
+            for axis in range(3):
+                size = sizes[axis]
+                if size > 1:
+                    _compose_axis(now, required[axis], before, size, atoms // (before * size), scratch[axis])
+                    now = scratch[axis]
+                before *= size
+            for atom in range(atoms):
+                removed[w, atom] &= ~now[atom]
+    return True
+
+
+@njit(cache=True)
+def _compose_axis(given, required, before, size, after, out):  # type: ignore[no-untyped-def]
+    """Composes on one axis: ``given`` and ``out`` (atoms,) hold the things of one word for every atom."""
+    for outer in range(before):
+        for c in range(size):
+            target = (outer * size + c) * after
+            out[target : target + after] = NONE
+            needed = required[c]
+            while needed:
+                source = (outer * size + int(low_bit(needed))) * after
+                needed &= needed - ONE
+                for k in range(after):
+                    out[target + k] |= given[source + k]
+
+
+@njit(cache=True)
+def _boxes(i, j, sizes, planes, boxes):  # type: ignore[no-untyped-def]
+    """Writes the relation of i to j as a disjoint union of products; returns how many."""
+    rows = np.zeros((sizes[0], sizes[1]), dtype=np.uint64)
+    for a in range(sizes[0]):
+        for b in range(sizes[1]):
+            for c in range(sizes[2]):
+                rows[a, b] |= may(planes, i, (a * sizes[1] + b) * sizes[2] + c, j) << np.uint64(c)
+    found = 0
+    for a in range(sizes[0]):
+        first = _alike(rows, a)
+        if first == NONE:
+            continue
+        for b in range(sizes[1]):
+            row, second, seen = rows[a, b], NONE, row_seen(rows[a], b)
+            if row and not seen:
+                for other in range(b, sizes[1]):
+                    if rows[a, other] == row:
+                        second |= ONE << np.uint64(other)
+                boxes[found, 0], boxes[found, 1], boxes[found, 2] = first, second, row
+                found += 1
+    return found
+
+
+@njit(cache=True)
+def row_seen(row, position):  # type: ignore[no-untyped-def]
+    return (row[:position] == row[position]).any()
+
+
+@njit(cache=True)
+def _alike(rows, a):  # type: ignore[no-untyped-def]
+    """The slabs that are just like slab a; none where an earlier one is."""
+    alike = NONE
+    for other in range(len(rows)):
+        if (rows[other] == rows[a]).all():
+            if other < a:
+                return NONE
+            alike |= ONE << np.uint64(other)
+    return alike
+
+
+@njit(cache=True)
+def _apply(i, j, removed, converses, full, planes, dirty, waiting, clock, changed, trail, count):  # type: ignore[no-untyped-def]
+    """Takes from row i what j removes, and marks what changed; False where a pair is left with nothing."""
+    _, words, atoms = planes.shape
+    changed[:] = NONE
+    for w in range(words):
+        for atom in range(atoms):
+            gone = removed[w, atom]
+            changed[w] |= gone
+            while gone:
+                _take(i, (w << 6) + int(low_bit(gone)), atom, j, planes, converses, trail, count)
+                gone &= gone - ONE
+    for w in range(words):
+        if not changed[w]:
+            continue
+        alive = NONE
+        for atom in range(atoms):
+            alive |= planes[i, w, atom]
+        if alive != full[w]:
+            clock[2], clock[3], clock[4] = i, (w << 6) + int(low_bit(full[w] & ~alive)), j
+            return False
+        left = changed[w]
+        while left:
+            k = (w << 6) + int(low_bit(left))
+            left &= left - ONE
+            mark(i, k, dirty, waiting)
+            mark(k, i, dirty, waiting)
+    return True
+
+
+@njit(cache=True)
+def relations(planes, out):  # type: ignore[no-untyped-def]
+    """Writes every pair's relation, (n, n, 64-bit words of atoms)."""
+    n, words, atoms = planes.shape
+    out[:] = NONE
+    for i in range(n):
+        for atom in range(atoms):
+            bit = ONE << np.uint64(atom & 63)
+            for w in range(words):
+                left = planes[i, w, atom]
+                while left:
+                    out[i, (w << 6) + int(low_bit(left)), atom >> 6] |= bit
+                    left &= left - ONE
+
+
+@njit(cache=True)
+def relations_of(firsts, seconds, planes, out):  # type: ignore[no-untyped-def]
+    """Writes the relations of pairs (m,), (m,), (m, 64-bit words of atoms)."""
+    out[:] = NONE
+    for m in range(len(firsts)):
+        for atom in range(planes.shape[2]):
+            out[m, atom >> 6] |= may(planes, firsts[m], atom, seconds[m]) << np.uint64(atom & 63)
+
+
+@njit(cache=True)
+def next_open(planes, start):  # type: ignore[no-untyped-def]
+    """The first pair i < k, counted i * n + k from ``start`` on, that may bear several atoms; n * n where none."""
+    n, _, atoms = planes.shape
+    for position in range(start, n * n):
+        i, k = position // n, position % n
+        if i < k:
+            several = 0
+            for atom in range(atoms):
+                several += may(planes, i, atom, k)
+            if several > 1:
+                return position
+    return n * n

@@ -1,0 +1,129 @@
+"""The compiled loops of algebraic closure for small calculi: one axis, up to 16 atoms, pair by pair.
+
+A network of n things is ``masks`` (n, n), each relation 16 bits. For look-ups a relation is cut in two, its lower
+``half`` bits and the rest: ``compositions`` (2, 2^half, 2, 2^half) composes each part of a left relation with each of a
+right one, ``converses`` (2, 2^half) turns each part round. A row of the trail holds row, column, the atoms taken, by
+which thing. All else is as in :mod:`deixis.reasoning.qualitative.networks.kernels`.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+from deixis.reasoning.qualitative.networks.kernels import CLOSED, EMPTIED, FULL, NONE, ONE, PAUSED, low_bit, mark
+
+
+@njit(cache=True)
+def _narrow(i, k, left, by, half, masks, converses, dirty, waiting, clock, trail, count):  # type: ignore[no-untyped-def]
+    """Leaves a pair with less, seen from both things; False where that is nothing."""
+    if count[0] >= 0:
+        trail[count[0], 0] = i
+        trail[count[0], 1] = k
+        trail[count[0], 2] = masks[i, k] & ~left
+        trail[count[0], 3] = by
+        count[0] += 1
+    masks[i, k] = left
+    masks[k, i] = converses[0, left & ((1 << half) - 1)] | converses[1, left >> half]
+    mark(i, k, dirty, waiting)
+    mark(k, i, dirty, waiting)
+    if not left:
+        clock[2], clock[3], clock[4] = i, k, by
+    return left != 0
+
+
+@njit(cache=True)
+def restrict(firsts, seconds, ids, words, start, half, masks, converses, dirty, waiting, clock, trail, count):  # type: ignore[no-untyped-def]
+    """Intersects pairs with relations, from constraint ``start`` on; returns the first constraint not dealt with."""
+    for m in range(start, len(firsts)):
+        if count[0] >= 0 and count[0] >= len(trail):
+            return m
+        i, k = firsts[m], seconds[m]
+        left = masks[i, k] & np.uint16(words[ids[m], 0])
+        if left != masks[i, k] and not _narrow(
+            i, k, left, -1, half, masks, converses, dirty, waiting, clock, trail, count
+        ):
+            return len(firsts)
+    return len(firsts)
+
+
+@njit(cache=True)
+def undo(length, half, masks, converses, dirty, waiting, clock, trail, count):  # type: ignore[no-untyped-def]
+    """Gives back the atoms taken since the trail was ``length`` long; what was closed then is closed again."""
+    for m in range(count[0] - 1, length - 1, -1):
+        i, k = trail[m, 0], trail[m, 1]
+        whole = masks[i, k] | np.uint16(trail[m, 2])
+        masks[i, k] = whole
+        masks[k, i] = converses[0, whole & ((1 << half) - 1)] | converses[1, whole >> half]
+    count[0] = length
+    dirty[:] = NONE
+    waiting[:] = 0
+    clock[2] = -1
+
+
+@njit(cache=True)
+def advance(budget, half, compositions, converses, masks, dirty, waiting, clock, trail, count):  # type: ignore[no-untyped-def]
+    """Passes changes on, ``budget`` pairs of them: CLOSED, EMPTIED, PAUSED (budget spent) or FULL (the trail is)."""
+    n, words = dirty.shape
+    rows = np.zeros((2, 1 << half), dtype=np.uint16)
+    changed = np.zeros(n + 1, dtype=np.int64)
+    lefts = np.zeros(n + 1, dtype=np.uint16)
+    idle = 0
+    while idle <= n:
+        i = clock[0]
+        if waiting[i] == 0:
+            clock[0] = i + 1 if i + 1 < n else 0
+            idle += 1
+            continue
+        idle = 0
+        for w in range(words):
+            while dirty[i, w]:
+                if budget <= 0:
+                    return PAUSED
+                if count[0] >= 0 and count[0] + n > len(trail):
+                    return FULL
+                j = (w << 6) + int(low_bit(dirty[i, w]))
+                dirty[i, w] &= dirty[i, w] - ONE
+                waiting[i] -= 1
+                budget -= 1
+                clock[1] += 1
+                _compose(masks[i, j], half, compositions, rows)
+                for c in range(_narrower(masks[i], masks[j], half, rows[0], rows[1], changed, lefts)):
+                    if not _narrow(
+                        i, changed[c], lefts[c], j, half, masks, converses, dirty, waiting, clock, trail, count
+                    ):
+                        return EMPTIED
+    return CLOSED
+
+
+@njit(cache=True)
+def _compose(relation, half, compositions, rows):  # type: ignore[no-untyped-def]
+    """The relation composed with every lower part, and with every upper one."""
+    low, high = compositions[0, relation & ((1 << half) - 1)], compositions[1, relation >> half]
+    for part in range(2):
+        for right in range(1 << half):
+            rows[part, right] = low[part, right] | high[part, right]
+
+
+@njit(cache=True)
+def _narrower(mine, others, half, low, high, changed, lefts):  # type: ignore[no-untyped-def]
+    """Lists the pairs of a row that are narrowed, and to what; without a branch, since there is no telling which."""
+    found, shift = np.uint64(0), np.uint64(half)
+    lower = (ONE << shift) - ONE
+    for k in range(len(mine)):
+        other = np.uint64(others[k])
+        left = mine[k] & (low[other & lower] | high[other >> shift])
+        changed[found], lefts[found] = k, left
+        found += np.uint64(left != mine[k])
+    return found
+
+
+@njit(cache=True)
+def next_open(masks, start):  # type: ignore[no-untyped-def]
+    """The first pair i < k, counted i * n + k from ``start`` on, that may bear several atoms; n * n where none."""
+    n = len(masks)
+    for position in range(start, n * n):
+        i, k = position // n, position % n
+        if i < k and masks[i, k] & (masks[i, k] - 1):
+            return position
+    return n * n

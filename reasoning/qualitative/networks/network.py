@@ -1,0 +1,149 @@
+"""A qualitative constraint network: which relations things are said to bear to one another (Montanari 1974)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.ontology.graph import Source
+from deixis.reasoning.errors import NetworkError
+from deixis.reasoning.qualitative.calculi.calculus import Calculus
+
+
+@dataclass(frozen=True, slots=True)
+class Constraint:
+    """Thing ``first`` bears one of the atoms of ``relation`` to thing ``second``."""
+
+    first: int
+    second: int
+    relation: int
+    source: Source | None = None
+
+
+@dataclass(frozen=True)
+class ConstraintArrays:
+    """The constraints of a network as arrays, each distinct relation once."""
+
+    firsts: NDArray[np.int64]  # (m,)
+    seconds: NDArray[np.int64]  # (m,)
+    ids: NDArray[np.int64]  # (m,): positions in ``relations``
+    relations: tuple[int, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Network:
+    """``size`` things, numbered from 0, and constraints between them; pairs that none is about may bear any relation.
+
+    Several constraints on one pair hold together. Raises NetworkError where a constraint is about no thing of the
+    network, or has atoms that the calculus lacks.
+    """
+
+    calculus: Calculus
+    size: int
+    constraints: tuple[Constraint, ...]
+    names: tuple[str, ...] | None = None
+
+    def __post_init__(self) -> None:
+        if self.size < 0 or (self.names is not None and len(self.names) != self.size):
+            raise NetworkError(f"a network of {self.size} things needs as many names, not {len(self.names or ())}")
+        stated, arrays = self.constraints, self.arrays
+        if not stated:
+            return
+        lowest = np.minimum(arrays.firsts, arrays.seconds)
+        outside = np.flatnonzero((lowest < 0) | (np.maximum(arrays.firsts, arrays.seconds) >= self.size))
+        if len(outside):
+            wrong = stated[outside[0]]
+            raise NetworkError(
+                f"{_place(wrong)}a constraint on {wrong.first} and {wrong.second}, and the things of this network "
+                f"are 0 to {self.size - 1}"
+            )
+        universal = self.calculus.universal
+        odd = [relation for relation in arrays.relations if relation & ~universal]
+        if odd:
+            raise NetworkError(f"{self.calculus.name} has {len(self.calculus.atoms)} atoms; {odd[0]:#x} names others")
+
+    @cached_property
+    def arrays(self) -> ConstraintArrays:
+        """The constraints as arrays."""
+        whole = [constraint.relation for constraint in self.constraints]
+        place = {relation: position for position, relation in enumerate(dict.fromkeys(whole))}
+        ids = [place[relation] for relation in whole]
+        return ConstraintArrays(
+            np.array([constraint.first for constraint in self.constraints], dtype=np.int64),
+            np.array([constraint.second for constraint in self.constraints], dtype=np.int64),
+            np.array(ids, dtype=np.int64),
+            tuple(place),
+        )
+
+    def name(self, thing: int) -> str:
+        """What a thing is called: its name, else its number."""
+        return str(thing) if self.names is None else self.names[thing]
+
+    def only(self, constraints: Iterable[Constraint]) -> Network:
+        """The same things with other constraints."""
+        return replace(self, constraints=tuple(constraints))
+
+    def compact(self) -> tuple[Network, NDArray[np.int64]]:
+        """The network of just the things that constraints are about, and their numbers here, in order."""
+        (small,), kept = compacted([self])
+        return small, kept
+
+    def stated(self, first: int, second: int) -> int:
+        """What the constraints on one pair leave, read from first to second; the identity for a thing and itself."""
+        relation = self.calculus.universal if first != second else 1 << self.calculus.identity
+        for constraint in self.constraints:
+            if (constraint.first, constraint.second) == (first, second):
+                relation &= constraint.relation
+            elif (constraint.second, constraint.first) == (first, second):
+                relation &= self.calculus.converse(constraint.relation)
+        return relation
+
+
+def compacted(networks: Sequence[Network]) -> tuple[tuple[Network, ...], NDArray[np.int64]]:
+    """Networks over the same things, of just those that constraints of any are about; their numbers here, in order."""
+    ends = [end for network in networks for end in (network.arrays.firsts, network.arrays.seconds)]
+    kept = np.unique(np.concatenate(ends))
+    place = {int(thing): position for position, thing in enumerate(kept)}
+    return tuple(_placed(network, place) for network in networks), kept
+
+
+def _placed(network: Network, place: dict[int, int]) -> Network:
+    stated = network.constraints
+    constraints = tuple(Constraint(place[c.first], place[c.second], c.relation, c.source) for c in stated)
+    names = None if network.names is None else tuple(network.names[thing] for thing in place)
+    return Network(network.calculus, len(place), constraints, names)
+
+
+def on_axes(network: Network) -> tuple[Network, ...] | None:
+    """A network for each axis, where every relation is a product; None where one is not.
+
+    Composition and intersection of products are products, so that the axes are independent networks (Balbiani,
+    Condotta and Fariñas del Cerro 1998, for rectangles). The empty relation is empty on every axis.
+    """
+    from deixis.reasoning.qualitative.calculi.calculus import ProductCalculus
+
+    calculus = network.calculus
+    if not isinstance(calculus, ProductCalculus):
+        return (network,)
+    boxes = [calculus.boxes(relation) for relation in network.arrays.relations]
+    if any(len(box) > 1 for box in boxes):
+        return None
+    parts = [box[0] if box else (0,) * len(calculus.axes) for box in boxes]
+    return tuple(
+        Network(axis, network.size, tuple(_projected(network, [part[k] for part in parts], axis.universal)))
+        for k, axis in enumerate(calculus.axes)
+    )
+
+
+def _projected(network: Network, relations: Sequence[int], universal: int) -> Iterator[Constraint]:
+    for constraint, position in zip(network.constraints, network.arrays.ids.tolist(), strict=True):
+        if relations[position] != universal:
+            yield Constraint(constraint.first, constraint.second, relations[position], constraint.source)
+
+
+def _place(constraint: Constraint) -> str:
+    return "" if constraint.source is None else f"{constraint.source}: "

@@ -1,0 +1,195 @@
+"""Consistency: closure where it decides, else backtracking with the tractable subclass as split set.
+
+A relation is split into the fewest relations of a tractable subclass, for which a closed network is consistent
+(:meth:`Calculus.pieces`); the pair with fewest pieces is tried first, and after each choice the network is closed
+again, which is the forward checking (Ladkin and Reinefeld 1992; Nebel 1997). Where even closed networks of atoms may
+be inconsistent (``decided_by_closure`` is False) a contradiction is still a proof, and everything else undecided.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from enum import StrEnum
+
+import numpy as np
+
+from deixis.reasoning.qualitative.calculi.bridges import Link
+from deixis.reasoning.qualitative.calculi.calculus import Calculus
+from deixis.reasoning.qualitative.networks.choices import Choices, FewestPieces, NextAtoms
+from deixis.reasoning.qualitative.networks.closure import closed_states, whole_relation
+from deixis.reasoning.qualitative.networks.network import Constraint, Network
+from deixis.reasoning.qualitative.networks.state import Progress, State
+
+
+class Verdict(StrEnum):
+    """Whether all constraints of a network can hold at once."""
+
+    CONSISTENT = "consistent"
+    INCONSISTENT = "inconsistent"
+    UNDECIDED = "undecided"
+
+
+@dataclass(frozen=True, eq=False)
+class Solution:
+    """The verdict on a network, and how it came about.
+
+    ``scenario`` is, where it was asked for and found, the network with one atom for each pair i < j; where the verdict
+    is undecided for the sake of the calculus it is closed, and nothing more. ``refuted`` says that closure alone found
+    the contradiction. ``reason`` tells in words why the verdict is undecided.
+    """
+
+    verdict: Verdict
+    choices: int
+    dead_ends: int
+    seconds: float
+    scenario: Network | None = None
+    refuted: bool = False
+    reason: str = ""
+
+
+class _OutOfTime(Exception):
+    """The deadline came first."""
+
+
+@dataclass(frozen=True)
+class _Choice:
+    """A pair i < j that is chosen for, what is still to be tried, and where the trail was before."""
+
+    first: int
+    second: int
+    pieces: Iterator[int]
+    mark: int
+
+
+@dataclass
+class _Tally:
+    deadline: float | None
+    progress: Progress | None
+    choices: int = 0
+    dead_ends: int = 0
+
+    def check_clock(self) -> None:
+        if self.deadline is not None and time.monotonic() > self.deadline:
+            raise _OutOfTime
+
+
+def solve(
+    network: Network, time_limit: float | None = None, progress: Progress | None = None, scenario: bool = False
+) -> Solution:
+    """Decides whether a network is consistent, within ``time_limit`` seconds; ``scenario`` asks for one as well.
+
+    Raises LimitError where the network would not fit in memory.
+
+    >>> from deixis.reasoning.qualitative.calculi.registry import calculus
+    >>> point = calculus("point")
+    >>> before = point.relation(["<"])
+    >>> circle = tuple(Constraint(i, (i + 1) % 3, before) for i in range(3))
+    >>> str(solve(Network(point, 3, circle)).verdict), str(solve(Network(point, 3, circle[:2])).verdict)
+    ('inconsistent', 'consistent')
+    """
+    bridge = decider(network.calculus)
+    if bridge is not None:
+        solution = solve(translated(network, bridge), time_limit, progress, scenario)
+        found = None if solution.scenario is None else _back(network, solution.scenario, bridge)
+        return replace(solution, scenario=found)
+    started = time.perf_counter()
+    tally = _Tally(None if time_limit is None else time.monotonic() + time_limit, progress)
+    verdict, reason, found, refuted = _decided(network, tally, scenario)
+    return Solution(verdict, tally.choices, tally.dead_ends, time.perf_counter() - started, found, refuted, reason)
+
+
+def decider(calculus: Calculus) -> Link | None:
+    """The bridge to a calculus that decides networks of this one: the ten names are sets of rectangle-algebra atoms."""
+    if calculus.name != "ten":
+        return None
+    from deixis.reasoning.qualitative.calculi.bridges import names_to_boxes
+
+    return names_to_boxes()
+
+
+def translated(network: Network, bridge: Link) -> Network:
+    """The same constraints in the calculus across the bridge."""
+    constraints = (replace(c, relation=bridge.forward(c.relation)) for c in network.constraints)
+    return Network(bridge.target, network.size, tuple(constraints), network.names)
+
+
+def _back(network: Network, scenario: Network, bridge: Link) -> Network:
+    return network.only(replace(c, relation=bridge.backward(c.relation)) for c in scenario.constraints)
+
+
+def scenario(network: Network, time_limit: float | None = None) -> Network | None:
+    """A consistent network with one atom for each pair, all of them as stated; None where none was found in time."""
+    solution = solve(network, time_limit, scenario=True)
+    return solution.scenario if solution.verdict is Verdict.CONSISTENT else None
+
+
+def _decided(network: Network, tally: _Tally, scenario: bool) -> tuple[Verdict, str, Network | None, bool]:
+    try:
+        states, complete = closed_states(network, tally.deadline, tally.progress, traced=True)
+        if any(state.emptied is not None for state in states):
+            return Verdict.INCONSISTENT, "", None, True
+        if not complete:
+            raise _OutOfTime
+        for state in states:
+            if not _refine(state, FewestPieces(state, tally.check_clock), tally):
+                return Verdict.INCONSISTENT, "", None, False
+        if scenario:
+            for state in states:
+                _refine(state, NextAtoms(state), tally)
+        found = atomic_network(network, states, tally) if scenario else None
+    except _OutOfTime:
+        return Verdict.UNDECIDED, "the time limit was reached", None, False
+    if not network.calculus.decided_by_closure:
+        name = network.calculus.name
+        return Verdict.UNDECIDED, f"closure found no contradiction, and in {name} that proves nothing", found, False
+    return Verdict.CONSISTENT, "", found, False
+
+
+def _refine(state: State, choices: Choices, tally: _Tally) -> bool:
+    """Chooses until nothing is left to pick; False where every way leads to a contradiction."""
+    stack: list[_Choice] = []
+    while True:
+        tally.check_clock()
+        found = choices.pick()
+        if found is None:
+            return True
+        stack.append(_Choice(found[0], found[1], iter(found[2]), state.mark))
+        if not _next_choice(state, choices, stack, tally):
+            return False
+        choices.note(state.changed(stack[-1].mark))
+
+
+def _next_choice(state: State, choices: Choices, stack: list[_Choice], tally: _Tally) -> bool:
+    """Makes the next choice that closure lets stand, going back where none is left; False where none is at all."""
+    while stack:
+        last = stack[-1]
+        for piece in last.pieces:
+            tally.check_clock()
+            tally.choices += 1
+            state.assign(last.first, last.second, piece)
+            if not state.close(tally.deadline, tally.progress):
+                raise _OutOfTime
+            if state.emptied is None:
+                return True
+            tally.dead_ends += 1
+            state.undo(last.mark)
+        stack.pop()
+        if stack:
+            given_back = state.changed(stack[-1].mark)
+            state.undo(stack[-1].mark)
+            choices.note(np.append(given_back, last.first * state.size + last.second))
+    return False
+
+
+def atomic_network(network: Network, states: tuple[State, ...], tally: _Tally) -> Network:
+    """The network of what the states of its axes say of every pair i < j."""
+    return network.only(_atomic(network, states, tally))
+
+
+def _atomic(network: Network, states: tuple[State, ...], tally: _Tally) -> Iterator[Constraint]:
+    for i in range(network.size):
+        tally.check_clock()
+        for j in range(i + 1, network.size):
+            yield Constraint(i, j, whole_relation(network.calculus, states, i, j))

@@ -1,0 +1,176 @@
+"""A network while it is being closed: relations that only ever lose atoms, and a trail to get them back."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.reasoning.errors import LimitError
+from deixis.reasoning.qualitative.calculi.calculus import Calculus
+from deixis.reasoning.qualitative.networks.cells import Cells, Masks, Planes
+from deixis.reasoning.qualitative.networks.network import Network
+from deixis.reasoning.qualitative.networks.tables import relation_of, tables, words_of
+
+Progress = Callable[[int, int], None]
+"""Called now and then with the pairs passed on so far, and those known to be due in all; the latter may yet grow."""
+
+MEMORY = 1 << 31  # bytes that a network may take, with its relations before and after as words of 64 atoms
+LONGEST = 1 << 25  # steps of a trail: half a gigabyte
+SLICE = 20_000_000  # steps between two looks at the clock: some hundredths of a second
+
+
+class State:
+    """What the pairs of a network may still be. ``traced`` keeps the trail that undoing and explaining need."""
+
+    def __init__(self, calculus: Calculus, size: int, traced: bool = False) -> None:
+        require_size(calculus, size)
+        self.calculus, self.size = calculus, size
+        table = tables(calculus)
+        self._atoms, self._work = table.atoms, 1 if table.small else table.atoms * int(table.sizes.sum()) // 64 + 1
+        self._cells: Cells = (Masks if table.small else Planes)(size, table, calculus.identity)
+        self._dirty = np.zeros((size, (size + 63) // 64), dtype=np.uint64)
+        self._waiting = np.zeros(size, dtype=np.int64)
+        self._clock = np.array([0, 0, -1, -1, -1], dtype=np.int64)
+        self._trail = np.zeros((4096 if traced else 0, 4), dtype=np.int32)
+        self._count = np.array([0 if traced else -1], dtype=np.int64)
+
+    @property
+    def _bookkeeping(self) -> tuple[NDArray[Any], ...]:
+        return self._dirty, self._waiting, self._clock, self._trail, self._count
+
+    @property
+    def emptied(self) -> tuple[int, int] | None:
+        """The pair of which nothing is left."""
+        return None if self._clock[2] < 0 else (int(self._clock[2]), int(self._clock[3]))
+
+    @property
+    def passes(self) -> int:
+        """How many changes of pairs were passed on."""
+        return int(self._clock[1])
+
+    @property
+    def mark(self) -> int:
+        """The length of the trail, to come back to."""
+        return int(self._count[0])
+
+    def add(self, network: Network) -> bool:
+        """Intersects with all constraints of a network; False where a pair is left with nothing."""
+        arrays = network.arrays
+        return self.restrict(arrays.firsts, arrays.seconds, arrays.ids, arrays.relations)
+
+    def restrict(
+        self,
+        firsts: NDArray[np.int64],
+        seconds: NDArray[np.int64],
+        ids: NDArray[np.int64],
+        relations: tuple[int, ...],
+    ) -> bool:
+        """Intersects pairs (m,), (m,) with ``relations[ids]``; False where one is left with nothing."""
+        if not len(firsts) or self.emptied is not None:
+            return self.emptied is None
+        words, done = words_of(relations, self._atoms), 0
+        while done < len(firsts):
+            done = self._cells.restrict((firsts, seconds, ids), words, done, self._bookkeeping)
+            if done < len(firsts):
+                self._lengthen(self._atoms)
+        return self.emptied is None
+
+    def assign(self, first: int, second: int, relation: int) -> bool:
+        """Intersects one pair with a relation."""
+        one = np.zeros(1, dtype=np.int64)
+        return self.restrict(one + first, one + second, one, (relation,))
+
+    def close(self, deadline: float | None = None, progress: Progress | None = None) -> bool:
+        """Closes the network, as far as it is consistent; False where ``deadline`` (time.monotonic) came first."""
+        from deixis.reasoning.qualitative.networks.kernels import CLOSED, EMPTIED, FULL
+
+        if self.emptied is not None or not self.size:
+            return True
+        budget = SLICE // (self.size * self._work + 64) + 1
+        while True:
+            status = self._cells.advance(budget, self._bookkeeping)
+            if status in (CLOSED, EMPTIED):
+                return True
+            if status == FULL:
+                self._lengthen(self.size * self._cells.atoms_a_row)
+            if progress is not None:
+                progress(self.passes, self.passes + int(self._waiting.sum()))
+            if deadline is not None and time.monotonic() > deadline:
+                return False
+
+    def undo(self, mark: int) -> None:
+        """Goes back to where the trail was ``mark`` long; what was closed then is closed again."""
+        self._cells.undo(mark, self._bookkeeping)
+
+    def _lengthen(self, room: int) -> None:
+        length = 2 * len(self._trail) + room
+        if length > LONGEST:
+            raise LimitError(
+                f"a search among {self.size:,} things in {self.calculus.name} keeps more than {LONGEST:,} steps to "
+                "take back; split the network, or close it without a search"
+            )
+        longer = np.zeros((length, 4), dtype=np.int32)
+        longer[: len(self._trail)] = self._trail
+        self._trail = longer
+
+    def support(self, first: int, second: int) -> NDArray[np.bool_]:
+        """The pairs i <= k, (n, n), whose constraints led to the relation of this one."""
+        from deixis.reasoning.qualitative.networks.kernels import support
+
+        needed = np.zeros((self.size, self.size), dtype=np.bool_)
+        support(first, second, self.mark, self._trail, needed)
+        return needed
+
+    def relation(self, first: int, second: int) -> int:
+        """What a pair may still be."""
+        return self._cells.relation(first, second)
+
+    def relations(self) -> NDArray[np.uint64]:
+        """What all pairs may still be, (n, n, words of 64 atoms)."""
+        return self._cells.relations()
+
+    def distinct(self) -> tuple[tuple[int, ...], NDArray[np.int64]]:
+        """The relations that occur, and for each pair (n, n) the position of its own among them."""
+        words = self.relations()
+        relations, ids = distinct_rows(words.reshape(-1, words.shape[2]))
+        return relations, ids.reshape(self.size, self.size)
+
+    def relations_of(self, positions: NDArray[np.int64]) -> NDArray[np.uint64]:
+        """What pairs (m,), counted i * n + k, may still be, (m, words of 64 atoms)."""
+        return self._cells.relations_of(positions // self.size, positions % self.size)
+
+    def changed(self, mark: int) -> NDArray[np.int64]:
+        """The pairs i < k narrowed since the trail was ``mark`` long, each once, counted i * n + k."""
+        ends = self._trail[mark : self.mark, :2].astype(np.int64)
+        return np.unique(ends.min(axis=1) * self.size + ends.max(axis=1))
+
+    def next_open(self, start: int) -> int:
+        """The first pair i < k that may be several things, as i * n + k, from ``start`` on; n * n where none is."""
+        return self._cells.next_open(start)
+
+
+def distinct_rows(words: NDArray[np.uint64]) -> tuple[tuple[int, ...], NDArray[np.int64]]:
+    """The relations among rows (m, words of 64 atoms), and for each row (m,) the position of its own among them."""
+    if words.shape[1] == 1:
+        values, ids = np.unique(words[:, 0], return_inverse=True)
+        return tuple(int(value) for value in values), ids.astype(np.int64)
+    rows = np.ascontiguousarray(words)
+    packed = rows.view([("", rows.dtype)] * rows.shape[1]).ravel()
+    _, first, ids = np.unique(packed, return_index=True, return_inverse=True)
+    return tuple(relation_of(rows[k]) for k in first), ids.astype(np.int64)
+
+
+def require_size(calculus: Calculus, size: int) -> None:
+    """Raises LimitError, before anything is allocated, where a network of that size would not fit in memory."""
+    table = tables(calculus)
+    bits = (16 if table.small else table.atoms) + 2 * 64 * ((table.atoms + 63) // 64)  # of a pair
+    if size * size * bits // 8 > MEMORY:
+        most = int((8 * MEMORY / bits) ** 0.5)
+        raise LimitError(
+            f"a network of {size:,} things in {calculus.name} takes more than {MEMORY >> 20:,} MB; up to {most:,} "
+            "things can be closed: number the things without gaps, or split the network where nothing connects it"
+        )

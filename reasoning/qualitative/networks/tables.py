@@ -1,0 +1,126 @@
+"""A calculus as the arrays that the compiled loops read."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.reasoning.errors import LimitError
+from deixis.reasoning.qualitative.calculi.calculus import Calculus, TableCalculus
+
+MOST_AXES = 3
+MOST_ATOMS = 64  # of one axis
+SMALL = 16  # atoms
+
+
+@dataclass(frozen=True, eq=False)
+class Tables:
+    """What the compiled loops need of a calculus; the shapes are stated in ``kernels`` and ``mask_kernels``."""
+
+    sizes: NDArray[np.int64]
+    needs: NDArray[np.uint64]
+    converses: NDArray[np.int64]
+    compositions: NDArray[np.uint16]  # these two only where the calculus is small
+    mask_converses: NDArray[np.uint16]
+
+    @property
+    def small(self) -> bool:
+        """Whether a relation fits in 16 bits, and compositions of bytes in a table."""
+        return len(self.mask_converses) > 0
+
+    @property
+    def atoms(self) -> int:
+        return len(self.converses)
+
+
+@lru_cache(maxsize=64)
+def tables(calculus: Calculus) -> Tables:
+    """The arrays of a calculus; raises LimitError for more than three axes, or 64 atoms on one."""
+    axes = calculus.factors
+    largest = max(len(axis.atoms) for axis in axes)
+    if len(axes) > MOST_AXES or largest > MOST_ATOMS:
+        raise LimitError(
+            f"{calculus.name}: closure works for up to {MOST_AXES} axes of up to {MOST_ATOMS} atoms, "
+            f"not {len(axes)} of up to {largest}"
+        )
+    padding = MOST_AXES - len(axes)
+    sizes = np.array([1] * padding + [len(axis.atoms) for axis in axes], dtype=np.int64)
+    needs = np.zeros((MOST_AXES, (largest + 7) // 8, 256, largest), dtype=np.uint64)
+    for position, axis in enumerate(axes, start=padding):
+        filled = _needs(axis)
+        needs[position, : filled.shape[0], :, : filled.shape[2]] = filled
+    converses = _converses([axis.converses for axis in axes])
+    if len(axes) == 1 and largest <= SMALL:
+        return Tables(sizes, needs, converses, _compositions(axes[0]), _mask_converses(axes[0]))
+    nothing = np.zeros(0, dtype=np.uint16)
+    return Tables(sizes, needs, converses, nothing, nothing)
+
+
+def _needs(axis: TableCalculus) -> NDArray[np.uint64]:
+    """Shape (bytes, 256, atoms): the right atoms that give an atom, for every byte of a left relation."""
+    size = len(axis.atoms)
+    codes = np.arange(size, dtype=np.uint64)
+    gives = (axis.composition[:, :, None] >> codes) & np.uint64(1)  # (left, right, result)
+    single = (gives << codes[None, :, None]).sum(axis=1, dtype=np.uint64)  # (left, result)
+    table = np.zeros(((size + 7) // 8, 256, size), dtype=np.uint64)
+    for left in range(size):
+        table[left // 8, _holding(left % 8, 8)] |= single[left]
+    return table
+
+
+def _compositions(axis: TableCalculus) -> NDArray[np.uint16]:
+    """Shape (2, 2^half, 2, 2^half): each part of a left relation composed with each part of a right one."""
+    half = half_of(len(axis.atoms))
+    table = np.zeros((2, 1 << half, 2, 1 << half), dtype=np.uint16)
+    for left, right in np.ndindex(axis.composition.shape):
+        lefts, rights = _holding(left % half, half), _holding(right % half, half)
+        table[left // half, lefts[:, None], right // half, rights] |= np.uint16(axis.composition[left, right])
+    return table
+
+
+def _mask_converses(axis: TableCalculus) -> NDArray[np.uint16]:
+    """Shape (2, 2^half): the converse of each part of a relation."""
+    half = half_of(len(axis.atoms))
+    table = np.zeros((2, 1 << half), dtype=np.uint16)
+    for atom, converse in enumerate(axis.converses):
+        table[atom // half, _holding(atom % half, half)] |= np.uint16(1 << int(converse))
+    return table
+
+
+def half_of(atoms: int) -> int:
+    """The atoms in the lower part of a relation that is cut in two."""
+    return (atoms + 1) // 2
+
+
+def _holding(bit: int, width: int) -> NDArray[np.int64]:
+    """The numbers of that many bits that hold one of them."""
+    return np.flatnonzero(np.arange(1 << width) >> bit & 1)
+
+
+def _converses(converses: Sequence[NDArray[np.int64]]) -> NDArray[np.int64]:
+    total = np.zeros(1, dtype=np.int64)
+    for axis in converses:
+        total = (total[:, None] * len(axis) + axis[None, :]).ravel()
+    return total
+
+
+def words_of(relations: Sequence[int], atoms: int) -> NDArray[np.uint64]:
+    """Relations as words of 64 atoms each, shape (relations, words).
+
+    >>> words_of([1 << 64 | 3], 65).tolist()
+    [[3, 1]]
+    """
+    if atoms <= 64:
+        return np.array(relations, dtype=np.uint64).reshape(-1, 1)
+    width = (atoms + 63) // 64
+    data = b"".join(relation.to_bytes(width * 8, "little") for relation in relations)
+    return np.frombuffer(data, dtype="<u8").astype(np.uint64).reshape(len(relations), width)
+
+
+def relation_of(words: NDArray[np.uint64]) -> int:
+    """The relation in words of 64 atoms each, shape (words,)."""
+    return int.from_bytes(words.astype("<u8").tobytes(), "little")

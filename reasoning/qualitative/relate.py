@@ -1,0 +1,235 @@
+"""Relates boxes in a calculus: the atom of every ordered pair.
+
+Boxes have shape (n, 2, d), least and greatest corner; x to the viewer's right, y away from the viewer, z up. Calculi of
+the plane (all but ``ba``) look at x and y only.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.errors import GraphError, UnknownTermError
+from deixis.ontology.relation import nearest
+from deixis.reasoning.errors import SettingError, UnknownCalculusError
+from deixis.reasoning.geometry.allen import allen_relations
+from deixis.reasoning.geometry.rectangle import require_boxes
+from deixis.reasoning.qualitative.calculi.bridges import (
+    Bridge,
+    boxes_to_regions,
+    joint_to_directions,
+    joint_to_distances,
+    names_to_boxes,
+)
+from deixis.reasoning.qualitative.calculi.distance import DEFAULT_RANGES
+from deixis.reasoning.qualitative.calculi.registry import calculus
+
+CARDINAL_DIRECTIONS: tuple[str, ...] = ("n", "ne", "e", "se", "s", "sw", "w", "nw")
+SAME_PLACE = "eq"
+CONES: tuple[str, ...] = (*CARDINAL_DIRECTIONS, SAME_PLACE)
+
+
+def cardinal_directions(boxes: NDArray[np.float64]) -> NDArray[np.str_]:
+    """For every ordered pair, in which direction the subject's centre lies from the object's: shape (n, n).
+
+    ``boxes`` has shape (n, 2, d), d at least 2; north is y up, east is x to the right. A direction on the border of
+    two cones belongs to the clockwise one (22.5 degrees east of north is north-east). Equal centres are ``eq``.
+
+    >>> cardinal_directions(np.array([[[0.0, 2], [1, 3]], [[0, 0], [1, 1]]])).tolist()
+    [['eq', 'n'], ['s', 'eq']]
+    """
+    return np.array(CONES)[cardinal_cones(boxes)]
+
+
+def cardinal_cones(boxes: NDArray[np.float64]) -> NDArray[np.int16]:
+    """The same as positions in CONES, shape (n, n)."""
+    centres = boxes.mean(axis=1)
+    east = centres[:, None, 0] - centres[None, :, 0]
+    north = centres[:, None, 1] - centres[None, :, 1]
+    clockwise = np.degrees(np.arctan2(east, north))
+    cone = np.floor((clockwise + 22.5) / 45.0).astype(np.int16) % 8
+    return np.where((east == 0) & (north == 0), np.int16(8), cone)
+
+
+AXES = "xyz"
+ALONG_AN_AXIS = ("point", "allen")
+"""The calculi that look along one axis only."""
+Codes = NDArray[np.int16]  # (n, n), row: subject, column: object
+
+
+@dataclass(frozen=True)
+class _Settings:
+    axis: str
+    tolerance: float
+    reference: float | None
+
+
+def relate(
+    boxes: NDArray[np.float64],
+    name: str,
+    *,
+    axis: str = "x",
+    tolerance: float = 0.0,
+    reference: float | None = None,
+) -> Codes:
+    """The code of every ordered pair's atom in the calculus of that name, shape (n, n); row: subject, column: object.
+
+    ``name`` is one of RELATED; ``signs_of(name)`` says what the codes stand for. ``axis`` (x, y or z) is the one that
+    ``point`` (of the boxes' centres) and ``allen`` look along. Coordinates that differ by at most ``tolerance`` count
+    as equal. ``reference`` is the length, in the boxes' unit, that distances are measured by, and has to be given for
+    them. Raises GraphError for boxes of another shape or without the axes that are asked for, UnknownCalculusError and
+    SettingError.
+
+    >>> fork, plate = [[0.0, 0.0], [0.02, 0.2]], [[0.05, -0.02], [0.32, 0.25]]
+    >>> codes = relate(np.array([fork, plate]), "cd")
+    >>> signs_of("cd")[codes[0, 1]]
+    'SW'
+    """
+    relator = _RELATORS.get(name)
+    if relator is None:
+        hint = nearest(name, _RELATORS)
+        raise UnknownCalculusError(
+            f"boxes are not related in '{name}'; "
+            + (f"did you mean '{hint}'?" if hint else f"there are {', '.join(RELATED)}")
+        )
+    if not tolerance >= 0:
+        raise SettingError(f"a tolerance is 0 or more, not {tolerance}")
+    require_boxes(boxes)
+    return relator(boxes, _Settings(axis, tolerance, reference))
+
+
+@dataclass(frozen=True, eq=False)
+class Related:
+    """What every ordered pair of named things bears in one calculus."""
+
+    calculus: str
+    ids: tuple[str, ...]
+    codes: Codes
+
+    @property
+    def signs(self) -> tuple[str, ...]:
+        """What the codes stand for."""
+        return signs_of(self.calculus)
+
+    def pairs(self, subject: str | None = None, object: str | None = None) -> Iterator[tuple[str, str, str]]:
+        """Subject, sign and object of every ordered pair, or of those with that subject and that object.
+
+        Raises UnknownTermError for a name that nothing has.
+        """
+        subjects, objects, signs = self.places(subject), self.places(object), self.signs
+        for i in subjects:
+            row = self.codes[i].tolist()
+            for j in objects:
+                if i != j:
+                    yield self.ids[i], signs[row[j]], self.ids[j]
+
+    def places(self, id: str | None) -> range:
+        """The place of a thing among the ids; of all where none is named.
+
+        Raises UnknownTermError for a name that nothing has.
+        """
+        if id is None:
+            return range(len(self.ids))
+        if id not in self.ids:
+            hint = nearest(id, self.ids)
+            raise UnknownTermError(f"nothing here is called '{id}'" + (f"; did you mean '{hint}'?" if hint else ""))
+        place = self.ids.index(id)
+        return range(place, place + 1)
+
+
+def signs_of(name: str) -> tuple[str, ...]:
+    """The signs that the codes of :func:`relate` stand for."""
+    return CONES if name == "cardir" else calculus(name).atoms
+
+
+def _axis(boxes: NDArray[np.float64], axis: str) -> NDArray[np.float64]:
+    """The boxes on one axis, shape (n, 2)."""
+    if len(axis) != 1 or axis not in AXES:
+        raise SettingError(f"an axis is x, y or z, not '{axis}'")
+    if AXES.index(axis) >= boxes.shape[2]:
+        raise GraphError("these boxes have no heights (z): they are flat")
+    found: NDArray[np.float64] = boxes[:, :, AXES.index(axis)]
+    return found
+
+
+def _allen_on(boxes: NDArray[np.float64], axis: str, tolerance: float) -> Codes:
+    ends = _axis(boxes, axis)
+    low, high = ends[:, 0], ends[:, 1]
+    codes = allen_relations(low[:, None], high[:, None], low[None, :], high[None, :], tolerance)
+    return codes.astype(np.int16)
+
+
+def _order_on(boxes: NDArray[np.float64], axis: str, tolerance: float) -> Codes:
+    """Of the centres: 0 less, 1 equal, 2 greater."""
+    centres = _axis(boxes, axis).mean(axis=1)
+    difference = centres[:, None] - centres[None, :]
+    sign: Codes = (difference > tolerance).astype(np.int16) - (difference < -tolerance).astype(np.int16)
+    return sign + np.int16(1)
+
+
+def _product(on: Callable[[NDArray[np.float64], str, float], Codes], axes: str, atoms: int) -> _Relator:
+    """Codes of a product of calculi with that many atoms an axis, the last axis fastest."""
+
+    def related(boxes: NDArray[np.float64], settings: _Settings) -> Codes:
+        codes = on(boxes, axes[0], settings.tolerance)
+        for axis in axes[1:]:
+            codes = codes * np.int16(atoms) + on(boxes, axis, settings.tolerance)
+        return codes
+
+    return related
+
+
+def _by_atom(bridge: Callable[[], Bridge]) -> _Relator:
+    """What a rectangle-algebra atom says, where it says one thing."""
+
+    def related(boxes: NDArray[np.float64], settings: _Settings) -> Codes:
+        table = np.array([admitted.bit_length() - 1 for admitted in bridge().admits], dtype=np.int16)
+        return table[_rectangles(boxes, settings)]
+
+    return related
+
+
+def _distances(boxes: NDArray[np.float64], settings: _Settings) -> Codes:
+    reference = settings.reference
+    if reference is None or not 0 < reference < np.inf:
+        raise SettingError(f"distance is measured by a reference length above 0, in the boxes' unit, not {reference}")
+    centres = boxes.mean(axis=1)[:, :2]
+    offsets = centres[:, None] - centres[None, :]
+    distance = np.hypot(offsets[..., 0], offsets[..., 1])
+    reach = 1 + np.searchsorted(np.array(DEFAULT_RANGES.bounds) * reference, distance, side="left")
+    same = (np.abs(offsets) <= settings.tolerance).all(axis=2)
+    return np.where(same, 0, reach).astype(np.int16)
+
+
+def _directions_with_distances(boxes: NDArray[np.float64], settings: _Settings) -> Codes:
+    """Of the joint calculus the one atom that has the tile and the range."""
+    tiles, ranges = joint_to_directions(), joint_to_distances()
+    atoms = np.full((len(tiles.target.atoms), len(ranges.target.atoms)), -1, dtype=np.int16)
+    for code, (tile, reach) in enumerate(zip(tiles.admits, ranges.admits, strict=True)):
+        atoms[tile.bit_length() - 1, reach.bit_length() - 1] = code
+    return atoms[_directions(boxes, settings), _distances(boxes, settings)]
+
+
+_Relator = Callable[[NDArray[np.float64], _Settings], Codes]
+
+_rectangles = _product(_allen_on, "xy", 13)
+_directions = _product(_order_on, "xy", 3)
+
+_RELATORS: dict[str, _Relator] = {
+    "point": lambda boxes, settings: _order_on(boxes, settings.axis, settings.tolerance),
+    "allen": lambda boxes, settings: _allen_on(boxes, settings.axis, settings.tolerance),
+    "ra": _rectangles,
+    "ba": _product(_allen_on, "xyz", 13),
+    "cd": _directions,
+    "cardir": lambda boxes, settings: cardinal_cones(boxes),
+    "rcc8": _by_atom(boxes_to_regions),
+    "ten": _by_atom(lambda: names_to_boxes().inverse),
+    "distance": _distances,
+    "direction-distance": _directions_with_distances,
+}
+
+RELATED: tuple[str, ...] = tuple(_RELATORS)
+"""What boxes can be related in: the calculi, and the eight cones of ``cardir``."""

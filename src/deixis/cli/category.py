@@ -1,0 +1,81 @@
+"""The commands about the categories that were taught: list, rename, merge, forget."""
+
+from __future__ import annotations
+
+import sys
+from typing import Annotated
+
+import typer
+
+from deixis.cli.common import BAD_INPUT, AsJson, MemoryDir, print_json, print_lines, require_memory
+
+category_app = typer.Typer(help="List, rename, merge or forget what was taught.", no_args_is_help=True)
+
+
+def register(app: typer.Typer) -> None:
+    """Adds these commands to the command line."""
+    app.add_typer(category_app, name="category")
+
+
+@category_app.command("list")
+def list_categories(memory: MemoryDir = None, as_json: AsJson = False) -> None:
+    """What was taught, with the number of views; exit 2 where damaged ones are left out."""
+    from deixis.session import Session
+
+    require_memory(memory)
+    left_out: list[str] = []
+    with Session(memory) as session:
+        known = session.categories(left_out.append)
+    if as_json:
+        print_json(known)
+    elif known or not left_out:
+        print_lines([f"{name:<24} {count}" for name, count in known.items()] or ["Nothing was taught."])
+    for note in left_out:
+        print(f"deixis: {note}", file=sys.stderr)
+    if left_out:
+        raise typer.Exit(BAD_INPUT)
+
+
+@category_app.command("rename")
+def rename(
+    old: Annotated[str, typer.Argument(metavar="OLD")],
+    new: Annotated[str, typer.Argument(metavar="NEW")],
+    memory: MemoryDir = None,
+) -> None:
+    """Give a category another name; its views stay."""
+    from deixis.perceptual_session import category_name, new_category_name
+    from deixis.session import Session
+
+    name = new_category_name(new)
+    with Session(memory) as session:
+        session.views().rename(category_name(old), name)
+    print(f"'{category_name(old)}' is '{name}' now.")
+
+
+@category_app.command("merge")
+def merge(
+    source: Annotated[str, typer.Argument(metavar="SOURCE")],
+    into: Annotated[str, typer.Argument(metavar="INTO")],
+    memory: MemoryDir = None,
+) -> None:
+    """Make the views of one category views of another: two words for one thing."""
+    from deixis.perceptual_session import category_name
+    from deixis.session import Session
+
+    with Session(memory) as session:
+        session.views().merge(category_name(source), category_name(into))
+    print(f"What was '{category_name(source)}' is '{category_name(into)}' now.")
+
+
+@category_app.command("forget")
+def forget_category(
+    name: Annotated[str, typer.Argument(metavar="CATEGORY")],
+    memory: MemoryDir = None,
+) -> None:
+    """Forget a category with all its views."""
+    from deixis.perceptual_session import category_name
+    from deixis.session import Session
+
+    with Session(memory) as session:
+        session.views().forget(category_name(name))
+    print(f"Forgotten: {category_name(name)}.")

@@ -1,0 +1,114 @@
+"""The commands that run experiments: the paper's Figure 6, the scoreboard of engines, open-ended learning."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from deixis.cli.common import AsJson, print_json, print_lines, print_written, require_plot
+
+experiment = typer.Typer(
+    help="Run an experiment, of the paper or of our own.", no_args_is_help=True, rich_markup_mode=None
+)
+
+Seed = Annotated[int, typer.Option(min=0, help="Seed of everything random.")]
+
+
+@experiment.command()
+def figure6(
+    out: Annotated[Path, typer.Option("-o", "--out", metavar="DIR", help="Where the pictures go.")] = Path("out"),
+    variants: Annotated[int, typer.Option(min=1, help="Generated place settings.")] = 50,
+    orders: Annotated[int, typer.Option(min=1, help="Random node orders that an accuracy is a mean over.")] = 200,
+    seed: Seed = 1,
+    as_json: AsJson = False,
+) -> None:
+    """Print the paper's Figure 6 again: is graph similarity a good guide to correct matches?"""
+    from deixis.experiments.figure6 import run
+
+    result = run(out, variants=variants, orders=orders, seed=seed)
+    if as_json:
+        print_json(result.to_dict())
+    else:
+        print_lines(result.lines())
+
+
+@experiment.command()
+def scoreboard(
+    cases: Annotated[int, typer.Option(min=1, metavar="N", help="Tables of each setting; of large ones fewer.")] = 10,
+    seed: Seed = 1,
+    time_limit: Annotated[float, typer.Option(min=0.01, metavar="SECONDS", help="Of an engine for a case.")] = 5.0,
+    quick: Annotated[bool, typer.Option("--quick", help="A small part of it, in a minute or two.")] = False,
+    size: Annotated[list[int] | None, typer.Option(min=4, max=1000, help="Only tables of so many objects.")] = None,
+    plot: Annotated[Path | None, typer.Option(metavar="FILE", help="Draw it (.png, .svg, .pdf).")] = None,
+    as_json: AsJson = False,
+) -> None:
+    """Compare every engine over generated tables, and over photographs where $DEIXIS_DATA leads to them."""
+    from deixis.experiments.photographs import photographs_folder
+    from deixis.experiments.scoreboard.report import lines, to_dict
+    from deixis.experiments.scoreboard.run import Plan, run, steps
+
+    require_plot(plot)
+    plan = Plan(cases=cases, seed=seed, time_limit=time_limit, photographs=photographs_folder())
+    plan = plan.quick() if quick else plan
+    plan = plan.only(size) if size else plan
+    with progress(steps(plan)) as tick:
+        found = run(plan, tick=tick)
+    if plot is not None:
+        from deixis.experiments.scoreboard.plot import plot_scoreboard
+
+        plot_scoreboard(found, plot)
+    if as_json:
+        print_json(to_dict(found))
+    else:
+        print_lines(lines(found))
+        print_written(plot)
+
+
+@experiment.command("open-ended")
+def open_ended(
+    orders: Annotated[int, typer.Option(min=1, help="Random orders of teaching.")] = 10,
+    seed: Seed = 1,
+    quick: Annotated[bool, typer.Option("--quick", help="Nine kinds, no meshes, three orders at most.")] = False,
+    cache: Annotated[Path | None, typer.Option(metavar="DIR", help="Where described views are kept.")] = None,
+    plot: Annotated[Path | None, typer.Option(metavar="FILE", help="Draw it (.png, .svg, .pdf).")] = None,
+    as_json: AsJson = False,
+) -> None:
+    """Teach every learner kind after kind, in random orders, until it learns no more."""
+    from deixis.experiments.open_ended.report import lines, to_dict
+    from deixis.experiments.open_ended.run import Plan, run
+    from deixis.experiments.open_ended.things import meshes_folder
+
+    require_plot(plot)
+    plan = Plan(orders=orders, seed=seed, meshes=meshes_folder(), cache=cache)
+    found = run(plan.quick() if quick else plan, stage=progress)
+    if plot is not None:
+        from deixis.experiments.open_ended.plot import plot_open_ended
+
+        plot_open_ended(found, plot)
+    if as_json:
+        print_json(to_dict(found))
+    else:
+        print_lines(lines(found))
+        print_written(plot)
+
+
+@contextmanager
+def progress(total: int) -> Iterator[Callable[[str], None]]:
+    """A progress bar on standard error; to be told, ``total`` times, what has just been done."""
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
+    with Progress(*columns, console=Console(stderr=True), transient=True, disable=not sys.stderr.isatty()) as bar:
+        task = bar.add_task("experiment", total=total)
+        yield lambda done: bar.update(task, advance=1, description=done)
+
+
+def register(app: typer.Typer) -> None:
+    """Adds the commands."""
+    app.add_typer(experiment, name="experiment")

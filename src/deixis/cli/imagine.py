@@ -1,0 +1,108 @@
+"""The command that imagines a script: example tables as files, as a picture and in words, or why there is none."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from deixis.cli.common import (
+    NO,
+    UNDECIDED,
+    AsJson,
+    Script,
+    compiled,
+    print_json,
+    print_lines,
+    print_written,
+    require_scene_name,
+)
+
+if TYPE_CHECKING:
+    from deixis.workflows.imagine import Imagination
+
+
+def imagine(
+    script: Script,
+    out: Annotated[
+        Path | None, typer.Option("-o", "--out", metavar="FILE", help="Write the table as a scene (.scene.json).")
+    ] = None,
+    plot: Annotated[Path | None, typer.Option(metavar="FILE", help="Draw the table (.png, .svg, .pdf).")] = None,
+    count: Annotated[int, typer.Option(min=1, max=1000, help="So many different tables; files are numbered.")] = 1,
+    seed: Annotated[int, typer.Option(min=0, help="Another seed draws other sizes and places.")] = 0,
+    any_size: Annotated[bool, typer.Option("--any-size", help="Let things have any size, usual or not.")] = False,
+    time_limit: Annotated[float, typer.Option(min=0.0, metavar="SECONDS", help="Answer by then, each table.")] = 30.0,
+    as_json: AsJson = False,
+) -> None:
+    """Imagine an example table that satisfies a script, or say which facts allow none (exit 1)."""
+    from deixis.grammar.parser import read_script
+    from deixis.kernels import ready_to_imagine
+    from deixis.report.imagine import imagination_lines, imagination_to_dict
+    from deixis.workflows.imagine import imagine as run
+
+    scenes, pictures = _numbered(out, count), _numbered(plot, count)
+    _require_writable(script, scenes, pictures)
+    parsed = read_script(script)
+    compiled(ready_to_imagine)
+    found = run(parsed, any_size=any_size, seed=seed, count=count, time_limit=time_limit)
+    _write(found, scenes, pictures)
+    if as_json:
+        print_json(imagination_to_dict(found))
+    else:
+        print_lines(imagination_lines(found))
+        print_written(*scenes[: len(found.tables)], *pictures[: len(found.tables)])
+    raise typer.Exit(_verdict(found))
+
+
+def _verdict(found: Imagination) -> int:
+    if found.none is not None:
+        return NO
+    return 0 if found.tables else UNDECIDED
+
+
+def _numbered(path: Path | None, count: int) -> list[Path]:
+    """The files of all tables: one as it is named, several with a number before what the name ends with.
+
+    >>> [str(path) for path in _numbered(Path("out/t.scene.json"), 2)]
+    ['out/t-1.scene.json', 'out/t-2.scene.json']
+    """
+    if path is None:
+        return []
+    if count == 1:
+        return [path]
+    ending = ".scene.json" if path.name.endswith(".scene.json") else path.suffix
+    stem = path.name.removesuffix(ending)
+    return [path.with_name(f"{stem}-{number}{ending}") for number in range(1, count + 1)]
+
+
+def _require_writable(script: str, scenes: list[Path], pictures: list[Path]) -> None:
+    """Raises DeixisError, before any work, where a file cannot be what it is to be."""
+    from deixis.errors import DeixisError
+    from deixis.plots.figure import require_picture
+
+    for picture in pictures:
+        require_picture(picture)
+    for scene in scenes:
+        if scene.is_dir():
+            raise DeixisError(f"{scene}: this is a folder; name a file for the scene")
+        if scene.exists() and Path(script).exists() and scene.samefile(script):
+            raise DeixisError(f"{scene}: this is the script; name another file for the scene")
+        require_scene_name(scene)
+        scene.parent.mkdir(parents=True, exist_ok=True)
+
+
+def _write(found: Imagination, scenes: list[Path], pictures: list[Path]) -> None:
+    from deixis.perception.formats.scene_json import write_scene
+
+    for table, file in zip(found.tables, scenes, strict=False):
+        write_scene(table.scene, file)
+    for table, file in zip(found.tables, pictures, strict=False):
+        from deixis.plots.imagine import plot_table
+
+        plot_table(table, found.script.ontology.kinds, file, found.script.title or found.script.name)
+
+
+def register(app: typer.Typer) -> None:
+    """Adds the command to the command line."""
+    app.command()(imagine)

@@ -1,0 +1,109 @@
+"""The command ``deixis infer``: what follows from a script, why, and why something does not."""
+
+from __future__ import annotations
+
+import sys
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from deixis.cli.common import NO, UNDECIDED, AsJson, Script, TimeLimit, print_json, print_lines
+
+if TYPE_CHECKING:
+    from deixis.ontology.graph import Fact
+    from deixis.workflows.infer import Inference
+
+
+def infer(
+    script: Script,
+    explain: Annotated[
+        str | None, typer.Option(metavar="FACT", help="Print why a fact holds: 'left(fork, plate)'.")
+    ] = None,
+    why_not: Annotated[
+        str | None, typer.Option("--why-not", metavar="FACT", help="Print why a fact does not follow.")
+    ] = None,
+    ntriples: Annotated[bool, typer.Option("--ntriples", help="Print all that holds as N-Triples.")] = False,
+    time_limit: TimeLimit = 10.0,
+    as_json: AsJson = False,
+) -> None:
+    """Print what a script states and implies, or the smallest contradiction in it (exit 1)."""
+    from deixis.errors import DeixisError
+    from deixis.report.json_answers import inference_to_dict
+    from deixis.report.script import inference_lines
+    from deixis.session import infer as run
+
+    if explain is not None and why_not is not None:
+        raise DeixisError("infer: --explain and --why-not exclude each other")
+    if ntriples and (as_json or explain is not None or why_not is not None):
+        raise DeixisError("infer: --ntriples goes with none of --json, --explain and --why-not")
+    fact = _one_fact(explain, "--explain") or _one_fact(why_not, "--why-not")
+    inference = run(script, time_limit)
+    if fact is not None and inference.consistent and inference.decided:
+        (_explain if explain is not None else _why_not)(inference, fact, as_json)
+        return
+    if ntriples and inference.consistent and inference.decided:
+        sys.stdout.write(inference.implications.ntriples())
+    elif as_json:
+        print_json(inference_to_dict(inference))
+    else:
+        print_lines(inference_lines(inference))
+    if not inference.consistent:
+        raise typer.Exit(NO)
+    if not inference.decided or not inference.complete:
+        raise typer.Exit(UNDECIDED)
+
+
+def _one_fact(text: str | None, option: str) -> Fact | None:
+    from deixis.errors import DeixisError
+    from deixis.grammar.parser import parse_script
+
+    if text is None:
+        return None
+    facts = parse_script(text, option).facts
+    if len(facts) != 1 or not facts[0].plain or facts[0].optional or facts[0].weight < 1:
+        raise DeixisError(f"{option}: '{text}' is not one plain, firm fact; write it like 'left(fork, plate)'")
+    return facts[0]
+
+
+def _require_names(inference: Inference, fact: Fact, option: str) -> None:
+    from deixis.errors import UnknownTermError
+    from deixis.ontology.relation import nearest
+
+    nodes = inference.implications.graph.nodes
+    for name in (fact.subject, fact.object):
+        if name not in nodes:
+            hint = nearest(name, nodes)
+            raise UnknownTermError(
+                f"{option}: the script names no '{name}'" + (f"; did you mean '{hint}'?" if hint else "")
+            )
+
+
+def _explain(inference: Inference, fact: Fact, as_json: bool) -> None:
+    from deixis.report.json_answers import derivation_to_dict
+
+    _require_names(inference, fact, "--explain")
+    derivation = inference.implications.derive(fact.relations[0], fact.subject, fact.object)
+    if as_json:
+        print_json({"fact": str(fact), "derivation": derivation and derivation_to_dict(derivation)})
+    elif derivation is None:
+        print(f"{fact} does not follow from the script (--why-not says why).")
+    else:
+        print_lines(derivation.lines())
+    if derivation is None:
+        raise typer.Exit(NO)
+
+
+def _why_not(inference: Inference, fact: Fact, as_json: bool) -> None:
+    """Exit code 0 where it does not follow, and 1 where it does after all."""
+    from deixis.reasoning.entailment.why_not import why_not
+    from deixis.report.json_answers import why_not_to_dict
+    from deixis.report.script import why_not_lines
+
+    _require_names(inference, fact, "--why-not")
+    found = why_not(inference.implications, fact)
+    if as_json:
+        print_json(why_not_to_dict(found))
+    else:
+        print_lines(why_not_lines(found))
+    if found.follows is not None:
+        raise typer.Exit(NO)

@@ -1,0 +1,61 @@
+"""The command that relates what a scene shows, in any of the calculi."""
+
+from __future__ import annotations
+
+import sys
+from typing import Annotated
+
+import typer
+
+from deixis.cli.common import AsJson, Image, SceneFile
+
+
+def relate(
+    scene: SceneFile,
+    calculus: Annotated[
+        str,
+        typer.Option(
+            "--calculus",
+            "-c",
+            metavar="NAME",
+            help="point, allen, ra, ba, cd, cardir, rcc8, ten, distance, direction-distance.",
+        ),
+    ] = "ra",
+    of: Annotated[
+        list[str] | None, typer.Option(metavar="ID", help="Only this subject; given twice, this subject and object.")
+    ] = None,
+    axis: Annotated[
+        str | None, typer.Option(metavar="AXIS", help="What point and allen look along: x, y or z; x if not said.")
+    ] = None,
+    tolerance: Annotated[
+        float, typer.Option(min=0.0, metavar="LENGTH", help="Coordinates that differ by no more are equal.")
+    ] = 0.0,
+    reference: Annotated[
+        float | None, typer.Option(metavar="LENGTH", help="What distance is measured by: near is up to 1, medium to 3.")
+    ] = None,
+    matrix: Annotated[bool, typer.Option("--matrix", help="Print a matrix: subjects in rows.")] = False,
+    image: Image = None,
+    as_json: AsJson = False,
+) -> None:
+    """Print how every two things of a scene are related; lengths are in metres (pixels for annotations)."""
+    from deixis.reasoning.errors import SettingError
+    from deixis.reasoning.qualitative.relate import ALONG_AN_AXIS, RELATED, Related
+    from deixis.reasoning.qualitative.relate import relate as codes_of
+    from deixis.report.relate import json_lines, matrix_lines, pair_lines
+    from deixis.session import load_scene
+
+    chosen = of or []
+    if len(chosen) > 2 or (matrix and chosen):
+        raise SettingError("--of takes a subject, and once more an object, and does not go with --matrix")
+    if len(chosen) == 2 and chosen[0] == chosen[1]:
+        raise SettingError(f"--of names a subject and another object, not '{chosen[0]}' twice")
+    if axis is not None and calculus not in ALONG_AN_AXIS and calculus in RELATED:
+        raise SettingError(f"--axis goes with {' and '.join(ALONG_AN_AXIS)} only; {calculus} does not look along one")
+    seen = load_scene(scene, image=image)
+    codes = codes_of(seen.boxes, calculus, axis=axis or "x", tolerance=tolerance, reference=reference)
+    related = Related(calculus, seen.ids, codes)
+    if as_json:
+        lines = json_lines(related, *chosen)
+    else:
+        lines = matrix_lines(related) if matrix else pair_lines(related, *chosen)
+    sys.stdout.writelines(f"{line}\n" for line in lines)

@@ -1,0 +1,87 @@
+"""The command that tells which layout a scene is most like, and which scenes a script is most like."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from deixis.cli.common import (
+    NO,
+    UNDECIDED,
+    AsJson,
+    HideLabels,
+    MemoryDir,
+    NoMemory,
+    TimeLimit,
+    print_json,
+    print_lines,
+    ready_to_ground,
+    working,
+)
+
+if TYPE_CHECKING:
+    from deixis.session import Session
+
+Query = Annotated[
+    str, typer.Argument(metavar="SCENE|SCRIPT", help="A scene (.scene.json) or a layout script (.layout).")
+]
+Among = Annotated[
+    Path | None,
+    typer.Option(metavar="DIR", help="A folder of scripts (for a scene) or of scenes, beside what is remembered."),
+]
+
+
+def retrieve(
+    query: Query,
+    among: Among = None,
+    top: Annotated[int, typer.Option(min=1, metavar="K", help="So many at the most.")] = 5,
+    least: Annotated[float, typer.Option(min=0.0, max=1.0, metavar="SIMILARITY", help="None less similar.")] = 0.5,
+    memory: MemoryDir = None,
+    no_memory: NoMemory = False,
+    hide_labels: HideLabels = False,
+    time_limit: TimeLimit = 60.0,
+    as_json: AsJson = False,
+) -> None:
+    """Rank all known layouts that a scene is like, or all scenes that a script is like (exit 1 where none is)."""
+    from deixis.report.retrieve import retrieved_lines, retrieved_to_dict
+    from deixis.workflows.retrieve import retrieve as run
+
+    ready_to_ground()
+    with _remembering(memory, no_memory) as session, working("comparing"):
+        retrieved = run(
+            query,
+            among,
+            session,
+            top=top,
+            least=least,
+            hide_labels=hide_labels,
+            time_limit=time_limit,
+            left_out=lambda why: print(f"deixis: left out: {why}", file=sys.stderr),
+        )
+    if as_json:
+        print_json(retrieved_to_dict(retrieved.found, query, retrieved.among))
+    else:
+        print_lines(retrieved_lines(retrieved.found, query, retrieved.among, least))
+    if not retrieved.found:
+        raise typer.Exit(NO)
+    if not all(one.proved for one in retrieved.found):
+        raise typer.Exit(UNDECIDED)
+
+
+@contextmanager
+def _remembering(memory: Path | None, no_memory: bool) -> Iterator[Session | None]:
+    """The memory; None without one, but a memory that is named must be there."""
+    from deixis.session import Session
+
+    if no_memory:
+        yield None
+        return
+    with Session(memory) as session:
+        if memory is not None:
+            session.memory()
+        yield session if session.remembers() else None

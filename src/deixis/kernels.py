@@ -1,0 +1,213 @@
+"""Compiles every kernel once, so that no command waits for it: ``python -m deixis.kernels`` after an installation."""
+
+from __future__ import annotations
+
+import time
+from functools import cache
+
+MEANWHILE = 0.2
+"""Seconds that the chains of a miniature may take beyond their compilation."""
+
+
+def compile_kernels() -> None:
+    """Runs one tiny job of each kind; the compiled code is kept on disk, and so are the reasoners' classes."""
+    _ground()
+    ready_to_infer()
+    ready_to_solve()
+    _tell_time()
+    ready_to_imagine()
+    _reason()
+    _read_clouds()
+    _describe()
+
+
+@cache
+def ready_to_ground(engine: str) -> None:
+    """Compiles, or loads compiled, what grounding with an engine needs, so that no time limit is spent on it.
+
+    A miniature goes the way of any grounding, and the probabilities of another are sampled as those of many things
+    are. Raises UnknownTermError for a name that no engine has.
+    """
+    from deixis.grammar.parser import parse_script
+    from deixis.perception.formats.scene_json import read_scene
+    from deixis.reasoning.entailment.conflict import find_conflict
+    from deixis.reasoning.entailment.implications import Implications
+    from deixis.reasoning.grounding.engines import engine_named
+    from deixis.reasoning.grounding.evidence.evidence import evidence_from
+    from deixis.reasoning.grounding.ground import ground
+
+    chosen = engine_named(engine)
+    boxes = [{"id": f"o{i}", "min": [0.2 * i, 0], "max": [0.2 * i + 0.1, 0.1]} for i in range(3)]
+    script = parse_script("fork left of plate\nknife right of plate\n")
+    find_conflict(Implications(script.graph()))
+    scene = read_scene({"frame": "table", "viewpoint": "chair", "unit": "m", "objects": boxes})
+    known, seen = script.ontology, scene.graph(script.ontology.relations)
+    ground(evidence_from(script.graph(), seen, [None] * len(boxes), known.kinds, known.sizes), chosen, 3600.0)
+    _sample()
+
+
+def _sample() -> None:
+    """Asks for less mass to be missing than a sum over maps can promise, which leaves sampling."""
+    import numpy as np
+
+    from deixis.reasoning.grounding.matching.posterior import posterior
+    from deixis.reasoning.grounding.matching.problem import Problem
+
+    unary, tables = np.array([[0.0, -60.0], [0.0, 0.0]]), np.zeros((1, 2, 2), np.float32)
+    problem = Problem(np.array([[0, 1]]), np.array([0]), tables, unary, np.full(2, -80.0))
+    posterior(problem, time.perf_counter() + MEANWHILE, mass=1e-30)
+
+
+def _ground() -> None:
+    for engine in ("exact", "scalable"):
+        ready_to_ground(engine)
+
+
+@cache
+def ready_to_infer() -> None:
+    """The same for what follows from facts that leave a choice."""
+    from deixis.grammar.parser import parse_script
+    from deixis.reasoning.entailment.why_not import why_not
+    from deixis.workflows.infer import inference_of
+
+    inference = inference_of(parse_script("a left of b\nb left or above c\nc is not right of d\n"))
+    inference.inferred()
+    inference.implications.unstated()
+    inference.implications.ntriples()
+    relations = inference.implications.vocabulary
+    why_not(inference.implications, parse_script("a left of c").facts[0])
+    inference.implications.derive(relations["left"], "a", "b")
+    inference_of(parse_script("a left of b\nb left of a\n"))
+
+
+@cache
+def ready_to_solve() -> None:
+    """The same for constraint networks, of calculi that are plain and of such as are products."""
+    from deixis.grammar.formats.networks import parse_networks
+    from deixis.reasoning.qualitative.calculi.registry import calculus
+    from deixis.workflows.solve import Wish, solve_text
+
+    wishes = (Wish(scenario=True), Wish(closure=True, explain=(0, 1)))
+    against = "2 #\n0 1 ( < )\n1 2 ( < )\n0 2 ( > )\n.\n"
+    texts = (("allen", "1 #\n0 1 ( < m )\n.\n"), ("ra", "2 #\n0 1 ( <,m >,< )\n1 2 ( <,< )\n.\n"), ("allen", against))
+    for name, text in texts:
+        for parsed in parse_networks(text, [calculus(name)], "warm"):
+            for wish in wishes:
+                solve_text(parsed, wish)
+
+
+def _tell_time() -> None:
+    from deixis.grammar.formats.fluents import parse_fluents
+    from deixis.reasoning.temporal.timeline import Timeline
+
+    fluents = ",".join(f'{{"id": "{id}", "statement": ["cup", "on", "table"]}}' for id in "ab")
+    relations = '{"a": "a", "allen": ["before", "after"], "b": "b"}'
+    content = parse_fluents(f'{{"origin": "now", "fluents": [{fluents}], "relations": [{relations}]}}', "warm")
+    timeline = Timeline()
+    for item in (*content.fluents, *content.relations):
+        timeline.add(item)
+    timeline.chronology()
+
+
+@cache
+def ready_to_imagine() -> None:
+    """The same for imagining a table."""
+    from deixis.grammar.parser import parse_script
+    from deixis.workflows.imagine import imagine
+
+    imagine(parse_script("fork left of plate\nnapkin on plate\n"))
+
+
+def _reason() -> None:
+    import pyoxigraph as ox
+
+    from deixis.ontology.tbox import tbox_turtle
+    from deixis.reasoning.description_logic.reasoners import Reasoner, prepare
+
+    triples = (quad.triple for quad in ox.parse(tbox_turtle(), format=ox.RdfFormat.TURTLE))
+    text = (ox.serialize(triples, format=ox.RdfFormat.N_TRIPLES) or b"").decode("utf-8")
+    for reasoner in Reasoner:
+        prepare(reasoner, text)
+
+
+def _read_clouds() -> None:
+    import tempfile
+    from pathlib import Path
+
+    import numpy as np
+
+    from deixis.perception.clouds.cloud import PointCloud
+    from deixis.perception.clouds.cloud_file import read_cloud, write_cloud
+
+    cloud = PointCloud(np.array([[0, 0, 1], [0, 1, 1]], np.float32))
+    with tempfile.TemporaryDirectory() as folder:
+        for encoding in ("ascii", "binary_compressed"):
+            write_cloud(Path(folder) / "cloud.pcd", cloud, encoding)
+            read_cloud(Path(folder) / "cloud.pcd")
+        write_cloud(Path(folder) / "cloud.ply", cloud)
+        read_cloud(Path(folder) / "cloud.ply")
+
+
+def _describe() -> None:
+
+    for warm_room in (compile_kernels, compile_kernels, compile_kernels):
+        warm_room()
+
+
+if __name__ == "__main__":
+    compile_kernels()
+
+
+def compile_detection() -> None:
+    """Detects a block on a table."""
+    import numpy as np
+
+    from deixis.perception.clouds.cloud import PointCloud
+    from deixis.perception.detection.detect import detect
+
+    x, y = (axis.ravel() for axis in np.mgrid[-0.3:0.3:0.01, 0.5:1.1:0.01])
+    block = (abs(x) < 0.05) & (abs(y - 0.8) < 0.05)
+    points = np.stack([x, y, np.where(block, -0.64, -0.7)], axis=1)
+    detect(PointCloud(points.astype(np.float32)))
+
+
+def compile_features() -> None:
+    """Describes a tiny view in every way that has a kernel."""
+    import numpy as np
+
+    from deixis.perception.clouds.cloud import PointCloud
+    from deixis.perception.features.keypoints import voxel_keypoints
+    from deixis.perception.features.normals import estimate_normals
+    from deixis.perception.features.spin_describer import SpinImageDescriber
+    from deixis.perception.features.spin_images import spin_images
+
+    side = np.linspace(0.0, 0.05, 6)
+    x, y = (axis.ravel() for axis in np.meshgrid(side, side))
+    cloud = PointCloud(np.stack([x, y, 1.0 + x * y], axis=1).astype(np.float32))
+    SpinImageDescriber().describe(cloud)
+    normals, keypoints = estimate_normals(cloud.points, neighbours=5), voxel_keypoints(cloud.points, 0.05)
+    spin_images(cloud.points, normals, keypoints, support=0.05, min_points=1, angular=True, threads=1)
+
+
+def compile_recognition() -> None:
+    """Recognises a tiny view; views mapped from a file have a signature of their own."""
+    import tempfile
+    from pathlib import Path
+
+    import numpy as np
+
+    from deixis.perception.recognition.distances import Target
+    from deixis.perception.recognition.index import ViewIndex
+    from deixis.perception.recognition.instances import InstanceCategory
+    from deixis.perception.recognition.inverted import Effort
+    from deixis.perception.recognition.view_file import open_views, write_views
+
+    views = [(str(i), np.full((2, 3), i, np.float32)) for i in range(3)]
+    category, target = InstanceCategory.of("warm", views), Target.of(views[0][1])
+    with tempfile.TemporaryDirectory() as folder:
+        write_views(Path(folder) / "views", views)
+        for pack in (category.views, open_views(Path(folder) / "views")):
+            index = ViewIndex.of(pack)
+            reduced = index.reduction(target.descriptors)
+            for effort in (None, Effort()):
+                index.nearest(target, reduced, effort)

@@ -1,0 +1,1 @@
+"""Learning: from a grounding to a lesson, and from all lessons to sizes and words."""

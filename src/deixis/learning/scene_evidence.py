@@ -1,0 +1,48 @@
+"""What speaks for who is who: a description and a scene, with what an ontology and a memory know, as evidence."""
+
+from __future__ import annotations
+
+from deixis.grammar.script import Script
+from deixis.ontology.graph import RelationGraph
+from deixis.ontology.tbox import Ontology
+from deixis.perception.scene import Scene
+from deixis.reasoning.entailment.conflict import find_conflict
+from deixis.reasoning.entailment.implications import Implications
+from deixis.reasoning.grounding.evidence.evidence import Evidence, evidence_from
+from deixis.reasoning.grounding.evidence.labels import Label
+from deixis.reasoning.grounding.evidence.meaning import SHIPPED, Meaning
+
+
+def evidence_of(script: Script, scene: Scene, meaning: Meaning = SHIPPED) -> Evidence:
+    """All that speaks for who is who: the script's facts, and the scene's relations, labels, sizes and colours."""
+    return graph_evidence(script.graph(), scene, script.ontology, meaning)
+
+
+def graph_evidence(description: RelationGraph, scene: Scene, ontology: Ontology, meaning: Meaning) -> Evidence:
+    """The same of a description that is a graph already."""
+    labels = list(scene_labels(scene).values())
+    seen = scene.graph(ontology.relations)
+    return evidence_from(
+        description,
+        seen,
+        labels,
+        ontology.kinds,
+        ontology.sizes,
+        metric=scene.unit == "m",
+        meaning=meaning,
+        seen=scene.colours,
+        colours=ontology.colours,
+    )
+
+
+def scene_labels(scene: Scene) -> dict[str, Label | None]:
+    """What perception calls each thing of a scene."""
+    return {thing.id: Label(thing.label, thing.confidence) if thing.label else None for thing in scene.objects}
+
+
+def conflict_notes(graph: RelationGraph) -> tuple[str, ...]:
+    """What is to be said with an answer where a script contradicts itself."""
+    conflict = find_conflict(Implications(graph))
+    if conflict is None:
+        return ()
+    return (f"the script contradicts itself, so that not all of it can hold: {conflict.reason}",)

@@ -1,0 +1,139 @@
+"""What relation words mean, learned from all that is remembered, and lessons that teach nothing but that."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from datetime import UTC, datetime
+
+from deixis.grammar.format import layout_script
+from deixis.grammar.script import Script
+from deixis.learning.lesson import Occasion, layout_concept, layout_name, scene_record
+from deixis.learning.recollection import Recollection, Remembered, labelled
+from deixis.ontology.lessons.types import WordLesson, next_lesson_id
+from deixis.ontology.models.relations import RelationModel, RelationModels
+from deixis.perception.formats.scene_json import scene_to_dict
+from deixis.perception.scene import Scene
+from deixis.reasoning.grounding.evidence.meaning import shipped_models
+from deixis.reasoning.grounding.fitting.fit import FitSettings, learn_relations
+from deixis.reasoning.grounding.fitting.likelihood import SaidPairs, said_pairs
+from deixis.version import VERSION
+
+
+@dataclass(frozen=True)
+class LearnedWords:
+    """The models after learning, and what they were learned from.
+
+    ``taught`` are the names of the models that changed, ``lessons`` the ids that taught them, ``kept`` those of the
+    lessons that were new; ``left_out`` says, a line each, what taught nothing, and why.
+    """
+
+    models: RelationModels
+    taught: tuple[str, ...]
+    lessons: tuple[str, ...] = ()
+    kept: tuple[str, ...] = ()
+    left_out: tuple[str, ...] = ()
+
+    @property
+    def changed(self) -> tuple[RelationModel, ...]:
+        return tuple(self.models[name] for name in self.taught)
+
+
+def fit(
+    recollection: Recollection,
+    strength: float = 3.0,
+    prior: RelationModels | None = None,
+    more: Sequence[SaidPairs] = (),
+    sources: Sequence[str] = (),
+) -> LearnedWords:
+    """The models that everything remembered teaches, and ``more`` from other ``sources``.
+
+    The prior is what is shipped, never what was learned before: so nothing counts twice, and what is forgotten is. Of
+    lessons with the same script and scene one counts. Raises SettingError for a strength that is not above 0.
+    """
+    known = prior or shipped_models()
+    teaching = {one.lesson: _pairs(one) for one in recollection.lessons}
+    teaching = {lesson: pairs for lesson, pairs in teaching.items() if pairs.weights.sum() > 0}
+    once = {one.texts: one.lesson for one in reversed(recollection.lessons) if one.lesson in teaching}
+    scenes = [*(teaching[lesson] for lesson in sorted(once.values())), *more]
+    learned = learn_relations(scenes, known, FitSettings(strength), sources, VERSION)
+    taught = tuple(name for name in learned.models if learned[name] != known[name])
+    lessons = tuple(sorted(teaching))
+    marked = [_from_lessons(learned[name], lessons, strength) for name in taught]
+    return LearnedWords(learned.replaced(*marked), taught, lessons, left_out=recollection.unreadable)
+
+
+def _pairs(one: Remembered) -> SaidPairs:
+    return said_pairs(one.description, one.scene.boxes, one.who.things, one.who.sureness)
+
+
+def _from_lessons(model: RelationModel, lessons: tuple[str, ...], strength: float) -> RelationModel:
+    return replace(model, provenance=replace(model.provenance, lessons=lessons, strength=strength))
+
+
+def informed(models: Iterable[RelationModel]) -> tuple[frozenset[str], float]:
+    """The lessons that taught some learned models, and the strength with which they were fitted."""
+    models = list(models)
+    strengths = [model.provenance.strength for model in models if model.provenance.strength is not None]
+    return frozenset(id for model in models for id in model.provenance.lessons), strengths[0] if strengths else 1.0
+
+
+Example = tuple[Script, Scene]
+
+
+def example_pairs(example: Example) -> SaidPairs:
+    """The pairs of a labelled scene of which a script says a word."""
+    script, scene = example
+    description = script.graph()
+    who = labelled(description, scene, script.ontology.kinds)
+    return said_pairs(description, scene.boxes, who.things, who.sureness)
+
+
+def teaching(examples: Sequence[Example]) -> tuple[list[Example], list[str]]:
+    """The examples that teach something, and of the others, a line each, why not."""
+    taught, left_out = [], []
+    for script, scene in examples:
+        if example_pairs((script, scene)).weights.sum() > 0:
+            taught.append((script, scene))
+        else:
+            why = "no plain fact has both its objects among the labels of its scene"
+            left_out.append(f"{script.file} {scene.file}: {why}")
+    return taught, left_out
+
+
+def new_lessons(
+    examples: Sequence[Example], known: Recollection, taken: Iterable[str]
+) -> tuple[list[WordLesson], list[str]]:
+    """Lessons about words from the examples that teach something new; and of the others, a line each, why not.
+
+    Their ids differ from those that are ``taken``.
+    """
+    taught, left_out = teaching(examples)
+    texts, ids = {one.texts: one.lesson for one in known.lessons}, list(taken)
+    lessons: list[WordLesson] = []
+    for script, scene in taught:
+        now = datetime.now(UTC)
+        id = next_lesson_id(f"words_{layout_name(script)}", ids)
+        lesson = word_lesson(script, scene, id, Occasion(now, now, VERSION))
+        same = texts.setdefault((lesson.script_text, lesson.scene_text), id)
+        if same == id:
+            lessons.append(lesson)
+            ids.append(id)
+        else:
+            left_out.append(f"{script.file} {scene.file}: remembered already, as {same}")
+    return lessons, left_out
+
+
+def word_lesson(script: Script, scene: Scene, id: str, occasion: Occasion) -> WordLesson:
+    """The lesson that a script and a labelled scene are; the script's includes become a part of its text."""
+    return WordLesson(
+        id=id,
+        scene=scene_record(scene, script.ontology.relations, None),
+        started=occasion.started,
+        ended=occasion.ended,
+        version=occasion.version,
+        script_file=script.file,
+        script_text=layout_script(layout_concept(script, id), script.ontology),
+        scene_text=json.dumps(scene_to_dict(scene), ensure_ascii=False, sort_keys=True),
+    )

@@ -1,0 +1,135 @@
+"""Arrows between things in a picture from above: from where the one is seen to where the other is."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.perception.scene import PerceivedObject
+from deixis.plots.figure import QUIET
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+GRID = 12
+"""Places of a thing, on each axis, where an arrow may begin or end."""
+
+DEEP, LEAST = 0.015, 0.05
+"""How far inside its things an arrow should end, and how long it should be: shares of the picture's extent."""
+
+BEND = 0.12
+"""How far an arrow's control point lies aside, as a share of its length."""
+
+STEPS = 40
+"""Points along an arrow that a name should keep clear of."""
+
+Point = tuple[float, float]
+Arrow = tuple[Point, Point]
+
+
+def from_below(things: Iterable[PerceivedObject]) -> list[PerceivedObject]:
+    """Things in the order in which they are drawn: the larger first, so that each lies over what is larger."""
+    return sorted(things, key=lambda thing: -float(np.prod(_plan(thing)[1] - _plan(thing)[0])))
+
+
+class Ends:
+    """Where arrows between the things of a picture begin and end."""
+
+    def __init__(self, things: Sequence[PerceivedObject]) -> None:
+        ordered = from_below(things)
+        self._boxes = np.array([_plan(thing) for thing in ordered])
+        self._level = {thing.id: level for level, thing in enumerate(ordered)}
+        self._seen: dict[str, tuple[NDArray[np.float64], NDArray[np.float64]]] = {}
+        self._extent = float(np.ptp(self._boxes, axis=(0, 1)).max()) if ordered else 1.0
+
+    def arrow(self, subject: str, object: str) -> Arrow:
+        """From the one to the other, by their ids: short, with either end where no other thing lies over its own."""
+        (starts, start_room), (ends, end_room) = self._where_seen(subject), self._where_seen(object)
+        length = np.linalg.norm(starts[:, None] - ends, axis=2)
+        deep, least = DEEP * self._extent, LEAST * self._extent
+        cost = length + 3 * np.maximum(least - length, 0)
+        cost -= 4 * (np.minimum(start_room, deep)[:, None] + np.minimum(end_room, deep))
+        cost += 0.05 * (_off_centre(starts)[:, None] + _off_centre(ends))
+        start, end = np.unravel_index(int(cost.argmin()), cost.shape)
+        return _point(starts[start]), _point(ends[end])
+
+    def _where_seen(self, id: str) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Places of a thing (n, 2) over which no other lies, and how far each is from an edge; all where none is."""
+        if id not in self._seen:
+            level = self._level[id]
+            low, high = self._boxes[level]
+            places = _grid(low, high)
+            room = -_outside(places, low, high)
+            above = self._boxes[level + 1 :]
+            above = above[(above[:, 0] < high).all(axis=1) & (above[:, 1] > low).all(axis=1)]
+            clear = _outside(places[:, None], above[:, 0], above[:, 1]).min(axis=1, initial=np.inf)
+            seen = clear > 0
+            self._seen[id] = (places[seen], np.minimum(room, clear)[seen]) if seen.any() else (places, room)
+        return self._seen[id]
+
+
+def draw_arrows(axes: Axes, arrows: Sequence[Arrow], colour: str, width: float, order: int) -> None:
+    """Draws arrows, a dot where each begins; bent a little, so that one there and one back are seen as two."""
+    from matplotlib.patches import FancyArrowPatch
+
+    alpha = 0.75 if colour == QUIET else 1.0
+    for start, end in arrows:
+        arrow = FancyArrowPatch(
+            start,
+            end,
+            arrowstyle="-|>",
+            mutation_scale=9,
+            connectionstyle=f"arc3,rad={BEND}",
+            shrinkA=0,
+            shrinkB=0,
+            color=colour,
+            linewidth=width,
+            alpha=alpha,
+            zorder=order,
+        )
+        arrow.set_in_layout(False)
+        axes.add_patch(arrow)
+    x, y = ([start[axis] for start, _ in arrows] for axis in (0, 1))
+    axes.plot(x, y, "o", color=colour, markersize=3.5, alpha=alpha, zorder=order, scalex=False, scaley=False)
+
+
+def along(arrows: Sequence[Arrow]) -> list[Point]:
+    """Points along arrows as :func:`draw_arrows` bends them, where both axes have one scale."""
+    share = np.linspace(0.0, 1.0, STEPS)[:, None]
+    points: list[Point] = []
+    for begin, finish in arrows:
+        start, end = np.array(begin), np.array(finish)
+        aside = (end - start)[::-1] * [1.0, -1.0]
+        middle = (start + end) / 2 + BEND * aside
+        curve = (1 - share) ** 2 * start + 2 * share * (1 - share) * middle + share**2 * end
+        points += [(float(x), float(y)) for x, y in curve]
+    return points
+
+
+def _plan(thing: PerceivedObject) -> NDArray[np.float64]:
+    """The box from above: its least corner and its greatest, shape (2, 2)."""
+    return np.array([thing.minimum[:2], thing.maximum[:2]], dtype=np.float64)
+
+
+def _grid(low: NDArray[np.float64], high: NDArray[np.float64]) -> NDArray[np.float64]:
+    share = (np.arange(GRID) + 0.5) / GRID
+    x, y = np.meshgrid(*(low + share[:, None] * (high - low)).T)
+    return np.stack([x.ravel(), y.ravel()], axis=1)
+
+
+def _outside(places: NDArray[np.float64], low: NDArray[np.float64], high: NDArray[np.float64]) -> NDArray[np.float64]:
+    """How far places are outside boxes, along the axis on which they are farther; negative within."""
+    distance: NDArray[np.float64] = np.maximum(low - places, places - high).max(axis=-1)
+    return distance
+
+
+def _off_centre(places: NDArray[np.float64]) -> NDArray[np.float64]:
+    distance: NDArray[np.float64] = np.linalg.norm(places - places.mean(axis=0), axis=1)
+    return distance
+
+
+def _point(place: NDArray[np.float64]) -> Point:
+    return float(place[0]), float(place[1])

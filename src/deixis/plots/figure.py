@@ -1,0 +1,74 @@
+"""What pictures share: the figure, its colours, its axes, and how it is written to a file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from deixis.errors import DeixisError
+from deixis.perception.scene import Scene
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+INK, QUIET, WRONG, PAPER = "#22313f", "#9aa5ae", "#c0392b", "#fbfaf7"
+FADED_INK = "#77808a"
+MARGIN = 0.12
+"""Inches between what is drawn and the edge of the picture."""
+
+
+def save(figure: Figure, path: str | Path) -> None:
+    """Writes a figure, making the folder it goes to; raises DeixisError where that fails."""
+    import warnings
+
+    target = require_picture(path)
+    try:
+        with warnings.catch_warnings():
+            warnings.filterwarnings("ignore", message="Glyph", category=UserWarning)
+            figure.savefig(target, dpi=180, facecolor=PAPER)
+    except OSError as error:
+        raise DeixisError(f"{target}: the picture cannot be written: {error.strerror}") from error
+
+
+def require_picture(path: str | Path) -> Path:
+    """The path of a picture that can be written, its folder made; raises DeixisError where it cannot be."""
+    target = Path(path)
+    if target.suffix.lower() not in (".png", ".svg", ".pdf"):
+        raise DeixisError(f"{target}: a picture's name ends in .png, .svg or .pdf")
+    if target.is_dir():
+        raise DeixisError(f"{target}: this is a folder; name a file for the picture")
+    try:
+        target.parent.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise DeixisError(f"{target}: the folder of the picture cannot be made: {error.strerror}") from error
+    return target
+
+
+def new_figure(width: float, height: float, **subplots: Any) -> tuple[Figure, Any]:
+    """An empty figure that needs no display, and its axes."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+    from matplotlib.layout_engine import ConstrainedLayoutEngine
+
+    room = ConstrainedLayoutEngine(w_pad=MARGIN, h_pad=MARGIN)
+    figure = Figure(figsize=(width, height), facecolor=PAPER, layout=room)
+    FigureCanvasAgg(figure)
+    return figure, figure.subplots(**subplots)
+
+
+def dress_table(axes: Axes, scene: Scene, title: str | None) -> None:
+    """Labels, colours and title of a table seen from above, once its aspect and margins are set."""
+    axes.autoscale_view()
+    across, along = f"to the right as seen from the {scene.viewpoint}", f"away from the {scene.viewpoint}"
+    if scene.frame == "image" or (scene.unit == "px" and scene.viewpoint != Scene(()).viewpoint):
+        across, along = "to the right", "up"  # nobody said that the image is a plan
+    unit = "pixels" if scene.unit == "px" else "metres"
+    axes.set_xlabel(f"{unit}, {across}", color=INK, fontsize=8.5)
+    axes.set_ylabel(f"{unit}, {along}", color=INK, fontsize=8.5)
+    axes.tick_params(colors=INK, labelsize=8)
+    axes.set_facecolor(PAPER)
+    for side in axes.spines.values():
+        side.set_color(QUIET)
+    if title:
+        axes.set_title(title, color=INK, fontsize=12, loc="left", parse_math=False)

@@ -1,0 +1,134 @@
+"""Pictures: an imagined table from above, each thing with the outline of its kind."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from deixis.ontology.kinds import Kind, Kinds
+from deixis.ontology.sizes import Outline
+from deixis.perception.scene import PerceivedObject
+from deixis.plots.figure import INK, dress_table, new_figure, save
+from deixis.plots.names import write_names
+from deixis.workflows.imagine import Sized, Table
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from matplotlib.patches import Patch
+
+FILLS = {
+    "surface": "#efe9dc",
+    "linen": "#f3dfd3",
+    "crockery": "#ffffff",
+    "cutlery": "#d5dbe1",
+    "glassware": "#d8eaf3",
+}
+OTHER_FILL = "#ece6f2"
+
+Shape = tuple[tuple[float, float], ...]
+
+
+def plot_table(table: Table, kinds: Kinds, path: str | Path, title: str | None = None) -> None:
+    """Draws an imagined table from above, as PNG, SVG or PDF by the file's ending.
+
+    Raises DeixisError where the file cannot be written or its ending is no picture.
+    """
+    save(table_figure(table, kinds, title), path)
+
+
+def table_figure(table: Table, kinds: Kinds, title: str | None = None) -> Figure:
+    """The picture as a matplotlib figure; the viewer sits at its lower edge."""
+    width, height = _extent(table)
+    scale = min(max(9.0, 11.0 * width) / width, max(9.0, 11.0 * height) / height, 20.0 / max(width, height))
+    figure, axes = new_figure(max(width * scale, 4.0) + 1.6, max(height * scale, 2.5) + 1.4)
+    drawn = sorted(zip(table.scene.objects, table.objects, strict=True), key=lambda pair: -_area(pair[0]))
+    for order, (thing, sized) in enumerate(drawn):
+        for patch in _shape(thing, sized, kinds):
+            patch.set_zorder(1 + order)
+            axes.add_patch(patch)
+    axes.set_aspect("equal", adjustable="datalim")  # a long row has room for its names above and below
+    axes.margins(0.08)
+    dress_table(axes, table.scene, title)
+    write_names(figure, axes, table.scene.objects)
+    return figure
+
+
+def _extent(table: Table) -> tuple[float, float]:
+    boxes = table.scene.boxes
+    if not len(boxes):
+        return 0.6, 0.4
+    width, height = (boxes[:, 1, :2].max(axis=0) - boxes[:, 0, :2].min(axis=0)).tolist()
+    return max(width, height / 4), max(height, width / 4)
+
+
+def _area(thing: PerceivedObject) -> float:
+    (x, y), (right, top) = thing.minimum[:2], thing.maximum[:2]
+    return (right - x) * (top - y)
+
+
+def _shape(thing: PerceivedObject, sized: Sized, kinds: Kinds) -> list[Patch]:
+    """The outline of a thing: round, like a fork, a knife or a spoon, or its box with round corners."""
+    from matplotlib.patches import Ellipse, FancyBboxPatch
+
+    (x, y), (right, top) = thing.minimum[:2], thing.maximum[:2]
+    width, height = right - x, top - y
+    style: dict[str, Any] = {"facecolor": _fill(sized.kind, kinds), "edgecolor": INK, "linewidth": 1.0}
+    if sized.size.outline is Outline.CIRCLE:
+        middle = (x + right) / 2, (y + top) / 2
+        return [Ellipse(middle, width * share, height * share, **style) for share in _rings(sized, kinds)]
+    if _is(sized.kind, "cutlery", kinds) and max(width, height) > 2 * min(width, height):
+        return _cutlery(thing, sized.kind, kinds, style)
+    corner = 0.12 * min(width, height)
+    inner = (x + corner, y + corner), width - 2 * corner, height - 2 * corner
+    return [FancyBboxPatch(*inner, boxstyle=f"round,pad={corner}", mutation_aspect=1, **style)]
+
+
+def _rings(sized: Sized, kinds: Kinds) -> Sequence[float]:
+    """A plate has a rim."""
+    return (1.0, 0.72) if _is(sized.kind, "plate", kinds) else (1.0,)
+
+
+def _cutlery(thing: PerceivedObject, kind: Kind | None, kinds: Kinds, style: dict[str, Any]) -> list[Patch]:
+    """A handle and a head, along the longer side; the head points away from the viewer, or to the left."""
+    from matplotlib.patches import Polygon
+
+    (x, y), (right, top) = thing.minimum[:2], thing.maximum[:2]
+    width, height = right - x, top - y
+    upright = height >= width
+    outline = next((shape for word, shape in _SHAPES.items() if _is(kind, word, kinds)), _BAR)
+    corners = [
+        (x + across * width, y + along * height) if upright else (right - along * width, y + across * height)
+        for across, along in outline
+    ]
+    return [Polygon(corners, closed=True, joinstyle="round", **style)]
+
+
+_HANDLE = ((0.35, 0.55), (0.3, 0.0), (0.7, 0.0), (0.65, 0.55))
+_BAR: Shape = ((0.0, 1.0), (0.0, 0.0), (1.0, 0.0), (1.0, 1.0))
+_KNIFE = (
+    *((0.2, 1.0), (0.0, 0.9), (0.0, 0.45), (0.15, 0.45), (0.15, 0.0)),
+    *((0.85, 0.0), (0.85, 0.45), (1.0, 0.5), (1.0, 0.75)),
+)
+_FORK = (
+    *((0.0, 1.0), (0.0, 0.72), (0.2, 0.64)),
+    *_HANDLE,
+    *((0.8, 0.64), (1.0, 0.72), (1.0, 1.0), (0.85, 1.0), (0.8, 0.78), (0.72, 0.78), (0.67, 1.0)),
+    *((0.33, 1.0), (0.28, 0.78), (0.2, 0.78), (0.15, 1.0)),
+)
+_SPOON = (
+    *((0.5, 1.0), (0.24, 0.97), (0.06, 0.89), (0.0, 0.81), (0.06, 0.72), (0.2, 0.65)),
+    *_HANDLE,
+    *((0.8, 0.65), (0.94, 0.72), (1.0, 0.81), (0.94, 0.89), (0.76, 0.97)),
+)
+_SHAPES: dict[str, Shape] = {"fork": _FORK, "knife": _KNIFE, "spoon": _SPOON}
+"""Outlines within the unit square, across and along."""
+
+
+def _is(kind: Kind | None, word: str, kinds: Kinds) -> bool:
+    broader = kinds.of_word(word)
+    return kind is not None and broader is not None and kinds.is_a(kind, broader)
+
+
+def _fill(kind: Kind | None, kinds: Kinds) -> str:
+    return next((colour for word, colour in FILLS.items() if _is(kind, word, kinds)), OTHER_FILL)

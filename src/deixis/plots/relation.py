@@ -1,0 +1,105 @@
+"""A picture of what a relation word means: how well it holds of a thing that stands here or there."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.ontology.models.relations import FAMILIES, RelationModel, RelationModels
+from deixis.ontology.relation import Relation
+from deixis.plots.figure import INK, PAPER, new_figure, save
+from deixis.reasoning.geometry.pairs import pair_geometry
+from deixis.reasoning.grounding.evidence.degrees import relation_degree
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+REFERENCE = ((-0.5, -0.5), (0.5, 0.5))
+SUBJECT = 0.4
+"""The width and depth of the thing that is moved about, in widths of the reference object."""
+
+REACH, NEAR_REACH = 3.0, 1.25
+"""How far the field goes from the reference object's centre, in its widths; and for what lies on it or under it."""
+
+LINES = (0.1, 0.25, 0.5, 0.75)
+"""The degrees at which contours are drawn."""
+
+
+def plot_relation(relation: Relation, models: RelationModels, path: str | Path) -> None:
+    """Writes the field around a reference object as PNG, SVG or PDF by the file's ending.
+
+    Raises DeixisError where the file cannot be written or its ending is no picture.
+    """
+    save(relation_figure(relation, models), path)
+
+
+def field(relation: Relation, models: RelationModels, steps: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Places on each axis (steps,), and degrees of a thing centred there, shape (steps, steps), rows by y."""
+    reach = _reach(relation)
+    places = np.linspace(-reach, reach, steps)
+    half = np.array([SUBJECT, SUBJECT]) / 2
+    degrees = np.empty((steps, steps))
+    for row, y in enumerate(places):
+        centres = np.stack([places, np.full(steps, y)], axis=1)
+        subjects = np.stack([centres - half, centres + half], axis=1)
+        pairs = pair_geometry(np.concatenate([subjects, [REFERENCE]]))
+        degrees[row] = relation_degree(pairs, relation, models)[:-1, -1]
+    return places, degrees
+
+
+def relation_figure(relation: Relation, models: RelationModels, steps: int = 181) -> Figure:
+    """Degrees as a heat map with contours; the reference object drawn, and the thing that is moved, in the corner."""
+    figure, axes = new_figure(7.4, 6.3)
+    places, degrees = field(relation, models, steps)
+    shown = axes.contourf(places, places, degrees, levels=np.linspace(0, 1, 41), cmap="Blues")
+    lines = axes.contour(places, places, degrees, levels=LINES, colors=INK, linewidths=0.7)
+    _boxes(axes, _reach(relation))
+    axes.set_aspect("equal")
+    axes.set_xlabel("subject's centre, in widths of the reference; right as seen from the chair", fontsize=8.5)
+    axes.set_ylabel("away from the chair", fontsize=8.5)
+    title = f"How well '{relation.phrase}' holds, {_origin(models.of(relation))}"
+    axes.set_title(title, color=INK, fontsize=12, loc="left", parse_math=False)
+    axes.tick_params(colors=INK, labelsize=8)
+    bar = figure.colorbar(shown, cax=axes.inset_axes((1.03, 0.0, 0.045, 1.0)), ticks=[0, *LINES, 1], format="%g")
+    bar.add_lines(lines)
+    bar.ax.tick_params(colors=INK, labelsize=8)
+    bar.set_label("degree; lines as in the field", color=INK, fontsize=8.5)
+    return figure
+
+
+def _reach(relation: Relation) -> float:
+    return NEAR_REACH if FAMILIES.get(relation.word) == "support" else REACH
+
+
+def _origin(model: RelationModel) -> str:
+    """Whether a meaning was learned, and from how much."""
+    origin = model.provenance
+    if origin.made is None:
+        return "as shipped"
+    number = round(origin.examples, 1)
+    return f"learned from {number:g} {'fact' if number == 1 else 'facts'}"
+
+
+def _boxes(axes: Axes, reach: float) -> None:
+    """The reference object, and in the corner the subject, in the scale of the field."""
+    from matplotlib import patheffects
+    from matplotlib.patches import Rectangle
+
+    halo = [patheffects.withStroke(linewidth=2.2, foreground=PAPER)]
+    axes.add_patch(Rectangle(REFERENCE[0], 1, 1, fill=False, edgecolor=INK, linewidth=1.6))
+    axes.text(0.5 + 0.02 * reach, -0.5, "reference", ha="left", va="bottom", fontsize=8.5, color=INK, path_effects=halo)
+    edge = 0.05 * reach
+    left, low = reach - SUBJECT - edge, edge - reach
+    axes.add_patch(Rectangle((left, low), SUBJECT, SUBJECT, facecolor=PAPER, edgecolor=INK))
+    axes.text(
+        *(left - edge / 2, low + SUBJECT / 2, "subject"),
+        ha="right",
+        va="center",
+        fontsize=8.5,
+        color=INK,
+        path_effects=halo,
+    )

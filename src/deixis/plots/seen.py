@@ -1,0 +1,187 @@
+"""Pictures of what was perceived and recognised: things from above, each in its colour, with box and name."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.perception.detection.tables import ON_TABLE
+from deixis.plots.camera import MARGIN, Camera, camera_of, colours_of, draw_camera
+from deixis.plots.figure import INK, dress_table, new_figure, save
+from deixis.plots.names import write_names
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from deixis.perception.recognition.recognition import Recognition
+    from deixis.perception.scene import Scene
+    from deixis.workflows.perceive import Perceived
+    from deixis.workflows.recognise import Recognised
+
+MOST_POINTS = 60_000
+"""Points that are drawn of the things, and of the table."""
+
+FEW = 0.005
+"""The share of the table's points, on each side, that may be some other level surface of its height."""
+
+DOT = 0.003
+"""Metres: the width of a point as it is drawn, about that between a depth camera's points on a table."""
+
+TABLE = "#dedbd1"
+WIDEST_DOT = 0.02
+"""Metres: how wide a point of the table is drawn at the most, where these are far apart."""
+
+LEAST_DOT = 1.0
+"""The same in typographic points, whatever the scale."""
+
+HEIGHT, MOST_WIDTH = 5.4, 12.5
+"""Inches: a panel's height, and how wide the panels may be together."""
+
+LONGEST_NAME = 32
+"""Characters of a name that are drawn."""
+
+LEGEND = "Number: the probability that the name is right; beside 'unknown', that no name known is."
+
+Window = tuple[NDArray[np.float64], NDArray[np.float64]]
+"""The least and the greatest x and y that are drawn, in metres."""
+
+
+def plot_perceived(found: Perceived, path: str | Path) -> None:
+    """The points from above, grey where they belong to no thing; beside it the image, where the cloud is one."""
+    from deixis.workflows.perceive import in_frame
+
+    points, labels = in_frame(found.cloud, found.detection.frame).points, found.detection.labels
+    window = window_of(points, found)
+    camera = camera_of(found.cloud, labels, found.scene) if found.cloud.organised else None
+    figure, axes, scale = _panels(window, camera)
+    _points(axes[0], points, labels, window, scale)
+    level = found.detection.table is not None or bool(found.scene.objects)
+    _dress(axes[0], found.scene, window, _title(found))
+    if not found.scene.objects:
+        _say(axes[0], "; ".join(found.detection.notes) or "nothing was found")
+    if not level:
+        axes[0].set_xlabel("metres, x of the cloud")
+        axes[0].set_ylabel("metres, y of the cloud")
+    write_names(figure, axes[0], [replace(thing, label=thing.label or thing.id) for thing in found.scene.objects])
+    if camera is not None:
+        draw_camera(axes[1], camera)
+        write_names(figure, axes[1], camera.things)
+    save(figure, path)
+
+
+def _title(found: Perceived) -> str:
+    if found.detection.table is not None:
+        return "From above, in the table's frame"
+    return "One thing alone, from above" if found.scene.objects else "All points, as they stand"
+
+
+def plot_recognised(found: Recognised, path: str | Path) -> None:
+    """The things from above, each with its name and how probable that is; what is unknown says so."""
+    from deixis.workflows.perceive import cloud_of
+
+    clouds = [
+        (number, cloud_of(found.scene, thing).points)
+        for number, thing in enumerate(found.scene.objects)
+        if thing.cloud is not None
+    ]
+    points = np.concatenate([np.empty((0, 3), np.float32), *(cloud for _, cloud in clouds)])
+    labels = np.concatenate([np.empty(0, np.int32), *(np.full(len(cloud), number) for number, cloud in clouds)])
+    window = _around_boxes(found.scene)
+    figure, axes, scale = _panels(window, None)
+    _points(axes[0], points, labels.astype(np.int32), window, scale)
+    _dress(axes[0], found.scene, window, "What was recognised")
+    if not found.scene.objects:
+        _say(axes[0], "there is nothing in this scene")
+    if found.answers:
+        axes[0].set_xlabel(f"{axes[0].get_xlabel()}\n\n{LEGEND}", fontsize=8, color=INK)
+    named = [replace(thing, label=_answered(thing.id, thing.label, found)) for thing in found.scene.objects]
+    write_names(figure, axes[0], named)
+    save(figure, path)
+
+
+def _answered(id: str, label: str | None, found: Recognised) -> str:
+    answer: Recognition | None = found.answers.get(id)
+    name = (label if answer is None else answer.label) or "unknown"
+    name = name if len(name) <= LONGEST_NAME else f"{name[: LONGEST_NAME - 1]}…"
+    return f"{id} {name}" if answer is None else f"{id} {name} {answer.probability:.2f}"
+
+
+def window_of(points: NDArray[np.float32], found: Perceived) -> Window:
+    """What is drawn of points (n, 3) in the table's frame: the things, and some of the table around them.
+
+    The whole table where nothing is on it, and all points where no table was found.
+    """
+    if found.scene.objects:
+        return _around_boxes(found.scene)
+    flat = points[np.isfinite(points).all(axis=1)]
+    if found.detection.table is not None:
+        flat = flat[np.abs(flat[:, 2]) < ON_TABLE]
+    low, high = np.quantile(flat[:, :2].astype(np.float64), [FEW, 1.0 - FEW], axis=0)
+    return _widened(low, high)
+
+
+def _around_boxes(scene: Scene) -> Window:
+    if not scene.objects:
+        return _widened(np.zeros(2), np.ones(2))
+    return _widened(scene.boxes[:, 0, :2].min(axis=0), scene.boxes[:, 1, :2].max(axis=0))
+
+
+def _widened(low: NDArray[np.float64], high: NDArray[np.float64]) -> Window:
+    """With a margin, and neither side less than half the other."""
+    middle, half = (low + high) / 2, (high - low) / 2
+    half = np.maximum(half + 2 * MARGIN * half.max(), max(half.max() / 2, DOT))
+    return middle - half, middle + half
+
+
+def _panels(window: Window, camera: Camera | None) -> tuple[Figure, list[Axes], float]:
+    """A figure with a panel for each view, of one height; and how many inches a metre has in the first."""
+    width, depth = (window[1] - window[0]).tolist()
+    shapes = [width / depth] if camera is None else [width / depth, camera.shape]
+    height = min(HEIGHT, MOST_WIDTH / sum(shapes))
+    figure, axes = new_figure(
+        height * sum(shapes) + 0.4 + 0.6 * len(shapes),
+        height + 1.2,
+        ncols=len(shapes),
+        squeeze=False,
+        width_ratios=shapes,
+    )
+    return figure, list(axes[0]), height / depth
+
+
+def _points(axes: Axes, points: NDArray[np.float32], labels: NDArray[np.int32], window: Window, scale: float) -> None:
+    """Points in the window, the table's so wide that they close up; what is higher lies over what is lower."""
+    inside = np.isfinite(points).all(axis=1) & ((points[:, :2] > window[0]) & (points[:, :2] < window[1])).all(axis=1)
+    style: dict[str, Any] = {"linewidths": 0, "rasterized": True}
+    for of_things in (False, True):
+        shown = np.flatnonzero(inside & ((labels >= 0) == of_things))
+        shown = shown[:: len(shown) // MOST_POINTS + 1]
+        shown = shown[np.argsort(points[shown, 2], kind="stable")]
+        apart = float(np.sqrt(np.prod(window[1] - window[0]) / max(len(shown), 1)))
+        width = DOT if of_things else min(1.5 * max(apart, DOT), WIDEST_DOT)
+        colours = colours_of(labels[shown]) if of_things else TABLE
+        size = max(72 * scale * width, LEAST_DOT) ** 2
+        axes.scatter(1.0 * points[shown, 0], 1.0 * points[shown, 1], s=size, c=colours, **style)
+
+
+def _dress(axes: Axes, scene: Scene, window: Window, title: str) -> None:
+    """Boxes, each edged in a darker tone of its thing's colour, and the frame around them."""
+    from matplotlib.patches import Rectangle
+
+    edges = 0.6 * colours_of(np.arange(len(scene.objects)))
+    for thing, edge in zip(scene.objects, edges, strict=True):
+        (x, y), (right, top) = thing.minimum[:2], thing.maximum[:2]
+        axes.add_patch(Rectangle((x, y), right - x, top - y, fill=False, edgecolor=tuple(edge), linewidth=1.1))
+    axes.set_xlim(window[0][0], window[1][0])
+    axes.set_ylim(window[0][1], window[1][1])
+    axes.set_aspect("equal")
+    dress_table(axes, scene, title)
+
+
+def _say(axes: Axes, what: str) -> None:
+    """A line in the middle of a panel that shows no thing."""
+    axes.text(0.5, 0.5, what, transform=axes.transAxes, ha="center", va="center", fontsize=11, color=INK, wrap=True)

@@ -1,0 +1,136 @@
+"""Who is who, as lines of text for the terminal."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from deixis.reasoning.grounding.answer import Alternative, FactOutcome, Grounding, LeftOut, Match, Pivotal
+
+MANY = 12
+"""Names, and facts that matter, that are listed one by one."""
+
+MORE = 0.02
+"""By how much likelier another thing is where it is told: more than what sampling makes of equal ones."""
+
+
+def grounding_lines(found: Grounding) -> list[str]:
+    """Who is who, what cannot be told apart, which facts fail, what was left out, and what qualifies the answer."""
+    lines = [_match_line(match) for match in found.matches.values()] or ["No object was found."]
+    elsewhere = [match.object for match in found.matches.values() if _likelier_elsewhere(match)]
+    if elsewhere:
+        told = "This is the likeliest map as a whole; taken alone, likelier to be another thing: "
+        lines += ["", f"{told}{', '.join(at_most_many(elsewhere))}."]
+    groups = [group for group in found.interchangeable if any(name in found.matches for name in group)]
+    if groups:
+        lines += ["", "The description cannot tell these apart, so their names may be swapped:"]
+        lines += ["    " + ", ".join(group) for group in groups]
+    lines += ["", f"Facts: {len(found.outcomes)} stated, {len(found.satisfied)} satisfied" + _rest(found)]
+    lines += [f"    violated: {violation_text(entry)}" for entry in found.violated]
+    lines += _left_out_lines((*found.unmatched_objects, *found.unmatched_perceived))
+    pivotal = [line for entry in found.pivotal or () if (line := _pivotal_line(entry, found))]
+    lines += pivotal[:MANY]
+    if len(pivotal) > MANY:
+        lines.append(f"and {len(pivotal) - MANY} more facts that matter (--json has them)")
+    lines.append(f"Graph similarity {found.graph_similarity:.3f}; engine {found.engine}, {_standing(found)}.")
+    return lines + [f"Note: {note}." for note in found.notes]
+
+
+def _left_out_lines(left_out: Sequence[LeftOut]) -> Iterator[str]:
+    """A line for each, or one for many that are left out for the same reason."""
+    for reason in dict.fromkeys(left.reason for left in left_out):
+        names = [left.name for left in left_out if left.reason == reason]
+        if len(names) > MANY:
+            names = [", ".join(at_most_many(names)) + " (--json has them)"]
+        yield from (f"Left out: {name}: {reason}." for name in names)
+
+
+def at_most_many(told: list[str]) -> list[str]:
+    """The first ones, and how many more there are."""
+    return [*told[:MANY], f"{len(told) - MANY} more"] if len(told) > MANY else told
+
+
+def _match_line(match: Match) -> str:
+    """An object, its thing, how probable that is, and what else it may be."""
+    line = f"{match.object:<24} {match.perceived:<10}"
+    if match.probability is not None:
+        line += f" {_probability(match.probability)}"
+        others = [f"{_thing(other)} {_probability(other.probability or 0)}" for other in match.alternatives]
+        return line + (f"   or {', '.join(at_most_many(others))}" if others and not match.decided else "")
+    equal = [_thing(other) for other in match.alternatives if other.cost <= 1e-9]
+    if match.decided or not match.alternatives:
+        return line.rstrip()
+    return (
+        f"{line} or {', '.join(at_most_many(equal))}"
+        if equal
+        else f"{line} or, less likely, {_thing(match.alternatives[0])}"
+    )
+
+
+def _thing(other: Alternative) -> str:
+    return other.perceived or "not there"
+
+
+def _probability(value: float) -> str:
+    """Two digits, never 1 for what is not certain, and what is not called decided looks so."""
+    from deixis.reasoning.grounding.answer import DECIDED
+
+    if value < DECIDED:
+        return f"{min(value, DECIDED - 0.01):.2f}"
+    return "1   " if value > 1 - 1e-6 else "0.99"
+
+
+def _likelier_elsewhere(match: Match) -> bool:
+    """Whether a thing by itself is more probably another one than what it is in the best map."""
+    own = match.probability
+    return own is not None and any((other.probability or 0.0) > own + MORE for other in match.alternatives)
+
+
+def _pivotal_line(pivotal: Pivotal, found: Grounding) -> str:
+    """What would be otherwise without a fact, empty where interchangeable objects would only swap their things."""
+    changes = dict(pivotal.changes)
+    for group in found.interchangeable:
+        held = {found.matches[name].perceived for name in group if name in found.matches}
+        if all(changes[name] in held for name in group if name in changes):
+            changes = {name: thing for name, thing in changes.items() if name not in group}
+    place = f" ({pivotal.fact.source})" if pivotal.fact.source else ""
+    would = [f"{name} would be {thing or 'left out'}" for name, thing in changes.items()]
+    if pivotal.unsettled:
+        would.append(f"{', '.join(pivotal.unsettled)} would not be settled")
+    if pivotal.settled:
+        would.append(f"{', '.join(pivotal.settled)} would be settled")
+    return f"Without {pivotal.fact}{place}: {'; '.join(would)}." if would else ""
+
+
+def _rest(found: Grounding) -> str:
+    from deixis.reasoning.grounding.answer import Outcome
+
+    counts = {outcome: len(found.of(outcome)) for outcome in (Outcome.VIOLATED, Outcome.WAIVED, Outcome.OPEN)}
+    words = {
+        Outcome.VIOLATED: "violated",
+        Outcome.WAIVED: "optional and not so",
+        Outcome.OPEN: "about something left out",
+    }
+    return "".join(f", {number} {words[outcome]}" for outcome, number in counts.items() if number)
+
+
+def violation_text(entry: FactOutcome) -> str:
+    """A violated fact with its line and what was perceived instead."""
+    place = f" ({entry.fact.source})" if entry.fact.source else ""
+    if entry.perceived is None or entry.seen is None:
+        return f"{entry.fact}{place}"
+    subject, object = entry.perceived
+    return f"{entry.fact}{place}: perceived is {entry.seen.word}({subject}, {object})"
+
+
+def _standing(found: Grounding) -> str:
+    from deixis.reasoning.grounding.answer import Standing
+
+    how = "proved the best in" if found.proved_best else "not proved the best,"
+    if not found.proved_best and math.isfinite(found.gap):
+        how = f"not proved the best: another could be likelier by {found.gap:.3g} nats at most;"
+    sampled = found.probabilities is Standing.SAMPLED and math.isfinite(found.probability_error)
+    error = f"; probabilities are sampled, within about {found.probability_error:.1g}" if sampled else ""
+    return f"{how} {found.seconds:.2f} s{error}"

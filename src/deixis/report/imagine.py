@@ -1,0 +1,126 @@
+"""What was imagined, as lines of text and as JSON."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import Any
+
+from deixis.ontology.export import fact_to_dict
+from deixis.ontology.graph import Fact
+from deixis.ontology.sizes import Extent
+from deixis.perception.formats.scene_json import scene_to_dict
+from deixis.workflows.imagine import Imagination, NoTable, Sized, Table, Waived
+
+
+def imagination_lines(found: Imagination) -> list[str]:
+    """The tables with what they do not show; or the facts that allow none, with file and line."""
+    if found.none is not None:
+        return list(_none_lines(found.none))
+    if not found.tables:
+        return ["Undecided: the time was up before a table was found, or proved impossible. Give --time-limit more."]
+    lines: list[str] = []
+    for number, table in enumerate(found.tables, start=1):
+        if len(found.tables) > 1:
+            lines += ["", f"Table {number}"] if lines else [f"Table {number}"]
+        lines += _table_lines(table)
+    return lines
+
+
+def _table_lines(table: Table) -> Iterator[str]:
+    for thing, sized in zip(table.scene.objects, table.objects, strict=True):
+        (x, y), (right, top) = thing.minimum[:2], thing.maximum[:2]
+        kind = sized.kind.label if sized.kind else "kind not known"
+        size, place = f"{_cm(right - x)} x {_cm(top - y)} cm", f"at {_cm(x)}, {_cm(y)}"
+        yield f"{sized.name:<24} {size:<16} {place:<16} {kind}"
+    yield f"Facts: {len(table.holds)} of {len(table.holds) + len(table.waived)} hold."
+    for waived in table.waived:
+        yield from _waived_lines(waived)
+    for a, b in table.overlapping:
+        yield f"Overlap: {a} and {b}; they could not be laid apart."
+    for fact in table.named_otherwise:
+        yield f"Note: {fact}{_at(fact)} holds, but the exact name of two things that overlap in part says otherwise."
+    if not table.finished:
+        yield "Note: the time was up before everything was put in its best place; all firm facts hold."
+
+
+def _cm(metres: float) -> str:
+    return f"{100 * metres:.1f}"
+
+
+def _waived_lines(waived: Waived) -> Iterator[str]:
+    what = "optional" if waived.fact.optional else f"weight {waived.fact.weight:g}"
+    yield f"Given up: {waived.fact}{_at(waived.fact)} [{what}]" + (", which goes against" if waived.because else "")
+    yield from (f"    {fact.source or 'stated'}: {fact}" for fact in waived.because)
+    yield from (f"    {sized}" for sized in waived.sizes)
+
+
+def _at(fact: Fact) -> str:
+    return f" ({fact.source})" if fact.source else ""
+
+
+def _none_lines(none: NoTable) -> Iterator[str]:
+    if none.sizes:
+        yield "There is no such table with things of their usual sizes: these do not go together."
+    else:
+        yield f"There is no such table, whatever sizes things have{': ' + none.reason if none.reason else ''}."
+    yield from (f"    {fact.source or 'stated'}: {fact}" for fact in none.facts)
+    yield from (f"    {sized}" for sized in none.sizes)
+    if not none.minimal:
+        yield "The time was up before it was known whether all of these are needed."
+    elif none.sizes:
+        yield "Without any one of these there is one. With --any-size things may have any size."
+    else:
+        yield "Leave out or change any one of these."
+
+
+def imagination_to_dict(found: Imagination) -> dict[str, Any]:
+    """The same as JSON: ``tables``, each with its scene, or ``conflict``."""
+    return {
+        "decided": found.decided,
+        "tables": [_table_to_dict(table) for table in found.tables],
+        "conflict": found.none and _none_to_dict(found.none),
+    }
+
+
+def _table_to_dict(table: Table) -> dict[str, Any]:
+    return {
+        "scene": scene_to_dict(table.scene),
+        "kinds": {sized.name: sized.kind.name if sized.kind else None for sized in table.objects},
+        "facts": {"stated": len(table.holds) + len(table.waived), "satisfied": len(table.holds)},
+        "given_up": [
+            {**fact_to_dict(w.fact), "because": _facts(w.because), "sizes": _sizes(w.sizes)} for w in table.waived
+        ],
+        "overlapping": [list(pair) for pair in table.overlapping],
+        "named_otherwise": _facts(table.named_otherwise),
+        "finished": table.finished,
+    }
+
+
+def _none_to_dict(none: NoTable) -> dict[str, Any]:
+    return {
+        "facts": _facts(none.facts),
+        "sizes": _sizes(none.sizes),
+        "minimal": none.minimal,
+        "reason": none.reason,
+    }
+
+
+def _facts(facts: Iterable[Fact]) -> list[dict[str, Any]]:
+    return [fact_to_dict(fact) for fact in facts]
+
+
+def _sizes(sizes: Iterable[Sized]) -> list[dict[str, Any]]:
+    return [
+        {
+            "object": sized.name,
+            "kind": sized.kind.name if sized.kind else None,
+            "outline": sized.size.outline.value,
+            "length": _range(sized.size.length),
+            "width": _range(sized.size.width),
+        }
+        for sized in sizes
+    ]
+
+
+def _range(extent: Extent) -> list[float]:
+    return [extent.least, extent.greatest]

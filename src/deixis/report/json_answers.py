@@ -1,0 +1,253 @@
+"""Answers as plain data for JSON: the shapes that the commands promise."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import asdict
+from typing import TYPE_CHECKING, Any
+
+from deixis.ontology.export import fact_to_dict, graph_to_dict
+
+if TYPE_CHECKING:
+    from deixis.grammar.script import Script
+    from deixis.reasoning.entailment.derivation import Claim, Derivation
+    from deixis.reasoning.entailment.why_not import WhyNot
+    from deixis.reasoning.grounding.answer import Alternative, FactOutcome, Grounding, Pivotal
+    from deixis.reasoning.grounding.questions.inquiry import Exchange
+    from deixis.reasoning.grounding.viewpoint import Viewpoints
+    from deixis.session import Checked, Learned
+    from deixis.workflows.infer import Inference, Inferred
+
+
+def script_to_dict(script: Script) -> dict[str, Any]:
+    """A parsed script: its header, its objects with their kinds, and its facts with their places."""
+    graph = graph_to_dict(script.graph())
+    return {
+        "file": script.file,
+        "name": script.name,
+        "title": script.title,
+        "viewpoint": script.viewpoint,
+        "objects": graph["nodes"],
+        "facts": [fact_to_dict(fact) | {"status": "stated"} for fact in script.facts],
+    }
+
+
+def inference_to_dict(inference: Inference) -> dict[str, Any]:
+    """Stated and inferred facts, or the minimal conflict alone."""
+    if inference.conflict is not None:
+        facts = [fact_to_dict(fact) for fact in inference.conflict.facts]
+        return {"consistent": False, "conflict": {"reason": inference.conflict.reason, "facts": facts}}
+    stated = [fact_to_dict(fact) | {"status": "stated"} for fact in inference.stated]
+    inferred = [_inferred_to_dict(entry) for entry in inference.inferred()]
+    known = {"consistent": True if inference.decided else None, "complete": inference.complete}
+    return {**known, "facts": stated + inferred}
+
+
+def _inferred_to_dict(entry: Inferred) -> dict[str, Any]:
+    how = {"status": "inferred", "rule": entry.rule.value, "steps": entry.steps, "lines": list(entry.lines)}
+    return fact_to_dict(entry.fact) | how
+
+
+def derivation_to_dict(derivation: Derivation) -> dict[str, Any]:
+    """A derivation, down to stated facts."""
+    premises = [derivation_to_dict(premise) for premise in derivation.premises]
+    return {"fact": _claim_to_dict(derivation.fact), "rule": derivation.rule.value, "premises": premises}
+
+
+def _claim_to_dict(claim: Claim) -> dict[str, Any]:
+    """A fact as elsewhere; an order of two edges, or what is impossible, in words."""
+    from deixis.ontology.graph import Fact
+
+    return fact_to_dict(claim) if isinstance(claim, Fact) else {"claim": str(claim)}
+
+
+def why_not_to_dict(found: WhyNot) -> dict[str, Any]:
+    """Why a fact does not follow: what excludes it, or a picture without it."""
+    answer: dict[str, Any] = {"fact": str(found.fact), "follows": found.follows is not None}
+    if found.follows is not None:
+        answer["derivation"] = derivation_to_dict(found.follows)
+    if found.against is not None:
+        answer["excluded_by"] = derivation_to_dict(found.against)
+    if found.conflict is not None:
+        facts = [fact_to_dict(fact) for fact in found.conflict.facts]
+        answer["conflict"] = {"reason": found.conflict.reason, "facts": facts}
+    if found.picture is not None:
+        boxes = zip(found.picture.objects, found.picture.boxes.tolist(), strict=True)
+        answer["picture"] = [{"id": name, "min": box[0], "max": box[1]} for name, box in boxes]
+        answer["missing"] = [str(order) for order in found.missing]
+        answer["known"] = [fact_to_dict(fact) for fact in found.known]
+    return answer
+
+
+def _rounded(value: float | None) -> float | None:
+    return None if value is None or not math.isfinite(value) else round(value, 6)
+
+
+def _alternative_to_dict(other: Alternative) -> dict[str, Any]:
+    return {
+        "perceived": other.perceived,
+        "cost": round(other.cost, 6),
+        "probability": _rounded(other.probability),
+    }
+
+
+def _pivotal_to_dict(pivotal: Pivotal) -> dict[str, Any]:
+    return {
+        "fact": fact_to_dict(pivotal.fact),
+        "changes": dict(pivotal.changes),
+        "unsettled": list(pivotal.unsettled),
+        "settled": list(pivotal.settled),
+    }
+
+
+def grounding_to_dict(found: Grounding) -> dict[str, Any]:
+    """Who is who, and everything that qualifies it."""
+    from deixis.reasoning.grounding.answer import Outcome, Standing
+
+    return {
+        "engine": found.engine,
+        "matches": [
+            {
+                "object": match.object,
+                "perceived": match.perceived,
+                "score": round(match.score, 6),
+                "similarity": round(match.similarity, 6),
+                "decided": match.decided,
+                "probability": _rounded(match.probability),
+                "alternatives": [_alternative_to_dict(other) for other in match.alternatives],
+            }
+            for match in found.matches.values()
+        ],
+        "unmatched_objects": [left.name for left in found.unmatched_objects],
+        "unmatched_perceived": [left.name for left in found.unmatched_perceived],
+        "might_be": {
+            left.name: [_alternative_to_dict(other) for other in left.alternatives] for left in found.unmatched_objects
+        },
+        "left_out": {left.name: left.reason for left in (*found.unmatched_objects, *found.unmatched_perceived)},
+        "interchangeable": [list(group) for group in found.interchangeable],
+        "graph_similarity": round(found.graph_similarity, 9),
+        "facts": {
+            "stated": len(found.outcomes),
+            "satisfied": len(found.satisfied),
+            "violated": [outcome_to_dict(entry) for entry in found.violated],
+            "waived": [outcome_to_dict(entry) for entry in found.of(Outcome.WAIVED)],
+            "open": [outcome_to_dict(entry) for entry in found.of(Outcome.OPEN)],
+        },
+        "pivotal": None if found.pivotal is None else [_pivotal_to_dict(entry) for entry in found.pivotal],
+        "probabilities": {
+            "standing": found.probabilities.value,
+            "error": None if found.probabilities is Standing.NONE else _rounded(found.probability_error),
+        },
+        "proved_best": found.proved_best,
+        "gap": _rounded(found.gap),
+        "finished": found.finished,
+        "converged": found.converged,
+        "notes": list(found.notes),
+        "seconds": round(found.seconds, 6),
+    }
+
+
+def viewpoints_to_dict(found: Viewpoints | None) -> dict[str, Any]:
+    """From which sides a script may speak, most probable first; none where nothing tells."""
+    sides = found.viewpoints if found else ()
+    return {
+        "viewpoints": [
+            {
+                "turned": round(math.degrees(side.angle), 1) % 360,
+                "mirrored": side.mirrored,
+                "probability": _rounded(side.probability),
+            }
+            for side in sides
+        ]
+    }
+
+
+def exchanges_to_dict(exchanges: Sequence[Exchange]) -> dict[str, Any]:
+    """What was asked and answered, in order, with what was expected of it and what came of it."""
+    return {
+        "questions": [
+            {
+                "question": one.question.text,
+                "bits": round(one.question.bits, 6),
+                "answer": one.answer,
+                "outcome": one.outcome.value,
+            }
+            for one in exchanges
+        ]
+    }
+
+
+def outcome_to_dict(entry: FactOutcome) -> dict[str, Any]:
+    """A fact, its line, and what was perceived of its pair."""
+    perceived = None
+    if entry.perceived is not None and entry.seen is not None:
+        perceived = {
+            "relation": entry.seen.word,
+            "subject": entry.perceived[0],
+            "object": entry.perceived[1],
+            "reading": entry.seen.reading.value,
+        }
+    line = entry.fact.source.line if entry.fact.source else None
+    return {"fact": fact_to_dict(entry.fact), "line": line, "degree": entry.degree, "perceived": perceived}
+
+
+def learned_to_dict(learned: Learned) -> dict[str, Any]:
+    """A lesson: what it taught, what it left open, and the grounding that it rests on."""
+    layout = learned.lesson.layout
+    return {
+        "lesson": layout.lesson,
+        "layout": layout.name,
+        "roles": [role.name for role in layout.roles],
+        "facts": len(layout.facts),
+        "categories": list(learned.categories),
+        "undecided": list(learned.doubtful),
+        "standing": [asdict(word) for word in learned.standing],
+        "grounding": grounding_to_dict(learned.grounding),
+    }
+
+
+def check_to_dict(checked: Checked) -> dict[str, Any]:
+    """The verdicts on a table; broken facts with their lines and what was seen instead."""
+    from deixis.reasoning.comparison.checking import Verdict
+
+    table = checked.table
+    return {
+        "layout": checked.layout.name,
+        "lesson": checked.layout.lesson,
+        "well": table.well,
+        "conforms": checked.conforms,
+        "correct": [{"object": c.role, "perceived": c.perceived} for c in table.of(Verdict.CORRECT)],
+        "missing": [{"object": c.role, "lines": _lines_about(c.role, checked)} for c in table.of(Verdict.MISSING)],
+        "misplaced": [
+            {
+                "object": c.role,
+                "perceived": c.perceived,
+                "in_place_of": c.in_place_of,
+                "violated": [outcome_to_dict(entry) for entry in c.broken],
+            }
+            for c in table.of(Verdict.MISPLACED)
+        ],
+        "miscoloured": [
+            {
+                "object": c.role,
+                "perceived": c.perceived,
+                "described": other.described.label,
+                "seen": other.seen.label,
+            }
+            for c, other in table.miscoloured
+        ],
+        "extra": [{"perceived": e.perceived, "label": e.label, "reason": e.reason} for e in table.extra],
+        "undetermined": [{"object": c.role, "perceived": c.perceived} for c in table.of(Verdict.UNDETERMINED)],
+        "absent": [{"object": c.role} for c in table.of(Verdict.ABSENT)],
+        "violated": [outcome_to_dict(entry) for entry in table.broken],
+        "unexpected": [outcome_to_dict(entry) for entry in table.unexpected],
+        "proved_best": table.grounding.proved_best,
+        "notes": list(table.grounding.notes),
+        "report": checked.report,
+    }
+
+
+def _lines_about(role: str, checked: Checked) -> list[int]:
+    facts = (fact for fact in checked.layout.facts if role in (fact.subject, fact.object))
+    return sorted({fact.source.line for fact in facts if fact.source is not None})

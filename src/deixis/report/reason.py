@@ -1,0 +1,101 @@
+"""What reasoning over an ontology found, in words and as JSON."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator
+from typing import Any
+
+from deixis.memory.semantic.rdf.files import short
+from deixis.reasoning.description_logic.entailment import Entailment
+from deixis.reasoning.description_logic.justification import Justification
+from deixis.reasoning.description_logic.materialisation import Step
+from deixis.reasoning.description_logic.terms import Triple, iri_of
+from deixis.reasoning.description_logic.verbalisation import Words
+
+
+def entailment_lines(found: Entailment, words: Words, triples: bool = False) -> Iterator[str]:
+    """What follows, counted or listed, and what is impossible and why."""
+    if found.inconsistency is not None:
+        yield "The ontology is inconsistent: these cannot all hold."
+        yield from _axiom_lines(found.inconsistency, words)
+        return
+    for justification in found.impossible:
+        assert justification.entailed is not None
+        yield f"{words.triple(justification.entailed)}, because"
+        yield from _axiom_lines(justification, words)
+    rest = found.unsatisfiable[len(found.impossible) :]
+    if rest:
+        yield f"Nothing can be any of these either: {', '.join(words.name(f'<{iri}>') for iri in rest)}"
+    yield verdict(found)
+    if triples:
+        yield from (_short(triple) for triple in found.inferred)
+        return
+    counted = Counter(triple.predicate for triple in found.inferred)
+    for predicate, number in sorted(counted.items(), key=lambda entry: (-entry[1], entry[0])):
+        yield f"{number:8,}  {short(predicate[1:-1])}"
+
+
+def verdict(found: Entailment) -> str:
+    """The outcome in one sentence; it claims no more than the engine decides."""
+    if found.complete:
+        held = "consistent" if not found.unsatisfiable else "consistent while nothing belongs to those classes"
+    elif found.unsatisfiable:
+        held = "no contradiction found while nothing belongs to those classes"
+    else:
+        held = "no contradiction found"
+    return f"{held} ({found.engine}); {len(found.inferred):,} triples inferred"
+
+
+def explanation_lines(justification: Justification, steps: tuple[Step, ...], words: Words) -> Iterator[str]:
+    """Why a statement follows: the axioms, and the steps where rules lead from them to it."""
+    assert justification.entailed is not None
+    yield f"{words.triple(justification.entailed)}, because"
+    yield from _axiom_lines(justification, words)
+    derived = [step for step in steps if step.rule is not None]
+    if derived:
+        yield "by these steps:"
+        yield from (f"  {words.triple(step.triple)}  [{step.rule}]" for step in derived)
+
+
+def _axiom_lines(justification: Justification, words: Words) -> Iterator[str]:
+    for axiom in justification.axioms:
+        yield f"  {words.axiom(axiom)}"
+
+
+def entailment_to_dict(found: Entailment, words: Words) -> dict[str, Any]:
+    """The same as plain data."""
+    return {
+        "engine": found.engine.value,
+        "complete": found.complete,
+        "consistent": found.consistent,
+        "inferred": [_plain(triple) for triple in found.inferred],
+        "unsatisfiable": list(found.unsatisfiable),
+        "justifications": [
+            justification_to_dict(justification, words)
+            for justification in (*([found.inconsistency] if found.inconsistency else []), *found.impossible)
+        ],
+    }
+
+
+def justification_to_dict(justification: Justification, words: Words, steps: tuple[Step, ...] = ()) -> dict[str, Any]:
+    """A justification as plain data: what follows (null: a contradiction), the axioms, and the steps by rules."""
+    return {
+        "entailed": None if justification.entailed is None else _plain(justification.entailed),
+        "axioms": [
+            {"words": words.axiom(axiom), "triples": [_plain(triple) for triple in axiom.triples]}
+            for axiom in justification.axioms
+        ],
+        "steps": [
+            {"triple": _plain(step.triple), "rule": step.rule, "premises": [_plain(p) for p in step.premises]}
+            for step in steps
+        ],
+    }
+
+
+def _plain(triple: Triple) -> dict[str, str]:
+    return {name: iri_of(part) or part for name, part in zip(triple._fields, triple, strict=True)}
+
+
+def _short(triple: Triple) -> str:
+    return " ".join(short(iri) if (iri := iri_of(part)) else part for part in triple)

@@ -1,0 +1,70 @@
+"""The relations of a scene as lines, as a matrix, and as JSON, each line by line: a large scene has millions."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from deixis.reasoning.qualitative.relate import Related
+
+
+def pair_lines(related: Related, subject: str | None = None, object: str | None = None) -> Iterator[str]:
+    """A line for every ordered pair: subject, relation, object."""
+    rows, columns = related.places(subject), related.places(object)
+    wide = max((len(related.ids[i]) for i in rows), default=0)
+    mid = max((_widest(related, i, columns) for i in rows), default=0)
+    empty = True
+    for a, sign, b in related.pairs(subject, object):
+        empty = False
+        yield f"{a:<{wide}}  {sign:<{mid}}  {b}"
+    if empty:
+        yield "There are no pairs."
+
+
+def _widest(related: Related, row: int, columns: range) -> int:
+    """The length of the longest sign that a subject bears to the objects, but for itself."""
+    there = np.array([column for column in columns if column != row], dtype=np.int64)
+    return max((len(related.signs[code]) for code in np.unique(related.codes[row, there]).tolist()), default=0)
+
+
+def matrix_lines(related: Related) -> Iterator[str]:
+    """Subjects in rows, objects in columns; a dot where both are the same."""
+    if not related.ids:
+        yield "There are no objects."
+        return
+    lengths = np.array([len(sign) for sign in related.signs])[related.codes].max(axis=0).tolist()
+    widths = [max(len(id), length) for id, length in zip(related.ids, lengths, strict=True)]
+    first = max(map(len, related.ids))
+    yield _row("", related.ids, first, widths)
+    for i, id in enumerate(related.ids):
+        signs = [related.signs[code] for code in related.codes[i].tolist()]
+        signs[i] = "."
+        yield _row(id, signs, first, widths)
+
+
+def _row(head: str, cells: Sequence[str], first: int, widths: list[int]) -> str:
+    padded = (f"{cell:<{width}}" for cell, width in zip(cells, widths, strict=True))
+    return "  ".join((f"{head:<{first}}", *padded)).rstrip()
+
+
+def json_lines(related: Related, subject: str | None = None, object: str | None = None) -> Iterator[str]:
+    """The calculus, the objects, and every ordered pair, as the lines of one JSON object."""
+    ids = {id: _json(id) for id in related.ids}
+    signs = {sign: _json(sign) for sign in related.signs}
+    head = json.dumps({"calculus": related.calculus, "objects": list(related.ids)}, indent=2, ensure_ascii=False)
+    yield head.removesuffix("\n}") + ","
+    previous = '  "pairs": ['
+    for a, sign, b in related.pairs(subject, object):
+        yield previous
+        yield f'    {{\n      "subject": {ids[a]},\n      "relation": {signs[sign]},\n      "object": {ids[b]}'
+        previous = "    },"
+    yield '  "pairs": []' if previous != "    }," else "    }\n  ]"
+    yield "}"
+
+
+def _json(text: str) -> str:
+    return json.dumps(text, ensure_ascii=False)

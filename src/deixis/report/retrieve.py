@@ -1,0 +1,37 @@
+"""What was retrieved, as lines and as plain data."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from deixis.workflows.retrieve import Retrieved
+
+
+def retrieved_lines(found: Sequence[Retrieved], query: str, among: int, least: float) -> list[str]:
+    """A line for each, best first."""
+    if not found:
+        return [f"Nothing among {among} has a similarity of {least:g} or more to {query}."]
+    wide = max(len(one.name) for one in found)
+    lines = [f"{'':{wide}}  similarity  objects  relations"]
+    for one in found:
+        relations = "     none" if one.relations is None else f"{one.relations:9.3f}"
+        doubt = "" if one.proved else "   at least: not proved in time"
+        lines.append(f"{one.name:<{wide}}  {one.similarity:10.3f}  {one.objects:7.3f}  {relations}{doubt}")
+    return lines
+
+
+def retrieved_to_dict(found: Sequence[Retrieved], query: str, among: int) -> dict[str, Any]:
+    """The query, how many it was compared with, and the results, best first."""
+    results = [
+        {
+            "name": one.name,
+            "similarity": one.similarity,
+            "objects": one.objects,
+            "relations": one.relations,
+            "matches": one.matches,
+            "proved_best": one.proved,
+        }
+        for one in found
+    ]
+    return {"query": query, "among": among, "results": results}

@@ -1,0 +1,192 @@
+"""What is said, what follows, what was learned and what is wrong, as lines of text for the terminal."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence, Sized
+from itertools import islice
+from typing import TYPE_CHECKING, Any
+
+from deixis.ontology.kinds import with_article
+from deixis.report.ground import violation_text
+
+MANY = 12
+"""Lines of a script that are listed one by one."""
+
+MOST = 20_000
+"""Inferred facts that are listed."""
+
+if TYPE_CHECKING:
+    from deixis.grammar.script import Script
+    from deixis.ontology.graph import Fact
+    from deixis.reasoning.comparison.checking import RoleCheck
+    from deixis.reasoning.entailment.why_not import WhyNot
+    from deixis.session import Checked, Learned
+    from deixis.workflows.infer import Inference, Inferred
+
+
+def script_lines(script: Script) -> list[str]:
+    """The header, then every fact with its line."""
+    title = f' "{script.title}"' if script.title else ""
+    viewpoint = f", seen from {script.viewpoint}" if script.viewpoint else ""
+    head = f"{script.name or script.file}{title}: {_count(script.objects, 'object')}, {_count(script.facts, 'fact')}"
+    kinds = [f"        {name} is {with_article(kind.label)}" for name, kind in script.kinds.items()]
+    kinds += [f"        {name} is {colour.label}" for name, colour in script.colours.items()]
+    return [
+        f"{head}{viewpoint}",
+        *(f"{_line(fact, script.file):>6}  {qualified(fact)}" for fact in script.facts),
+        *kinds,
+    ]
+
+
+def qualified(fact: Fact) -> str:
+    """A fact with what qualifies it."""
+    marks = [*(["optional"] if fact.optional else []), *([f"weight {fact.weight:g}"] if fact.weight != 1 else [])]
+    return str(fact) + (f"   [{', '.join(marks)}]" if marks else "")
+
+
+def _line(fact: Fact, file: str) -> str:
+    if fact.source is None:
+        return ""
+    return str(fact.source.line) if fact.source.file == file else f"{fact.source.file}:{fact.source.line}"
+
+
+def _count(things: Sized, noun: str) -> str:
+    number = len(things)
+    return f"{number} {noun}" + ("" if number == 1 else "s")
+
+
+def inference_lines(inference: Inference) -> Iterator[str]:
+    """What is stated and what follows, each with its lines; of a contradiction only the minimal conflict."""
+    if inference.conflict is not None:
+        yield f"The script contradicts itself: {inference.conflict.reason}."
+        yield from (f"    {fact.source}: {fact}" for fact in inference.conflict.facts)
+        yield "Leave out or change any one of these."
+        return
+    if not inference.decided:
+        yield "Undecided within the time limit: whether the facts, among which some leave a choice, can all hold."
+        return
+    yield f"Stated ({len(inference.stated)}):"
+    for fact in inference.stated:
+        yield f"    {qualified(fact)}   line {fact.source.line if fact.source else '?'}"
+    count = inference.implications.unstated()
+    yield f"Inferred ({count}):"
+    for entry in islice(inference.each_inferred(), MOST):
+        yield f"    {entry.fact}   by {entry.rule} from {_places(entry)}"
+    if count > MOST:
+        yield f"    and {count - MOST} more: --ntriples prints all that holds, --json everything"
+    if not inference.complete:
+        yield "The time limit struck: more may follow from the facts that leave a choice."
+
+
+def why_not_lines(found: WhyNot) -> list[str]:
+    """Why a fact does not follow; at the most ``MANY`` objects of a picture."""
+    if found.follows is not None:
+        return [f"{found.fact} does follow:", *(f"    {line}" for line in found.follows.lines())]
+    if found.against is not None:
+        return [f"{found.fact} cannot hold, since this does:", *(f"    {line}" for line in found.against.lines())]
+    if found.conflict is not None:
+        lines = [f"{found.fact} cannot hold beside these, for {found.conflict.reason}:"]
+        stated = [fact for fact in found.conflict.facts if fact.source is not None]
+        return lines + [f"    {fact.source}: {fact}" for fact in stated]
+    assert found.picture is not None
+    lines = [f"{found.fact} does not follow: every firm fact holds in this picture, and it does not."]
+    boxes = dict(zip(found.picture.objects, found.picture.boxes.astype(int).tolist(), strict=True))
+    ends = dict.fromkeys((found.fact.subject, found.fact.object))
+    shown = [*ends, *(name for name in boxes if name not in ends)][:MANY]
+    lines += [f"    {name:<24} {_extent(boxes[name])}" for name in shown]
+    if len(boxes) > len(shown):
+        lines.append(f"    and {len(boxes) - len(shown)} more (--json has them)")
+    lines += ["It would take:", *(f"    {order}" for order in found.missing)]
+    known = [f"    {fact}" for fact in found.known]
+    return [*lines, "What follows of the two:", *(known or ["    nothing"])]
+
+
+def _extent(box: list[list[int]]) -> str:
+    low, high = box
+    return "   ".join(f"{axis} {low[k]} to {high[k]}" for k, axis in enumerate("xyz"))
+
+
+def _places(entry: Inferred) -> str:
+    lines = entry.lines
+    if not entry.steps:
+        return "facts that leave a choice"
+    if not lines or len(lines) > MANY:
+        return f"{entry.steps} facts"
+    return ("line " if len(lines) == 1 else "lines ") + ", ".join(map(str, lines))
+
+
+def learned_lines(learned: Learned, memory: str) -> list[str]:
+    """What a lesson taught, and what it left open."""
+    layout = learned.lesson.layout
+    lines = [
+        f"Learned '{layout.name}' as lesson {layout.lesson}: {_count(layout.roles, 'role')}, "
+        f"{_count(layout.facts, 'fact')}; in {memory}"
+    ]
+    if learned.categories:
+        lines.append("Settled, each an example of its category: " + ", ".join(learned.categories))
+    new, again = ([taught.category for taught in learned.seen if taught.again == same] for same in (False, True))
+    if new:
+        lines.append("Categories with a new view: " + ", ".join(new))
+    if again:
+        lines.append("The same view as before, kept once: " + ", ".join(again))
+    lines += [f"{word}." for word in learned.standing]
+    if learned.doubtful:
+        lines.append("Recorded as not settled, and teaching nothing: " + ", ".join(learned.doubtful))
+    lines += [f"Left out: {left.name}: {left.reason}." for left in learned.grounding.unmatched_objects]
+    return lines
+
+
+def check_lines(checked: Checked) -> list[str]:
+    """The verdict on a table, what is wrong with it by line, and what cannot be told."""
+    from deixis.reasoning.comparison.checking import Verdict
+
+    table = checked.table
+    right = "Nothing is known to be wrong" if table.of(Verdict.UNDETERMINED) else "Nothing is wrong"
+    name = checked.layout.name
+    lines = [f"{right}, as '{name}' has it." if table.well else f"This table is not laid as '{name}' says."]
+    for entry in table.of(Verdict.MISSING):
+        lines.append(f"missing     {entry.role}{_said_of(entry.role, checked)}")
+    for entry in table.of(Verdict.MISPLACED):
+        exchanged = f", in the place of {entry.in_place_of}" if entry.in_place_of else ""
+        lines.append(f"misplaced   {entry.role} ({entry.perceived}){exchanged}")
+        lines += [f"            {violation_text(broken)}" for broken in entry.broken]
+    blamed = {entry.role for entry in table.of(Verdict.MISPLACED)}
+    for broken in table.broken:
+        if not blamed & {broken.fact.subject, broken.fact.object}:
+            lines.append(f"broken      {violation_text(broken)}")
+    for entry, other in table.miscoloured:
+        lines.append(f"miscoloured {entry.role} ({entry.perceived}): {other.seen.label}, not {other.described.label}")
+    lines += [f"extra       {extra.perceived}: {extra.reason}" for extra in table.extra]
+    lines += [f"unexpected  {violation_text(entry)}" for entry in table.unexpected]
+    lines += [
+        f"undetermined {entry.role}: {entry.perceived}, {_known_by(entry)}" for entry in table.of(Verdict.UNDETERMINED)
+    ]
+    lines += [f"absent      {entry.role}, which need not be there" for entry in table.of(Verdict.ABSENT)]
+    lines.append(f"correct     {len(table.of(Verdict.CORRECT))} of {len(table.roles)}")
+    return lines + [f"Note: {note}." for note in table.grounding.notes]
+
+
+def _known_by(entry: RoleCheck) -> str:
+    from deixis.reasoning.comparison.checking import SURE
+
+    if entry.label is None or entry.confidence is None:
+        return "by its place alone"
+    if entry.confidence < SURE:
+        return f"labelled '{entry.label}' with confidence {entry.confidence:.2f}, below {SURE:g}"
+    return f"labelled '{entry.label}', which does not settle it"
+
+
+def _said_of(role: str, checked: Checked) -> str:
+    facts = [fact for fact in checked.layout.facts if role in (fact.subject, fact.object) and not fact.optional]
+    return "".join(f"; {fact}" + (f" ({fact.source})" if fact.source else "") for fact in facts)
+
+
+def stats_lines(counted: dict[str, Any], lessons: Sequence[str]) -> list[str]:
+    """The counts of a memory, one a line, and its lessons."""
+    lines = []
+    for name, value in counted.items():
+        if isinstance(value, dict):
+            lines += [f"{name}, {graph}: {number}" for graph, number in value.items()]
+        else:
+            lines.append(f"{name}: {value}")
+    return [*lines, *(f"lesson {lesson}" for lesson in lessons)]

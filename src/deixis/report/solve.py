@@ -1,0 +1,98 @@
+"""What solving a network found, as lines of text and as JSON."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from deixis.reasoning.qualitative.networks.network import Constraint, Network
+    from deixis.reasoning.qualitative.networks.rounds import Step
+    from deixis.workflows.solve import Solved
+
+MANY = 50
+"""Constraints of a conflict that are shown one by one."""
+
+
+def solved_lines(solved: Solved) -> Iterator[str]:
+    """The verdict first, then what it rests on, or what was asked for."""
+    networks = solved.text.networks
+    stated = sum(len(network.constraints) for network in networks)
+    names = "+".join(network.calculus.name for network in networks)
+    comment = f" ({solved.text.comment})" if solved.text.comment else ""
+    yield (
+        f"line {solved.text.line}{comment}: {solved.verdict}; {_count(networks[0].size, 'thing')}, "
+        f"{_count(stated, 'constraint')} in {names}, {_count(solved.narrowed, 'pair')} narrowed, {solved.seconds:.2f} s"
+    )
+    if solved.reason:
+        yield f"    {solved.reason}"
+    for each in solved.contributions:
+        yield f"    {each.name}: {_count(each.pairs, 'pair')} narrowed, {_count(each.atoms, 'atom')} taken"
+    if solved.conflict:
+        yield from _conflict_lines(solved)
+    elif solved.verdict == "inconsistent":
+        yield "    which constraints are to blame was not found in the time that was left"
+    if solved.asked is not None:
+        yield from _step_lines(solved, *solved.asked)
+
+
+def _conflict_lines(solved: Solved) -> Iterator[str]:
+    kind = "" if solved.minimal else " (not proved minimal: time ran out before it was clear that all are needed)"
+    yield f"These cannot all hold{kind}:"
+    for network, c in solved.conflict[:MANY]:
+        yield f"    {c.source}: {c.first} {c.second} ( {' '.join(network.calculus.members(c.relation))} )"
+    if len(solved.conflict) > MANY:
+        yield f"    … and {len(solved.conflict) - MANY} more"
+    yield "Leave out or change any one of these." if solved.minimal else "Leave out or change some of these."
+
+
+def _step_lines(solved: Solved, first: int, second: int) -> Iterator[str]:
+    if solved.verdict == "inconsistent":
+        yield f"There is nothing to explain about {first} and {second}: what is stated cannot all hold."
+    elif not solved.explained:
+        yield f"Time ran out before it was clear why {first} and {second} are related as they are."
+    elif solved.step is None:
+        yield f"Nothing follows about {first} and {second}."
+    else:
+        yield from solved.step.lines(solved.text.network)
+
+
+def solved_to_dict(solved: Solved) -> dict[str, Any]:
+    """The same for programs."""
+    networks = solved.text.networks
+    return {
+        "line": solved.text.line,
+        "comment": solved.text.comment,
+        "things": networks[0].size,
+        "constraints": sum(len(network.constraints) for network in networks),
+        "verdict": str(solved.verdict),
+        "reason": solved.reason or None,
+        "narrowed": solved.narrowed,
+        "seconds": solved.seconds,
+        "contributions": [{"by": c.name, "pairs": c.pairs, "atoms": c.atoms} for c in solved.contributions],
+        "conflict": [_constraint(network, c) for network, c in solved.conflict] or None,
+        "conflict_minimal": solved.minimal if solved.conflict else None,
+        "relations": [_constraint(network, c) for network in solved.shown for c in network.constraints] or None,
+        "derivation": None if solved.step is None else _step(solved.step, networks),
+    }
+
+
+def _constraint(network: Network, c: Constraint) -> dict[str, Any]:
+    members = list(network.calculus.members(c.relation))
+    line = None if c.source is None else c.source.line
+    said = {"calculus": network.calculus.name, "first": c.first, "second": c.second, "relation": members}
+    return said if line is None else {**said, "line": line}
+
+
+def _step(step: Step, networks: Sequence[Network]) -> dict[str, Any]:
+    return {
+        "first": step.first,
+        "second": step.second,
+        "relation": list(networks[0].calculus.members(step.relation)),
+        "line": None if step.source is None else step.source.line,
+        "premises": [_step(premise, networks) for premise in step.premises],
+    }
+
+
+def _count(number: int, noun: str) -> str:
+    return f"{number:,} {noun}" + ("" if number == 1 else "s")

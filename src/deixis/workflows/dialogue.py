@@ -1,0 +1,218 @@
+"""The dialogue of ``deixis ground --ask``: questions are put until nothing is left to resolve or nobody answers."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Protocol, TextIO
+
+import numpy as np
+
+from deixis.errors import DeixisError
+from deixis.ontology.relation import nearest
+from deixis.reasoning.grounding.matching.problem import UNMATCHED
+from deixis.reasoning.grounding.questions.inquiry import Inquiry, Outcome
+from deixis.reasoning.grounding.questions.selection import (
+    ABSENT,
+    DONT_KNOW,
+    NO,
+    YES,
+    Question,
+    QuestionKind,
+    answers_of,
+)
+from deixis.reasoning.grounding.questions.situation import Situation, spoken
+
+_WORDS = {
+    YES: ("yes", "y", "true"),
+    NO: ("no", "n", "false"),
+    DONT_KNOW: ("?", "don't know", "dont know", "do not know", "i don't know", "unknown", "no idea"),
+    ABSENT: ("absent", "none", "neither", "not there", "missing"),
+}
+
+MAX_ORACLE_BYTES = 2**20
+
+
+class OracleError(DeixisError, ValueError):
+    """A truth file that is none, or does not fit the scene."""
+
+
+class AnswerSource(Protocol):
+    """Who answers: a person at a terminal, or a file that knows the truth."""
+
+    def answer(self, question: Question, situation: Situation) -> str | None:
+        """One of the words of ``questions.py`` or a thing's id; None where there will be no further answer."""
+        ...
+
+
+def run(inquiry: Inquiry, source: AnswerSource, out: TextIO, most: float = math.inf) -> Inquiry:
+    """Holds the dialogue, up to so many questions in all, and tells of it on ``out``.
+
+    It ends with an answer that makes it necessary to list the groundings anew.
+    """
+    while len(inquiry.exchanges) < most and (question := inquiry.next_question()) is not None:
+        number = len(inquiry.exchanges) + 1
+        print(f"{number}. {question.text}   [{question.bits:.2f} bits]", file=out, flush=True)
+        answer = source.answer(question, inquiry.situation)
+        if answer is None:
+            print("No further answers.", file=out)
+            break
+        inquiry = inquiry.answered(question, answer)
+        _remark(inquiry, out)
+        if inquiry.exchanges[-1].outcome is Outcome.SURPRISING:
+            break
+    return inquiry
+
+
+def _remark(inquiry: Inquiry, out: TextIO) -> None:
+    exchange = inquiry.exchanges[-1]
+    if exchange.outcome is Outcome.SURPRISING:
+        print("   No grounding that was considered has it so; they are considered anew.", file=out)
+    if exchange.outcome is not Outcome.CONTRADICTORY:
+        return
+    if exchange.against:
+        numbers = " and ".join(str(k + 1) for k in exchange.against)
+        reason = f"it does not go together with the answer to {numbers}"
+    else:
+        reason = "no grounding that is considered agrees with it"
+    print(f"   That cannot be taken in: {reason}. It changes nothing.", file=out)
+
+
+def closing_lines(inquiry: Inquiry) -> list[str]:
+    """How many groundings are left, and for what objects that makes a difference."""
+    left, names = inquiry.candidates, inquiry.situation.objects
+    count = len(inquiry.exchanges)
+    asked = f"{count} question{'' if count == 1 else 's'}"
+    if inquiry.start.count == 1 and not left.complete:
+        lines = ["One grounding was considered, so that there was nothing to ask."]
+    elif left.count == 1:
+        lines = [f"Of the groundings considered one is left after {asked}."]
+    else:
+        open_ = ", ".join(spoken(names[i]) for i in left.undecided)
+        lines = [f"{left.count} groundings are left after {asked}; undecided: {open_}."]
+    if not left.complete:
+        lines.append("Not all groundings could be considered; others may fit as well.")
+    return lines
+
+
+@dataclass(frozen=True)
+class Terminal:
+    """A person who types: what is no answer is asked again, the end of input is the end of the dialogue."""
+
+    lines: TextIO
+    out: TextIO
+
+    def answer(self, question: Question, situation: Situation) -> str | None:
+        allowed = _allowed(question, situation)
+        while True:
+            print(f"   {hint(question, situation)} ", end="", file=self.out, flush=True)
+            line = self.lines.readline()
+            if not line:
+                print(file=self.out)
+                return None
+            found = parse_answer(line, allowed)
+            if found is not None:
+                return found
+            near = nearest(line.strip(), allowed)
+            print(f"   '{line.strip()}' is no answer" + (f"; '{near}'?" if near else "."), file=self.out)
+
+
+def hint(question: Question, situation: Situation) -> str:
+    """What may be answered; of things the likeliest ones are listed with their places."""
+    if question.kind is not QuestionKind.POINTING:
+        third = ", none: one of them is not there" if _may_be_absent(question) else ""
+        return f"(yes, no{third}, ?)"
+    listed = [_listed(answer, situation) for answer, _ in question.answers if answer != ABSENT][:12]
+    return f"({', '.join(listed)}; none, ?)"
+
+
+def _may_be_absent(question: Question) -> bool:
+    """Whether what is asked about is missing in some grounding that is considered."""
+    return ABSENT in dict(question.answers)
+
+
+def _listed(id: str, situation: Situation) -> str:
+    where = situation.places[situation.things.index(id)]
+    return f"{id} {where}" if where else id
+
+
+def _allowed(question: Question, situation: Situation) -> dict[str, str]:
+    """What can be typed, and what it means; the id of a thing goes before a word that looks like it."""
+    meant = [DONT_KNOW] if question.kind is QuestionKind.POINTING else [YES, NO, DONT_KNOW]
+    if question.kind is QuestionKind.POINTING or _may_be_absent(question):
+        meant.append(ABSENT)
+    allowed = {word: meaning for meaning in meant for word in _WORDS[meaning]}
+    if question.kind is QuestionKind.POINTING:
+        allowed |= {id: id for id in situation.things}
+    return allowed
+
+
+def parse_answer(line: str, allowed: Mapping[str, str]) -> str | None:
+    """What a typed line means, or None where it means nothing.
+
+    >>> parse_answer(" Y ", {"y": "yes"})
+    'yes'
+    """
+    text = line.strip()
+    return allowed.get(text, allowed.get(text.casefold()))
+
+
+@dataclass(frozen=True)
+class Oracle:
+    """Answers from the truth: which perceived thing each object is, None where it is not there."""
+
+    truth: Mapping[str, str | None]
+    out: TextIO
+
+    def answer(self, question: Question, situation: Situation) -> str:
+        """The true answer; "don't know", said aloud, where it is about an object that the truth does not name."""
+        assignment = np.full(len(situation.objects), UNMATCHED)
+        for i in question.about:
+            name = situation.objects[i]
+            if name not in self.truth:
+                print(f"   (the oracle does not know '{name}')", file=self.out)
+                return DONT_KNOW
+            id = self.truth[name]
+            assignment[i] = UNMATCHED if id is None else situation.things.index(id)
+        answer = answers_of(question, situation, assignment[None])[0]
+        print(f"   {answer}", file=self.out)
+        return answer
+
+
+def read_oracle(file: str | Path, situation: Situation, out: TextIO) -> Oracle:
+    """Reads a truth file: a JSON object from names of the script to ids of the scene, or null for what is not there.
+
+    Raises OracleError where it is none, names a thing that is not in the scene, or gives one thing to two objects.
+    """
+    path = Path(file)
+    try:
+        if path.is_file() and path.stat().st_size > MAX_ORACLE_BYTES:
+            raise OracleError(f"{path}: a truth file has at most {MAX_ORACLE_BYTES // 2**20} MiB")
+        data = json.loads(path.read_text(encoding="utf-8-sig"))
+    except OSError as error:
+        raise OracleError(f"{path}: cannot be read: {error.strerror}") from error
+    except UnicodeDecodeError as error:
+        raise OracleError(f"{path}: the file is not UTF-8 (byte {error.start})") from error
+    except (ValueError, RecursionError) as error:
+        raise OracleError(f"{path}: this is no JSON: {error}") from error
+    return Oracle(_checked(data, path, situation), out)
+
+
+def _checked(data: Any, path: Path, situation: Situation) -> dict[str, str | None]:
+    if not isinstance(data, dict) or not all(isinstance(id, str | None) for id in data.values()):
+        raise OracleError(f"{path}: a truth file is a JSON object from names to ids, null for what is not there")
+    for name, id in data.items():
+        if id is not None and id not in situation.things:
+            near = nearest(id, situation.things)
+            raise OracleError(
+                f"{path}: '{name}' is said to be '{id}', which is no thing of the scene"
+                + (f"; did you mean '{near}'?" if near else "")
+            )
+    ids = [id for id in data.values() if id is not None]
+    twice = next((id for id in ids if ids.count(id) > 1), None)
+    if twice is not None:
+        raise OracleError(f"{path}: two objects are said to be '{twice}'")
+    return data

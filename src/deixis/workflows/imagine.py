@@ -1,0 +1,204 @@
+"""A script imagined: example tables that satisfy it, or why there are none."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from deixis.grammar.script import Script
+from deixis.ontology.graph import Fact, RelationGraph
+from deixis.ontology.kinds import Kind, Kinds, plain_name, with_article
+from deixis.ontology.sizes import SizeRange
+from deixis.perception.scene import PerceivedObject, Scene
+from deixis.reasoning.entailment.conflict import find_conflict
+from deixis.reasoning.entailment.implications import Implications
+from deixis.reasoning.entailment.realisation.demands import is_firm
+from deixis.reasoning.entailment.realisation.picture import GivenUp, Impossible, Picture, Undecided, realise
+from deixis.reasoning.errors import SettingError
+
+TIME_LIMIT = 30.0
+ATTEMPTS = 5
+"""How often another table is drawn where one was seen before."""
+
+
+@dataclass(frozen=True, slots=True)
+class Sized:
+    """An object of a script, the kind it is taken for (None: not known), and how large such things usually are."""
+
+    name: str
+    kind: Kind | None
+    size: SizeRange
+
+    def __str__(self) -> str:
+        return f"{self.name}, {'of unknown kind' if self.kind is None else with_article(self.kind.label)}: {self.size}"
+
+
+@dataclass(frozen=True, slots=True)
+class Waived:
+    """A fact that need not hold and does not, and what excludes it: facts, and things of their usual sizes."""
+
+    fact: Fact
+    because: tuple[Fact, ...]
+    sizes: tuple[Sized, ...]
+
+
+@dataclass(frozen=True)
+class Table:
+    """An example table. ``holds`` are the facts that it satisfies; ``overlapping`` are pairs of names."""
+
+    scene: Scene
+    objects: tuple[Sized, ...]
+    holds: tuple[Fact, ...]
+    waived: tuple[Waived, ...]
+    overlapping: tuple[tuple[str, str], ...]
+    named_otherwise: tuple[Fact, ...]
+    finished: bool
+
+
+@dataclass(frozen=True)
+class NoTable:
+    """Firm facts that no table satisfies; with ``sizes``, none on which these things have their usual sizes.
+
+    ``minimal`` where without any one of them there is such a table. ``reason``: in words, where they are few.
+    """
+
+    facts: tuple[Fact, ...]
+    sizes: tuple[Sized, ...]
+    minimal: bool
+    reason: str | None = None
+
+
+@dataclass(frozen=True)
+class Imagination:
+    """The tables of a script, or why there is none; neither where the time was up before it was known."""
+
+    script: Script
+    tables: tuple[Table, ...] = ()
+    none: NoTable | None = None
+
+    @property
+    def decided(self) -> bool:
+        return bool(self.tables) or self.none is not None
+
+
+def imagine(
+    script: Script, *, any_size: bool = False, seed: int = 0, count: int = 1, time_limit: float = TIME_LIMIT
+) -> Imagination:
+    """Example tables that satisfy every firm fact of a script in its stated reading, and the others where they can.
+
+    Things have usual sizes of their kind, or with ``any_size`` whatever sizes it takes. The first table of seed 0 is
+    the plain one, with typical sizes; all others are drawn. Each takes at most about ``time_limit`` seconds. Raises
+    SettingError for settings that make no sense.
+
+    >>> from deixis.grammar.parser import parse_script
+    >>> found = imagine(parse_script("fork left of plate; knife right of plate"))
+    >>> [thing.label for thing in found.tables[0].scene.objects]
+    ['fork', 'plate', 'knife']
+    >>> str(imagine(parse_script("dinner_plate on teaspoon")).none.sizes[1])
+    'teaspoon, a teaspoon: 11 to 16 cm long and 2.2 to 3.6 cm wide'
+    """
+    if count < 1 or seed < 0 or not time_limit >= 0:
+        raise SettingError(
+            f"count is 1 or more, seed and time limit are 0 or more, not {count}, {seed} and {time_limit:g}"
+        )
+    graph = script.graph().affirming()
+    objects = sized_objects(script, graph)
+    tables: list[Table] = []
+    for found in _pictures(graph, objects, any_size, seed, count, time_limit, script.ontology.kinds):
+        if isinstance(found, Impossible):
+            return Imagination(script, none=_no_table(graph, objects, found))
+        if isinstance(found, Picture):
+            tables.append(_table(script, graph, objects, found))
+    return Imagination(script, tuple(tables))
+
+
+def _pictures(
+    graph: RelationGraph,
+    objects: Sequence[Sized],
+    any_size: bool,
+    seed: int,
+    count: int,
+    time_limit: float,
+    kinds: Kinds,
+) -> Iterator[Picture | Impossible | Undecided]:
+    """As many different pictures as wanted and found."""
+    sizes, lying = [thing.size for thing in objects], lying_cutlery(graph, objects, kinds)
+    seen: set[bytes] = set()
+    for number in range(count):
+        for attempt in range(ATTEMPTS):
+            plain = seed == number == attempt == 0
+            rng = None if plain else np.random.default_rng([seed, number, attempt])
+            found = realise(graph, sizes, lying=lying, any_size=any_size, time_limit=time_limit, rng=rng)
+            if not isinstance(found, Picture):
+                yield found
+                return
+            if found.boxes.tobytes() not in seen:
+                seen.add(found.boxes.tobytes())
+                yield found
+                break
+
+
+def sized_objects(script: Script, graph: RelationGraph) -> tuple[Sized, ...]:
+    """Every object with its kind, declared or said by the words of its name, and its usual size."""
+    kinds = script.ontology.kinds
+    named = zip(graph.nodes, graph.kinds, strict=True)
+    found = [kinds[iri] if iri else kind_by_words(name, kinds) for name, iri in named]
+    sizes = [script.ontology.sizes.of(kind.iri if kind else None) for kind in found]
+    return tuple(Sized(*entry) for entry in zip(graph.nodes, found, sizes, strict=True))
+
+
+def kind_by_words(name: str, kinds: Kinds) -> Kind | None:
+    """The kind that the last words of a name stand for, as many of them as stand for one.
+
+    >>> from deixis.ontology.tbox import default_ontology
+    >>> kind_by_words("grandmother's silver_dessert_fork_2", default_ontology().kinds).name
+    'DessertFork'
+    """
+    words = plain_name(name).replace("_", " ").replace("-", " ").split()
+    tails = (kinds.of_word(" ".join(words[start:])) for start in range(len(words)))
+    return next((kind for kind in tails if kind is not None), None)
+
+
+def lying_cutlery(graph: RelationGraph, objects: Sequence[Sized], kinds: Kinds) -> list[bool]:
+    """Which things rather lie across: cutlery that is said to lie above something, as for dessert."""
+    cutlery = kinds.of_word("cutlery")
+    above = {fact.subject for fact in graph.facts() if fact.plain and fact.relations[0].word == "top"}
+    return [
+        thing.name in above and thing.kind is not None and cutlery is not None and kinds.is_a(thing.kind, cutlery)
+        for thing in objects
+    ]
+
+
+def _table(script: Script, graph: RelationGraph, objects: tuple[Sized, ...], picture: Picture) -> Table:
+    things = tuple(
+        PerceivedObject(f"o{number}", tuple(box[0]), tuple(box[1]), label=name)
+        for number, (name, box) in enumerate(zip(graph.nodes, picture.boxes.tolist(), strict=True), start=1)
+    )
+    given_up = {entry.edge for entry in picture.given_up}
+    return Table(
+        scene=Scene(things, viewpoint=script.viewpoint or "chair"),
+        objects=objects,
+        holds=tuple(graph.fact(edge) for edge in range(len(graph)) if edge not in given_up),
+        waived=tuple(_waived(graph, objects, entry) for entry in picture.given_up),
+        overlapping=tuple((graph.nodes[a], graph.nodes[b]) for a, b in picture.overlapping),
+        named_otherwise=tuple(graph.fact(edge) for edge in picture.named_otherwise),
+        finished=picture.finished,
+    )
+
+
+def _waived(graph: RelationGraph, objects: tuple[Sized, ...], entry: GivenUp) -> Waived:
+    because = tuple(graph.fact(edge) for edge in entry.because)
+    return Waived(graph.fact(entry.edge), because, tuple(objects[i] for i in entry.sizes))
+
+
+def _no_table(graph: RelationGraph, objects: tuple[Sized, ...], found: Impossible) -> NoTable:
+    """Why there is no table; a contradiction in the words of inference where it sees one that is as small."""
+    facts = tuple(graph.fact(edge) for edge in found.edges)
+    if found.sizes:
+        return NoTable(facts, tuple(objects[i] for i in found.sizes), found.minimal)
+    conflict = find_conflict(Implications(graph))
+    if conflict is not None and len(conflict.facts) <= len(facts) and all(map(is_firm, conflict.facts)):
+        return NoTable(conflict.facts, (), found.minimal, conflict.reason)
+    return NoTable(facts, (), found.minimal)

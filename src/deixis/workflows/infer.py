@@ -1,0 +1,88 @@
+"""What a script implies, ready to be listed: the facts that follow with their lines, or the conflict."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from deixis.grammar.script import Script
+from deixis.ontology.graph import Fact
+from deixis.reasoning.entailment.choices import OutOfTimeError
+from deixis.reasoning.entailment.conflict import Conflict, find_conflict
+from deixis.reasoning.entailment.derivation import Rule
+from deixis.reasoning.entailment.implications import TIME_LIMIT, Implications
+
+MANY_STEPS = 12
+"""Stated facts of which an inferred one is listed with all its lines; ``--explain`` has the others."""
+
+
+@dataclass(frozen=True, slots=True)
+class Inferred:
+    """A fact that follows, by what rule last, and from what: how many stated facts, and their lines unless too many.
+
+    0 facts: which they are was not found out within the time limit.
+    """
+
+    fact: Fact
+    rule: Rule
+    steps: int
+    lines: tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class Inference:
+    """What a script implies: every fact that follows without being stated, or the conflict that spoils it.
+
+    Where the time limit struck, ``decided`` is False if it is not known whether there is a conflict, and ``complete``
+    if further facts may follow.
+    """
+
+    stated: tuple[Fact, ...]
+    implications: Implications
+    conflict: Conflict | None
+    decided: bool
+    deadline: float  # time.monotonic: searches for what facts rest on end then
+
+    @property
+    def consistent(self) -> bool:
+        return self.conflict is None
+
+    @property
+    def complete(self) -> bool:
+        return self.implications.complete
+
+    def inferred(self) -> tuple[Inferred, ...]:
+        """The facts that follow without being stated; none where the script contradicts itself."""
+        return tuple(self.each_inferred())
+
+    def each_inferred(self) -> Iterator[Inferred]:
+        """The same one by one: there may be millions."""
+        if not self.consistent or not self.decided:
+            return
+        places = [source.line if source else 0 for source in self.implications.graph.sources]
+        for fact, steps in self.implications.implied_with_steps():
+            if steps > MANY_STEPS:
+                yield Inferred(fact, Rule.COMPOSITION, steps, ())
+                continue
+            try:
+                support = self.implications.support(fact, self.deadline)
+            except OutOfTimeError:
+                yield Inferred(fact, Rule.CASES, 0, ())
+                continue
+            lines = tuple(sorted({places[edge] for edge in support.edges}))
+            yield Inferred(fact, support.rule, len(support.edges), lines)
+
+
+def inference_of(script: Script, time_limit: float = TIME_LIMIT) -> Inference:
+    """What follows from a script, and whether it contradicts itself, within about ``time_limit`` seconds.
+
+    Only facts that leave a choice take a search, and so need a limit.
+    """
+    deadline = time.monotonic() + time_limit
+    implications = Implications(script.graph(), time_limit)
+    try:
+        conflict = find_conflict(implications, deadline)
+    except OutOfTimeError:
+        return Inference(script.facts, implications, None, False, deadline)
+    return Inference(script.facts, implications, conflict, implications.decided, deadline)

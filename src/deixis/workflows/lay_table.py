@@ -1,0 +1,351 @@
+"""Lays a script with simulated tableware: boxes that satisfy it, filled with things of its kinds."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator, Mapping, Sequence, Set
+from dataclasses import dataclass, replace
+from numbers import Integral
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.errors import DeixisError
+from deixis.grammar.script import Script
+from deixis.ontology.graph import Fact, RelationGraph
+from deixis.ontology.relation import Relation
+from deixis.ontology.sizes import Extent, Outline, SizeRange
+from deixis.perception.clouds.mesh import Mesh
+from deixis.perception.errors import SimulationError
+from deixis.perception.simulator.laying import (
+    LINEN_CLOTH,
+    WOOD,
+    LaidTable,
+    LaidThing,
+    Placement,
+    TableTop,
+    lay,
+    stood,
+    top_under,
+)
+from deixis.perception.simulator.scatter import scattered
+from deixis.perception.simulator.tableware import drawn_plan, form_of
+from deixis.reasoning.entailment.realisation.picture import Impossible, Picture, Undecided, realise
+from deixis.reasoning.entailment.realisation.verification import facts_that_hold
+from deixis.workflows.imagine import Sized, lying_cutlery, sized_objects
+
+if TYPE_CHECKING:
+    from deixis.ontology.tbox import Ontology
+
+
+def is_table(thing: Sized, ontology: Ontology) -> bool:
+    """Whether a thing is of a kind of table."""
+    table = ontology.kinds.of_word("table")
+    return thing.kind is not None and table is not None and ontology.kinds.is_a(thing.kind, table)
+
+
+def all_on_it(graph: RelationGraph, tables: Sequence[bool]) -> tuple[RelationGraph, ...]:
+    """The graph with everything said to be on the one table that it speaks of, if it speaks of one: but for what it has
+    beside the table, or on what is there."""
+    if sum(tables) != 1:
+        return ()
+    on, table, facts = graph.vocabulary["on"], graph.nodes[tables.index(True)], list(graph.facts())
+    beside = {table}
+    while True:
+        more = {name for fact in facts for name in _elsewhere(fact, on, table, beside)} - beside
+        if not more:
+            break
+        beside |= more
+    facts += [Fact(name, (on,), table) for name in graph.nodes if name not in beside]
+    return (RelationGraph.from_facts(graph.vocabulary, graph.nodes, facts, graph.kinds, graph.boxes, graph.colours),)
+
+
+def _elsewhere(fact: Fact, on: Relation, table: str, beside: Set[str]) -> Iterator[str]:
+    """What a fact has beside the table, or on what is beside it."""
+    if not fact.positive:
+        return
+    if on in fact.relations:
+        if fact.object != table and fact.object in beside:
+            yield fact.subject
+    elif table in (fact.subject, fact.object):
+        yield fact.object if fact.subject == table else fact.subject
+
+
+TIME_LIMIT = 30.0
+TURN = np.deg2rad(2.0)
+"""How much things are turned off their axis by whoever lays the table: a standard deviation."""
+
+DRAWS = 5
+"""How often other mugs and cups are taken where those drawn first do not fit."""
+
+LARGEST_MESH = 1.5
+
+
+class NoTableError(DeixisError, ValueError):
+    """There is no table that satisfies a script with things of their usual sizes."""
+
+
+class TimeIsUpError(DeixisError, TimeoutError):
+    """No table was found in time, nor was it proved that there is none."""
+
+
+@dataclass(frozen=True, eq=False)
+class LaidScript:
+    """A laid table, and what of the script does not hold there: hedged or optional facts that did not fit.
+
+    ``top_name`` is the object of the script that is the table itself, which is none of the things on it.
+    """
+
+    table: LaidTable
+    viewpoint: str = "chair"
+    missed: tuple[Fact, ...] = ()
+    top_name: str | None = None
+
+    @property
+    def beside(self) -> tuple[str, ...]:
+        """What is not over the top, but beside it in the air, since the script says so, or leaves no other place."""
+        low, high = np.array(self.table.top.low), np.array(self.table.top.high)
+        middles = {thing.name: thing.box[:, :2].mean(axis=0) for thing in self.table.things}
+        return tuple(name for name, middle in middles.items() if not ((low <= middle) & (middle <= high)).all())
+
+
+def lay_random(
+    count: int,
+    seed: int,
+    meshes: Mapping[str, Mesh] | None = None,
+    *,
+    cloth: bool = False,
+    ontology: Ontology | None = None,
+) -> LaidScript:
+    """A table with so many random things, and the meshes (metres, z up), at random places."""
+    require_seed(seed)
+    foreign = [
+        Placement(name, None, 0.0, 0.0, plan=_plan_of(mesh), mesh=mesh) for name, mesh in _checked(meshes or {}).items()
+    ]
+    table = lay(scattered(count, seed, foreign=foreign, ontology=ontology), ontology=ontology)
+    return LaidScript(replace(table, top=top_under(table.things, colour=_top_colour(cloth))))
+
+
+def lay_script(
+    script: Script,
+    seed: int,
+    meshes: Mapping[str, Mesh] | None = None,
+    *,
+    cloth: bool = False,
+    time_limit: float = TIME_LIMIT,
+) -> LaidScript:
+    """Lays a table that satisfies every firm fact of a script, with things of their kinds, varied from the seed.
+
+    Everything is turned a little off its axis, unless a fact would no longer hold. ``meshes`` (metres, z up) stand
+    for objects of the script, by name. What is a table is the table's top itself, and everything is on it, unless the
+    script has it elsewhere. Raises NoTableError where there is
+    no such table, TimeIsUpError where that stayed open, SimulationError for a mesh that stands for nothing.
+    """
+    require_seed(seed)
+    meshes = _checked(meshes or {})
+    graph = script.graph().affirming()
+    unknown = sorted(set(meshes) - set(graph.nodes))
+    if unknown:
+        raise SimulationError(
+            f"'{unknown[0]}' is to be a mesh and is no object of {script.file}; those are {', '.join(graph.nodes)}"
+        )
+    plan = _planned(script, graph, meshes, seed, time_limit)
+    laid = _laid_straight_where_needed(plan)
+    table = replace(laid, top=_top(plan, laid, cloth))
+    top_name = next((name for name, found in zip(graph.nodes, plan.tables, strict=True) if found), None)
+    return LaidScript(table, script.viewpoint or "chair", _missed(plan, table), top_name)
+
+
+def require_seed(seed: int) -> None:
+    """Raises SimulationError where a seed is no whole number of 0 or more."""
+    if not isinstance(seed, Integral) or seed < 0:
+        raise SimulationError(f"a seed is a whole number, 0 or more, not {seed!r}")
+
+
+@dataclass(frozen=True, eq=False)
+class _Plan:
+    """The objects of a script with a box in the plan for each, and the meshes that stand for some."""
+
+    graph: RelationGraph
+    objects: tuple[Sized, ...]
+    boxes: NDArray[np.float64]  # (n, 2, 2)
+    tables: tuple[bool, ...]
+    meshes: Mapping[str, Mesh]
+    seed: int
+    ontology: Ontology
+
+
+def _planned(script: Script, graph: RelationGraph, meshes: Mapping[str, Mesh], seed: int, time_limit: float) -> _Plan:
+    """Boxes that satisfy the script, of the size of the things that will fill them."""
+    ontology = script.ontology
+    objects = sized_objects(script, graph)
+    lying = lying_cutlery(graph, objects, ontology.kinds)
+    tables = tuple(is_table(thing, ontology) for thing in objects)
+    graphs = (*all_on_it(graph, tables), graph)
+    deadline = time.monotonic() + time_limit
+    draws = DRAWS if any(form_of(thing.kind, ontology).handle for thing in objects) else 1
+    for draw in range(draws):
+        sizes = [
+            _room(thing, meshes.get(thing.name), _instance(seed, number) + draw, ontology)
+            for number, thing in enumerate(objects)
+        ]
+        found = _first_picture(graphs, sizes, lying, deadline, [seed, draw])
+        if isinstance(found, Picture):
+            return _Plan(graph, objects, found.boxes, tables, meshes, seed, ontology)
+        if not isinstance(found, Impossible):
+            raise TimeIsUpError(f"{script.file}: no table was found within {time_limit:g} seconds; give it more time")
+    raise NoTableError(
+        f"{script.file}: there is no such table with things of their usual sizes; 'deixis imagine' says why"
+    )
+
+
+def _first_picture(
+    graphs: Sequence[RelationGraph],
+    sizes: Sequence[SizeRange],
+    lying: Sequence[bool],
+    deadline: float,
+    seeds: list[int],
+) -> Picture | Impossible | Undecided:
+    """A picture of the first graph that has one, else what came of the last; they share the time that is left."""
+    found: Picture | Impossible | Undecided
+    for number, graph in enumerate(graphs):
+        left = max(0.0, deadline - time.monotonic()) / (len(graphs) - number)
+        found = realise(graph, sizes, lying=lying, time_limit=left, rng=np.random.default_rng(seeds))
+        if isinstance(found, Picture):
+            break
+    return found
+
+
+def _room(thing: Sized, mesh: Mesh | None, instance: int, ontology: Ontology) -> SizeRange:
+    """How much room a thing takes in the plan: its usual size, but with the handle where there is one."""
+    if mesh is not None:
+        return _exactly(thing.size, *_plan_of(mesh))
+    if form_of(thing.kind, ontology).handle:
+        return _exactly(thing.size, *drawn_plan(thing.kind, instance, ontology))
+    return thing.size
+
+
+def _exactly(size: SizeRange, *sides: float) -> SizeRange:
+    """A rectangle of these sides, rounded up to millimetres, as pictures are in whole ones."""
+    width, length = (float(np.ceil(1000 * side - 1e-6) / 1000) for side in sorted(sides))
+    return replace(
+        size,
+        outline=Outline.RECTANGLE,
+        length=Extent(length, length, length),
+        width=Extent(width, width, width),
+    )
+
+
+def _plan_of(mesh: Mesh) -> tuple[float, float]:
+    across = np.ptp(mesh.vertices, axis=0)
+    return float(across[0]), float(across[1])
+
+
+def _instance(seed: int, number: int) -> int:
+    """The seed of the thing with that number."""
+    return int(np.random.SeedSequence([seed, number]).generate_state(1)[0])
+
+
+def _laid_straight_where_needed(plan: _Plan) -> LaidTable:
+    """The table with things turned a little; those in facts that fail, or that come to overlap, are laid straight."""
+    rng = np.random.default_rng([plan.seed, 1])
+    turns = rng.normal(0.0, TURN, len(plan.objects))
+    while True:
+        laid = lay(_placements(plan, turns), ontology=plan.ontology)
+        boxes = _boxes_as_laid(plan, laid)
+        wrong = _wrongly_placed(plan, boxes) & (turns != 0)
+        if not wrong.any():
+            return replace(laid, things=_in_order(plan, laid))
+        turns = np.where(wrong, 0.0, turns)
+
+
+def _placements(plan: _Plan, turns: NDArray[np.float64]) -> list[Placement]:
+    """What takes up more room first: a thing that is on another is within it, and is set down after it."""
+    area = np.prod(plan.boxes[:, 1] - plan.boxes[:, 0], axis=1)
+    order = [i for i in np.argsort(-area, kind="stable").tolist() if not plan.tables[i]]
+    return [_placement(plan, i, float(turns[i])) for i in order]
+
+
+def _placement(plan: _Plan, number: int, turn: float) -> Placement:
+    """The thing in the middle of its box; its head points away from the viewer, or to the left, a handle anywhere."""
+    thing, (low, high) = plan.objects[number], plan.boxes[number]
+    x, y = ((low + high) / 2).tolist()
+    across, deep = (high - low).tolist()
+    seed, mesh = _instance(plan.seed, number), plan.meshes.get(thing.name)
+    kind = thing.kind.label if thing.kind else None
+    if mesh is not None:
+        sides = _plan_of(mesh)
+        crosswise = (sides[0] > sides[1]) != (across > deep) and abs(across - deep) > 1e-9
+        return Placement(thing.name, kind, x, y, turn + (np.pi / 2 if crosswise else 0.0), seed, mesh=mesh)
+    lies = across > deep
+    turned_round = form_of(thing.kind, plan.ontology).handle and seed % 2 == 1
+    yaw = (np.pi / 2 if lies else 0.0) + (np.pi if turned_round else 0.0)
+    return Placement(thing.name, kind, x, y, yaw + turn, seed, plan=(min(across, deep), max(across, deep)))
+
+
+def _in_order(plan: _Plan, laid: LaidTable) -> tuple[LaidThing, ...]:
+    things = {thing.name: thing for thing in laid.things}
+    return tuple(things[name] for name in plan.graph.nodes if name in things)
+
+
+def _boxes_as_laid(plan: _Plan, laid: LaidTable) -> NDArray[np.float64]:
+    """The boxes of all objects in the plan (n, 2, 2), as they came to lie."""
+    boxes = plan.boxes.copy()
+    number = {name: i for i, name in enumerate(plan.graph.nodes)}
+    for thing in laid.things:
+        boxes[number[thing.name]] = thing.box[:, :2]
+    return boxes
+
+
+def _wrongly_placed(plan: _Plan, boxes: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Which things are in a fact that holds of the plan and no longer does, or overlap what they did not, (n,)."""
+    broken = facts_that_hold(plan.graph, plan.boxes) & ~facts_that_hold(plan.graph, boxes)
+    wrong = np.zeros(len(boxes), dtype=np.bool_)
+    wrong[plan.graph.subjects[broken]] = wrong[plan.graph.objects[broken]] = True
+    wrong[(_overlapping(boxes) & ~_overlapping(plan.boxes)).any(axis=1)] = True
+    return wrong
+
+
+def _overlapping(boxes: NDArray[np.float64]) -> NDArray[np.bool_]:
+    low, high = boxes[:, 0], boxes[:, 1]
+    found: NDArray[np.bool_] = np.all((low[:, None] < high[None]) & (low[None] < high[:, None]), axis=2)
+    return found
+
+
+def _missed(plan: _Plan, table: LaidTable) -> tuple[Fact, ...]:
+    held = facts_that_hold(plan.graph, _boxes_as_laid(plan, table))
+    return tuple(plan.graph.fact(int(edge)) for edge in np.flatnonzero(~held))
+
+
+def _top(plan: _Plan, laid: LaidTable, cloth: bool) -> TableTop:
+    """The table that the script speaks of, else one that reaches a little beyond everything."""
+    colour = _top_colour(cloth)
+    spoken_of = [i for i, found in enumerate(plan.tables) if found]
+    if len(spoken_of) > 1:
+        names = " and ".join(plan.graph.nodes[i] for i in spoken_of[:2])
+        raise SimulationError(f"{names} are tables, and one table is simulated; leave one of them out")
+    if not spoken_of:
+        return top_under(laid.things, colour=colour)
+    (x0, y0), (x1, y1) = plan.boxes[spoken_of[0]].tolist()
+    return TableTop((x0, y0), (x1, y1), colour=colour)
+
+
+def _top_colour(cloth: bool) -> tuple[int, int, int]:
+    return LINEN_CLOTH if cloth else WOOD
+
+
+def _checked(meshes: Mapping[str, Mesh]) -> dict[str, Mesh]:
+    """The meshes, standing on z = 0; raises SimulationError for one that cannot be in metres."""
+    standing = {}
+    for name, mesh in meshes.items():
+        try:
+            standing[name] = stood(mesh)
+        except SimulationError as error:
+            raise SimulationError(f"'{name}': {error}") from error
+        extents = np.ptp(mesh.vertices, axis=0)
+        if extents.max() > LARGEST_MESH or extents.max() < 1e-3:
+            raise SimulationError(
+                f"the mesh of '{name}' measures {extents.max():g} m; state the unit that its file is in"
+            )
+    return standing

@@ -1,0 +1,54 @@
+"""Triples to reason over: out of RDF files, or out of a memory."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from pathlib import Path
+
+import pyoxigraph as ox
+
+from deixis.memory.semantic.rdf.files import PREFIXES, read_quads
+from deixis.memory.semantic.rdf.graphs import GraphName
+from deixis.ontology.triples import with_blank_nodes
+from deixis.reasoning.description_logic.terms import Triple, read_ntriples
+from deixis.session import Session
+
+_PREFIX = re.compile(r"^\s*@?prefix\s+([\w.-]*):\s*<([^<>\s]*)>", re.IGNORECASE | re.MULTILINE)
+
+_STATED = (GraphName.ONTOLOGY, GraphName.LEARNED, GraphName.ASSERTED, GraphName.EPISODES)
+
+
+def read_ontology(files: Sequence[Path]) -> tuple[list[Triple], dict[str, str]]:
+    """The triples of some files as one ontology, and the prefixes that they declare beside the usual ones.
+
+    Raises ImportFormatError, with the place, for a file that cannot be read.
+    """
+    found = [triple for number, file in enumerate(files) for triple in _apart(number, read_quads(file))]
+    prefixes = dict(PREFIXES)
+    for file in files:
+        if file.suffix.lower() in (".ttl", ".trig"):
+            prefixes.update(_PREFIX.findall(file.read_text(encoding="utf-8", errors="replace")))
+    return _as_triples(found), prefixes
+
+
+def _apart(number: int, quads: Iterable[ox.Quad]) -> Iterator[ox.Triple]:
+    """The triples of one file; its blank nodes are not those of another that have the same labels."""
+
+    def own(node: object) -> object:
+        return ox.BlankNode(f"f{number}x{node.value}") if isinstance(node, ox.BlankNode) else node
+
+    for quad in quads:
+        yield ox.Triple(own(quad.subject), quad.predicate, own(quad.object))  # type: ignore[arg-type]
+
+
+def read_remembered(memory: str | Path | None) -> tuple[list[Triple], dict[str, str]]:
+    """Everything that a memory was told, without what was inferred; and the usual prefixes."""
+    with Session(memory) as session:
+        found = [triple for name in _STATED for triple in session.memory().triples(name)]
+    return _as_triples(list(with_blank_nodes(found))), dict(PREFIXES)
+
+
+def _as_triples(found: list[ox.Triple]) -> list[Triple]:
+    text = ox.serialize(found, format=ox.RdfFormat.N_TRIPLES) or b""
+    return list(dict.fromkeys(read_ntriples(text.decode("utf-8"))))

@@ -1,0 +1,306 @@
+"""What is taught and recognised: views of things in the perceptual memory, and the recogniser that they make."""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import json
+from collections import defaultdict
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from datetime import datetime
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.memory.errors import DamagedMemoryError, UnknownViewError
+from deixis.memory.perceptual.calibrated import keep_calibration, kept_calibration
+from deixis.memory.perceptual.level import LevelMemory
+from deixis.memory.perceptual.protocol import PerceptualMemory, PerceptualReading, Progress, ViewKey
+from deixis.memory.perceptual.records import Batch, CategoryRecord, View
+from deixis.perception.clouds.cloud import PointCloud
+from deixis.perception.errors import CloudError
+from deixis.perception.features.describer import Describer
+from deixis.perception.features.spin_describer import SpinImageDescriber
+from deixis.perception.features.upright_describer import UprightDescriber
+from deixis.perception.recognition.instances import InstanceCategory
+from deixis.perception.recognition.learners.view_features import roots
+from deixis.perception.recognition.recogniser import Recogniser
+from deixis.perception.recognition.recognition import Recognition
+from deixis.perception.recognition.settings import RecognitionSettings
+from deixis.perception.recognition.spread import PRIOR_SPREADS
+from deixis.perception.recognition.view_file import mapped
+from deixis.perception.recognition.views import PackedViews
+from deixis.perception.scene import Scene
+
+
+@dataclass(frozen=True)
+class Way:
+    """A way to compare views: what describes them, under which name a view keeps that, and how distances are judged."""
+
+    name: str
+    describer: Describer
+    root: bool = False
+
+    @property
+    def settings(self) -> RecognitionSettings:
+        """The settings of recognition, with the shipped width of a category for these descriptors."""
+        return RecognitionSettings(prior_spread=PRIOR_SPREADS[self.name])
+
+    def describe(self, cloud: PointCloud) -> NDArray[np.float32]:
+        """What a thing's points are compared by, (k, d); none of too few points."""
+        found = self.describer.describe(cloud)
+        return roots(found) if self.root else found
+
+    def __str__(self) -> str:
+        return f"{self.name} {self.describer} {self.settings}"
+
+
+UPRIGHT = Way("upright", UprightDescriber())
+"""How views in a table's frame are compared, where all of them are."""
+
+ROOTS = Way("spin_image_roots", SpinImageDescriber(support=0.2), root=True)
+"""How all others are, whatever their frame, and views that were kept before there was another way. With square roots
+the distance of equation 1 is Hellinger's; a support of 20 cm takes in most of a thing on a table."""
+
+TABLE = "table"
+"""The frame in which z is up, and 0 on the table."""
+
+DISTANCES, IDS, COMPARED = "distances", "views", "compared"
+"""The names of a category's state: D_V between its views, the ids of the views, in the same order, and the way in which
+they were compared."""
+
+GROUNDING = "grounding"
+"""Who teaches what a grounding has found."""
+
+LEAST_CONFIDENCE = 0.01
+MOST_CONFIDENCE = 0.99
+"""A recognised label is never certain, since a certain one would silence the description."""
+
+
+MAPPED = 10_000
+"""From so many views on they are not held in memory."""
+
+Pack = Callable[[Iterable[tuple[str, NDArray[np.float32]]]], PackedViews]
+"""How the descriptors of views are held; it reads all of them before it returns."""
+
+
+@dataclass(frozen=True)
+class Taught:
+    """A view that was kept. ``before`` is the category that it was in, where a teacher corrects an earlier word.
+
+    ``again`` is whether it was a view of this category before.
+    """
+
+    view: str
+    category: str
+    views: int
+    before: str | None
+    again: bool = False
+
+
+@dataclass(frozen=True)
+class StandingWord:
+    """A thing of a scene that a teacher named otherwise than a grounding did: the teacher's word stands."""
+
+    thing: str
+    taught: str
+    teacher: str
+    grounded: str
+
+    def __str__(self) -> str:
+        return f"{self.thing} stays a view of '{self.taught}', as {self.teacher} taught, and not of '{self.grounded}'"
+
+
+@dataclass(frozen=True)
+class Recognised:
+    """A scene with the names that were recognised, and what speaks for each, by the thing's id."""
+
+    scene: Scene
+    answers: Mapping[str, Recognition]
+
+
+def ways_in(frame: str) -> tuple[Way, ...]:
+    """The ways to compare what is seen in a frame, the best first."""
+    return (UPRIGHT, ROOTS) if frame == TABLE else (ROOTS,)
+
+
+def view_of(cloud: PointCloud, frame: str, category: str, time: datetime, metadata: Mapping[str, Any]) -> View:
+    """A view of a thing of a category, ready to be kept; raises CloudError where nothing on it can be described.
+
+    It is kept with what every way needs in which it can be compared.
+    """
+    descriptors = {way.name: way.describe(cloud) for way in ways_in(frame)}
+    if not all(map(len, descriptors.values())):
+        raise CloudError("the thing has too few points to say what it looks like; perceive it from nearer")
+    points = np.ascontiguousarray(cloud.points[cloud.finite], dtype=np.float32)
+    id = hashlib.sha256(points.tobytes()).hexdigest()[:16]
+    return View(id, category, time, descriptors, points, dict(metadata))
+
+
+def thing_of(view: View) -> str | None:
+    """The thing that a view shows: the object of the scene that it was taught from. None where that is not known.
+
+    The same file with other boxes is another scene: the next table, perceived into the same file.
+    """
+    scene, object = view.metadata.get("scene"), view.metadata.get("object")
+    return json.dumps([scene, view.metadata.get("boxes"), object]) if scene and object else None
+
+
+def keep_views(memory: PerceptualMemory, views: Sequence[View]) -> tuple[Taught, ...]:
+    """Keeps views, all or none; the same points kept again under another word correct it."""
+    with memory.exclusive():
+        place = {key.id: key.category for key in memory.listing()}
+        kept = {name: list(memory.views(name)) for name in _involved(memory, views, place)}
+        grown = {name: [*kept.get(name, ()), *_of(views, name)] for name in (*kept, *(view.category for view in views))}
+        ways = {name: way_of(together, (UPRIGHT, ROOTS)) for name, together in grown.items()}
+        known = {name: instances_of(memory.category(name), own, ways[name]) for name, own in kept.items()}
+        taught = []
+        for view in views:
+            before = place.get(view.id)
+            if before is not None:
+                known[before] = known[before].without_view(view.id)
+            category = known.get(view.category, InstanceCategory(view.category))
+            descriptors = view.descriptors[ways[view.category].name]
+            known[view.category] = category.with_view(view.id, descriptors, thing_of(view))
+            place[view.id] = view.category
+            corrected = before if before != view.category else None
+            again = before == view.category
+            taught.append(Taught(view.id, view.category, len(known[view.category]), corrected, again))
+        records = [record_of(category, ways[name]) for name, category in known.items() if len(category)]
+        memory.write(Batch(views, records))
+        for name, category in known.items():
+            if not len(category):
+                memory.forget(name)  # nothing is left of it
+    return tuple(taught)
+
+
+def taught_by_hand(memory: PerceptualReading, views: Sequence[View]) -> dict[str, View]:
+    """Those of some views that a teacher named already, as they are kept, by id; what is damaged says nothing."""
+    kept = {}
+    for view in views:
+        with contextlib.suppress(UnknownViewError, DamagedMemoryError):
+            kept[view.id] = memory.view(view.id)
+    return {id: view for id, view in kept.items() if view.metadata.get("teacher") != GROUNDING}
+
+
+def _involved(memory: PerceptualReading, views: Sequence[View], place: Mapping[str, str]) -> list[str]:
+    """The categories that there are and that the views are of, or were of."""
+    named = {view.category for view in views} | {place[view.id] for view in views if view.id in place}
+    return [name for name in memory.categories() if name in named]
+
+
+def _of(views: Iterable[View], category: str) -> list[View]:
+    return [view for view in views if view.category == category]
+
+
+def way_of(views: Sequence[View], ways: Sequence[Way]) -> Way:
+    """The first of some ways in which these views can all be compared."""
+    return next((way for way in ways if all(way.name in view.descriptors for view in views)), ROOTS)
+
+
+def instances_of(
+    record: CategoryRecord, views: Iterable[View], way: Way, pack: Pack = PackedViews.of
+) -> InstanceCategory:
+    """A category with its views' descriptors; distances that its record has are not worked out again.
+
+    Of each view only what is compared is held, by ``pack``.
+    """
+    things: dict[str, str] = {}
+    empty: list[str] = []
+
+    def described() -> Iterator[tuple[str, NDArray[np.float32]]]:
+        for view in views:
+            if way.name not in view.descriptors:
+                continue
+            if (thing := thing_of(view)) is not None:
+                things[view.id] = thing
+            if len(view.descriptors[way.name]):
+                yield view.id, view.descriptors[way.name]
+            else:
+                empty.append(view.id)
+
+    packed = pack(described())
+    if not _compared(record, packed.ids, way):
+        return InstanceCategory.among(record.name, packed, tuple(empty), things)
+    order = np.argsort(np.argsort(np.array(packed.ids, dtype=str)))
+    distances = np.asarray(record.state[DISTANCES])[np.ix_(order, order)]
+    return InstanceCategory(record.name, packed, distances, tuple(empty), things)
+
+
+def _compared(record: CategoryRecord, ids: Iterable[str], way: Way) -> bool:
+    """Whether a record has the distances between these views, in this way."""
+    compared = record.metadata.get(COMPARED, ROOTS.name)  # before there was a choice
+    return compared == way.name and DISTANCES in record.state and record.metadata.get(IDS) == sorted(ids)
+
+
+def record_of(category: InstanceCategory, way: Way) -> CategoryRecord:
+    """What a category has learned, its views in the order of their ids."""
+    order = np.argsort(np.array(category.views.ids, dtype=str))
+    return CategoryRecord(
+        category.name,
+        {DISTANCES: category.distances[np.ix_(order, order)]},
+        {IDS: sorted(category.views.ids), COMPARED: way.name},
+    )
+
+
+@dataclass(frozen=True)
+class Known:
+    """A recogniser, and the way in which it compares."""
+
+    recogniser: Recogniser
+    way: Way
+
+
+def recogniser_of(memory: LevelMemory, frame: str, progress: Progress | None = None) -> Known:
+    """The recogniser of everything that was taught for what is seen in a frame, with its threshold from its own views.
+
+    That is worked out anew when a tenth of the views are others than the last time, and kept in the memory. From
+    ``MAPPED`` views on, their descriptors are mapped from a file.
+    """
+    with memory.exclusive():
+        names, listed = memory.categories(), list(memory.listing())
+        way = _way_in(frame, memory, listed)
+        views = {(key.category, key.id) for key in listed}
+        pack = PackedViews.of if len(views) < MAPPED else mapped
+        categories = []
+        for name in names:
+            categories.append(instances_of(memory.category(name), memory.views(name), way, pack))
+            if progress is not None:  # what was imported may have no distances yet, and then this takes longest
+                progress(len(categories), len(names))
+        known = Recogniser.of(categories, way.settings)
+        calibration = kept_calibration(memory.path, views, str(way))
+        if calibration is not None:
+            return Known(replace(known, calibration=calibration), way)
+        known = known.calibrated(progress)
+        keep_calibration(memory.path, known.calibration, views, str(way))
+    return Known(known, way)
+
+
+def _way_in(frame: str, memory: PerceptualReading, listed: Iterable[ViewKey]) -> Way:
+    """The first way in a frame in which all that was taught can be compared: by the categories' records, and where they
+    do not say so, by their views, until one cannot."""
+    ids = defaultdict(list)
+    for key in listed:
+        ids[key.category].append(key.id)
+
+    def can(name: str, way: Way) -> bool:
+        said = _compared(memory.category(name), ids[name], way)
+        return said or all(way.name in view.descriptors for view in memory.views(name))
+
+    return next((way for way in ways_in(frame) if way is ROOTS or all(can(name, way) for name in ids)), ROOTS)
+
+
+def recognise(known: Known, scene: Scene, clouds: Sequence[PointCloud | None]) -> Recognised:
+    """Names the things of a scene that have a cloud; what a scene says already stays."""
+    answers, things = {}, []
+    for thing, cloud in zip(scene.objects, clouds, strict=True):
+        if cloud is not None:
+            answer = known.recogniser.recognise(known.way.describe(cloud))
+            answers[thing.id] = answer
+            if answer.label is not None and thing.label is None:
+                sure = float(np.clip(answer.probability, LEAST_CONFIDENCE, MOST_CONFIDENCE))
+                thing = replace(thing, label=answer.label, confidence=round(sure, 4))
+        things.append(thing)
+    return Recognised(replace(scene, objects=tuple(things)), answers)

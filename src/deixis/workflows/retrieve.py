@@ -1,0 +1,158 @@
+"""Which layouts a scene is like, and which scenes a script is like: among what is remembered, and folders of files."""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, TypeVar
+
+from deixis.errors import DeixisError
+from deixis.grammar.parser import read_script
+from deixis.grammar.script import Script
+from deixis.kernels import ready_to_ground
+from deixis.memory_session import MemorySession
+from deixis.ontology.tbox import default_ontology
+from deixis.perception.formats.scene_json import read_scene
+from deixis.perception.scene import Scene
+from deixis.reasoning.comparison.likeness import Comparison, Described, Likeness, Seen, seen
+from deixis.reasoning.comparison.retrieval import rank_layouts, rank_scenes
+from deixis.reasoning.grounding.evidence.labels import category_of
+
+SURE = 0.5
+"""A label of less confidence does not tell a thing's kind."""
+
+TIME_LIMIT = 60.0
+
+LeftOut = Callable[[str], None]
+Known = TypeVar("Known")
+
+
+@dataclass(frozen=True)
+class Retrieved:
+    """A layout or a scene that is similar to what was asked for, and by which grounding (object: perceived id)."""
+
+    name: str
+    similarity: float
+    objects: float
+    relations: float | None  # None where the layout relates nothing
+    matches: dict[str, str]
+    proved: bool
+
+
+@dataclass(frozen=True)
+class Retrieval:
+    """What was retrieved, the most similar first, and how many it was among."""
+
+    found: tuple[Retrieved, ...]
+    among: int
+
+
+def retrieve(
+    query: Script | Scene | str | Path | Mapping[str, Any],
+    among: str | Path | None = None,
+    memory: MemorySession | None = None,
+    *,
+    top: int = 5,
+    least: float = 0.5,
+    hide_labels: bool = False,
+    time_limit: float = TIME_LIMIT,
+    left_out: LeftOut | None = None,
+) -> Retrieval:
+    """Ranks all known layouts by how like a scene is to them, or all known scenes by how like they are to a script.
+
+    Known are the ``.layout`` scripts or ``.scene.json`` scenes in the folder ``among``, and what ``memory``, an open
+    session, remembers. ``query`` is a scene or a script, or the file of one: a script's name ends in ``.layout``, and
+    in a folder in anything but ``.json``.
+    ``least`` is the similarity from which one is told. ``left_out`` is told, in one line, of what cannot be read.
+    Raises DeixisError where nothing is known, or a file cannot be read.
+    """
+    ready_to_ground("exact")
+    deadline, folder = time.perf_counter() + time_limit, None if among is None else Path(among)
+    comparison = Comparison(default_ontology(), memory.meaning().sizes if memory else None)
+    if isinstance(query, str | Path):
+        query = read_script(str(query)) if _is_script_file(str(query)) else read_scene(query)
+    if isinstance(query, Script):
+        layout, scenes = Described(query.file, query.graph()), _known_scenes(memory, folder, hide_labels, left_out)
+        ranked = rank_scenes(layout, scenes.values(), comparison, top, deadline)
+        found = [_retrieved(one.scene, one, layout, scenes[one.scene]) for one in ranked if one.similarity >= least]
+        return Retrieval(tuple(found), len(scenes))
+    scene = query if isinstance(query, Scene) else read_scene(query)
+    asked = _seen(scene.file, scene.without_labels() if hide_labels else scene)
+    layouts = _known_layouts(memory, folder)
+    ranked = rank_layouts(asked, layouts.values(), comparison, top, deadline)
+    found = [_retrieved(one.layout, one, layouts[one.layout], asked) for one in ranked if one.similarity >= least]
+    return Retrieval(tuple(found), len(layouts))
+
+
+def _is_script_file(name: str) -> bool:
+    return name.endswith(".layout") or (os.sep in name and not name.endswith(".json"))
+
+
+def _retrieved(name: str, likeness: Likeness, layout: Described, scene: Seen) -> Retrieved:
+    pairs = zip(layout.graph.nodes, likeness.assignment.tolist(), strict=True)
+    return Retrieved(
+        name,
+        likeness.similarity,
+        likeness.objects,
+        likeness.relations if layout.total else None,
+        {object: scene.ids[p] for object, p in pairs if p >= 0},
+        likeness.proved,
+    )
+
+
+def _seen(name: str, scene: Scene) -> Seen:
+    """A scene ready to be compared, its kinds those of labels of some confidence, or the categories of their words."""
+    ontology = default_ontology()
+    kinds: list[str | None] = []
+    for thing in scene.objects:
+        label = thing.label if thing.confidence >= SURE else None
+        kind = ontology.of_name(label)[0] if label else None
+        kinds.append(kind.iri if kind else category_of(label) if label else None)
+    return seen(name, replace(scene.graph(ontology.relations), kinds=tuple(kinds)), metric=scene.unit == "m")
+
+
+def _known_layouts(memory: MemorySession | None, among: Path | None) -> dict[str, Described]:
+    """The scripts of a folder, and every layout in memory; of a name learned more than once, every lesson by its id."""
+    paths = _files(among, "*.layout", "layout scripts") if among is not None else []
+    known = {path.name: Described(path.name, read_script(str(path)).graph()) for path in paths}
+    layouts = memory.layouts() if memory is not None else ()
+    names = [layout.name for layout in layouts]
+    for layout in layouts:
+        name = layout.name if names.count(layout.name) == 1 else layout.lesson
+        known[name] = Described(name, layout.graph(default_ontology().relations))
+    return _some(known, "layout")
+
+
+def _known_scenes(
+    memory: MemorySession | None, among: Path | None, hide_labels: bool, left_out: LeftOut | None
+) -> dict[str, Seen]:
+    """The scenes of a folder, and every scene in memory, told by the first lesson, by name, that showed it."""
+    paths = _files(among, "*.scene.json", "scenes") if among is not None else []
+    known = {path.name: read_scene(path) for path in paths}
+    if memory is not None:
+        recollection = memory.recollection()
+        if left_out is not None:
+            for why in recollection.unreadable:
+                left_out(why)
+        first = {lesson.texts[1]: lesson for lesson in reversed(recollection.lessons)}
+        known |= {one.lesson: one.scene for one in first.values()}
+    shown = {name: scene.without_labels() if hide_labels else scene for name, scene in sorted(known.items())}
+    return {name: _seen(name, scene) for name, scene in _some(shown, "scene").items()}
+
+
+def _files(folder: Path, pattern: str, what: str) -> list[Path]:
+    if not folder.is_dir():
+        raise DeixisError(f"{folder}: this is no folder of {what}")
+    found = sorted(path for path in folder.glob(pattern) if path.is_file())
+    if not found:
+        raise DeixisError(f"{folder}: there are no {what} in it ({pattern})")
+    return found
+
+
+def _some(known: dict[str, Known], what: str) -> dict[str, Known]:
+    if not known:
+        raise DeixisError(f"retrieve: no {what} is remembered; learn from some, or name a folder with --among DIR")
+    return known

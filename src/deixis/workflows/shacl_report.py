@@ -1,0 +1,52 @@
+"""A check as a standard SHACL report: the layout's shapes over the scene's data, by pyshacl."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pyoxigraph as ox
+
+from deixis.ontology.lessons.shapes import layout_shapes, scene_data
+from deixis.ontology.lessons.types import LayoutConcept
+from deixis.ontology.relation import Relation, Relations
+from deixis.ontology.triples import with_blank_nodes
+from deixis.perception.scene import Scene
+from deixis.reasoning.comparison.checking import TableCheck
+from deixis.reasoning.grounding.evidence.evidence import exact_names
+
+
+def shacl_report(layout: LayoutConcept, scene: Scene, check: TableCheck, relations: Relations) -> tuple[bool, str]:
+    """Whether the scene conforms to the layout's shapes, and the validation report as Turtle."""
+    import rdflib
+    from pyshacl import validate
+
+    fills = {entry.perceived: entry.role for entry in check.roles if entry.perceived is not None}
+    related = satisfied_relations(layout, scene, fills, relations)
+    coloured = {entry.perceived: other.seen.iri for entry, other in check.miscoloured if entry.perceived is not None}
+    data = scene_data(layout, scene.ids, fills, related, coloured)
+    graphs = []
+    for triples in (data, layout_shapes(layout)):
+        graph = rdflib.Graph()
+        graph.parse(data=ox.serialize(with_blank_nodes(triples), format=ox.RdfFormat.N_TRIPLES) or b"", format="nt")
+        graphs.append(graph)
+    conforms, report, _ = validate(
+        graphs[0], shacl_graph=graphs[1], allow_warnings=True, allow_infos=True, do_owl_imports=False, inplace=True
+    )
+    assert isinstance(report, rdflib.Graph)
+    return bool(conforms), report.serialize(format="turtle")
+
+
+def satisfied_relations(
+    layout: LayoutConcept, scene: Scene, fills: dict[str, str], relations: Relations
+) -> Iterator[tuple[str, Relation, str]]:
+    """Every relation that a fact of the layout names and that holds of what fills its roles."""
+    thing = {role: id for id, role in fills.items()}
+    names, position = exact_names(scene.graph(relations)), {id: i for i, id in enumerate(scene.ids)}
+    for fact in layout.facts:
+        subject, object = thing.get(fact.subject), thing.get(fact.object)
+        if subject is None or object is None:
+            continue
+        name = names[position[subject], position[object]]
+        for relation in fact.relations:
+            if relations.degrees[relation.index, name] > 0:
+                yield subject, relation, object

@@ -1,0 +1,154 @@
+"""Solves the networks of a file, one by one: the verdict, what it rests on, and what else was asked for."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from deixis.errors import DeixisError
+from deixis.reasoning.qualitative.calculi.bridges import Link, links_between
+from deixis.reasoning.qualitative.networks.closure import close
+from deixis.reasoning.qualitative.networks.combination import joint_conflict, solve_jointly
+from deixis.reasoning.qualitative.networks.conflict import minimal_conflict
+from deixis.reasoning.qualitative.networks.derivation import explain, require_pair
+from deixis.reasoning.qualitative.networks.network import Constraint, Network, compacted
+from deixis.reasoning.qualitative.networks.search import Verdict, solve
+from deixis.reasoning.qualitative.networks.state import Progress, State
+
+if TYPE_CHECKING:
+    from deixis.grammar.formats.networks import NetworkText
+    from deixis.reasoning.qualitative.calculi.calculus import Calculus
+    from deixis.reasoning.qualitative.networks.combination import Contribution
+    from deixis.reasoning.qualitative.networks.rounds import Step
+
+
+LAST_SHARE = 0.1
+"""Of the time limit, for saying why, where solving took all of it."""
+
+
+@dataclass(frozen=True)
+class Wish:
+    """What is asked about each network, beside the verdict."""
+
+    closure: bool = False
+    scenario: bool = False
+    explain: tuple[int, int] | None = None
+    time_limit: float = 60.0
+
+    def left(self, deadline: float) -> float:
+        """Seconds for saying why, when there is that verdict."""
+        return max(deadline - time.monotonic(), LAST_SHARE * self.time_limit)
+
+
+@dataclass(frozen=True, eq=False)
+class Solved:
+    """One network of a file, and what was found about it.
+
+    ``shown`` are the networks that were asked for, the closure or the scenario, one for each calculus.
+    """
+
+    text: NetworkText
+    verdict: Verdict
+    reason: str
+    narrowed: int
+    seconds: float
+    conflict: tuple[tuple[Network, Constraint], ...] = ()
+    minimal: bool = True
+    contributions: tuple[Contribution, ...] = ()
+    shown: tuple[Network, ...] = ()
+    step: Step | None = None
+    asked: tuple[int, int] | None = None
+    explained: bool = True  # False where time ran out before it was clear why
+
+
+def calculi_named(text: str) -> tuple[Calculus, ...]:
+    """The calculi of ``ra+rcc8``; raises DeixisError where two are the same, or one is joined to no other."""
+    from deixis.reasoning.qualitative.calculi.registry import calculus
+
+    names = [name.strip() for name in text.split("+")]
+    if len(set(names)) < len(names):
+        raise DeixisError(f"--calculus {text}: name each calculus once")
+    calculi = tuple(calculus(name) for name in names)
+    joined = {end.name for link in links_between(calculi) for end in (link.source, link.target)}
+    for each in calculi:
+        if len(calculi) > 1 and each.name not in joined:
+            raise DeixisError(f"--calculus {text}: nothing joins {each.name} to the others")
+    return calculi
+
+
+def solve_text(text: NetworkText, wish: Wish, progress: Progress | None = None) -> Solved:
+    """Solves one network of a file; raises LimitError where it would not fit in memory."""
+    return _alone(text, wish, progress) if len(text.networks) == 1 else _jointly(text, wish, progress)
+
+
+def _alone(text: NetworkText, wish: Wish, progress: Progress | None) -> Solved:
+    started, deadline = time.perf_counter(), time.monotonic() + wish.time_limit
+    if wish.explain is not None:
+        require_pair(text.network, *wish.explain)
+    small, things = text.network.compact()
+    closure = close(small, deadline, progress)
+    found = solve(small, max(0.0, deadline - time.monotonic()), progress, wish.scenario)
+    solved = Solved(text, found.verdict, found.reason, closure.narrowed, 0.0, asked=wish.explain)
+    if found.verdict is Verdict.INCONSISTENT:
+        conflict = minimal_conflict(text.network, wish.left(deadline), inconsistent=True)
+        if conflict is not None:
+            stated = tuple((text.network, c) for c in conflict.constraints)
+            solved = replace(solved, conflict=stated, minimal=conflict.minimal)
+    elif wish.scenario and found.scenario is not None:
+        solved = replace(solved, shown=(_renumbered(text.network, found.scenario.constraints, things.tolist()),))
+    elif wish.closure and closure.complete:
+        relations = (Constraint(i, j, closure.relation(i, j)) for i, j in closure.told().tolist())
+        solved = replace(solved, shown=(_renumbered(text.network, relations, things.tolist()),))
+    if wish.explain is not None and found.verdict is not Verdict.INCONSISTENT:
+        ending = time.monotonic() + wish.left(deadline)
+        step = explain(text.network, *wish.explain, ending - time.monotonic())
+        solved = replace(solved, step=step, explained=step is not None or time.monotonic() <= ending)
+    return replace(solved, seconds=time.perf_counter() - started)
+
+
+def _jointly(text: NetworkText, wish: Wish, progress: Progress | None) -> Solved:
+    started, deadline = time.perf_counter(), time.monotonic() + wish.time_limit
+    if wish.scenario or wish.explain is not None:
+        raise DeixisError("--scenario and --explain are for one calculus at a time")
+    links: Sequence[Link] = links_between([network.calculus for network in text.networks])
+    networks, things = compacted(text.networks)
+    found = solve_jointly(networks, links, wish.time_limit, progress)
+    contributions = found.closure.contributions
+    narrowed = sum(each.pairs for each in contributions)
+    solved = Solved(text, found.verdict, found.reason, narrowed, 0.0, contributions=contributions)
+    if found.verdict is Verdict.INCONSISTENT:
+        solved = _blamed(solved, links, wish.left(deadline))
+    elif wish.closure:
+        pairs = zip(text.networks, found.closure.states, strict=True)
+        solved = replace(solved, shown=tuple(_closed(network, state, things.tolist()) for network, state in pairs))
+    return replace(solved, seconds=time.perf_counter() - started)
+
+
+def _blamed(solved: Solved, links: Sequence[Link], seconds: float) -> Solved:
+    """With the conflict that joint closure finds, else with that of a network which is inconsistent by itself."""
+    deadline, networks = time.monotonic() + seconds, solved.text.networks
+    joint = joint_conflict(networks, links, seconds / 2)
+    if joint is not None:
+        by_name = {network.calculus.name: network for network in networks}
+        stated = tuple((by_name[name], c) for name, c in joint.constraints)
+        return replace(solved, conflict=stated, minimal=joint.minimal)
+    for network in networks:
+        own = minimal_conflict(network, deadline - time.monotonic())
+        if own is not None:
+            return replace(solved, conflict=tuple((network, c) for c in own.constraints), minimal=own.minimal)
+    return solved
+
+
+def _closed(network: Network, state: State, things: list[int]) -> Network:
+    relations = (Constraint(i, j, state.relation(i, j)) for i in range(state.size) for j in range(i + 1, state.size))
+    return _renumbered(network, relations, things)
+
+
+def _renumbered(network: Network, constraints: Iterable[Constraint], things: list[int]) -> Network:
+    """What says something of what was said about the things that constraints are about, in their own numbers."""
+    universal = network.calculus.universal
+    return network.only(
+        Constraint(things[c.first], things[c.second], c.relation) for c in constraints if c.relation != universal
+    )

@@ -1,0 +1,84 @@
+"""What was inferred goes with what it follows from: no stale inference, judged by an engine that did not infer it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pyoxigraph as ox
+import pytest
+
+from deixis.examples_data import example
+from deixis.learning.lesson import ENGINES
+from deixis.memory.semantic.rdf.graphs import GraphName, graph_iri
+from deixis.memory.semantic.store import SemanticMemory
+from deixis.ontology.triples import with_blank_nodes
+from deixis.ontology.vocabulary import PROV
+from deixis.reasoning.description_logic.materialisation import Materialisation
+from deixis.reasoning.description_logic.terms import Triple, read_ntriples
+from deixis.session import Session
+
+pytestmark = pytest.mark.slow
+
+FULL, SCRIPT1, SCENE = (example(n) for n in ("formal_dinner.layout", "script1.layout", "place_setting.scene.json"))
+TABLE2 = example("second_table.scene.json")
+
+
+def said(memory: SemanticMemory, *names: GraphName) -> set[Triple]:
+    found = [triple for name in names for triple in memory.triples(name)]
+    text = ox.serialize(with_blank_nodes(found), format=ox.RdfFormat.N_TRIPLES) or b""
+    return set(read_ntriples(text.decode("utf-8")))
+
+
+def stale(memory: SemanticMemory) -> set[Triple]:
+    """What the inferred graph says of the world and the rules of OWL 2 RL do not make of what is stated."""
+    stated = said(memory, GraphName.ONTOLOGY, GraphName.LEARNED, GraphName.ASSERTED)
+    known = Materialisation(stated)
+    return {t for t in said(memory, GraphName.INFERRED) if t not in known and not is_origin(t)}
+
+
+def is_origin(triple: Triple) -> bool:
+    """Whether a triple is about the inferred graph itself, or who made it."""
+    return triple.subject.startswith(
+        (f"<{graph_iri(GraphName.INFERRED).value}", "<https://w3id.org/deixis/learned/inference")
+    ) or triple.subject in {f"<https://w3id.org/deixis/learned/agent/{name}>" for name in ENGINES}
+
+
+def test_after_learning_and_forgetting_nothing_inferred_is_without_its_reasons(tmp_path: Path) -> None:
+    with Session(tmp_path / "memory") as session:
+        session.learn(FULL, SCENE)
+        session.learn(SCRIPT1, TABLE2)
+        memory = session.memory()
+        assert stale(memory) == set()
+        both = said(memory, GraphName.INFERRED)
+        session.forget("formal_dinner-1")
+        assert stale(memory) == set()
+        left = said(memory, GraphName.INFERRED)
+        gone = both - left
+        assert gone and not any("formal_dinner-1" in part for triple in left for part in triple)
+        session.forget("script1-1")
+        rest = [triple for triple in said(memory, GraphName.INFERRED) if not is_origin(triple)]
+        assert not any("/learned/" in triple.subject for triple in rest)
+
+
+def test_a_triple_that_follows_from_nothing_is_seen_and_goes_with_the_next_lesson(tmp_path: Path) -> None:
+    with Session(tmp_path / "memory") as session:
+        session.learn(FULL, SCENE)
+        memory = session.memory()
+        fork = ox.NamedNode("https://w3id.org/deixis/onto#Fork")
+        false = ox.Triple(fork, ox.NamedNode("http://www.w3.org/2000/01/rdf-schema#subClassOf"), ox.NamedNode("urn:x"))
+        memory.conclude([*memory.triples(GraphName.INFERRED), false])
+        assert [t.object for t in stale(memory)] == ["<urn:x>"]
+        session.learn(SCRIPT1, SCENE)
+        assert stale(memory) == set()
+
+
+def test_the_inferred_graph_says_from_what_and_by_whom_it_was_made(tmp_path: Path) -> None:
+    with Session(tmp_path / "memory") as session:
+        session.learn(FULL, SCENE)
+        path = f"<{PROV.WAS_GENERATED_BY}>/<{PROV.WAS_ASSOCIATED_WITH}>/rdfs:label"
+        rows = session.query(f"SELECT ?engine {{ dxg:inferred {path} ?engine }} ORDER BY ?engine").rows
+        assert [str(row[0]).split(":")[0].strip('"') for row in rows] == sorted(ENGINES)
+        asked = f"SELECT ?g {{ dxg:inferred <{PROV.WAS_DERIVED_FROM}> ?g }} ORDER BY ?g"
+        assert [str(row[0]) for row in session.query(asked).rows] == [
+            f"<https://w3id.org/deixis/graph/{name}>" for name in ("asserted", "learned", "ontology")
+        ]

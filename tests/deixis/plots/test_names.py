@@ -1,0 +1,54 @@
+"""Names in pictures: which are written, which are left out."""
+
+from __future__ import annotations
+
+from matplotlib.figure import Figure
+
+from deixis.perception.scene import PerceivedObject, Scene
+from deixis.plots.figure import dress_table, new_figure
+from deixis.plots.names import MANY, write_names
+
+
+def written(things: list[PerceivedObject], quiet: tuple[str, ...] = ()) -> Figure:
+    figure, axes = new_figure(9.0, 7.0)
+    axes.set_xlim(0, 10)
+    axes.set_ylim(0, 10)
+    dress_table(axes, Scene(tuple(things)), None)
+    write_names(figure, axes, things, quiet)
+    return figure
+
+
+def grid(number: int, side: float) -> list[PerceivedObject]:
+    columns = int(10 / side)
+    corners = [(side * (n % columns), side * (n // columns)) for n in range(number)]
+    return [PerceivedObject(f"thing_{n}", (x, y), (x + 0.8 * side, y + 0.8 * side)) for n, (x, y) in enumerate(corners)]
+
+
+def test_of_very_many_things_those_without_room_for_a_name_have_none_and_the_axis_says_so() -> None:
+    (axes,) = written(grid(900, 0.33)).axes
+    assert not axes.texts
+    assert axes.get_xlabel().endswith("; 900 names left out for lack of room")
+
+
+def test_of_many_things_those_that_have_room_are_named_at_their_place() -> None:
+    dense = [PerceivedObject(f"d{n}", (0, 0), (0.01, 0.01)) for n in range(MANY)]
+    far = PerceivedObject("far", (5, 5), (9, 9))
+    (axes,) = written([*dense, far]).axes
+    texts = [text.get_text() for text in axes.texts]
+    assert "far" in texts and 1 < len(texts) < 50
+    assert f"{MANY + 1 - len(texts)} names left out" in axes.get_xlabel()
+
+
+def test_nothing_is_said_of_names_where_all_are_written() -> None:
+    (axes,) = written(grid(20, 2.0)).axes
+    assert len(axes.texts) == 20 and "left out" not in axes.get_xlabel()
+
+
+def test_a_name_as_long_as_the_picture_is_shortened_and_not_left_out() -> None:
+    (axes,) = written([PerceivedObject("x" * 400, (1, 1), (9, 9))]).axes
+    assert [text.get_text() for text in axes.texts] == ["x" * 47 + "…"]
+
+
+def test_what_has_no_name_of_its_own_is_written_in_another_hand() -> None:
+    (axes,) = written(grid(2, 2.0), quiet=("thing_1",)).axes
+    assert [text.get_fontstyle() for text in axes.texts] == ["normal", "italic"]

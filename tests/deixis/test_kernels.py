@@ -1,0 +1,69 @@
+"""What is compiled, or loaded compiled, before a time limit begins."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import deixis
+from deixis.examples_data import example
+
+SOURCE = Path(deixis.__file__).parents[1]
+
+LOADED_LATER = """
+import json, sys
+from numba.core.dispatcher import Dispatcher
+from deixis.learning.scene_evidence import evidence_of
+from deixis.session import load_scene, read_script
+from deixis.reasoning.grounding.engines import engine_named
+from deixis.reasoning.grounding.ground import ground
+from deixis.grammar.formats.networks import read_networks
+from deixis.grammar.parser import parse_script
+from deixis.workflows.imagine import imagine
+from deixis.workflows.infer import inference_of
+from deixis.reasoning.qualitative.calculi.registry import calculus
+from deixis.workflows.solve import Wish, solve_text
+from deixis.kernels import ready_to_ground, ready_to_imagine, ready_to_infer, ready_to_solve
+
+CHOICES = parse_script("a left of or above b; b left or right of c; c above or below d; e is not left of a")
+
+def kernels():
+    modules = [module for name, module in list(sys.modules.items()) if name.startswith("deixis.")]
+    found = {value for module in modules for value in vars(module).values() if isinstance(value, Dispatcher)}
+    return {(kernel.__module__, kernel.__name__, str(kind)) for kernel in found for kind in kernel.signatures}
+
+script, scene = read_script(sys.argv[1]), load_scene(sys.argv[2])
+later = {}
+for engine in ("similarity", "scalable", "exact"):
+    ready_to_ground(engine)
+    before = kernels()
+    answer = ground(evidence_of(script, scene), engine_named(engine), 60.0)
+    assert answer.matches
+    later[engine] = sorted(kernels() - before)
+    of_ground = sorted({name for _, name, _ in before})
+commands = {
+    "infer": (ready_to_infer, lambda: inference_of(CHOICES)),
+    "solve": (ready_to_solve, lambda: solve_text(read_networks(sys.argv[3], [calculus("ra")])[0], Wish(scenario=True))),
+    "imagine": (ready_to_imagine, lambda: imagine(script)),
+}
+for name, (ready, run) in commands.items():
+    ready()
+    before = kernels()
+    run()
+    later[name] = sorted(kernels() - before)
+print(json.dumps([later, of_ground]))
+"""
+
+
+def test_no_kernel_is_compiled_or_loaded_once_the_clock_runs() -> None:
+    files = [str(example(name)) for name in ("script1.layout", "place_setting.scene.json", "place_setting.csp")]
+    run = [sys.executable, "-c", LOADED_LATER, *files]
+    paths = [str(SOURCE), *filter(None, [os.environ.get("PYTHONPATH")])]
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(paths)}
+    done = subprocess.run(run, env=environment, capture_output=True, encoding="utf-8", timeout=300, check=True)
+    later, ready = json.loads(done.stdout)
+    assert later == {name: [] for name in ("similarity", "scalable", "exact", "infer", "solve", "imagine")}
+    assert {"search", "sample", "_search"} <= set(ready)  # the proof, the chains, and the sum

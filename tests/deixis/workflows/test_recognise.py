@@ -1,0 +1,121 @@
+"""What is taught and recognised, where a memory is older than the way in which views are compared now."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from datetime import UTC, datetime
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from deixis.memory.perceptual.level import LevelMemory
+from deixis.memory.perceptual.records import Batch, CategoryRecord, View
+from deixis.perception.clouds.cloud import PointCloud
+from deixis.perception.simulator.tableware import make
+from deixis.perception.simulator.views import views_of
+from deixis.workflows.recognise import COMPARED, ROOTS, TABLE, UPRIGHT, instances_of, keep_views, recogniser_of, view_of
+
+THINGS = (("plate", 1), ("plate", 2), ("fork", 1), ("fork", 2))
+
+
+def seen(kind: str, seed: int) -> PointCloud:
+    return views_of(make(kind, seed=seed).mesh, 1, seed=seed, upright=True)[0]
+
+
+def view(kind: str, seed: int, frame: str = TABLE) -> View:
+    where = {"scene": "table", "object": f"{kind} {seed}"}
+    return view_of(seen(kind, seed), frame, kind, datetime(2026, 1, seed, tzinfo=UTC), where)
+
+
+def as_before(one: View) -> View:
+    return replace(one, descriptors={ROOTS.name: one.descriptors[ROOTS.name]})
+
+
+@pytest.fixture
+def before(tmp_path: Path) -> Path:
+    """A memory as it was kept when there was nothing but roots of spin images."""
+    views = [as_before(view(kind, seed)) for kind, seed in THINGS]
+    records = []
+    for kind in ("plate", "fork"):
+        views_of_kind = sorted((one for one in views if one.category == kind), key=lambda one: one.id)
+        category = instances_of(CategoryRecord(kind), views_of_kind, ROOTS)
+        ids: dict[str, object] = {"views": list(category.views.ids)}
+        records.append(CategoryRecord(kind, {"distances": category.distances}, ids))
+    with LevelMemory.open(tmp_path / "perceptual", create=True) as memory:
+        memory.write(Batch(views, records))
+    return tmp_path / "perceptual"
+
+
+def test_an_older_memory_is_compared_as_it_was(before: Path) -> None:
+    with LevelMemory.open(before) as memory:
+        known = recogniser_of(memory, TABLE)
+        assert known.way == ROOTS
+        answer = known.recogniser.recognise(known.way.describe(seen("plate", 9)))
+        assert answer.candidates[0].category == "plate"
+
+
+def test_what_is_taught_to_an_older_memory_can_be_compared_with_what_it_has(before: Path) -> None:
+    with LevelMemory.open(before) as memory:
+        keep_views(memory, [view("plate", 3), view("mug", 1), view("mug", 2)])
+        assert memory.category("plate").metadata[COMPARED] == ROOTS.name
+        known = recogniser_of(memory, TABLE)
+        assert known.way == ROOTS
+        assert {one.name: len(one) for one in known.recogniser.categories} == {"plate": 3, "fork": 2, "mug": 2}
+        fresh = instances_of(CategoryRecord("mug"), list(memory.views("mug")), ROOTS)
+        mug = next(one for one in known.recogniser.categories if one.name == "mug")
+        np.testing.assert_allclose(mug.distances, fresh.distances)
+
+
+def test_an_older_memory_whose_older_views_are_gone_is_compared_in_the_new_way(before: Path) -> None:
+    with LevelMemory.open(before) as memory:
+        keep_views(memory, [view("mug", 1), view("mug", 2)])
+        memory.forget("plate")
+        memory.forget("fork")
+        assert recogniser_of(memory, TABLE).way == UPRIGHT
+
+
+def test_a_new_memory_is_compared_in_the_new_way(tmp_path: Path) -> None:
+    with LevelMemory.open(tmp_path / "perceptual", create=True) as memory:
+        keep_views(memory, [view(kind, seed) for kind, seed in THINGS])
+        known = recogniser_of(memory, TABLE)
+        assert known.way == UPRIGHT
+        assert known.recogniser.recognise(known.way.describe(seen("fork", 9))).candidates[0].category == "fork"
+
+
+def test_what_is_seen_in_another_frame_than_a_tables_is_compared_by_what_needs_none(tmp_path: Path) -> None:
+    with LevelMemory.open(tmp_path / "perceptual", create=True) as memory:
+        keep_views(memory, [view(kind, seed) for kind, seed in THINGS])
+        known = recogniser_of(memory, "camera")
+        assert known.way == ROOTS
+        assert known.recogniser.recognise(known.way.describe(seen("plate", 9))).candidates[0].category == "plate"
+        keep_views(memory, [view("plate", 3, frame="camera")])
+        assert memory.category("plate").metadata[COMPARED] == ROOTS.name
+        assert memory.category("fork").metadata[COMPARED] == UPRIGHT.name
+        both = recogniser_of(memory, TABLE)
+        assert both.way == ROOTS
+        assert {one.name: len(one) for one in both.recogniser.categories} == {"plate": 3, "fork": 2}
+
+
+def test_very_many_views_are_mapped_from_a_file_and_give_the_same_answers(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with LevelMemory.open(tmp_path / "perceptual", create=True) as memory:
+        keep_views(memory, [view(kind, seed) for kind, seed in THINGS])
+        held = recogniser_of(memory, TABLE)
+        monkeypatch.setattr("deixis.workflows.recognise.MAPPED", len(THINGS))
+        mapped = recogniser_of(memory, TABLE)
+    for one, other in zip(held.recogniser.categories, mapped.recogniser.categories, strict=True):
+        assert one.views.descriptors.flags.owndata and not other.views.descriptors.flags.owndata
+    target = held.way.describe(seen("plate", 9))
+    assert held.recogniser.recognise(target) == mapped.recogniser.recognise(target)
+
+
+def test_a_view_without_a_descriptor_can_be_kept_and_taught_anew(tmp_path: Path) -> None:
+    bare = replace(view("plate", 1), descriptors={UPRIGHT.name: np.zeros((0, 171), np.float32)})
+    with LevelMemory.open(tmp_path / "perceptual", create=True) as memory:
+        memory.write(Batch([bare]))
+        keep_views(memory, [view("plate", 2), view("mug", 1)])
+        assert recogniser_of(memory, TABLE).recogniser.categories[1].empty == (bare.id,)
+        keep_views(memory, [view("plate", 1)])
+        assert [len(known) for known in recogniser_of(memory, TABLE).recogniser.categories] == [1, 2]

@@ -1,0 +1,158 @@
+"""Lessons as triples and back: what was learned is what was said, and names cannot say more than themselves."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from datetime import UTC, datetime
+
+import pyoxigraph as ox
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from deixis.errors import UnknownTermError
+from deixis.ontology.graph import Fact, Source
+from deixis.ontology.lessons.read import layout_named, layouts, lesson_records
+from deixis.ontology.lessons.types import (
+    LayoutConcept,
+    Lesson,
+    MatchRecord,
+    Role,
+    SceneRecord,
+    SeenObject,
+    next_lesson_id,
+)
+from deixis.ontology.lessons.write import asserted_triples, episode_triples, learned_triples
+from deixis.ontology.tbox import default_ontology
+from deixis.ontology.triples import GENID, LEARNED, decimal, last_part, learned_iri, typed, with_blank_nodes, with_names
+from deixis.ontology.vocabulary import DX
+
+RELATIONS = default_ontology().relations
+RED = "https://w3id.org/deixis/onto#red"
+FISH_KNIFE = "https://w3id.org/deixis/onto#FishKnife"
+NAMES = st.text(st.characters(exclude_categories=["Cs", "Cc"]), min_size=1, max_size=12)
+
+
+def lesson(names: list[str], id: str = "dinner-1", decided: bool = True) -> Lesson:
+    roles = tuple(
+        Role(name, FISH_KNIFE if i == 0 else None, i == 0, RED if i == 1 else None) for i, name in enumerate(names)
+    )
+    facts = [
+        Fact(names[0], (RELATIONS["left"],), names[1], source=Source('a"b:c.layout', 3, 1, 3, 1)),
+        Fact(names[1], (RELATIONS["right"], RELATIONS["top_right"]), names[0], weight=0.8),
+        Fact(names[0], (RELATIONS["exactly_on"],), names[1], positive=False, optional=True),
+    ]
+    seen = tuple(SeenObject(f"o{i}", (0.0, float(i)), (1.0, i + 0.5), name, 0.5) for i, name in enumerate(names))
+    return Lesson(
+        layout=LayoutConcept(id, "dinner", 'Say "dinner"', "chair", roles, tuple(facts), (tuple(sorted(names[:2])),)),
+        scene=SceneRecord("table", "chair", "m", seen, (("o0", RELATIONS["exactly_bottom"], "o1"),)),
+        matches=tuple(
+            MatchRecord(name, f"o{i}" if decided else None, decided, 1.0, () if decided else ("o0", "o1"))
+            for i, name in enumerate(names)
+        ),
+        engine="exact",
+        proved_best=True,
+        started=datetime(2026, 1, 2, 3, 4, 5, tzinfo=UTC),
+        ended=datetime(2026, 1, 2, 3, 4, 6, tzinfo=UTC),
+        version="0.1.0",
+        script_file="a.layout",
+        script_text="…",
+        scene_text="{}",
+    )
+
+
+@settings(deadline=None, max_examples=60)
+@given(st.lists(NAMES, min_size=2, max_size=4, unique=True))
+def test_a_layout_read_back_from_its_triples_is_the_layout_that_was_learned(names: list[str]) -> None:
+    taught = lesson(names)
+    (again,) = layouts(learned_triples(taught, RELATIONS), RELATIONS)
+    assert again == taught.layout
+
+
+@settings(deadline=None, max_examples=40)
+@given(st.lists(NAMES, min_size=2, max_size=4, unique=True), st.booleans(), st.floats(0, 1))
+def test_a_record_read_back_holds_the_texts_and_how_sure_every_match_is(
+    names: list[str], decided: bool, probability: float
+) -> None:
+    plain = lesson(names, "dinner 1/x", decided)
+    likeliest = None if decided else "o1"
+    matches = tuple(replace(match, probability=probability, likeliest=likeliest) for match in plain.matches)
+    taught = replace(plain, matches=matches)
+    (record,) = lesson_records(learned_triples(taught, RELATIONS), episode_triples(taught))
+    assert (record.id, record.script_file, record.words_only) == ("dinner 1/x", "a.layout", False)
+    assert (record.script_text, record.scene_text) == (taught.script_text, taught.scene_text)
+    assert sorted(record.matches, key=str) == sorted(matches, key=str)
+    taken = {f"o{i}" for i in range(len(names))} if decided else {"o1"}
+    assert {match.taken for match in record.matches} == taken
+
+
+def test_a_match_without_a_probability_is_sure_where_it_is_decided_and_else_shares() -> None:
+    assert MatchRecord("fork", "o1", True, 1.0).sureness == 1
+    assert MatchRecord("fork", None, False, 1.0, ("o1",), likeliest="o1").sureness == 0
+    assert MatchRecord("fork", None, False, 1.0, ("o1", "o2"), likeliest="o2").sureness == 0.5
+    assert MatchRecord("fork", None, False, 1.0, ("o1", "o2"), 0.3, "o2").sureness == 0.3
+
+
+def test_a_lesson_without_its_texts_is_no_record() -> None:
+    taught = lesson(["fork", "plate"])
+    told = [triple for triple in episode_triples(taught) if triple.predicate.value != DX.SCENE_TEXT]
+    assert lesson_records(learned_triples(taught, RELATIONS), told) == ()
+
+
+@settings(deadline=None, max_examples=40)
+@given(st.lists(NAMES, min_size=3, max_size=3, unique=True))
+def test_no_name_adds_a_triple_of_its_own(names: list[str]) -> None:
+    plain = lesson(["fork", "plate", "spoon"])
+    odd = lesson(names)
+    for triples in (lambda x: learned_triples(x, RELATIONS), asserted_triples, episode_triples):
+        text = ox.serialize(triples(odd), format=ox.RdfFormat.N_TRIPLES) or b""
+        parsed = list(ox.parse(text, format=ox.RdfFormat.N_TRIPLES))
+        assert len(parsed) == len(list(triples(plain)))
+        assert all(str(quad.graph_name) == "DEFAULT" for quad in parsed)
+
+
+@given(NAMES)
+def test_an_iri_keeps_its_name_within_one_part(name: str) -> None:
+    iri = learned_iri("category", name)
+    assert last_part(iri) == name
+    assert iri.removeprefix(LEARNED).count("/") == 1
+
+
+def test_only_decided_matches_teach_a_category() -> None:
+    taught = list(learned_triples(lesson(["fork", "plate"]), RELATIONS))
+    doubtful = list(learned_triples(lesson(["fork", "plate"], decided=False), RELATIONS))
+    assert sum("/category/" in str(t.subject) for t in taught) == 8
+    assert not any("/category/" in str(t) for t in doubtful)
+    could_be = [t for t in doubtful if t.predicate.value.endswith("#couldBe")]
+    assert len(could_be) == 4
+
+
+def test_class_expressions_are_blank_nodes_outside_and_names_inside() -> None:
+    inside = list(learned_triples(lesson(["fork", "plate"]), RELATIONS))
+    assert not any(isinstance(term, ox.BlankNode) for t in inside for term in (t.subject, t.object))
+    outside = list(with_blank_nodes(inside))
+    assert not any(GENID in str(t) for t in outside)
+    assert set(with_names(outside)) == set(inside)
+
+
+def test_a_layout_is_found_by_its_name_or_its_lesson() -> None:
+    known = [lesson(["a", "b"], id).layout for id in ("dinner-1", "dinner-2")]
+    lessons = ("dinner-2", "dinner-1")  # in the order learned
+    assert layout_named(known, "dinner", lessons).lesson == "dinner-1"
+    assert layout_named(known, "dinner-2", lessons).lesson == "dinner-2"
+    with pytest.raises(UnknownTermError, match="did you mean 'dinner'"):
+        layout_named(known, "diner", lessons)
+    with pytest.raises(UnknownTermError, match="nor any other"):
+        layout_named([], "diner", ())
+
+
+def test_lesson_ids_are_never_used_twice() -> None:
+    assert next_lesson_id("a", []) == "a-1"
+    assert next_lesson_id("a", ["a-1", "a-3"]) == "a-2"
+
+
+def test_numbers_keep_their_value_and_get_the_right_type() -> None:
+    assert str(decimal(1e-7)).startswith('"0.0000001"')
+    assert typed(True).value == "true"
+    assert typed(3).datatype.value.endswith("#integer")
+    assert typed(0.1).datatype.value.endswith("#double")

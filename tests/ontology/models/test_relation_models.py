@@ -1,0 +1,104 @@
+"""Graded models as data: what a model must be, and triples to and from."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from datetime import UTC, datetime
+
+import pytest
+
+from deixis.errors import OntologyError, UnknownTermError
+from deixis.ontology.models.relation_triples import models_from_turtle, models_to_turtle
+from deixis.ontology.models.relations import FAMILIES, Provenance, RelationModel, RelationModels, Term, Trend
+from deixis.ontology.tbox import default_ontology
+from deixis.ontology.vocabulary import DX
+
+TERM = Term("gap", (0.0, 0.5, 1.0), (0.0, -0.1, -2.0), Trend.FALLING)
+MODEL = RelationModel("horizontal", (TERM, Term("alike", (0.0, 1.0), (-0.3, 0.0))), 0.01, 0.07)
+LEARNED = replace(
+    MODEL,
+    provenance=Provenance(
+        ("a.layout b.json", "c"), 12.5, datetime(2026, 11, 21, 12, 30, 1, 250000, tzinfo=UTC), "0.1.0"
+    ),
+)
+
+
+TAUGHT = replace(LEARNED, provenance=replace(LEARNED.provenance, sources=(), lessons=("a b-1", "c-2"), strength=0.5))
+
+
+@pytest.mark.parametrize("model", [MODEL, LEARNED, TAUGHT])
+def test_a_model_comes_back_from_its_triples(model: RelationModel) -> None:
+    (back,) = models_from_turtle(models_to_turtle([model]))
+    assert replace(back, terms=()) == replace(model, terms=())
+    assert sorted(back.terms, key=str) == sorted(model.terms, key=str)
+
+
+def test_the_whole_vocabulary_of_a_model_is_in_the_tbox() -> None:
+    turtle = models_to_turtle([LEARNED])
+    for term in (DX.MODEL_NAME, DX.OUTLIER_RATE, DX.CHANCE_DEGREE, DX.KNOTS, DX.LOG_DEGREES, DX.TREND, DX.TERM_OF):
+        assert "dx:" + term.rsplit("#")[-1] in turtle
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("0.0 0.5 1.0", "0.0 half 1.0", "must be numbers"),
+        ("0.0 0.5 1.0", "0.5 0.0 1.0", "knots must rise"),
+        ("0.0 -0.1 -2.0", "0.0 -0.1", "one value a knot"),
+        ("0.0 -0.1 -2.0", "-2.0 -0.1 0.0", "must be falling"),
+        ("0.0 -0.1 -2.0", "0.1 -0.1 -2.0", "at the most"),
+        ("0.0 -0.1 -2.0", "nan -0.1 -2.0", "not finite"),
+        ("dx:outlierRate", "dx:somethingElse", "must have exactly one"),
+        ("dx:trend", "dx:somethingElse", "must have exactly one"),
+        ("@prefix", "prefix prefix", "no valid Turtle"),
+    ],
+)
+def test_models_that_are_not_whole_are_refused(old: str, new: str, message: str) -> None:
+    turtle = models_to_turtle([MODEL])
+    assert old in turtle
+    with pytest.raises(OntologyError, match=message):
+        models_from_turtle(turtle.replace(old, new))
+
+
+def test_a_trend_that_is_none_is_refused() -> None:
+    import re
+
+    turtle = re.sub(r"dx:trend -?\d+", "dx:trend 5", models_to_turtle([MODEL]))
+    with pytest.raises(OntologyError, match="a trend is 1, 0 or -1, not 5"):
+        models_from_turtle(turtle)
+
+
+@pytest.mark.parametrize(("outliers", "chance"), [(0.0, 0.5), (1.0, 0.5), (0.1, 0.0), (0.1, 1.5)])
+def test_shares_that_are_none_are_refused(outliers: float, chance: float) -> None:
+    with pytest.raises(OntologyError, match="between 0 and 1"):
+        RelationModel("horizontal", (), outliers, chance)
+
+
+def test_two_terms_for_one_feature_are_refused() -> None:
+    with pytest.raises(OntologyError, match="two terms for one feature"):
+        RelationModel("horizontal", (TERM, TERM), 0.01, 0.1)
+
+
+def test_models_that_are_not_all_there_are_refused() -> None:
+    with pytest.raises(OntologyError, match="no graded model 'diagonal'"):
+        RelationModels({"horizontal": MODEL})
+
+
+def test_every_word_of_the_tbox_has_a_family() -> None:
+    relations = default_ontology().relations
+    assert {relation.word for relation in relations.values()} == set(FAMILIES)
+
+
+def test_an_inverse_shares_its_model() -> None:
+    relations = default_ontology().relations
+    assert all(FAMILIES[r.word] == FAMILIES[relations[r.inverse].word] for r in relations.values())
+
+
+def test_an_unknown_model_is_an_error() -> None:
+    names = (*dict.fromkeys(FAMILIES.values()), "saying")
+    models = RelationModels({name: replace(MODEL, name=name) for name in names})
+    relation = replace(default_ontology().relations["left"], word="near")
+    with pytest.raises(UnknownTermError, match="'near' has no graded model"):
+        models.of(relation)
+    with pytest.raises(UnknownTermError, match="no graded model 'nearness'"):
+        models["nearness"]

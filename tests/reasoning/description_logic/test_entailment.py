@@ -1,0 +1,67 @@
+"""The engines of description logic behind one call: what each decides, and what each says it has not decided."""
+
+from __future__ import annotations
+
+import pytest
+from ontologies import CUTLERY, ntriples, triple, triples
+
+from deixis.reasoning.description_logic.entailment import LogicEngine, entail, unsatisfiable_by_rules
+from deixis.reasoning.description_logic.reasoners import is_consistent
+from deixis.reasoning.errors import LimitError, SettingError
+
+pytestmark = pytest.mark.slow
+
+SPORK = ":Spork a owl:Class ; rdfs:subClassOf :Fork, :Spoon . "
+TRAY = (
+    ":has a owl:ObjectProperty . :Tray a owl:Class ; "
+    "rdfs:subClassOf [ a owl:Restriction ; owl:onProperty :has ; owl:someValuesFrom :Spork ] . "
+)
+
+
+@pytest.mark.parametrize("engine", list(LogicEngine))
+def test_every_engine_finds_what_rules_find(engine: LogicEngine) -> None:
+    found = entail(ntriples(CUTLERY + ":f a :DessertFork ."), engine)
+    assert found.consistent and found.unsatisfiable == ()
+    assert set(found.inferred) == {triple(":DessertFork rdfs:subClassOf :Cutlery"), *triples(":f a :Fork, :Cutlery .")}
+    assert found.complete == (engine in ("hermit", "pellet"))
+
+
+@pytest.mark.parametrize(
+    ("engine", "impossible"),
+    [("rl", ("Spork",)), ("auto", ("Spork", "Tray"))],
+)
+def test_only_rules_miss_what_needs_somebody_unnamed(engine: str, impossible: tuple[str, ...]) -> None:
+    found = entail(ntriples(CUTLERY + SPORK + TRAY), engine)
+    assert found.unsatisfiable == tuple(f"urn:t#{name}" for name in impossible)
+    assert len(found.impossible) == len(impossible)
+    assert found.consistent
+
+
+def test_facts_that_only_a_tableau_contradicts_are_left_undecided_by_the_rules() -> None:
+    text = ntriples(CUTLERY + SPORK + TRAY + ":t a :Tray .")
+    assert not is_consistent(text)
+    by_rules = entail(text, "rl")
+    assert by_rules.consistent and not by_rules.complete
+
+
+@pytest.mark.parametrize("engine", ["auto", "pellet"])
+def test_an_inconsistency_is_found_and_justified(engine: str) -> None:
+    found = entail(ntriples(CUTLERY + ":x a :Fork, :Spoon ."), engine)
+    assert found.inconsistency is not None and len(found.inconsistency.axioms) == 3
+    assert found.inferred == ()
+
+
+def test_of_many_impossible_classes_each_is_named_by_the_rules() -> None:
+    many = "".join(f":S{i} a owl:Class ; rdfs:subClassOf :Fork, :Spoon . " for i in range(8))
+    assert unsatisfiable_by_rules(triples(CUTLERY + many)) == tuple(f"urn:t#S{i}" for i in range(8))
+
+
+@pytest.mark.parametrize("engine", list(LogicEngine))
+def test_no_engine_is_allowed_more_than_its_time(engine: LogicEngine) -> None:
+    with pytest.raises(LimitError, match="undecided"):
+        entail(ntriples(CUTLERY), engine, time_limit=0.0)
+
+
+def test_an_engine_of_another_name_is_refused() -> None:
+    with pytest.raises(SettingError, match="one of auto, rl, hermit, pellet"):
+        entail("", "racer")

@@ -1,0 +1,91 @@
+"""Justifications: minimal, whole axioms, for what rules find and for what only a tableau finds."""
+
+from __future__ import annotations
+
+import pytest
+import rdflib
+from ontologies import CUTLERY, core, ntriples, triple, triples
+
+from deixis.reasoning.description_logic.axioms import split_axioms
+from deixis.reasoning.description_logic.justification import Justification, denial, justify
+from deixis.reasoning.description_logic.reasoners import first_inconsistent
+from deixis.reasoning.description_logic.terms import Triple, read_ntriples
+from deixis.reasoning.errors import LimitError, NotEntailedError, SettingError
+
+pytestmark = pytest.mark.slow
+
+TABLE = """
+:Spork a owl:Class ; rdfs:subClassOf dx:Fork, dx:Spoon .
+:Tray a owl:Class ; rdfs:subClassOf [ a owl:Restriction ; owl:onProperty dx:left ; owl:someValuesFrom :Spork ] .
+:f a dx:Fork ; dx:exactlyLeft :p . :p dx:left :k .
+"""
+
+
+def assert_minimal(found: Justification, text: str) -> None:
+    """The axioms entail the statement, and no set of all of them but one does."""
+    parts = split_axioms(read_ntriples(text))
+    background = [*parts.declarations, *(denial(found.entailed) if found.entailed else ())]
+    assert set(found.axioms) <= set(parts.axioms)
+    chosen = [*([a for a in found.axioms if a != left_out] for left_out in found.axioms), list(found.axioms)]
+    ontologies = [[*background, *(t for axiom in axioms for t in axiom.triples)] for axioms in chosen]
+    assert first_inconsistent(ontologies) == len(found.axioms)
+
+
+CASES = [
+    (":Spork rdfs:subClassOf owl:Nothing", 3),
+    (":Tray rdfs:subClassOf owl:Nothing", 4),  # through someValuesFrom: no rule of OWL 2 RL finds it
+    (":f a dx:Tableware", 3),
+    (":f dx:left :k", 4),
+    ("dx:left rdfs:domain dx:Thing", 3),
+]
+
+
+@pytest.mark.parametrize(("statement", "axioms"), CASES, ids=[case[0] for case in CASES])
+def test_what_follows_from_the_core_ontology_has_a_minimal_justification(statement: str, axioms: int) -> None:
+    text = core() + ntriples(TABLE)
+    found = justify(text, triple(statement))
+    assert len(found.axioms) == axioms
+    assert_minimal(found, text)
+
+
+def test_an_inconsistency_has_a_minimal_justification() -> None:
+    text = core() + ntriples(TABLE + ":x a :Spork .")
+    found = justify(text)
+    assert found.entailed is None
+    assert len(found.axioms) == 4
+    assert_minimal(found, text)
+
+
+def test_an_inconsistency_that_no_rule_finds_is_justified_out_of_many_axioms() -> None:
+    others = "".join(f":C{i} a owl:Class ; rdfs:subClassOf :C{i + 1} . :i{i} a :C{i} ." for i in range(12))
+    table = TABLE.replace("dx:Fork", ":Fork").replace("dx:Spoon", ":Spoon")
+    text = ntriples(CUTLERY + others + table + ":x a :Tray .")
+    found = justify(text)
+    assert len(found.axioms) == 5
+    assert_minimal(found, text)
+
+
+def test_a_justification_is_turtle_with_its_blank_nodes_whole() -> None:
+    text = core() + ntriples(TABLE)
+    found = justify(text, triple(":Spork rdfs:subClassOf owl:Nothing"))
+    graph = rdflib.Graph().parse(data=found.ntriples, format="turtle")
+    assert len(graph) == len(found.ntriples.splitlines())
+    (members,) = graph.objects(predicate=rdflib.OWL.members)
+    assert rdflib.URIRef("https://w3id.org/deixis/onto#Spoon") in rdflib.collection.Collection(graph, members)
+
+
+def test_what_does_not_follow_is_told_apart_from_what_is_not_known_in_time() -> None:
+    text = ntriples(CUTLERY)
+    with pytest.raises(NotEntailedError, match="does not follow"):
+        justify(text, triple(":Cutlery rdfs:subClassOf :Fork"))
+    with pytest.raises(NotEntailedError, match="consistent"):
+        justify(text)
+    with pytest.raises(LimitError, match="undecided"):
+        justify(text, triple(":DessertFork rdfs:subClassOf :Cutlery"), time_limit=0.01)
+
+
+@pytest.mark.parametrize("statement", [":Fork a owl:Class", ":p owl:inverseOf :q", ":a :p []"])
+def test_a_statement_that_cannot_be_denied_is_refused(statement: str) -> None:
+    asked: Triple = triples(f"{statement} .")[0]
+    with pytest.raises(SettingError, match=r"cannot be explained|named things"):
+        justify(ntriples(CUTLERY), asked)

@@ -1,0 +1,185 @@
+"""Contradictions: found exactly where there are some, minimal, and said in words."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from itertools import combinations
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from deixis.ontology.graph import Fact, RelationGraph
+from deixis.ontology.tbox import default_ontology
+from deixis.reasoning.entailment.conflict import Conflict, compatible, find_conflict
+from deixis.reasoning.entailment.implications import Implications
+
+MakeGraph = Callable[..., RelationGraph]
+Triple = tuple[str, str, str]
+R = default_ontology().relations
+NODES = "abcd"
+LOWER = {"left": (-1, 0), "right": (1, 0), "top": (0, 1), "bottom": (0, -1)}
+LOWER |= {"top_left": (-1, 1), "top_right": (1, 1), "bottom_left": (-1, -1), "bottom_right": (1, -1)}
+
+directions = st.tuples(st.sampled_from(list(LOWER)), st.sampled_from(NODES), st.sampled_from(NODES))
+
+
+def conflict_of(graph: RelationGraph) -> Conflict | None:
+    return find_conflict(Implications(graph))
+
+
+def among(stated: list[Fact]) -> Conflict | None:
+    return conflict_of(RelationGraph.from_facts(R, list(NODES), stated))
+
+
+def cyclic(stated: list[Triple]) -> bool:
+    """Whether the order that the facts demand on x or on y has a cycle: the only way directions can contradict."""
+    for axis in (0, 1):
+        before = {(s, o) if LOWER[r][axis] < 0 else (o, s) for r, s, o in stated if LOWER[r][axis]}
+        new = True
+        while new:
+            new = {(a, d) for a, b in before for c, d in before if b == c} - before != set()
+            before |= {(a, d) for a, b in before for c, d in before if b == c}
+        if any(a == b for a, b in before):
+            return True
+    return False
+
+
+@settings(max_examples=150, deadline=None)
+@given(st.lists(directions, max_size=6))
+def test_a_contradiction_is_found_exactly_where_the_order_on_an_axis_is_cyclic(stated: list[Triple]) -> None:
+    found = among([Fact(s, (R[r],), o) for r, s, o in stated])
+    assert (found is not None) == cyclic(stated)
+
+
+anything = st.builds(
+    Fact,
+    st.sampled_from(NODES),
+    st.sets(st.sampled_from(list(R.values())), min_size=1, max_size=2).map(
+        lambda s: tuple(sorted(s, key=lambda r: r.index))
+    ),
+    st.sampled_from(NODES),
+    st.sampled_from([True, True, False]),
+    st.sampled_from([False, False, False, True]),
+    st.sampled_from([1.0, 1.0, 0.8]),
+)
+
+
+@settings(max_examples=150, deadline=None)
+@given(st.lists(anything, min_size=2, max_size=8))
+def test_a_conflict_is_minimal_and_made_of_firm_stated_facts(stated: list[Fact]) -> None:
+    found = among(stated)
+    if found is None:
+        return
+    assert all(fact in stated and not fact.optional and fact.weight == 1 for fact in found.facts)
+    assert len(set(found.facts)) == len(found.facts)
+    assert among(list(found.facts)) is not None
+    for fact in found.facts:
+        assert among([other for other in found.facts if other is not fact]) is None
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.lists(anything, max_size=6), st.data())
+def test_what_contradicts_itself_still_does_when_more_is_said(stated: list[Fact], data: st.DataObject) -> None:
+    if among(stated) is not None:
+        more = data.draw(st.lists(anything, max_size=3))
+        assert among([*more, *stated]) is not None
+
+
+@pytest.mark.parametrize(
+    ("sentences", "conflict", "reason"),
+    [
+        (
+            ["left(a, b)", "left(b, a)", "on(c, b)"],
+            ["left(a, b)", "left(b, a)"],
+            "'a' cannot be both left of and right",
+        ),
+        (["left(a, b)", "left(b, c)", "left(c, a)"], ["left(a, b)", "left(b, c)", "left(c, a)"], "cannot be both"),
+        (["top_left(a, b)", "left(b, a)"], ["top_left(a, b)", "left(b, a)"], "cannot be both"),
+        (["left(a, b)", "on(a, b)"], ["left(a, b)", "on(a, b)"], "'a' cannot be both left of and on 'b'"),
+        (["on(a, b)", "on(b, a)"], ["on(a, b)", "on(b, a)"], "cannot be both"),
+        (["exactly_left(a, b)", "top(a, b)"], ["exactly_left(a, b)", "top(a, b)"], "cannot be both"),
+        (["left(a, a)"], ["left(a, a)"], "nothing can be related to itself, and 'a' is"),
+        (["left or right(a, a)"], ["left or right(a, a)"], "nothing can be related to itself"),
+        (["left(a, b)", "not left(a, b)"], ["left(a, b)", "not left(a, b)"], "'a' is left of 'b', and that is denied"),
+        (["right(b, a)", "not left(a, b)"], ["right(b, a)", "not left(a, b)"], "that is denied"),
+        (["top_left(a, b)", "not left or on(a, b)"], ["top_left(a, b)", "not left or on(a, b)"], "that is denied"),
+        (
+            ["left(a, b)", "left(b, c)", "not right(c, a)"],
+            ["left(a, b)", "left(b, c)", "not right(c, a)"],
+            "'c' is right of 'a', and that is denied",
+        ),
+        (
+            ["left or top_left(a, b)", "right(a, b)"],
+            ["left or top_left(a, b)", "right(a, b)"],
+            "neither left of nor top",
+        ),
+        (["left or top(a, b)", "not top(a, b)", "right(a, b)"], None, "neither left of nor above 'b'"),
+        (["left or top(a, b)", "not left(a, b)", "not top(a, b)"], None, "neither left of nor above 'b'"),
+        (["left or top(a, b)", "not right(b, a)", "not top(a, b)"], None, "neither left of nor above 'b'"),
+        (["left or top(a, b)", "not left or top(a, b)"], None, "neither left of nor above 'b'"),
+        (["right or top_left(a, b)", "not left(a, b)", "not right(a, b)"], None, "neither right of nor top left of"),
+    ],
+)
+def test_conflicts_by_hand(sentences: list[str], conflict: list[str] | None, reason: str, graph_of: MakeGraph) -> None:
+    found = conflict_of(graph_of(*sentences))
+    assert found is not None
+    assert [str(fact) for fact in found.facts] == (sentences if conflict is None else conflict)
+    assert reason in found.reason
+
+
+@pytest.mark.parametrize(
+    "sentences",
+    [
+        [],
+        ["left(a, b)", "top(a, b)"],
+        ["left(a, b)", "0.8 left(b, a)"],
+        ["left(a, b)", "optional left(b, a)"],
+        ["left(a, b)", "optional not left(a, b)"],
+        ["left(a, b)", "0.5 not left(a, b)"],
+        ["0.9 left(a, a)", "left(a, b)"],
+        ["left or right(a, b)", "left(b, a)"],
+        ["left or right(a, b)", "not left(a, b)"],
+        ["left or right(a, b)", "not left(a, b)", "0.5 not right(a, b)"],
+        ["not left(a, b)", "not right(a, b)", "not on(a, b)"],
+        ["not left(a, a)"],
+        ["left(a, b)", "not exactly_left(a, b)"],
+    ],
+)
+def test_what_can_hold_together_is_no_conflict(sentences: list[str], graph_of: MakeGraph) -> None:
+    assert conflict_of(graph_of(*sentences, nodes="a b c")) is None
+
+
+def test_the_conflict_with_the_fewest_facts_is_reported(graph_of: MakeGraph) -> None:
+    found = conflict_of(graph_of("left(a, b)", "left(b, c)", "left(c, a)", "top(d, e)", "top(e, d)"))
+    assert found is not None
+    assert [str(fact) for fact in found.facts] == ["top(d, e)", "top(e, d)"]
+
+
+def test_the_facts_of_a_conflict_are_in_the_order_of_their_lines(graph_of: MakeGraph) -> None:
+    found = conflict_of(graph_of("not left(a, c)", "left(b, c)", "left(a, b)"))
+    assert found is not None
+    assert [fact.source.line for fact in found.facts if fact.source] == [1, 2, 3]
+
+
+def test_what_is_said_twice_is_blamed_once(graph_of: MakeGraph) -> None:
+    found = conflict_of(graph_of("left(a, b)", "left(a, b)", "left(b, a)"))
+    assert found is not None
+    assert len(found.facts) == 2
+
+
+def test_compatibility_is_symmetric_and_reflexive() -> None:
+    for a, b in combinations(R.values(), 2):
+        assert compatible(a, b) == compatible(b, a)
+    assert all(compatible(a, a) for a in R.values())
+
+
+def test_a_relation_is_compatible_with_what_it_implies_and_not_with_its_inverse() -> None:
+    for relation in R.values():
+        assert all(compatible(relation, R[name]) for name in relation.broader)
+        assert not compatible(relation, R[relation.inverse])
+
+
+def test_exact_relations_are_compatible_with_themselves_only() -> None:
+    exact = [r for r in R.values() if r.name.startswith("exactly")]
+    assert not any(compatible(a, b) for a, b in combinations(exact, 2))

@@ -1,0 +1,22 @@
+"""What the largest matchings leave over."""
+
+from __future__ import annotations
+
+import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+from scipy.optimize import linear_sum_assignment
+
+from deixis.reasoning.grounding.evidence.labels import spare_rows
+
+
+def largest(pairs: np.ndarray) -> int:
+    rows, columns = linear_sum_assignment(pairs, maximize=True)
+    return int(pairs[rows, columns].sum())
+
+
+@given(arrays(bool, st.tuples(st.integers(0, 6), st.integers(0, 6))))
+def test_a_row_is_spare_just_where_as_many_can_be_matched_without_it(pairs: np.ndarray) -> None:
+    without = [largest(np.delete(pairs, row, axis=0)) for row in range(len(pairs))]
+    assert spare_rows(pairs).tolist() == [count == largest(pairs) for count in without]

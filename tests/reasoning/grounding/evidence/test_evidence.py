@@ -1,0 +1,105 @@
+"""How far facts hold of perceived pairs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from deixis.errors import GraphError
+from deixis.ontology.graph import RelationGraph
+from deixis.ontology.relation import Relations
+from deixis.reasoning.geometry.rectangle import perceived_graph
+from deixis.reasoning.grounding.evidence.evidence import Evidence, absence, exact_names, no_unary_evidence
+from deixis.reasoning.grounding.matching.problem import UNMATCHED
+
+MakeGraph = Callable[..., RelationGraph]
+MakeBoxes = Callable[..., NDArray[np.float64]]
+
+
+@pytest.fixture
+def top_left_pair(boxes_of: MakeBoxes, relations: Relations) -> RelationGraph:
+    """p lies exactly top left of q."""
+    return perceived_graph(["p", "q"], boxes_of([(0, 1), (4, 5)], [(2, 3), (0, 1)]), relations)
+
+
+@pytest.mark.parametrize(
+    ("sentence", "degree"),
+    [
+        ("top_left(a, b)", 1.0),
+        ("exactly_top_left(a, b)", 1.0),
+        ("left(a, b)", 0.5),
+        ("top(a, b)", 0.5),
+        ("exactly_left(a, b)", 0.0),
+        ("right(a, b)", 0.0),
+        ("left or top_left(a, b)", 1.0),
+        ("right or top(a, b)", 0.5),
+        ("right or bottom(a, b)", 0.0),
+        ("not right(a, b)", 1.0),
+        ("not left(a, b)", 0.0),
+        ("not exactly_left(a, b)", 1.0),
+        ("not right or top(a, b)", 0.0),
+        ("bottom_right(b, a)", 1.0),
+        ("right(b, a)", 0.5),
+        ("0.8 left(a, b)", 0.5),
+        ("optional left(a, b)", 0.5),
+    ],
+)
+def test_degrees_by_hand(sentence: str, degree: float, top_left_pair: RelationGraph, graph_of: MakeGraph) -> None:
+    evidence = no_unary_evidence(graph_of(sentence, nodes="a b"), top_left_pair)
+    assert evidence.degrees(np.array([0, 1])).tolist() == [degree]
+
+
+def test_the_total_weighs_degrees_and_adds_what_labels_say(top_left_pair: RelationGraph, graph_of: MakeGraph) -> None:
+    description = graph_of("top_left(a, b)", "0.8 left(a, b)", "0.5 right(a, b)", nodes="a b")
+    bonus = np.array([[0.25, 4.0], [8.0, 2.0]])
+    evidence = Evidence(description, top_left_pair, bonus, np.zeros((2, 2)))
+    assert evidence.total(np.array([0, 1])) == pytest.approx(1.0 + 0.4 + 0.25 + 2.0)
+    assert evidence.total(np.array([1, 0])) == pytest.approx(0.5 * 0.5 + 4.0 + 8.0)
+    assert evidence.total(np.array([0, UNMATCHED])) == pytest.approx(0.25)
+    assert evidence.total(np.array([UNMATCHED, UNMATCHED])) == 0.0
+
+
+def test_a_fact_about_an_object_and_itself_is_not_compared(top_left_pair: RelationGraph, graph_of: MakeGraph) -> None:
+    evidence = no_unary_evidence(graph_of("left(a, a)", "left(a, b)", nodes="a b"), top_left_pair)
+    assert evidence.facts.tolist() == [1]
+    assert evidence.degrees(np.array([0, 1])).tolist() == [0.5]
+
+
+def test_reordered_evidence_says_the_same(top_left_pair: RelationGraph, graph_of: MakeGraph) -> None:
+    bonus = np.array([[0.25, 4.0], [8.0, 2.0]])
+    bonus[0, 1] = -np.inf
+    evidence = Evidence(graph_of("left(a, b)", nodes="a b"), top_left_pair, bonus, np.array([[0.5, 1.0], [1.5, 2.0]]))
+    turned = evidence.reordered(np.array([1, 0]), np.array([1, 0]))
+    assert turned.description.nodes == ("b", "a")
+    assert turned.scene.nodes == ("q", "p")
+    np.testing.assert_array_equal(turned.unary, evidence.unary[::-1, ::-1])
+    np.testing.assert_array_equal(turned.allowed, [[True, True], [False, True]])
+    assert turned.total(np.array([0, 1])) == evidence.total(np.array([0, 1]))
+
+
+@pytest.mark.parametrize(
+    ("sentences", "message"),
+    [
+        (["exactly_left(a, b)"], r"\(b, a\)"),
+        (["left(a, b)", "right(b, a)"], r"\(a, b\)"),
+        (["exactly_left(a, b)", "not exactly_right(b, a)"], r"\(b, a\)"),
+        (["exactly_left or exactly_top(a, b)", "exactly_right(b, a)"], r"\(a, b\)"),
+        (["exactly_left(a, b)", "exactly_right(b, a)", "exactly_top(a, b)"], "every ordered pair"),
+    ],
+)
+def test_a_scene_in_which_a_pair_has_no_one_exact_name_is_an_error(
+    sentences: list[str], message: str, graph_of: MakeGraph
+) -> None:
+    with pytest.raises(GraphError, match=message):
+        exact_names(graph_of(*sentences, nodes="a b"))
+
+
+@given(st.integers(1, 60), st.integers(1, 400))
+def test_leaving_out_is_never_worth_more_than_a_match_where_there_is_room_for_all(objects: int, things: int) -> None:
+    worth = absence(objects, things)
+    assert worth < -2.9 if objects <= things else worth > absence(things, things)

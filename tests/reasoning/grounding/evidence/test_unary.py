@@ -1,0 +1,171 @@
+"""What labels, sizes and proportions say of who is who."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from deixis.ontology.graph import RelationGraph
+from deixis.ontology.models.sizes import SizeModel
+from deixis.ontology.tbox import default_ontology
+from deixis.ontology.vocabulary import DX
+from deixis.reasoning.errors import SettingError
+from deixis.reasoning.geometry.rectangle import perceived_graph
+from deixis.reasoning.grounding.evidence.evidence import evidence_from
+from deixis.reasoning.grounding.evidence.labels import Label
+from deixis.reasoning.grounding.evidence.meaning import Meaning
+from deixis.reasoning.grounding.evidence.unary import (
+    OUTLIERS,
+    UnaryWeights,
+    label_ratios,
+    log_sizes,
+    size_evidence,
+    too_high,
+)
+from deixis.reasoning.grounding.fitting.sizes import learn_size, pooled_prior
+
+ONTOLOGY = default_ontology()
+R, KINDS, SIZES = ONTOLOGY.relations, ONTOLOGY.kinds, ONTOLOGY.sizes
+SPOON, PLATE, FORK = (
+    kind.iri for word in ("soup spoon", "dinner plate", "dinner fork") if (kind := KINDS.of_word(word))
+)
+TABLE = np.array([[[0.0, 0.0], [0.04, 0.18]], [[0.1, 0.0], [0.37, 0.27]], [[0.5, 0.0], [0.5, 0.0]]])
+TWO = RelationGraph.from_facts(R, ["soup_spoon", "dinner_plate"], [], kinds=[SPOON, PLATE])
+
+
+def learned_from(*views: tuple[np.ndarray, int], relative: bool = False) -> SizeModel:
+    sizes = np.array([log_sizes(boxes, relative)[thing] for boxes, thing in views])
+    return learn_size(sizes, pooled_prior([sizes]), relative)
+
+
+def test_what_is_far_higher_than_a_fork_is_none_whatever_its_plan() -> None:
+    def things(height: float) -> np.ndarray:
+        return np.array([[[0.0, 0.0, 0.0], [0.03, 0.195, height]], [[0.1, 0.0, 0.0], [0.37, 0.27, 0.02]]])
+
+    flat = size_evidence([FORK, PLATE], things(0.02)[..., :2], SIZES)
+    assert np.array_equal(size_evidence([FORK, PLATE], things(0.02), SIZES), flat)
+    high = size_evidence([FORK, PLATE], things(0.2), SIZES)
+    assert high[0, 0] == pytest.approx(np.log(OUTLIERS)) and flat[0, 0] > 0
+    assert np.array_equal(high[:, 1], flat[:, 1])
+    assert not too_high(["https://example.org/unheard"], things(9.0), SIZES).any()
+    assert not too_high([FORK], things(9.0), SIZES, {FORK: SizeModel((0.0, 1.0), (0.0, 1.0))}).any()
+
+
+def test_a_soup_spoon_is_no_plate() -> None:
+    found = size_evidence([SPOON, PLATE], TABLE, SIZES)
+    assert found.argmax(axis=1).tolist() == [0, 1]
+    assert found[0, 1] < 0 < found[0, 0] and found[1, 0] < 0 < found[1, 1]
+
+
+def test_sizes_are_finite_of_points_and_never_rule_out() -> None:
+    found = size_evidence([SPOON, PLATE], TABLE, SIZES)
+    assert np.isfinite(found).all()
+    assert found.min() >= np.log(0.05) - 1e-9
+
+
+def test_sizes_say_which_of_the_things_it_is_and_so_no_more_than_the_logarithm_of_their_number() -> None:
+    found = size_evidence([SPOON, PLATE], TABLE, SIZES)
+    assert found.max() <= np.log(len(TABLE)) + 1e-9
+
+
+def test_where_all_things_are_alike_sizes_say_nothing() -> None:
+    alike = np.stack([TABLE[0] + 0.3 * i for i in range(4)])
+    (found,) = size_evidence([SPOON], alike, SIZES)
+    assert found == pytest.approx(np.full(4, found[0]))
+    assert abs(found[0]) < 0.5
+
+
+def test_a_kind_whose_size_is_not_stated_says_nothing_but_a_learned_one_does() -> None:
+    thing = DX.THING.value
+    unheard = "https://example.org/unheard"
+    assert (size_evidence([thing, unheard], TABLE, SIZES) == 0).all()
+    learned = {unheard: learned_from((TABLE, 1))}
+    assert size_evidence([unheard], TABLE, SIZES, learned).argmax() == 1
+
+
+@pytest.mark.parametrize("degrees", [0, 10, 25, 45, 80])
+def test_a_fork_at_any_angle_is_a_fork_before_it_is_a_plate(degrees: int) -> None:
+    long, wide, angle = 0.19, 0.025, np.radians(degrees)
+    box = [long * np.cos(angle) + wide * np.sin(angle), long * np.sin(angle) + wide * np.cos(angle)]
+    fork = np.array([[[0.0, 0.0], box], TABLE[1] + 0.5, [[1.0, 1.0], [1.07, 1.07]]])
+    (found,) = size_evidence([FORK], fork, SIZES)
+    assert found[0] > found[1:].max() + 1
+
+
+def test_heights_are_no_part_of_the_plan() -> None:
+    upright = np.concatenate([TABLE, np.array([[[0.0], [0.03]]] * 3)], axis=2)
+    assert size_evidence([SPOON, PLATE], upright, SIZES) == pytest.approx(size_evidence([SPOON, PLATE], TABLE, SIZES))
+
+
+def test_a_spoon_lies_as_well_across() -> None:
+    turned = TABLE[:, :, ::-1]
+    assert size_evidence([SPOON], turned, SIZES) == pytest.approx(size_evidence([SPOON], TABLE, SIZES))
+
+
+def test_in_pixels_sizes_in_metres_say_how_large_things_are_beside_each_other() -> None:
+    found = size_evidence([SPOON, PLATE], TABLE[:2] * 900, SIZES, metric=False)
+    assert found.argmax(axis=1).tolist() == [0, 1] and found.min() < 0
+    assert found == pytest.approx(size_evidence([SPOON, PLATE], TABLE[:2] * 7, SIZES, metric=False))
+    sure = size_evidence([SPOON, PLATE], TABLE[:2], SIZES)
+    assert found[0, 0] - found[0, 1] < sure[0, 0] - sure[0, 1]
+
+
+def test_in_an_image_a_person_stands_and_is_no_car() -> None:
+    person, car = (kind.iri for word in ("person", "car") if (kind := KINDS.of_word(word)))
+    photograph = np.array([[[0.0, 0.0], [60.0, 170.0]], [[100.0, 0.0], [520.0, 150.0]]])
+    found = size_evidence([car, person], photograph, SIZES, metric=False)
+    assert found.argmax(axis=1).tolist() == [1, 0] and found.min() < 0
+
+
+def test_a_table_in_an_image_is_seen_from_above_where_that_fits_the_whole_of_it() -> None:
+    plate, glass = (kind.iri for word in ("dinner plate", "wine glass") if (kind := KINDS.of_word(word)))
+    round_things = np.array([[[0.0, 0.0], [81.0, 81.0]], [[100.0, 0.0], [124.0, 24.0]]] * 2)
+    upright = np.array([[[0.0, 0.0], [81.0, 8.0]], [[100.0, 0.0], [124.0, 63.0]]] * 2)
+    for scene in (round_things, upright):
+        found = size_evidence([plate, glass], scene, SIZES, metric=False)
+        assert (found[0, [0, 2]].min() > found[0, [1, 3]].max()) and (found[1, [1, 3]].min() > found[1, [0, 2]].max())
+
+
+def test_relative_sizes_know_no_scale() -> None:
+    relative = {SPOON: learned_from((TABLE[:2], 0), (TABLE[:2] * 3, 0), relative=True)}
+    here, there = (size_evidence([SPOON], TABLE[:2] * f, SIZES, relative, metric=False) for f in (1, 900))
+    assert here == pytest.approx(there)
+    assert here[0, 0] > 0 > here[0, 1]
+
+
+def test_a_learned_range_replaces_the_shipped_one() -> None:
+    learned = learned_from(*((TABLE * f, 0) for f in (0.48, 0.5, 0.52, 0.5)))
+    small = TABLE * 0.5
+    assert size_evidence([SPOON], small, SIZES, {SPOON: learned})[0, 0] > size_evidence([SPOON], small, SIZES)[0, 0]
+
+
+def test_labels_weigh_by_confidence_and_a_certain_one_decides() -> None:
+    labels = [Label("soup spoon", 0.8), None, Label("dinner plate", 1.0)]
+    found = label_ratios(TWO, labels, KINDS)
+    assert np.exp(found[:, 0]) == pytest.approx([0.8 * 2 + 0.2, 0.2])
+    assert found[:, 1].tolist() == [0.0, 0.0]
+    assert found[0, 2] == -np.inf and found[1, 2] == pytest.approx(np.log(2))
+
+
+def test_a_label_of_no_confidence_says_nothing() -> None:
+    assert (label_ratios(TWO, [Label("soup spoon", 0.0)], KINDS) == 0).all()
+
+
+def test_all_evidence_adds_up_with_its_weights() -> None:
+    labels = [Label("soup spoon", 0.8), None, None]
+    seen = perceived_graph(["a", "b", "c"], TABLE, R)
+    both = evidence_from(TWO, seen, labels, KINDS, SIZES).unary
+    sizes = size_evidence([SPOON, PLATE], TABLE, SIZES)
+    assert both == pytest.approx(label_ratios(TWO, labels, KINDS) + sizes)
+    half = UnaryWeights(labels=0.0, sizes=0.5)
+    certain = [Label("dinner plate", 1.0), None, None]
+    assert evidence_from(TWO, seen, certain, KINDS, SIZES, meaning=Meaning(weights=half)).unary == pytest.approx(
+        sizes / 2
+    )
+
+
+def test_what_cannot_be_is_refused() -> None:
+    with pytest.raises(SettingError, match="at least 0"):
+        UnaryWeights(labels=-1.0)
+    with pytest.raises(SettingError, match="finite"):
+        UnaryWeights(sizes=np.nan)

@@ -1,0 +1,152 @@
+"""Learning what words mean: nothing without data, what was said with it, trends kept, confidence counted."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.optimize import check_grad
+
+from deixis.errors import GraphError
+from deixis.ontology.graph import Fact, RelationGraph
+from deixis.ontology.models.relations import SAYING, RelationModels, Trend
+from deixis.ontology.tbox import default_ontology
+from deixis.reasoning.errors import SettingError
+from deixis.reasoning.geometry.pairs import pair_geometry
+from deixis.reasoning.grounding.evidence.degrees import relation_evidence, saying_degree, word_degree
+from deixis.reasoning.grounding.evidence.facts import fact_tables
+from deixis.reasoning.grounding.evidence.meaning import shipped_models
+from deixis.reasoning.grounding.fitting.fit import FitSettings, extended, learn_relations
+from deixis.reasoning.grounding.fitting.likelihood import Likelihood, SaidPairs, said_pairs
+from deixis.reasoning.grounding.fitting.parameters import Layout
+
+R = default_ontology().relations
+PRIOR = shipped_models()
+
+
+def alike_left(count: int, seed: int = 3) -> list[SaidPairs]:
+    """Scenes of six boxes in which 'left' is said of the two that are most alike in size, one left of the other."""
+    rng, lessons = np.random.default_rng(seed), []
+    for _ in range(count):
+        low, sides = rng.uniform(0, 10, (6, 2)), rng.uniform(0.1, 2.0, (6, 1))
+        boxes = np.stack([low, low + sides], axis=1)
+        graph = RelationGraph.from_facts(R, ["a", "b"], [Fact("a", (R["left"],), "b")])
+        unlike = np.abs(pair_geometry(boxes).smaller) + 9 * (boxes[:, None, 1, 0] > boxes[None, :, 0, 0])
+        np.fill_diagonal(unlike, 99)
+        lessons.append(said_pairs(graph, boxes, divmod(int(np.argmin(unlike)), 6)))
+    return lessons
+
+
+def share_of_said(models: RelationModels, lessons: list[SaidPairs]) -> float:
+    """How often the pair that was said is the best of its scene."""
+    hits = []
+    for lesson in lessons:
+        score = relation_evidence(lesson.pairs, R["left"], models) + np.log(saying_degree(lesson.pairs, models))
+        np.fill_diagonal(score, -np.inf)
+        hits.append(divmod(int(np.argmax(score)), 6) == tuple(lesson.ends[0].tolist()))
+    return float(np.mean(hits))
+
+
+def test_no_data_return_the_prior() -> None:
+    assert learn_relations([], PRIOR) is PRIOR
+    none = said_pairs(RelationGraph.from_facts(R, ["a"], []), np.zeros((1, 2, 2)), [0])
+    assert learn_relations([none], PRIOR) is PRIOR
+
+
+def test_a_fact_that_counts_nothing_teaches_nothing() -> None:
+    graph = RelationGraph.from_facts(R, ["a", "b"], [Fact("a", (R["left"],), "b")])
+    boxes = np.array([[[0, 0], [1, 1]], [[2, 0], [3, 1]]], dtype=float)
+    assert learn_relations([said_pairs(graph, boxes, [0, 1], [0.0, 1.0])], PRIOR) is PRIOR
+
+
+def test_an_overwhelming_prior_stays() -> None:
+    lessons = alike_left(5)
+    learned = learn_relations(lessons, PRIOR, FitSettings(strength=1e7))
+    for lesson in lessons:
+        assert word_degree(lesson.pairs, "left", learned) == pytest.approx(
+            word_degree(lesson.pairs, "left", PRIOR), abs=1e-3
+        )
+
+
+def test_what_was_said_is_learned_and_holds_of_other_scenes() -> None:
+    learned = learn_relations(alike_left(60), PRIOR)
+    unseen = alike_left(60, seed=4)
+    assert share_of_said(learned, unseen) > share_of_said(PRIOR, unseen) + 0.2
+
+
+def test_a_lesson_about_left_teaches_right_its_mirror_and_not_on() -> None:
+    learned = learn_relations(alike_left(20), PRIOR)
+    pairs = alike_left(1, seed=9)[0].pairs
+    left, right = (relation_evidence(pairs, R[name], learned) for name in ("left", "right"))
+    assert left == pytest.approx(right.T, abs=1e-9)
+    assert learned["support"] == PRIOR["support"]
+    assert learned["horizontal"] != PRIOR["horizontal"]
+
+
+def test_trends_and_bounds_hold_of_what_is_learned() -> None:
+    learned = learn_relations(alike_left(30), PRIOR)
+    for name in ("horizontal", SAYING):
+        for term in learned[name].terms:
+            assert max(term.values) == 0.0
+            assert np.all(np.diff(term.values) * term.trend >= -1e-9) or term.trend is Trend.FREE
+    assert 0 < learned["horizontal"].outliers <= 0.2
+    assert learned["horizontal"].provenance.examples == 30
+
+
+def test_more_knots_change_no_degree() -> None:
+    pairs = pair_geometry(alike_left(1)[0].pairs.boxes)
+    finer = RelationModels({name: extended(model) for name, model in PRIOR.models.items()})
+    for word in ("left", "top_right", "on"):
+        assert word_degree(pairs, word, finer) == pytest.approx(word_degree(pairs, word, PRIOR), abs=1e-12)
+
+
+@pytest.mark.parametrize("word_contrast", [0.0, 0.7])
+def test_the_gradient_is_that_of_the_likelihood(word_contrast: float) -> None:
+    layout = Layout([extended(PRIOR[name]) for name in ("horizontal", "vertical", SAYING)])
+    likelihood = Likelihood(alike_left(2), layout, word_contrast)
+    start = layout.prior + np.random.default_rng(0).normal(0, 0.1, len(layout.prior))
+    wrong = check_grad(lambda v: likelihood(v)[0], lambda v: likelihood(v)[1], start)
+    assert wrong < 1e-4
+
+
+def test_learned_models_make_finite_tables() -> None:
+    learned = learn_relations(alike_left(10), PRIOR, FitSettings(word_contrast=0.5))
+    graph = RelationGraph.from_facts(R, ["a", "b"], [Fact("a", (R["left"],), "b")])
+    assert np.isfinite(fact_tables(graph, np.zeros((3, 2, 2)), learned).tables).all()
+
+
+def test_a_grounding_teaches_by_its_confidence_and_leaves_out_what_it_cannot() -> None:
+    left = (R["left"],)
+    facts = [
+        Fact("a", left, "b", weight=0.8),
+        Fact("a", left, "c"),
+        Fact("b", left, "a", positive=False),
+        Fact("b", left, "a", optional=True),
+        Fact("b", (R["left"], R["on"]), "a"),
+    ]
+    graph = RelationGraph.from_facts(R, ["a", "b", "c"], facts)
+    lesson = said_pairs(graph, np.zeros((4, 2, 2)), [3, 1, None], [0.5, 0.9, 1.0])
+    assert lesson.words == ("left",)
+    assert lesson.ends.tolist() == [[3, 1]]
+    assert lesson.weights.tolist() == pytest.approx([0.8 * 0.5 * 0.9])
+
+
+@pytest.mark.parametrize(
+    ("things", "confidence", "error", "message"),
+    [
+        ([0], None, GraphError, "2 objects"),
+        ([0, 7], None, GraphError, "no box 7"),
+        ([0, 1], [1.0, 1.5], SettingError, "between 0 and 1"),
+    ],
+)
+def test_lessons_that_cannot_be_are_refused(
+    things: list[int | None], confidence: list[float] | None, error: type[Exception], message: str
+) -> None:
+    graph = RelationGraph.from_facts(R, ["a", "b"], [])
+    with pytest.raises(error, match=message):
+        said_pairs(graph, np.zeros((2, 2, 2)), things, confidence)
+
+
+@pytest.mark.parametrize("wrong", [{"strength": 0.0}, {"strength": np.inf}, {"word_contrast": -1.0}, {"iterations": 0}])
+def test_settings_that_cannot_be_are_refused(wrong: dict[str, float]) -> None:
+    with pytest.raises(SettingError, match=r"strength|word_contrast"):
+        FitSettings(**wrong)  # type: ignore[arg-type]

@@ -1,0 +1,51 @@
+"""Gains that are kept up to date against gains computed anew, and what exchanges gain against values of maps."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from matching_problems import every_map, problems
+
+from deixis.reasoning.grounding.matching.local_search import exchange, keep, said_twice
+from deixis.reasoning.grounding.matching.problem import Problem, compile_problem, to_assignment, to_labels
+from deixis.reasoning.grounding.matching.sampling import most_said_twice
+
+
+@settings(max_examples=80, deadline=None)
+@given(problems(), st.integers(0, 2**32 - 1))
+def test_exchanges_keep_the_gains_and_gain_what_the_values_say(problem: Problem, seed: int) -> None:
+    rng, (n1, n2) = np.random.default_rng(seed), problem.unary.shape
+    compiled = compile_problem(problem)
+    state = keep(np.full(n1, n2), compiled)
+    for _ in range(20 if n1 else 0):
+        i, p = int(rng.integers(n1)), int(rng.integers(n2 + 1))
+        old, j = int(state.labels[i]), int(state.holder[p])
+        gained = float(state.gains[i, p] - state.gains[i, old])
+        if j >= 0 and j != i:
+            said = float(said_twice(i, j, state, compiled))
+            assert said <= most_said_twice(compiled)
+            gained += float(state.gains[j, old] - state.gains[j, p]) + said
+        if p == old or gained == -np.inf:
+            continue
+        before = problem.value(to_assignment(state.labels, n2))
+        exchange(i, p, state, compiled)
+        assert problem.value(to_assignment(state.labels, n2)) - before == pytest.approx(gained, abs=1e-4)
+    fresh = keep(state.labels, compiled)
+    np.testing.assert_array_equal(state.holder, fresh.holder)
+    np.testing.assert_allclose(state.gains, fresh.gains, atol=1e-4)
+
+
+@settings(max_examples=60, deadline=None)
+@given(problems(), st.data())
+def test_what_an_object_would_gain_is_the_value_of_the_map_with_it(problem: Problem, data: st.DataObject) -> None:
+    values, n2 = every_map(problem), problem.unary.shape[1]
+    choice = data.draw(st.sampled_from(sorted(values)))
+    state = keep(to_labels(np.array(choice, dtype=np.int64), n2), compile_problem(problem))
+    for i, old in enumerate(choice):
+        for p in {*range(-1, n2)} - {*choice}:
+            moved = (*choice[:i], p, *choice[i + 1 :])
+            if moved in values:
+                gained = float(state.gains[i, p] - state.gains[i, old])
+                assert gained == pytest.approx(values[moved] - values[choice], abs=1e-4)

@@ -1,0 +1,102 @@
+"""The scalable engine: always a map, never worse than its start, the best on small problems, in time on large ones."""
+
+from __future__ import annotations
+
+import time
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from matching_problems import every_map, problems
+
+from deixis.reasoning.grounding.matching import scalable as module
+from deixis.reasoning.grounding.matching.local_search import climb
+from deixis.reasoning.grounding.matching.problem import (
+    MatchingError,
+    Problem,
+    compile_problem,
+    to_assignment,
+    to_labels,
+)
+from deixis.reasoning.grounding.matching.scalable import scalable
+
+
+@settings(max_examples=60, deadline=None)
+@given(problems(), st.data())
+def test_it_is_a_map_never_worse_than_its_start(problem: Problem, data: st.DataObject) -> None:
+    start = np.array(data.draw(st.sampled_from(sorted(every_map(problem)))), dtype=np.int64)
+    found = scalable(problem, start=start, effort=0.01)
+    problem.require_map(found.assignment)
+    assert found.value >= problem.value(start) - 1e-9
+    assert found.value == problem.value(found.assignment)
+
+
+@settings(max_examples=40, deadline=None)
+@given(problems())
+def test_it_finds_the_best_of_small_problems(problem: Problem) -> None:
+    assert scalable(problem).value == pytest.approx(max(every_map(problem).values()), abs=1e-6)
+
+
+@settings(max_examples=60, deadline=None)
+@given(problems(), st.data())
+def test_climbing_ends_where_no_move_and_no_swap_helps(problem: Problem, data: st.DataObject) -> None:
+    values = every_map(problem)
+    n2 = problem.unary.shape[1]
+    labels = to_labels(np.array(data.draw(st.sampled_from(sorted(values))), dtype=np.int64), n2)
+    climb(labels, compile_problem(problem))
+    reached = tuple(to_assignment(labels, n2).tolist())
+    for other, value in values.items():
+        changed = [i for i in range(len(other)) if other[i] != reached[i]]
+        swap = len(changed) == 2 and (other[changed[0]], other[changed[1]]) == (
+            reached[changed[1]],
+            reached[changed[0]],
+        )
+        if len(changed) == 1 or swap:
+            assert value <= values[reached] + 1e-6
+
+
+def test_the_same_seed_gives_the_same_map() -> None:
+    problem = random_problem(60)
+    one, two = scalable(problem, seed=3, effort=0.1), scalable(problem, seed=3, effort=0.1)
+    assert one.assignment.tolist() == two.assignment.tolist()
+
+
+def test_past_the_deadline_there_is_a_map_that_is_not_called_finished() -> None:
+    problem = random_problem(300)
+    started = time.perf_counter()
+    found = scalable(problem, started + 0.1)
+    assert time.perf_counter() - started < 2.0
+    problem.require_map(found.assignment)
+    assert not found.finished
+
+
+def test_in_a_hurry_it_still_cools_all_the_way(monkeypatch: pytest.MonkeyPatch) -> None:
+    seen, clock = [], iter(np.arange(0.0, 1e4, 0.01))
+
+    def record(*arguments: object) -> float:
+        seen.append(float(arguments[5]))  # type: ignore[arg-type]
+        return 0.0
+
+    monkeypatch.setattr(module, "anneal", record)
+    monkeypatch.setattr(module, "PART", 1e5)  # so that there are many looks at the clock
+    monkeypatch.setattr(time, "perf_counter", lambda: float(next(clock)))
+    found = scalable(random_problem(300), 20.0)
+    assert not found.finished
+    assert seen[-1] == 0.0
+    assert sorted(set(seen), reverse=True) == list(dict.fromkeys(seen))
+    assert len(set(seen)) == module.ONE_TURN_LEVELS + 1
+
+
+@pytest.mark.parametrize("start", [[0, 0], [0], [5, 1], [-2, 0]])
+def test_a_start_that_is_no_map_is_refused(start: list[int]) -> None:
+    with pytest.raises(MatchingError):
+        scalable(random_problem(2), start=np.array(start))
+
+
+def random_problem(n: int) -> Problem:
+    rng = np.random.default_rng(7)
+    facts = n * (n - 1) // 2 if n < 3 else 2 * n
+    ends = np.array([rng.choice(n, 2, replace=False) for _ in range(facts)]).reshape(-1, 2)
+    tables = rng.choice([0.0, 1.0], (4, n, n)).astype(np.float32)
+    return Problem(ends, rng.integers(0, 4, facts), tables, np.zeros((n, n)), np.full(n, -1.0))

@@ -1,0 +1,99 @@
+"""What labels do to an answer: the certain ones settle, the others weigh against facts."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from groundings import R, pairs
+from numpy.typing import NDArray
+
+from deixis.experiments.place_settings import formal_setting
+from deixis.ontology.graph import RelationGraph
+from deixis.ontology.tbox import default_ontology
+from deixis.reasoning.geometry.rectangle import perceived_graph
+from deixis.reasoning.grounding.answer import Grounding
+from deixis.reasoning.grounding.engines import engine_named
+from deixis.reasoning.grounding.evidence.evidence import Evidence
+from deixis.reasoning.grounding.evidence.labels import Label
+from deixis.reasoning.grounding.evidence.unary import label_ratios
+from deixis.reasoning.grounding.ground import ground
+
+MakeGraph = Callable[..., RelationGraph]
+MakeBoxes = Callable[..., NDArray[np.float64]]
+KINDS = default_ontology().kinds
+FORK_AND_PLATE = [KINDS.words[word].iri for word in ("fork", "plate")]
+
+
+def labelled(description: RelationGraph, labels: dict[str, Label]) -> Grounding:
+    scene = formal_setting()
+    return labelled_scene(description, scene.graph(R), [labels.get(thing.id) for thing in scene.objects])
+
+
+def labelled_scene(description: RelationGraph, scene: RelationGraph, labels: list[Label | None]) -> Grounding:
+    said = label_ratios(description, labels, KINDS)
+    return ground(Evidence(description, scene, said, np.zeros_like(said)), engine_named("exact"))
+
+
+def test_a_certain_label_fixes_its_thing_against_all_facts(graph_of: MakeGraph, full_script: list[str]) -> None:
+    found = labelled(graph_of(*full_script), {"dinner_fork": Label("napkin"), "napkin": Label("dinner_fork")})
+    assert (pairs(found)["napkin"], pairs(found)["dinner_fork"]) == ("dinner_fork", "napkin")
+    assert found.violated
+
+
+def test_a_label_settles_what_the_facts_leave_open(graph_of: MakeGraph, figure_7: list[str]) -> None:
+    found = labelled(graph_of(*figure_7), {"salad_fork": Label("salad_fork")})
+    assert pairs(found)["salad_fork"] == "salad_fork"
+    assert found.matches["salad_fork"].decided
+    assert "salad_fork" not in {name for group in found.interchangeable for name in group}
+
+
+def test_a_certain_label_that_names_nothing_leaves_its_thing_out(graph_of: MakeGraph, full_script: list[str]) -> None:
+    found = labelled(graph_of(*full_script), {"soup_spoon": Label("gizmo")})
+    (thing,) = found.unmatched_perceived
+    assert thing.name == "soup_spoon"
+    assert thing.reason == "the labels of the scene leave it nothing in the description that it could be"
+    assert len(found.matches) == 11
+
+
+def test_an_object_that_labels_leave_nothing_is_left_out_with_that_reason(
+    graph_of: MakeGraph, boxes_of: MakeBoxes
+) -> None:
+    scene = perceived_graph(["p", "q"], boxes_of([(0, 1), (0, 1)], [(2, 3), (0, 1)]), R)
+    description = graph_of("left(a, b)")
+    found = labelled_scene(description, scene, [Label("a"), Label("a")])
+    assert pairs(found) == {"a": "p"} or pairs(found) == {"a": "q"}
+    assert [(entry.name, entry.reason) for entry in found.unmatched_objects] == [
+        ("b", "the labels of the scene leave it nothing that it could be")
+    ]
+    assert len(found.unmatched_perceived) == 1
+
+
+def test_an_uncertain_label_weighs_against_facts_and_loses_or_wins(graph_of: MakeGraph, boxes_of: MakeBoxes) -> None:
+    """One fact speaks for a on the left; a label has to be surer than it is to speak louder."""
+    scene = perceived_graph(["p", "q"], boxes_of([(0, 1), (0, 1)], [(2, 3), (0, 1)]), R)
+    description = graph_of("left(a, b)")
+    answers = {}
+    for confidence in (0.2, 0.5, 0.99, 0.999):
+        answers[confidence] = pairs(labelled_scene(description, scene, [None, Label("a", confidence)]))["a"]
+    assert answers == {0.2: "p", 0.5: "p", 0.99: "q", 0.999: "q"}
+
+
+def test_a_narrower_label_says_where_the_broader_object_is(graph_of: MakeGraph, boxes_of: MakeBoxes) -> None:
+    """The facts have it the other way round, and a certain label is stronger."""
+    scene = perceived_graph(["p", "q"], boxes_of([(0, 1), (0, 1)], [(2, 3), (0, 1)]), R)
+    description = graph_of("left(fork, plate)", kinds=FORK_AND_PLATE)
+    found = labelled_scene(description, scene, [Label("dinner plate"), Label("dinner fork")])
+    assert pairs(found) == {"fork": "q", "plate": "p"}
+    assert all(match.decided for match in found.matches.values())
+
+
+def test_beside_a_thing_of_its_very_name_an_object_is_none_of_a_narrower_one(
+    graph_of: MakeGraph, boxes_of: MakeBoxes
+) -> None:
+    boxes = boxes_of([(0, 1), (0, 1)], [(2, 3), (0, 1)], [(4, 5), (0, 1)])
+    description = graph_of("left(fork, plate)", kinds=FORK_AND_PLATE)
+    scene = perceived_graph(["p", "q", "r"], boxes, R)
+    found = labelled_scene(description, scene, [Label("dinner fork"), Label("plate"), Label("fork")])
+    assert pairs(found) == {"fork": "r", "plate": "q"}
+    assert found.matches["fork"].decided

@@ -1,0 +1,305 @@
+"""The engines for the likeliest map: right on the shipped settings, the best of all maps, and honest where in doubt."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from itertools import combinations, permutations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from deixis.experiments.generated_tables import generate
+from deixis.experiments.place_settings import formal_setting
+from deixis.ontology.graph import Fact, RelationGraph
+from deixis.ontology.relation import Relations
+from deixis.ontology.tbox import default_ontology
+from deixis.reasoning.geometry.rectangle import perceived_graph
+from deixis.reasoning.grounding.answer import Standing
+from deixis.reasoning.grounding.engines import Alignment, engine_named
+from deixis.reasoning.grounding.evidence.evidence import Evidence, no_unary_evidence
+from deixis.reasoning.grounding.evidence.meaning import LITERAL, SHIPPED
+from deixis.reasoning.grounding.ground import NOT_ASKED, ground
+from deixis.reasoning.grounding.matching.problem import UNMATCHED
+
+MakeGraph = Callable[..., RelationGraph]
+MakeBoxes = Callable[..., NDArray[np.float64]]
+R = default_ontology().relations
+EXACT = engine_named("exact")
+
+
+def setting(relations: Relations, seed: int | None = None) -> RelationGraph:
+    seen = formal_setting(seed)
+    boxes = np.array([[thing.minimum, thing.maximum] for thing in seen.objects])
+    return perceived_graph([thing.id for thing in seen.objects], boxes, relations)
+
+
+def scene(boxes: NDArray[np.float64]) -> RelationGraph:
+    return perceived_graph([f"o{i}" for i in range(len(boxes))], boxes, R)
+
+
+@pytest.mark.parametrize("seed", [None, 1, 2])
+@pytest.mark.parametrize("engine", ["exact", "scalable"])
+def test_the_full_description_of_a_setting_names_everything_right(
+    engine: str, seed: int | None, relations: Relations, graph_of: MakeGraph, full_script: list[str]
+) -> None:
+    found = ground(no_unary_evidence(graph_of(*full_script), setting(relations, seed)), engine_named(engine))
+    assert found.proved_best == (engine == "exact")
+    assert {name: match.perceived for name, match in found.matches.items()} == {name: name for name in found.matches}
+    assert len(found.matches) == 12
+
+
+def test_what_is_absent_is_left_out(
+    relations: Relations, graph_of: MakeGraph, full_script: list[str], absent_glasses: list[str]
+) -> None:
+    found = ground(no_unary_evidence(graph_of(*full_script, *absent_glasses), setting(relations)), EXACT)
+    left_out = {left.name for left in found.unmatched_objects}
+    assert left_out == {"white_wine_glass", "red_wine_glass", "champagne_glass"}
+
+
+def test_interchangeable_things_are_as_probable_and_not_decided(
+    relations: Relations, graph_of: MakeGraph, figure_7: list[str]
+) -> None:
+    found = ground(no_unary_evidence(graph_of(*figure_7), setting(relations)), EXACT)
+    assert found.interchangeable
+    for name, fellow in (pair for group in found.interchangeable for pair in permutations(group, 2)):
+        match, other = found.matches[name], found.matches[fellow]
+        assert not match.decided
+        assert {a.perceived: a.probability for a in match.alternatives}[other.perceived] == pytest.approx(
+            other.probability
+        )
+    assert found.matches["dinner_plate"].decided
+
+
+def test_a_scene_without_boxes_is_taken_literally(graph_of: MakeGraph, boxes_of: MakeBoxes) -> None:
+    seen = scene(boxes_of([(0, 1), (0, 1)], [(2, 3), (0, 1)]))
+    bare = RelationGraph.from_facts(R, seen.nodes, seen.facts())
+    found = ground(no_unary_evidence(graph_of("left(a, b)"), bare), EXACT)
+    assert {name: match.perceived for name, match in found.matches.items()} == {"a": "o0", "b": "o1"}
+
+
+@pytest.mark.parametrize("seconds", [0.0, 0.2])
+def test_past_the_deadline_there_is_an_answer_that_is_not_called_proved(seconds: float) -> None:
+    evidence = knotty(60)
+    started = time.perf_counter()
+    found = ground(evidence, EXACT, time_limit=seconds)
+    assert time.perf_counter() - started < seconds + 5
+    assert not found.proved_best
+    assert found.pivotal is None
+    assert any("time limit" in note for note in found.notes)
+
+
+def test_where_no_time_is_left_nothing_is_called_decided(
+    relations: Relations, graph_of: MakeGraph, figure_7: list[str]
+) -> None:
+    found = ground(no_unary_evidence(graph_of(*figure_7), setting(relations)), EXACT, time_limit=0.0)
+    assert not any(match.decided for match in found.matches.values())
+
+
+@pytest.mark.parametrize(("n1", "n2"), [(0, 0), (0, 3), (3, 0), (1, 1), (1, 3)])
+@pytest.mark.parametrize("engine", ["exact", "scalable", "blondel", "heymans-singh"])
+def test_few_or_no_objects_on_either_side(engine: str, n1: int, n2: int, boxes_of: MakeBoxes) -> None:
+    description = RelationGraph.from_facts(R, list("abc")[:n1], [])
+    boxes = boxes_of(*[[(2 * i, 2 * i + 1), (0, 1)] for i in range(n2)]) if n2 else np.zeros((0, 2, 2))
+    found = align(no_unary_evidence(description, scene(boxes)), engine)
+    assert found.matrix.shape == (n1, n2)
+    assert int((found.assignment != UNMATCHED).sum()) == min(n1, n2)
+
+
+def knotty(n: int) -> Evidence:
+    """Random facts that a random scene cannot satisfy together: no bound is near."""
+    rng = np.random.default_rng(3)
+    low = rng.uniform(0, 10, (n, 2))
+    names = [f"n{i:02}" for i in range(n)]
+    words = ["left", "right", "top", "bottom", "top_left", "bottom_right"]
+    facts = []
+    for _ in range(5 * n):
+        s, o = rng.choice(n, 2, replace=False)
+        facts.append(Fact(names[s], (R[str(rng.choice(words))],), names[o]))
+    return no_unary_evidence(
+        RelationGraph.from_facts(R, names, facts), scene(np.stack([low, low + rng.uniform(0.1, 2, (n, 2))], axis=1))
+    )
+
+
+def align(evidence: Evidence, engine: str = "exact") -> Alignment:
+    return engine_named(engine).align(evidence, time.perf_counter() + 10)
+
+
+@st.composite
+def descriptions(draw: st.DrawFn) -> RelationGraph:
+    nodes = list("abcd")[: draw(st.integers(0, 4))]
+    if len(nodes) < 2:
+        return RelationGraph.from_facts(R, nodes, [])
+    node = st.sampled_from(nodes)
+    relations = st.sets(st.sampled_from(list(R.values())), min_size=1, max_size=2)
+    fact = st.builds(
+        Fact,
+        node,
+        relations.map(lambda s: tuple(sorted(s, key=lambda r: r.index))),
+        node,
+        st.sampled_from([True, True, False]),
+        st.booleans(),
+        st.sampled_from([1.0, 1.0, 0.8, 0.2]),
+    )
+    return RelationGraph.from_facts(R, nodes, draw(st.lists(fact, max_size=6)))
+
+
+@st.composite
+def evidences(draw: st.DrawFn) -> Evidence:
+    description = draw(descriptions())
+    n1, n2 = len(description.nodes), draw(st.integers(0, 4))
+    extent = st.tuples(st.integers(0, 6), st.integers(1, 4)).map(lambda e: (e[0], e[0] + e[1]))
+    corners = draw(st.lists(st.tuples(extent, extent), min_size=n2, max_size=n2))
+    amounts = st.sampled_from([0.0, 0.0, 0.7, 1.6, -2.0, -np.inf])
+    labels = np.array(draw(st.lists(amounts, min_size=n1 * n2, max_size=n1 * n2)), dtype=np.float64)
+    boxes = np.array(corners, dtype=np.float64).reshape(-1, 2, 2).transpose(0, 2, 1)
+    meaning = draw(st.sampled_from([SHIPPED, LITERAL]))
+    return Evidence(description, scene(boxes), labels.reshape(n1, n2), np.zeros((n1, n2)), meaning)
+
+
+def maps(allowed: NDArray[np.bool_]) -> Iterator[NDArray[np.int64]]:
+    n1, n2 = allowed.shape
+    for count in range(min(n1, n2) + 1):
+        for rows in combinations(range(n1), count):
+            for columns in permutations(range(n2), count):
+                assignment = np.full(n1, UNMATCHED, dtype=np.int64)
+                assignment[list(rows)] = columns
+                if allowed[list(rows), list(columns)].all():
+                    yield assignment
+
+
+@settings(max_examples=60, deadline=None)
+@given(evidences())
+def test_the_likeliest_of_all_maps_is_proved_and_the_probabilities_are_those_of_all_maps(evidence: Evidence) -> None:
+    found = align(evidence)
+    options = list(maps(evidence.allowed))
+    values = np.array([evidence.problem.value(option) for option in options])
+    assert found.proved_best
+    assert evidence.problem.value(found.assignment) == pytest.approx(values.max(), abs=1e-5)
+    assert found.posterior is not None
+    weights = np.exp(values - values.max()) / np.exp(values - values.max()).sum()
+    for i in range(len(found.assignment)):
+        for p in range(UNMATCHED, len(evidence.scene.nodes)):
+            share = sum(w for w, option in zip(weights, options, strict=True) if option[i] == p)
+            assert found.posterior.marginals[i, p] == pytest.approx(share, abs=2e-3)
+
+
+@settings(max_examples=40, deadline=None)
+@given(evidences())
+def test_without_a_pivotal_fact_the_answer_is_the_one_foretold(evidence: Evidence) -> None:
+    found = ground(evidence, EXACT)
+    assert found.pivotal is not None
+    facts = [evidence.description.fact(int(edge)) for edge in evidence.facts]
+    for pivotal in found.pivotal:
+        kept = list(facts)
+        kept.remove(pivotal.fact)
+        rest = RelationGraph.from_facts(R, evidence.description.nodes, kept)
+        then = Evidence(rest, evidence.scene, evidence.labels, evidence.sizes, evidence.meaning)
+        foretold = {name: found.matches[name].perceived if name in found.matches else None for name in rest.nodes}
+        foretold |= pivotal.changes
+        assignment = np.array(
+            [UNMATCHED if p is None else evidence.scene.index(p) for p in foretold.values()], dtype=np.int64
+        )
+        best = max(then.problem.value(option) for option in maps(evidence.allowed))
+        assert then.problem.value(assignment) == pytest.approx(best, abs=1e-5)
+
+
+def elsewhere(graph_of: MakeGraph, boxes_of: MakeBoxes) -> Evidence:
+    """A description that contradicts itself, so that it fits no map well; without one fact, all are found."""
+    told = graph_of(
+        *("bottom_right(c, d)", "top(c, b)", "not left(d, c)", "top_left(b, d)"),
+        *("0.8 right(d, c)", "not left(c, d)", "0.8 right(d, b)"),
+    )
+    seen = scene(boxes_of([(11, 18), (20, 26)], [(32, 45), (32, 50)], [(43, 50), (35, 51)]))
+    return no_unary_evidence(told, seen, LITERAL)
+
+
+def test_what_makes_a_description_one_of_another_scene_is_not_said_to_be_no_fact(
+    graph_of: MakeGraph, boxes_of: MakeBoxes
+) -> None:
+    found = ground(elsewhere(graph_of, boxes_of), EXACT)
+    assert not found.matches
+    assert found.pivotal is None
+    assert NOT_ASKED in found.notes
+
+
+def test_a_description_of_another_scene_is_told_with_what_was_known_besides(
+    graph_of: MakeGraph, boxes_of: MakeBoxes
+) -> None:
+    bare = elsewhere(graph_of, boxes_of)
+    some = np.full_like(bare.sizes, -0.1)
+    others = {
+        "the description fits so little": bare,
+        "the description, with how large such things usually are, fits so little": replace(bare, sizes=some),
+        "the description, with their colours, fits so little": replace(bare, colours=some),
+    }
+    for begins, evidence in others.items():
+        (note,) = [note for note in ground(evidence, EXACT).notes if "another scene" in note]
+        assert note.startswith(begins)
+
+
+@settings(max_examples=40, deadline=None)
+@given(evidences())
+def test_literal_meaning_weighs_facts_as_their_crisp_degrees_rank_them(evidence: Evidence) -> None:
+    """What holds exactly weighs most, then what holds widely, then what does not hold."""
+    literal = Evidence(evidence.description, evidence.scene, evidence.labels, evidence.sizes, LITERAL).problem
+    for row, fact in enumerate(evidence.facts.tolist()):
+        degrees = evidence.degree_table[row][evidence.names]
+        table = literal.tables[literal.kinds[row]]
+        apart = ~np.eye(len(table), dtype=bool)
+        order = np.argsort(table[apart], kind="stable")
+        assert (np.diff(degrees[apart][order]) >= 0).all(), evidence.description.fact(fact)
+
+
+def test_meaning_says_whether_probabilities_are_exact(graph_of: MakeGraph, boxes_of: MakeBoxes) -> None:
+    seen = scene(boxes_of([(0, 1), (0, 1)], [(2, 3), (0, 1)]))
+    assert ground(no_unary_evidence(graph_of("left(a, b)"), seen), EXACT).probabilities is Standing.EXACT
+    similarity = ground(no_unary_evidence(graph_of("left(a, b)"), seen), engine_named("similarity"))
+    assert similarity.probabilities is Standing.NONE
+    assert similarity.matches["a"].probability is None
+
+
+def test_without_time_for_probabilities_none_is_told_and_nothing_is_decided() -> None:
+    boxes = np.random.default_rng(3).uniform(size=(60, 1, 2)) + np.array([[0.0, 0.0], [0.05, 0.05]])
+    seen, words = scene(boxes), ("left", "right", "top")
+    facts = [Fact(f"a{i}", (R[words[i % 3]],), f"a{(7 * i + 1) % 60}") for i in range(60) if i != (7 * i + 1) % 60]
+    described = RelationGraph.from_facts(R, [f"a{i}" for i in range(60)], facts)
+    found = ground(no_unary_evidence(described, seen), engine_named("scalable"), time_limit=0.0)
+    assert found.probabilities is Standing.NONE
+    assert all(match.probability is None and not match.decided for match in found.matches.values())
+    assert any("how probable" in note for note in found.notes)
+    assert not found.finished
+
+
+@pytest.mark.parametrize("engine", ["exact", "scalable", "similarity", "blondel"])
+def test_with_time_enough_an_engine_comes_to_its_end(
+    engine: str, relations: Relations, graph_of: MakeGraph, full_script: list[str]
+) -> None:
+    assert ground(no_unary_evidence(graph_of(*full_script), setting(relations)), engine_named(engine)).finished
+
+
+def test_many_objects_are_answered_soon_after_a_short_time_limit() -> None:
+    table = generate(400, seed=5)
+    evidence = no_unary_evidence(table.description(), table.scene())
+    started = time.process_time()
+    found = ground(evidence, engine_named("scalable"), time_limit=0.1)
+    assert time.process_time() - started < 2.0
+    assert len(found.matches) > 300
+    assert found.graph_similarity == 0.0
+    assert any("no time for the paper's similarity" in note for note in found.notes)
+    assert not any("in common" in note for note in found.notes)
+
+
+def test_a_thousand_alike_do_not_list_each_other() -> None:
+    from deixis.reasoning.grounding.alternatives import MANY_FELLOWS
+
+    boxes = np.tile(np.array([[0.0, 0.0], [0.1, 0.1]]), (MANY_FELLOWS + 2, 1, 1))
+    names = [f"a{i}" for i in range(MANY_FELLOWS + 2)]
+    evidence = no_unary_evidence(RelationGraph.from_facts(R, names, []), scene(boxes))
+    found = ground(evidence, engine_named("similarity"))
+    assert len(found.interchangeable[0]) == MANY_FELLOWS + 2
+    assert all(len(match.alternatives) <= 1 for match in found.matches.values())

@@ -1,0 +1,119 @@
+"""What every calculus obeys, and which of them are relation algebras."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import product
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from deixis.reasoning.qualitative.calculi.calculus import Calculus, bits
+from deixis.reasoning.qualitative.calculi.registry import CALCULI, calculus
+
+ASSOCIATIVE = ("point", "allen", "ra", "ba", "rcc8", "cd", "distance")
+SMALL = ("point", "allen", "rcc8", "cd", "ten", "distance", "direction-distance")
+
+
+def relations(name: str, most: int = 4) -> st.SearchStrategy[int]:
+    """Of few atoms, so that a wrong entry is not drowned in a union; and now and then nothing, or everything."""
+    count = len(calculus(name).atoms)
+    few = st.sets(st.integers(0, count - 1), max_size=most).map(lambda codes: sum(1 << code for code in codes))
+    return st.one_of(few, few, few, st.just(calculus(name).universal))
+
+
+def atoms(found: Calculus) -> Iterator[int]:
+    return (1 << code for code in range(len(found.atoms)))
+
+
+@pytest.mark.parametrize("name", CALCULI)
+@settings(max_examples=25, deadline=None)
+@given(data=st.data())
+def test_the_converse_turns_compositions_round(name: str, data: st.DataObject) -> None:
+    found = calculus(name)
+    r, s = data.draw(relations(name)), data.draw(relations(name))
+    assert found.converse(found.converse(r)) == r
+    assert found.converse(found.compose(r, s)) == found.compose(found.converse(s), found.converse(r))
+    assert found.converse(r | s) == found.converse(r) | found.converse(s)
+
+
+@pytest.mark.parametrize("name", CALCULI)
+@settings(max_examples=25, deadline=None)
+@given(data=st.data())
+def test_a_triangle_is_possible_from_all_its_sides_or_from_none(name: str, data: st.DataObject) -> None:
+    """The cycle law, in both of its turns."""
+    found = calculus(name)
+    r, s, t = (data.draw(relations(name)) for _ in range(3))
+    possible = bool(found.compose(r, s) & t)
+    assert possible == bool(found.compose(found.converse(r), t) & s)
+    assert possible == bool(found.compose(t, found.converse(s)) & r)
+
+
+@pytest.mark.parametrize("name", CALCULI)
+@settings(max_examples=25, deadline=None)
+@given(data=st.data())
+def test_composition_distributes_over_union(name: str, data: st.DataObject) -> None:
+    found = calculus(name)
+    r, s, t = (data.draw(relations(name)) for _ in range(3))
+    assert found.compose(r, s | t) == found.compose(r, s) | found.compose(r, t)
+    assert found.compose(r | s, t) == found.compose(r, t) | found.compose(s, t)
+    assert found.compose(0, r) == found.compose(r, 0) == 0
+
+
+@pytest.mark.parametrize("name", CALCULI)
+def test_a_thing_may_come_back_to_itself(name: str) -> None:
+    found = calculus(name)
+    itself = 1 << found.identity
+    for atom in list(atoms(found))[:200]:
+        assert itself & found.compose(atom, found.converse(atom))
+        assert found.compose(atom, found.converse(atom)) == found.converse(found.compose(atom, found.converse(atom)))
+
+
+@pytest.mark.parametrize("name", [name for name in CALCULI if name != "ten"])
+@settings(max_examples=25, deadline=None)
+@given(data=st.data())
+def test_the_identity_changes_nothing(name: str, data: st.DataObject) -> None:
+    found = calculus(name)
+    r = data.draw(relations(name))
+    assert found.compose(1 << found.identity, r) == r == found.compose(r, 1 << found.identity)
+
+
+def test_what_a_thing_bears_to_itself_is_not_neutral_among_the_ten() -> None:
+    """Boxes that overlap in part bear it too."""
+    ten = calculus("ten")
+    assert ten.members(1 << ten.identity) == ("overlap",)
+    assert ten.compose(1 << ten.identity, ten.relation(["left"])) != ten.relation(["left"])
+
+
+@pytest.mark.parametrize("name", SMALL)
+def test_which_compositions_are_associative_for_all_atoms(name: str) -> None:
+    found = calculus(name)
+    same = all(
+        found.compose(found.compose(a, b), c) == found.compose(a, found.compose(b, c))
+        for a, b, c in product(atoms(found), repeat=3)
+    )
+    assert same == (name in ASSOCIATIVE)
+
+
+@pytest.mark.parametrize("name", ["ra", "ba"])
+@settings(max_examples=25, deadline=None)
+@given(data=st.data())
+def test_composition_of_products_is_associative(name: str, data: st.DataObject) -> None:
+    found = calculus(name)
+    r, s, t = (data.draw(relations(name, most=2)) for _ in range(3))
+    assert found.compose(found.compose(r, s), t) == found.compose(r, found.compose(s, t))
+
+
+@pytest.mark.parametrize("name", CALCULI)
+@settings(max_examples=25, deadline=None)
+@given(data=st.data())
+def test_the_pieces_of_a_relation_are_disjoint_and_make_it_up(name: str, data: st.DataObject) -> None:
+    found = calculus(name)
+    r = data.draw(relations(name, most=7))
+    pieces = found.pieces(r)
+    assert sum(pieces) == r
+    assert all(piece & ~r == 0 and piece for piece in pieces)
+    assert sum(piece.bit_count() for piece in pieces) == r.bit_count()
+    assert all(found.pieces(piece) == (piece,) for piece in pieces)
+    assert len(pieces) <= len(list(bits(r)))
