@@ -11,14 +11,21 @@ MEANWHILE = 0.2
 
 def compile_kernels() -> None:
     """Runs one tiny job of each kind; the compiled code is kept on disk, and so are the reasoners' classes."""
-    _ground()
+    from deixis.workflows.imagine import ready_to_imagine
+    from deixis.workflows.infer import ready_to_infer
+    from deixis.workflows.solve import ready_to_solve
+
+    for engine in ("exact", "scalable"):
+        ready_to_ground(engine)
     ready_to_infer()
     ready_to_solve()
     _tell_time()
     ready_to_imagine()
     _reason()
     _read_clouds()
-    _describe()
+    compile_detection()
+    compile_features()
+    compile_recognition()
 
 
 @cache
@@ -58,44 +65,6 @@ def _sample() -> None:
     posterior(problem, time.perf_counter() + MEANWHILE, mass=1e-30)
 
 
-def _ground() -> None:
-    for engine in ("exact", "scalable"):
-        ready_to_ground(engine)
-
-
-@cache
-def ready_to_infer() -> None:
-    """The same for what follows from facts that leave a choice."""
-    from deixis.grammar.parser import parse_script
-    from deixis.reasoning.entailment.why_not import why_not
-    from deixis.workflows.infer import inference_of
-
-    inference = inference_of(parse_script("a left of b\nb left or above c\nc is not right of d\n"))
-    inference.inferred()
-    inference.implications.unstated()
-    inference.implications.ntriples()
-    relations = inference.implications.vocabulary
-    why_not(inference.implications, parse_script("a left of c").facts[0])
-    inference.implications.derive(relations["left"], "a", "b")
-    inference_of(parse_script("a left of b\nb left of a\n"))
-
-
-@cache
-def ready_to_solve() -> None:
-    """The same for constraint networks, of calculi that are plain and of such as are products."""
-    from deixis.grammar.formats.networks import parse_networks
-    from deixis.reasoning.qualitative.calculi.registry import calculus
-    from deixis.workflows.solve import Wish, solve_text
-
-    wishes = (Wish(scenario=True), Wish(closure=True, explain=(0, 1)))
-    against = "2 #\n0 1 ( < )\n1 2 ( < )\n0 2 ( > )\n.\n"
-    texts = (("allen", "1 #\n0 1 ( < m )\n.\n"), ("ra", "2 #\n0 1 ( <,m >,< )\n1 2 ( <,< )\n.\n"), ("allen", against))
-    for name, text in texts:
-        for parsed in parse_networks(text, [calculus(name)], "warm"):
-            for wish in wishes:
-                solve_text(parsed, wish)
-
-
 def _tell_time() -> None:
     from deixis.grammar.formats.fluents import parse_fluents
     from deixis.reasoning.temporal.timeline import Timeline
@@ -107,15 +76,6 @@ def _tell_time() -> None:
     for item in (*content.fluents, *content.relations):
         timeline.add(item)
     timeline.chronology()
-
-
-@cache
-def ready_to_imagine() -> None:
-    """The same for imagining a table."""
-    from deixis.grammar.parser import parse_script
-    from deixis.workflows.imagine import imagine
-
-    imagine(parse_script("fork left of plate\nnapkin on plate\n"))
 
 
 def _reason() -> None:
@@ -146,16 +106,6 @@ def _read_clouds() -> None:
             read_cloud(Path(folder) / "cloud.pcd")
         write_cloud(Path(folder) / "cloud.ply", cloud)
         read_cloud(Path(folder) / "cloud.ply")
-
-
-def _describe() -> None:
-
-    for warm_room in (compile_kernels, compile_kernels, compile_kernels):
-        warm_room()
-
-
-if __name__ == "__main__":
-    compile_kernels()
 
 
 def compile_detection() -> None:
@@ -211,3 +161,7 @@ def compile_recognition() -> None:
             reduced = index.reduction(target.descriptors)
             for effort in (None, Effort()):
                 index.nearest(target, reduced, effort)
+
+
+if __name__ == "__main__":
+    compile_kernels()

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from deixis.grammar.parser import parse_script
 from deixis.grammar.parser import read_script as read_script_file
 from deixis.grammar.script import Script
-from deixis.kernels import ready_to_ground, ready_to_infer
+from deixis.kernels import ready_to_ground
 from deixis.learning.scene_evidence import conflict_notes, evidence_of, graph_evidence, scene_labels
 from deixis.ontology.tbox import Ontology
 from deixis.perception.formats.scene_json import read_scene
@@ -28,7 +28,7 @@ from deixis.reasoning.grounding.ground import DEFAULT_TIME_LIMIT
 from deixis.reasoning.grounding.ground import ground as ground_evidence
 from deixis.reasoning.grounding.options import ViewpointName
 from deixis.version import VERSION
-from deixis.workflows.infer import Inference, inference_of
+from deixis.workflows.infer import Inference, inference_of, ready_to_infer
 
 if TYPE_CHECKING:
     from deixis.ontology.lessons.types import LayoutConcept, Lesson

@@ -218,15 +218,14 @@ def links_between(calculi: Sequence[Calculus]) -> tuple[Link, ...]:
     >>> [(link.source.name, link.target.name) for link in links_between([calculus("rcc8"), calculus("ra")])]
     [('ra', 'rcc8')]
     """
-    from deixis.reasoning.qualitative.calculi import bridges
 
     known = {
-        frozenset(("ra", "cd")): bridges.boxes_to_directions,
-        frozenset(("ra", "rcc8")): bridges.bounds_to_regions,
-        frozenset(("ten", "ra")): bridges.names_to_boxes,
-        frozenset(("cd", "distance")): bridges.directions_to_distances,
-        frozenset(("direction-distance", "cd")): bridges.joint_to_directions,
-        frozenset(("direction-distance", "distance")): bridges.joint_to_distances,
+        frozenset(("ra", "cd")): boxes_to_directions,
+        frozenset(("ra", "rcc8")): bounds_to_regions,
+        frozenset(("ten", "ra")): names_to_boxes,
+        frozenset(("cd", "distance")): directions_to_distances,
+        frozenset(("direction-distance", "cd")): joint_to_directions,
+        frozenset(("direction-distance", "distance")): joint_to_distances,
     }
     pairs = (frozenset((a.name, b.name)) for a, b in combinations(calculi, 2))
     return tuple(known[pair]() for pair in pairs if pair in known)

@@ -37,9 +37,9 @@ def imagine(
 ) -> None:
     """Imagine an example table that satisfies a script, or say which facts allow none (exit 1)."""
     from deixis.grammar.parser import read_script
-    from deixis.kernels import ready_to_imagine
     from deixis.report.imagine import imagination_lines, imagination_to_dict
     from deixis.workflows.imagine import imagine as run
+    from deixis.workflows.imagine import ready_to_imagine
 
     scenes, pictures = _numbered(out, count), _numbered(plot, count)
     _require_writable(script, scenes, pictures)

@@ -42,9 +42,15 @@ def reason(
 ) -> None:
     """Infer what an ontology entails; exit 1 where it, or a class of it, is impossible, and say why."""
     from deixis.reasoning.errors import LimitError, NotEntailedError
-    from deixis.workflows.rdf_input import read_ontology, read_remembered
+    from deixis.workflows.reason import read_ontology, read_remembered
 
-    stated, prefixes = read_ontology(files) if files else read_remembered(memory)
+    if files:
+        stated, prefixes = read_ontology(files)
+    else:
+        from deixis.session import Session
+
+        with Session(memory) as session:
+            stated, prefixes = read_remembered(session.memory())
     try:
         if explain is not None:
             code = _explain(stated, _statement(explain, prefixes), turtle, time_limit, as_json)

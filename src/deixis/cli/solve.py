@@ -28,8 +28,7 @@ def solve(
     """Say whether constraint networks are consistent: exit 0, 1 where one is not, 3 where one stays undecided."""
     from deixis.errors import DeixisError
     from deixis.grammar.formats.networks import read_networks
-    from deixis.kernels import ready_to_solve
-    from deixis.workflows.solve import Wish, calculi_named, solve_text
+    from deixis.workflows.solve import Wish, calculi_named, ready_to_solve, solve_text
 
     if closure and scenario:
         raise DeixisError("--closure and --scenario exclude each other")

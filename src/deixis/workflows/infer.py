@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cache
 
 from deixis.grammar.script import Script
 from deixis.ontology.graph import Fact
@@ -86,3 +87,19 @@ def inference_of(script: Script, time_limit: float = TIME_LIMIT) -> Inference:
     except OutOfTimeError:
         return Inference(script.facts, implications, None, False, deadline)
     return Inference(script.facts, implications, conflict, implications.decided, deadline)
+
+
+@cache
+def ready_to_infer() -> None:
+    """Compile, or load compiled, the search over facts that leave a choice."""
+    from deixis.grammar.parser import parse_script
+    from deixis.reasoning.entailment.why_not import why_not
+
+    inference = inference_of(parse_script("a left of b\nb left or above c\nc is not right of d\n"))
+    inference.inferred()
+    inference.implications.unstated()
+    inference.implications.ntriples()
+    relations = inference.implications.vocabulary
+    why_not(inference.implications, parse_script("a left of c").facts[0])
+    inference.implications.derive(relations["left"], "a", "b")
+    inference_of(parse_script("a left of b\nb left of a\n"))

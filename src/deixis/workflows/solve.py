@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from functools import cache
 from typing import TYPE_CHECKING
 
 from deixis.errors import DeixisError
@@ -152,3 +153,18 @@ def _renumbered(network: Network, constraints: Iterable[Constraint], things: lis
     return network.only(
         Constraint(things[c.first], things[c.second], c.relation) for c in constraints if c.relation != universal
     )
+
+
+@cache
+def ready_to_solve() -> None:
+    """Compile, or load compiled, the closure of constraint networks, over plain calculi and over products."""
+    from deixis.grammar.formats.networks import parse_networks
+    from deixis.reasoning.qualitative.calculi.registry import calculus
+
+    wishes = (Wish(scenario=True), Wish(closure=True, explain=(0, 1)))
+    against = "2 #\n0 1 ( < )\n1 2 ( < )\n0 2 ( > )\n.\n"
+    texts = (("allen", "1 #\n0 1 ( < m )\n.\n"), ("ra", "2 #\n0 1 ( <,m >,< )\n1 2 ( <,< )\n.\n"), ("allen", against))
+    for name, text in texts:
+        for parsed in parse_networks(text, [calculus(name)], "warm"):
+            for wish in wishes:
+                solve_text(parsed, wish)

@@ -10,9 +10,9 @@ import pyoxigraph as ox
 
 from deixis.memory.semantic.rdf.files import PREFIXES, read_quads
 from deixis.memory.semantic.rdf.graphs import GraphName
+from deixis.memory.semantic.store import SemanticMemory
 from deixis.ontology.triples import with_blank_nodes
 from deixis.reasoning.description_logic.terms import Triple, read_ntriples
-from deixis.session import Session
 
 _PREFIX = re.compile(r"^\s*@?prefix\s+([\w.-]*):\s*<([^<>\s]*)>", re.IGNORECASE | re.MULTILINE)
 
@@ -42,10 +42,9 @@ def _apart(number: int, quads: Iterable[ox.Quad]) -> Iterator[ox.Triple]:
         yield ox.Triple(own(quad.subject), quad.predicate, own(quad.object))  # type: ignore[arg-type]
 
 
-def read_remembered(memory: str | Path | None) -> tuple[list[Triple], dict[str, str]]:
-    """Everything that a memory was told, without what was inferred; and the usual prefixes."""
-    with Session(memory) as session:
-        found = [triple for name in _STATED for triple in session.memory().triples(name)]
+def read_remembered(memory: SemanticMemory) -> tuple[list[Triple], dict[str, str]]:
+    """Return everything that a memory was told, without what was inferred, and the usual prefixes."""
+    found = [triple for name in _STATED for triple in memory.triples(name)]
     return _as_triples(list(with_blank_nodes(found))), dict(PREFIXES)
 
 
