@@ -22,11 +22,11 @@ from deixis.reasoning.grounding.engines import engine_named
 from deixis.reasoning.grounding.ground import ground
 from deixis.grammar.formats.networks import read_networks
 from deixis.grammar.parser import parse_script
-from deixis.workflows.imagine import imagine
-from deixis.workflows.infer import inference_of
+from deixis.workflows.imagine import imagine, ready_to_imagine
+from deixis.workflows.infer import inference_of, ready_to_infer
 from deixis.reasoning.qualitative.calculi.registry import calculus
-from deixis.workflows.solve import Wish, solve_text
-from deixis.kernels import ready_to_ground, ready_to_imagine, ready_to_infer, ready_to_solve
+from deixis.workflows.solve import Wish, ready_to_solve, solve_text
+from deixis.kernels import ready_to_ground
 
 CHOICES = parse_script("a left of or above b; b left or right of c; c above or below d; e is not left of a")
 
