@@ -3,13 +3,12 @@
 Two kinds of descriptors, 100 of 153 numbers: dense random ones, which no compression shrinks, and sparse ones, two
 thirds zeros, as spin images are. Bare plyvel is measured with the options that Deixis opens its database with, and with
 its own. Both sides write without sync, one batch a view or ten views a batch, and give out nothing unverified: bare
-plyvel verifies LevelDB's CRC-32C; Deixis verifies that of what is said of a view, and its own 64 bits of NH over the
-arrays. Bare plyvel is also read without. What is compared is a view (arrays, time, metadata) against a string of bytes,
-by the clock, in which a machine's other programs count, and by the CPU time of the thread, in which they count little.
+plyvel verifies LevelDB's CRC-32C; Deixis verifies that of what is said of a view, and the 64-bit XXH3 of the arrays.
+Bare plyvel is also read without. What is compared is a view (arrays, time, metadata) against a string of bytes, by the
+clock, in which a machine's other programs count, and by the CPU time of the thread, in which they count little.
 
-A view's keys, values and checksums are worked out when it is made, since its arrays are copied then so that nobody
-changes them. What making one takes is printed too, and belongs to neither side: there are no byte strings without it
-either.
+A view copies its arrays when it is made, so that nobody changes them. What making one takes is printed too, and belongs
+to neither side: there are no byte strings without it either.
 """
 
 from __future__ import annotations

@@ -15,7 +15,7 @@ from deixis.errors import OntologyError
 from deixis.ontology.vocabulary import DX, W3C
 
 if TYPE_CHECKING:
-    from deixis.ontology.tbox import Triples
+    from deixis.ontology.triple_index import TripleIndex
 
 Rgb = tuple[int, int, int]
 """Red, green and blue in sRGB, each 0 to 255."""
@@ -125,20 +125,20 @@ def hex_of_rgb(rgb: Rgb) -> str:
     return "#{:02x}{:02x}{:02x}".format(*rgb)
 
 
-def colours_from_triples(triples: Triples, words: dict[str, tuple[str, ...]]) -> Colours:
+def colours_from_triples(triples: TripleIndex, words: dict[str, tuple[str, ...]]) -> Colours:
     """Reads all colours, ``words`` by IRI; raises OntologyError where a prototype or a spread is none."""
     return Colours(tuple(_colour(iri, triples, words[iri]) for iri in words))
 
 
-def _colour(iri: str, triples: Triples, words: tuple[str, ...]) -> Colour:
-    prototype = rgb_of_hex(triples.value(iri, DX.PROTOTYPE))
+def _colour(iri: str, triples: TripleIndex, words: tuple[str, ...]) -> Colour:
+    prototype = rgb_of_hex(triples.only(iri, DX.PROTOTYPE))
     if prototype is None:
-        raise OntologyError(f"<{iri}>: a prototype is written as #rrggbb, not '{triples.value(iri, DX.PROTOTYPE)}'")
-    return Colour(iri, triples.value(iri, W3C.RDFS_LABEL), words, prototype, _covariance(iri, triples))
+        raise OntologyError(f"<{iri}>: a prototype is written as #rrggbb, not '{triples.only(iri, DX.PROTOTYPE)}'")
+    return Colour(iri, triples.only(iri, W3C.RDFS_LABEL), words, prototype, _covariance(iri, triples))
 
 
-def _covariance(iri: str, triples: Triples) -> tuple[float, float, float, float, float, float]:
-    text = triples.value(iri, DX.SPREAD)
+def _covariance(iri: str, triples: TripleIndex) -> tuple[float, float, float, float, float, float]:
+    text = triples.only(iri, DX.SPREAD)
     try:
         ll, la, lb, aa, ab, bb = map(float, text.split())
     except ValueError:

@@ -1,18 +1,17 @@
-"""A relation graph as JSON, Turtle and DOT, and back from JSON."""
+"""A relation graph as JSON, Turtle and DOT."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any
 from urllib.parse import quote
 
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.errors import GraphError
-from deixis.ontology.graph import Fact, RelationGraph, Source
-from deixis.ontology.relation import Relation, Relations
+from deixis.ontology.graph import Fact, RelationGraph
+from deixis.ontology.relation import Relation
 from deixis.ontology.vocabulary import BASE, DX
 
 
@@ -53,48 +52,6 @@ def _full(fact: Fact) -> dict[str, Any]:
     if fact.source is not None:
         entry |= {"end_line": fact.source.end_line, "end_column": fact.source.end_column}
     return entry
-
-
-def graph_from_dict(data: Mapping[str, Any], vocabulary: Relations) -> RelationGraph:
-    """The graph that :func:`graph_to_dict` wrote; raises GraphError where ``data`` is no such thing."""
-    try:
-        nodes = data["nodes"]
-        facts = [_fact_from_dict(entry, vocabulary) for entry in data["facts"]]
-        boxed = bool(nodes) and all("min" in node for node in nodes)
-        return RelationGraph.from_facts(
-            vocabulary,
-            [node["id"] for node in nodes],
-            facts,
-            kinds=_of_nodes("kind", nodes),
-            colours=_of_nodes("colour", nodes),
-            boxes=np.array([[node["min"], node["max"]] for node in nodes], dtype=float) if boxed else None,
-        )
-    except GraphError:
-        raise
-    except (KeyError, TypeError, AttributeError, ValueError) as error:
-        raise GraphError(f"this is no relation graph as Deixis writes it: {error}") from error
-
-
-def _of_nodes(key: str, nodes: Sequence[Mapping[str, Any]]) -> list[str | None]:
-    """What each node has under a key; empty where none has it."""
-    return [node.get(key) for node in nodes] if any(key in node for node in nodes) else []
-
-
-def _fact_from_dict(entry: Mapping[str, Any], vocabulary: Relations) -> Fact:
-    source = None
-    if "line" in entry:
-        span = [int(entry[key]) for key in ("line", "column", "end_line", "end_column")]
-        source = Source(str(entry["file"]), *span)
-    relations = tuple(vocabulary[name] for name in entry["relations"])
-    return Fact(
-        str(entry["subject"]),
-        relations,
-        str(entry["object"]),
-        bool(entry.get("positive", True)),
-        bool(entry.get("optional", False)),
-        float(entry.get("weight", 1.0)),
-        source,
-    )
 
 
 PREFIXES = {

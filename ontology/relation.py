@@ -17,7 +17,7 @@ from deixis.ontology.allen import SYMBOLS, Allen, allen_mask
 from deixis.ontology.vocabulary import DX, W3C
 
 if TYPE_CHECKING:
-    from deixis.ontology.tbox import Triples
+    from deixis.ontology.triple_index import TripleIndex
 
 
 class Reading(StrEnum):
@@ -165,14 +165,14 @@ def nearest(word: str, known: Iterable[str]) -> str | None:
     return found[0] if found else None
 
 
-def relation_from_triples(iri: str, triples: Triples, index: int) -> Relation:
+def relation_from_triples(iri: str, triples: TripleIndex, index: int) -> Relation:
     """Builds a relation from what the TBox says of ``iri``; raises OntologyError where something lacks."""
-    label = triples.value(iri, W3C.RDFS_LABEL)
-    reading = Reading.WIDE if triples.value(iri, DX.READING) == DX.WIDE else Reading.EXACT
+    label = triples.only(iri, W3C.RDFS_LABEL)
+    reading = Reading.WIDE if triples.only(iri, DX.READING) == DX.WIDE else Reading.EXACT
     broader = [
         parent for parent in triples.ancestors(iri, W3C.RDFS_SUB_PROPERTY_OF) if triples.values(parent, DX.READING)
     ]
-    phrase = triples.value(iri, DX.PHRASE)
+    phrase = triples.only(iri, DX.PHRASE)
     name = _name(label)
     return Relation(
         name=name,
@@ -185,7 +185,7 @@ def relation_from_triples(iri: str, triples: Triples, index: int) -> Relation:
         x_atoms=_atoms(iri, DX.ADMITS_ON_X, triples),
         y_atoms=_atoms(iri, DX.ADMITS_ON_Y, triples),
         z_atoms=_atoms(iri, DX.DECIDED_ON_Z, triples),
-        broader=frozenset(_name(triples.value(parent, W3C.RDFS_LABEL)) for parent in broader),
+        broader=frozenset(_name(triples.only(parent, W3C.RDFS_LABEL)) for parent in broader),
         phrase=phrase,
         words=tuple(dict.fromkeys((label, phrase, *triples.values(iri, W3C.SKOS_ALT_LABEL)))),
     )
@@ -195,26 +195,26 @@ def _name(label: str) -> str:
     return label.replace(" ", "_")
 
 
-def _word(iri: str, name: str, reading: Reading, broader: list[str], triples: Triples) -> str:
+def _word(iri: str, name: str, reading: Reading, broader: list[str], triples: TripleIndex) -> str:
     """The wide relation's name for both: an exact relation's direct wide parent bears its word."""
     if reading is Reading.WIDE:
         return name
     direct = [p for p in triples.values(iri, W3C.RDFS_SUB_PROPERTY_OF) if p in broader]
     if len(direct) != 1:
         raise OntologyError(f"the exact relation <{iri}> must be a sub-property of exactly one wide one")
-    return _name(triples.value(direct[0], W3C.RDFS_LABEL))
+    return _name(triples.only(direct[0], W3C.RDFS_LABEL))
 
 
-def _inverse(iri: str, triples: Triples) -> str:
+def _inverse(iri: str, triples: TripleIndex) -> str:
     """OWL states an inverse from either side."""
     stated = {*triples.values(iri, W3C.OWL_INVERSE_OF), *triples.subjects(W3C.OWL_INVERSE_OF, iri)}
     if len(stated) != 1:
         raise OntologyError(f"<{iri}> must have exactly one owl:inverseOf, and has {len(stated)}")
-    return _name(triples.value(stated.pop(), W3C.RDFS_LABEL))
+    return _name(triples.only(stated.pop(), W3C.RDFS_LABEL))
 
 
-def _atoms(iri: str, prop: DX, triples: Triples) -> int:
-    symbols = [triples.value(allen, DX.ALLEN_SYMBOL) for allen in triples.values(iri, prop)]
+def _atoms(iri: str, prop: DX, triples: TripleIndex) -> int:
+    symbols = [triples.only(allen, DX.ALLEN_SYMBOL) for allen in triples.values(iri, prop)]
     unknown = [symbol for symbol in symbols if symbol not in SYMBOLS]
     if unknown:
         raise OntologyError(f"<{iri}> admits '{unknown[0]}', which is the sign of no Allen relation")

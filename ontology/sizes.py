@@ -11,7 +11,7 @@ from deixis.errors import OntologyError
 from deixis.ontology.vocabulary import DX, W3C
 
 if TYPE_CHECKING:
-    from deixis.ontology.tbox import Triples
+    from deixis.ontology.triple_index import TripleIndex
 
 
 class Outline(StrEnum):
@@ -105,15 +105,15 @@ _EXTENTS = {
 }
 
 
-def sizes_from_triples(triples: Triples) -> Sizes:
+def sizes_from_triples(triples: TripleIndex) -> Sizes:
     """Reads all sizes; raises OntologyError where one is not whole or out of order."""
     classes = triples.subjects(W3C.RDF_TYPE, W3C.OWL_CLASS)
     stated = {iri: _size_range(iri, triples) for iri in classes if triples.values(iri, DX.OUTLINE)}
     return Sizes(stated, {iri: triples.values(iri, W3C.RDFS_SUB_CLASS_OF) for iri in classes})
 
 
-def _size_range(iri: str, triples: Triples) -> SizeRange:
-    named = triples.value(iri, DX.OUTLINE)
+def _size_range(iri: str, triples: TripleIndex) -> SizeRange:
+    named = triples.only(iri, DX.OUTLINE)
     if named not in list(Outline):
         raise OntologyError(f"<{iri}>: an outline is one of {', '.join(Outline)}, not '{named}'")
     outline = Outline(named)
@@ -124,13 +124,13 @@ def _size_range(iri: str, triples: Triples) -> SizeRange:
         width=length if outline is Outline.CIRCLE else _extent(iri, "width", triples),
         height=_extent(iri, "height", triples),
         stated_of=iri,
-        source=triples.value(iri, W3C.DCTERMS_SOURCE),
+        source=triples.only(iri, W3C.DCTERMS_SOURCE),
         reach=_extent(iri, "reach", triples) if triples.values(iri, DX.TYPICAL_REACH) else None,
     )
 
 
-def _extent(iri: str, name: str, triples: Triples) -> Extent:
-    texts = [triples.value(iri, term) for term in _EXTENTS[name]]
+def _extent(iri: str, name: str, triples: TripleIndex) -> Extent:
+    texts = [triples.only(iri, term) for term in _EXTENTS[name]]
     try:
         least, typical, greatest = map(float, texts)
     except ValueError:

@@ -2,57 +2,25 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from deixis.errors import OntologyError
 from deixis.ontology.colours import Colour, Colours, colours_from_triples
 from deixis.ontology.kinds import Kind, Kinds, plain_name
 from deixis.ontology.relation import Relation, Relations, relation_from_triples
 from deixis.ontology.sizes import Sizes, sizes_from_triples
+from deixis.ontology.triple_index import TripleIndex
 from deixis.ontology.vocabulary import DX, W3C
+
+if TYPE_CHECKING:
+    import pyoxigraph as ox
 
 TBOX_FILES = tuple(Path(__file__).with_name(name) for name in ("deixis.ttl", "everyday.ttl"))
 """The vocabulary and the kinds of tableware, and the everyday kinds around them: one ontology."""
-
-
-class Triples:
-    """An index over triples: what a subject says under a predicate, as plain strings, sorted."""
-
-    def __init__(self) -> None:
-        self._values: dict[tuple[str, str], list[str]] = defaultdict(list)
-        self._subjects: dict[tuple[str, str], list[str]] = defaultdict(list)
-
-    def add(self, subject: str, predicate: str, value: str) -> None:
-        self._values[subject, predicate].append(value)
-        self._subjects[predicate, value].append(subject)
-
-    def values(self, subject: str, predicate: str) -> list[str]:
-        return sorted(set(self._values.get((subject, predicate), ())))
-
-    def value(self, subject: str, predicate: str) -> str:
-        """The one value; raises OntologyError where there is none or more than one."""
-        found = self.values(subject, predicate)
-        if len(found) != 1:
-            raise OntologyError(f"<{subject}> must have exactly one <{predicate}>, and has {len(found)}")
-        return found[0]
-
-    def subjects(self, predicate: str, value: str) -> list[str]:
-        return sorted(set(self._subjects.get((predicate, value), ())))
-
-    def ancestors(self, subject: str, predicate: str) -> frozenset[str]:
-        """Everything reached from ``subject`` along ``predicate``, without itself; cycles do no harm."""
-        seen: set[str] = set()
-        todo = [subject]
-        while todo:
-            for parent in self.values(todo.pop(), predicate):
-                if parent not in seen:
-                    seen.add(parent)
-                    todo.append(parent)
-        return frozenset(seen - {subject})
 
 
 @dataclass(frozen=True)
@@ -106,10 +74,7 @@ def load_ontology(*extra: str) -> Ontology:
 
     Raises OntologyError where a text is no Turtle or a relation lacks what code needs.
     """
-    triples = Triples()
-    for text in (tbox_turtle(), *extra):
-        for subject, predicate, value in _parse(text):
-            triples.add(subject, predicate, value)
+    triples = TripleIndex(quad for text in (tbox_turtle(), *extra) for quad in _parse(text))
     return Ontology(
         _relations(triples), _kinds(triples), _hedges(triples), sizes_from_triples(triples), _colours(triples)
     )
@@ -126,19 +91,19 @@ def default_ontology() -> Ontology:
     return load_ontology()
 
 
-def _parse(text: str) -> Iterator[tuple[str, str, str]]:
-    import pyoxigraph
+def _parse(text: str) -> Iterator[ox.Quad]:
+    """The statements of a Turtle text between named things, or about one."""
+    import pyoxigraph as ox
 
     try:
-        for quad in pyoxigraph.parse(text, format=pyoxigraph.RdfFormat.TURTLE):
-            value = quad.object
-            if isinstance(quad.subject, pyoxigraph.NamedNode) and not isinstance(value, pyoxigraph.BlankNode):
-                yield quad.subject.value, quad.predicate.value, getattr(value, "value", str(value))
+        for quad in ox.parse(text, format=ox.RdfFormat.TURTLE):
+            if isinstance(quad.subject, ox.NamedNode) and not isinstance(quad.object, ox.BlankNode):
+                yield quad
     except SyntaxError as error:
         raise OntologyError(f"the ontology is no valid Turtle: {error}") from error
 
 
-def _relations(triples: Triples) -> Relations:
+def _relations(triples: TripleIndex) -> Relations:
     found: list[Relation] = []
     for reading in (DX.WIDE, DX.EXACT):
         for iri in triples.subjects(DX.READING, reading):
@@ -146,34 +111,34 @@ def _relations(triples: Triples) -> Relations:
     return Relations(tuple(found))
 
 
-def _words(triples: Triples, iri: str) -> tuple[str, ...]:
+def _words(triples: TripleIndex, iri: str) -> tuple[str, ...]:
     labels = [*triples.values(iri, W3C.RDFS_LABEL), *triples.values(iri, W3C.SKOS_ALT_LABEL)]
     return tuple(dict.fromkeys(label.casefold() for label in labels))
 
 
-def _kinds(triples: Triples) -> Kinds:
+def _kinds(triples: TripleIndex) -> Kinds:
     kinds = []
     for iri in triples.subjects(W3C.RDF_TYPE, W3C.OWL_CLASS):
         broader = triples.ancestors(iri, W3C.RDFS_SUB_CLASS_OF)
         if DX.THING in broader or iri == DX.THING:
-            kinds.append(Kind(iri, triples.value(iri, W3C.RDFS_LABEL), _words(triples, iri), broader & _own(triples)))
+            kinds.append(Kind(iri, triples.only(iri, W3C.RDFS_LABEL), _words(triples, iri), broader & _own(triples)))
     return Kinds(tuple(kinds))
 
 
-def _own(triples: Triples) -> frozenset[str]:
+def _own(triples: TripleIndex) -> frozenset[str]:
     return frozenset(triples.subjects(W3C.RDF_TYPE, W3C.OWL_CLASS))
 
 
-def _colours(triples: Triples) -> Colours:
+def _colours(triples: TripleIndex) -> Colours:
     return colours_from_triples(
         triples, {iri: _words(triples, iri) for iri in triples.subjects(W3C.RDF_TYPE, DX.COLOUR)}
     )
 
 
-def _hedges(triples: Triples) -> dict[str, float]:
+def _hedges(triples: TripleIndex) -> dict[str, float]:
     weights = {}
     for iri in triples.subjects(W3C.RDF_TYPE, DX.HEDGE):
-        text = triples.value(iri, DX.HEDGE_WEIGHT)
+        text = triples.only(iri, DX.HEDGE_WEIGHT)
         try:
             weight = float(text)
         except ValueError:

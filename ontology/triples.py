@@ -8,7 +8,6 @@ memory holds skolem IRIs, and they become blank nodes on the way out.
 from __future__ import annotations
 
 import hashlib
-from collections import defaultdict
 from collections.abc import Iterable, Iterator
 from datetime import datetime
 from decimal import Decimal
@@ -16,8 +15,6 @@ from typing import TypeVar
 from urllib.parse import quote, unquote
 
 import pyoxigraph as ox
-
-from deixis.errors import OntologyError
 
 LEARNED = "https://w3id.org/deixis/learned/"
 
@@ -95,39 +92,6 @@ class Description:
 
     def __iter__(self) -> Iterator[ox.Triple]:
         return iter(self._triples)
-
-
-class TripleIndex:
-    """What is said of each subject under each predicate, as strings."""
-
-    def __init__(self, triples: Iterable[ox.Triple]) -> None:
-        self._values: dict[tuple[str, str], list[str]] = defaultdict(list)
-        self._subjects: dict[tuple[str, str], list[str]] = defaultdict(list)
-        for triple in triples:
-            subject, value = _plain(triple.subject), _plain(triple.object)
-            self._values[subject, triple.predicate.value].append(value)
-            self._subjects[triple.predicate.value, value].append(subject)
-
-    def values(self, subject: str, predicate: str) -> list[str]:
-        return sorted(self._values.get((subject, str(predicate)), ()))
-
-    def value(self, subject: str, predicate: str) -> str | None:
-        """The first value, or None."""
-        return next(iter(self.values(subject, predicate)), None)
-
-    def only(self, subject: str, predicate: str) -> str:
-        """The one value; raises OntologyError where there is none, or several."""
-        found = self.values(subject, predicate)
-        if len(found) != 1:
-            raise OntologyError(f"<{subject}> must have exactly one <{predicate}>, and has {len(found)}")
-        return found[0]
-
-    def subjects(self, predicate: str, value: str) -> list[str]:
-        return sorted(self._subjects.get((str(predicate), str(value)), ()))
-
-
-def _plain(term: object) -> str:
-    return str(getattr(term, "value", term))
 
 
 GENID = "https://w3id.org/deixis/.well-known/genid/"

@@ -1,5 +1,9 @@
 """A perceptual memory as a file, and a file as a memory: the user's data is the user's.
 
+The file is a zip archive of safetensors files, which other programs can read too. ``memory.json`` says format, version
+and numbers; then each record is a safetensors file of its own, whose header says in JSON, under ``deixis``, what is not
+an array. Nothing is compressed, and the same content gives the same bytes.
+
 >>> import tempfile
 >>> from deixis.memory.perceptual.transient import TransientMemory
 >>> file = Path(tempfile.mkdtemp()) / "views.zip"
@@ -10,16 +14,31 @@ Imported(views=0, categories=0, relearn=())
 
 from __future__ import annotations
 
+import json
+import os
+import re
+import zipfile
 from collections import defaultdict
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from datetime import datetime
 from pathlib import Path
+from typing import Any
 
-from deixis.memory.errors import RejectedWriteError
-from deixis.memory.perceptual.archive import Archive, counted, view_file, write_archive
-from deixis.memory.perceptual.protocol import PerceptualMemory, Progress
-from deixis.memory.perceptual.records import Batch, CategoryRecord, View
+from numpy.typing import NDArray
+from safetensors import SafetensorError
 
+from deixis.memory.errors import ImportFormatError, MemoryWriteError, RecordError, RejectedWriteError
+from deixis.memory.owner import Closing
+from deixis.memory.perceptual.codec import pack, unpack
+from deixis.memory.perceptual.protocol import PerceptualMemory, PerceptualReading, Progress
+from deixis.memory.perceptual.records import Batch, CategoryRecord, View, arrays_by_name, arrays_by_use
+
+FORMAT, VERSION = "deixis-perceptual-memory", 1
+_HEAD = "memory.json"
+_ENTRY = re.compile(r"(categories|views)/\d{9}\.safetensors")
+_BEGINNING = b"PK\x03\x04"  # of a zip archive with something in it
+_LONG_AGO = (1980, 1, 1, 0, 0, 0)  # the earliest that a zip archive can say
 _STEP = 64 << 20  # bytes of arrays that are written in one step
 
 
@@ -33,9 +52,9 @@ class Imported:
 
 
 def export_views(memory: PerceptualMemory, file: str | Path, progress: Progress | None = None) -> None:
-    """Writes everything as it is now into one file, the same bytes for the same content. Raises MemoryWriteError."""
+    """Write everything as it is now into one file, the same bytes for the same content. Raises MemoryWriteError."""
     with memory.snapshot() as now:
-        write_archive(now, Path(file), progress)
+        _write_archive(now, Path(file), progress)
 
 
 def import_views(file: str | Path, memory: PerceptualMemory, progress: Progress | None = None) -> Imported:
@@ -66,7 +85,7 @@ def import_views(file: str | Path, memory: PerceptualMemory, progress: Progress 
 def _records(
     archive: Archive, memory: PerceptualMemory, there: dict[str, str], coming: dict[str, set[str]]
 ) -> tuple[list[CategoryRecord], tuple[str, ...]]:
-    """The records to write, and the names of those that lose their state."""
+    """Return the records to write, and the names of those that lose their state."""
     theirs = {record.name: record for record in archive.records()}
     held: dict[str, set[str]] = defaultdict(set)
     for id, category in there.items():
@@ -86,7 +105,7 @@ def _records(
 
 
 def _write(views: Iterable[View], memory: PerceptualMemory, known: set[str], records: list[CategoryRecord]) -> int:
-    """Writes the views that are new, and the records with the last of them."""
+    """Write the views that are new, and the records with the last of them; return how many views were new."""
     waiting: list[View] = []
     size = written = 0
     for view in views:
@@ -102,3 +121,152 @@ def _write(views: Iterable[View], memory: PerceptualMemory, known: set[str], rec
     if waiting or records:
         memory.write(Batch(waiting, records), sync=True)
     return written + len(waiting)
+
+
+def is_archive(file: Path) -> bool:
+    """Return whether a file is an archive of views, by looking at its beginning only."""
+    try:
+        with file.open("rb") as opened:
+            return opened.read(len(_BEGINNING)) == _BEGINNING
+    except OSError:
+        return False
+
+
+def _write_archive(memory: PerceptualReading, file: Path, progress: Progress | None = None) -> None:
+    """Write all that a memory keeps; the file is there whole, or not at all. Raises MemoryWriteError."""
+    new = file.with_name(file.name + ".new")
+    try:
+        with new.open("wb") as out, zipfile.ZipFile(out, "w", zipfile.ZIP_STORED) as archive:
+            _fill(archive, memory, progress)
+        os.replace(new, file)
+    except OSError as error:
+        if isinstance(error, MemoryWriteError):
+            raise
+        raise MemoryWriteError(f"{file}: cannot be written: {error.strerror or error}") from error
+    finally:
+        new.unlink(missing_ok=True)
+
+
+def _fill(archive: zipfile.ZipFile, memory: PerceptualReading, progress: Progress | None) -> None:
+    names = memory.categories()
+    views = sum(1 for _ in memory.listing())
+    head = {"format": FORMAT, "version": VERSION, "categories": len(names), "views": views}
+    _add(archive, _HEAD, json.dumps(head, indent=2).encode() + b"\n")
+    for number, name in enumerate(names):
+        _add(archive, f"categories/{number:09}.safetensors", category_file(memory.category(name)))
+    for number, view in enumerate(counted(memory.views(), views, progress)):
+        _add(archive, f"views/{number:09}.safetensors", view_file(view))
+
+
+def counted(views: Iterable[View], total: int, progress: Progress | None, before: int = 0) -> Iterator[View]:
+    """Iterate over views, and tell ``progress`` of each: how many are done, ``before`` included, of ``total``."""
+    for done, view in enumerate(views, start=before + 1):
+        yield view
+        if progress is not None:
+            progress(done, total)
+
+
+def _add(archive: zipfile.ZipFile, name: str, content: bytes) -> None:
+    archive.writestr(zipfile.ZipInfo(name, _LONG_AGO), content)
+
+
+def view_file(view: View) -> bytes:
+    """Return a view as a safetensors file."""
+    said = {"id": view.id, "category": view.category, "time": view.time.isoformat(), "metadata": dict(view.metadata)}
+    return pack(arrays_by_name(view.descriptors, view.points), json.dumps(said, sort_keys=True))
+
+
+def category_file(record: CategoryRecord) -> bytes:
+    """Return a category's record as a safetensors file."""
+    said = {"name": record.name, "metadata": dict(record.metadata)}
+    return pack(record.state, json.dumps(said, sort_keys=True))
+
+
+class Archive(Closing):
+    """An archive open for reading; believed in nothing. Use it as a context manager.
+
+    Raises ImportFormatError, here and in every method, for what is not as :func:`export_views` writes it.
+    """
+
+    def __init__(self, file: Path) -> None:
+        self.file = file
+        try:
+            self._zip = zipfile.ZipFile(file)
+        except zipfile.BadZipFile as error:
+            raise ImportFormatError(
+                f"{file}: no archive of views can be read: {error}; if it was cut short, get the whole file"
+            ) from error
+        except (OSError, ValueError, NotImplementedError) as error:
+            raise ImportFormatError(f"{file}: no archive of views can be read: {error}") from error
+        try:
+            self._check_head()
+        except BaseException:
+            self._zip.close()
+            raise
+
+    def close(self) -> None:
+        """Close the file."""
+        self._zip.close()
+
+    def __len__(self) -> int:
+        """Return how many views there are."""
+        return self._views
+
+    def records(self) -> Iterator[CategoryRecord]:
+        """Iterate over what learners left about categories."""
+        for name, said, arrays in self._entries("categories/"):
+            with _told(self.file, name):
+                yield CategoryRecord(said["name"], arrays, said["metadata"])
+
+    def views(self) -> Iterator[View]:
+        """Iterate over the views."""
+        for name, said, arrays in self._entries("views/"):
+            with _told(self.file, name):
+                time = datetime.fromisoformat(said["time"])
+                yield View(said["id"], said["category"], time, *arrays_by_use(arrays), said["metadata"])
+
+    def _check_head(self) -> None:
+        if _HEAD not in self._zip.namelist():
+            raise ImportFormatError(f"{self.file}: this is no export of a memory: it has no '{_HEAD}'")
+        with _told(self.file, _HEAD):
+            head = json.loads(self._read(_HEAD))
+            if head["format"] != FORMAT:
+                raise ValueError(f"it does not say {FORMAT}")
+            if head["version"] > VERSION:
+                raise ValueError(f"it was written by a newer version (format {head['version']}); upgrade deixis")
+            names = [name for name in self._zip.namelist() if name != _HEAD]
+            if len(names) != head["views"] + head["categories"] or len(set(names)) < len(names):
+                raise ValueError(f"it says {head['views']} views and {head['categories']} categories; others are there")
+            self._views: int = head["views"]
+            foreign = [name for name in names if not _ENTRY.fullmatch(name)]
+            if foreign:
+                raise ValueError(f"{foreign[0][:60]!r} has no place in an archive of views")
+
+    def _entries(self, folder: str) -> Iterator[tuple[str, dict[str, Any], dict[str, NDArray[Any]]]]:
+        for name in sorted(name for name in self._zip.namelist() if name.startswith(folder)):
+            with _told(self.file, name):
+                arrays, note = unpack(self._read(name))
+                said = json.loads(note)
+            yield name, said, arrays
+
+    def _read(self, name: str) -> bytes:
+        info = self._zip.getinfo(name)
+        if info.compress_type != zipfile.ZIP_STORED or info.flag_bits & 1:
+            raise ValueError("it is compressed or encrypted, as no archive of views is")
+        return self._zip.read(info)
+
+
+class _told:
+    """Turn whatever goes wrong with an entry into ImportFormatError."""
+
+    def __init__(self, file: Path, entry: str) -> None:
+        self._where = f"{file}, {entry}"
+
+    def __enter__(self) -> None:
+        return None
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, _: object) -> None:
+        wrong = (OSError, ValueError, KeyError, TypeError, AttributeError, zipfile.BadZipFile, SafetensorError)
+        if isinstance(error, (RecordError, *wrong, RecursionError, OverflowError)):
+            text = f"{error} is missing" if type(error) is KeyError else " ".join(str(error).split())
+            raise ImportFormatError(f"{self._where}: {text}") from error

@@ -12,7 +12,7 @@ import threading
 from collections.abc import Iterator
 from pathlib import Path
 from types import TracebackType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import plyvel
 
@@ -23,12 +23,9 @@ from deixis.memory.folder import one_line
 from deixis.memory.owner import LOCK_FILE, OwnerLock
 from deixis.memory.perceptual import keys, layout
 from deixis.memory.perceptual.codec import Counts, read_counts, write_counts
-from deixis.memory.perceptual.places import Places, read_places
-from deixis.memory.perceptual.seal import check_seal, write_seal
-from deixis.memory.perceptual.tally import Tally
 
 if TYPE_CHECKING:
-    from deixis.memory.perceptual.changes import Change
+    from deixis.memory.perceptual.level import Change
 
 OPTIONS = {
     "paranoid_checks": True,  # indices and logs are checked too, and compaction does not pass on what is broken
@@ -46,6 +43,28 @@ _opening = threading.Lock()
 _inherited: list[Any] = []
 
 
+class Places(NamedTuple):
+    """The key of what is said of each view, by id; and what kept the rest from being read, if anything did.
+
+    What is stored is in order of category and id, so that a view is found by its id alone only after all keys were
+    read once, which takes about 2 µs a view. They are held in memory then, as nobody but the owner changes them.
+    """
+
+    by_id: dict[str, bytes]
+    damage: plyvel.Error | None
+
+
+def read_places(source: Any) -> Places:
+    """Read where each view lies, from a database or a snapshot of one."""
+    found: dict[str, bytes] = {}
+    try:
+        for key in source.iterator(prefix=keys.VIEW, include_value=False, verify_checksums=True):
+            found[keys.split_view_key(key)[1]] = key
+    except plyvel.CorruptionError as error:
+        return Places(found, error)
+    return Places(found, None)
+
+
 class Handle:
     """An open database. As a context manager it is a call under way, and gives the ``plyvel.DB``.
 
@@ -53,7 +72,7 @@ class Handle:
     MemoryFormatError.
     """
 
-    def __init__(self, folder: Path, lock: OwnerLock, tally: Tally, db: Any, counts: Counts) -> None:
+    def __init__(self, folder: Path, lock: OwnerLock, tally: layout.Tally, db: Any, counts: Counts) -> None:
         self.folder, self.counts = folder, counts
         self.writing = threading.RLock()
         self.users = 1
@@ -92,7 +111,7 @@ class Handle:
         return source
 
     def let_go(self, source: Any) -> None:
-        """Frees what was kept; of a closed database it is free already, or will be."""
+        """Free what was kept; that of a closed database is free already, or will be."""
         with contextlib.suppress(MemoryFormatError), self:
             source.close()
             self._sources.discard(source)
@@ -108,7 +127,7 @@ class Handle:
         return found.by_id
 
     def place_of(self, id: str) -> bytes | None:
-        """Where a view is by now, as far as that is known."""
+        """Return the key of a view, or None, as far as keys can be read."""
         return (self._places or self._read_places()).by_id.get(id)
 
     def _read_places(self) -> Places:
@@ -148,12 +167,12 @@ class Handle:
                 there[id] = place
 
     def disowned(self) -> Any:
-        """Takes the database away from here without closing it."""
+        """Take the database away from here without closing it."""
         db, self._db = self._db, None
         return db
 
     def shut(self) -> None:
-        """Closes the database once no call is under way, and seals it."""
+        """Close the database once no call is under way, and seal it."""
         with self._idle:
             db, self._db = self._db, None
             self._idle.wait_for(lambda: not self._calls)
@@ -165,7 +184,7 @@ class Handle:
         self._tally.close()
         with contextlib.suppress(OSError):
             if self._failed is None:
-                write_seal(self.folder, layout.store(self.folder))
+                layout.write_seal(self.folder)
         self._lock.release()
 
 
@@ -180,13 +199,13 @@ os.register_at_fork(after_in_child=_disown)
 
 
 def closed() -> MemoryFormatError:
-    """What is raised for a memory that was closed."""
+    """Return the error for a memory that was closed."""
     return MemoryFormatError("this memory is closed: open it again")
 
 
 @contextlib.contextmanager
 def told(folder: Path) -> Iterator[None]:
-    """Turns what LevelDB or the system raises within into errors of ours."""
+    """Turn what LevelDB or the system raises within into errors of ours."""
     try:
         yield
     except (plyvel.Error, OSError) as error:
@@ -195,7 +214,7 @@ def told(folder: Path) -> Iterator[None]:
 
 
 def raise_told(folder: Path, error: BaseException) -> None:
-    """Raises what LevelDB or the system raised as an error of ours; returns for others."""
+    """Raise what LevelDB or the system raised as an error of ours; return for others."""
     if isinstance(error, DeixisError) or not isinstance(error, plyvel.Error | OSError):
         return
     text = one_line(error).removeprefix("b'").removesuffix("'")
@@ -210,7 +229,7 @@ def raise_told(folder: Path, error: BaseException) -> None:
 
 
 def acquire(folder: Path, create: bool) -> Handle:
-    """The handle on a folder, opened if this process does not have it open yet; raises as ``LevelMemory.open``."""
+    """Return the handle on a folder, opened if this process has none yet; raises as ``LevelMemory.open``."""
     real = Path(os.path.realpath(folder))
     with _opening:
         if real in _handles:
@@ -222,7 +241,7 @@ def acquire(folder: Path, create: bool) -> Handle:
 
 
 def release(handle: Handle) -> None:
-    """Gives a handle back; the last one closes it."""
+    """Give a handle back; the last one closes it."""
     with _opening:
         handle.users -= 1
         if handle.users == 0:
@@ -254,8 +273,8 @@ def _locked(folder: Path, made: bool) -> Handle:
         if made and layout.version_in(folder) is None:  # looked at by the owner only: two may have found no folder
             undo.callback(_emptied, folder)
         lock.sign()
-        layout.prepare(folder, check_seal)
-        tally = Tally(folder)
+        layout.prepare(folder)
+        tally = layout.Tally(folder)
         undo.callback(tally.close)
         db = plyvel.DB(str(layout.store(folder)), **OPTIONS)
         undo.callback(db.close)
@@ -265,7 +284,7 @@ def _locked(folder: Path, made: bool) -> Handle:
 
 
 def _emptied(folder: Path) -> None:
-    """Takes away what a failed opening made, but for the lock, which goes last."""
+    """Remove what a failed opening made, but for the lock, which goes last."""
     for entry in folder.iterdir():
         if entry.is_dir():
             disk.remove(entry)
@@ -273,8 +292,8 @@ def _emptied(folder: Path) -> None:
             entry.unlink()
 
 
-def _counted(folder: Path, db: Any, tally: Tally) -> Counts:
-    """The counts, with what is missing of the acknowledged batches counted as lost."""
+def _counted(folder: Path, db: Any, tally: layout.Tally) -> Counts:
+    """Return the counts, with what is missing of the acknowledged batches counted as lost."""
     try:
         counts = read_counts(db.get(keys.COUNT, verify_checksums=True))
     except DamagedMemoryError as error:

@@ -22,7 +22,7 @@ _MIDDLE = 1 << 63
 
 
 def view_key(kind: bytes, category: str, id: str, time: int) -> bytes:
-    """The key of a view; ``time`` in microseconds since 1970."""
+    """Return the key of a view; ``time`` in microseconds since 1970."""
     if "\0" in category or "\0" in id:
         texts = ended(category) + ended(id)
     else:
@@ -31,7 +31,7 @@ def view_key(kind: bytes, category: str, id: str, time: int) -> bytes:
 
 
 def split_view_key(key: bytes) -> tuple[str, str, int]:
-    """Category, id and time again. Raises ValueError for a key that :func:`view_key` did not make."""
+    """Return category, id and time of a view's key. Raises ValueError for a key that :func:`view_key` did not make."""
     try:
         category, id, end = key[1:-8].decode().split("\0\0")
     except ValueError:  # a zero in a name comes with a 255, which is in no UTF-8
@@ -44,38 +44,38 @@ def split_view_key(key: bytes) -> tuple[str, str, int]:
 
 
 def category_prefix(category: str) -> bytes:
-    """How the keys of all views of a category begin."""
+    """Return what the keys of all views of a category begin with."""
     return VIEW + ended(category)
 
 
 def name_key(kind: bytes, name: str) -> bytes:
-    """The key of what has nothing but a name."""
+    """Return the key of what has nothing but a name."""
     return kind + name.encode()
 
 
 def after(prefix: bytes) -> bytes:
-    """The least key that is greater than all that begin so; no prefix here ends in 255."""
+    """Return the least key that is greater than all that begin so; no prefix here ends in 255."""
     return prefix[:-1] + bytes([prefix[-1] + 1])
 
 
 def microseconds(time: datetime) -> int:
-    """Microseconds since 1970."""
+    """Return the microseconds since 1970."""
     since = time - EPOCH
     return (since.days * 86_400 + since.seconds) * 1_000_000 + since.microseconds
 
 
 def moment(time: int) -> datetime:
-    """The time again. Raises OverflowError where no year from 1 to 9999 has it."""
+    """Return the time of some microseconds since 1970. Raises OverflowError for a year outside 1 to 9999."""
     return EPOCH + timedelta(0, 0, time)  # as with a keyword, and twice as fast
 
 
 def ended(text: str) -> bytes:
-    """A text and its end."""
+    """Return a text as bytes, with its end."""
     return text.encode().replace(b"\x00", _ZERO) + _END
 
 
 def split_ended(data: bytes) -> tuple[str, bytes]:
-    """A text, and what comes after its end. Raises ValueError where it has none."""
+    """Return a text, and what comes after its end. Raises ValueError where it has none."""
     end = data.find(_END)
     if end < 0:
         raise ValueError("a text without an end")

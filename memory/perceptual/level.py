@@ -10,17 +10,27 @@
 >>> with LevelMemory.open(folder) as memory:
 ...     memory.categories(), memory.view("v1").descriptors["spin"].shape
 (('mug',), (100, 153))
+
+:class:`UndamagedMemory` is the same memory without the damaged views:
+
+>>> with UndamagedMemory.open(folder) as memory:
+...     [view.id for view in memory.views()], memory.left_out
+(['v1'], [])
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import AbstractContextManager
+from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 from typing import Self
 
+from deixis.memory.errors import DamagedMemoryError, UnknownViewError
 from deixis.memory.owner import Closing
-from deixis.memory.perceptual.changes import of_batch, of_forgetting, of_moving
+from deixis.memory.perceptual import keys
+from deixis.memory.perceptual.codec import About, read_about, write_about, write_category, write_view
 from deixis.memory.perceptual.handle import Handle, acquire, closed, release
 from deixis.memory.perceptual.protocol import Finding, PerceptualStats, Progress, ViewKey
 from deixis.memory.perceptual.reading import Snapshot, glance
@@ -46,25 +56,25 @@ class LevelMemory(Closing):
         return cls(acquire(Path(path), create))
 
     def close(self) -> None:
-        """Lets go of the folder, once calls under way are done."""
+        """Release the folder once the calls under way are done."""
         handle, self._open = self._open, None
         if handle is not None:
             release(handle)
 
     @property
     def handle(self) -> Handle:
-        """What all who have this folder open in this process share."""
+        """The handle that all who have this folder open in this process share."""
         if self._open is None:
             raise closed()
         return self._open
 
     @property
     def path(self) -> Path:
-        """The folder, without links."""
+        """The real path of the folder."""
         return self.handle.folder
 
     def view(self, id: str) -> View:
-        """One view."""
+        """Return one view."""
         place = self.handle.place_of(check_name("a view's id", id))
         if place is not None:
             with self.handle as db:
@@ -75,66 +85,192 @@ class LevelMemory(Closing):
             return now.view(id)
 
     def views(self, category: str | None = None) -> Iterator[View]:
-        """Views, as they were when this was called."""
+        """Iterate over views, as they were when this was called."""
         return self.snapshot().views(category)
 
     def listing(self, category: str | None = None) -> Iterator[ViewKey]:
-        """The same without arrays."""
+        """Iterate over category, id and time of views, without reading arrays."""
         return self.snapshot().listing(category)
 
     def categories(self) -> tuple[str, ...]:
-        """Names."""
+        """Return the names of all categories."""
         with self.snapshot() as now:
             return now.categories()
 
     def category(self, name: str) -> CategoryRecord:
-        """What a learner left."""
+        """Return what a learner left about a category."""
         with self.snapshot() as now:
             return now.category(name)
 
     def stats(self) -> PerceptualStats:
-        """Counts."""
+        """Return how much the memory keeps."""
         with self.snapshot() as now:
             return now.stats()
 
     def verify(self, progress: Progress | None = None) -> tuple[Finding, ...]:
-        """What is not as it was written."""
+        """Return what is not as it was written."""
         with self.snapshot() as now:
             return now.verify(progress)
 
     def snapshot(self) -> Snapshot:
-        """All as it is now."""
+        """Return the memory as it is now, whatever is written later."""
         return Snapshot(self.handle)
 
     def exclusive(self) -> AbstractContextManager[object]:
-        """Keeps other threads from writing."""
+        """Keep other threads from writing."""
         return self.handle.writing
 
     def write(self, batch: Batch, sync: bool = False) -> None:
-        """Writes a batch in one step."""
+        """Write a batch in one step."""
         handle = self.handle
         with handle.writing:
-            handle.write(of_batch(handle, batch), sync)
+            handle.write(_of_batch(handle, batch), sync)
 
     def rename(self, old: str, new: str) -> None:
-        """Gives a category another name."""
+        """Give a category another name."""
         check_name("a category's name", new)
         with self.exclusive(), self.snapshot() as now:
             record = now.category(old)
             if now.has(new):
                 raise name_taken(old, new)
-            self.handle.write(of_moving(now, old, CategoryRecord(new, record.state, record.metadata)), sync=True)
+            self.handle.write(_of_moving(now, old, CategoryRecord(new, record.state, record.metadata)), sync=True)
 
     def merge(self, source: str, into: str, record: CategoryRecord | None = None) -> None:
-        """Moves the views of one category to another."""
+        """Move the views of one category to another."""
         check_merging(source, into, record)
         with self.exclusive(), self.snapshot() as now:
             now.require(into)
             now.require(source)
-            self.handle.write(of_moving(now, source, record or CategoryRecord(into)), sync=True)
+            self.handle.write(_of_moving(now, source, record or CategoryRecord(into)), sync=True)
 
     def forget(self, category: str) -> None:
-        """Forgets a category."""
+        """Forget a category with its views."""
         with self.exclusive(), self.snapshot() as now:
             now.require(category)
-            self.handle.write(of_forgetting(self.handle, category), sync=True)
+            self.handle.write(_of_forgetting(self.handle, category), sync=True)
+
+
+class UndamagedMemory(LevelMemory):
+    """Reads as if damaged views were not there; ``left_out`` says which, a line each. Listing reads arrays too."""
+
+    @cached_property
+    def left_out(self) -> list[str]:
+        """What could not be read so far, a line each."""
+        return []
+
+    def views(self, category: str | None = None) -> Iterator[View]:
+        """Iterate over the undamaged views."""
+        return self._each(self.snapshot(), keys.VIEW if category is None else keys.category_prefix(category))
+
+    def _each(self, now: Snapshot, begin: bytes) -> Iterator[View]:
+        with now:
+            try:
+                for key, sealed in now.pairs(begin):
+                    try:
+                        view = now.view_of(read_about(key, sealed))
+                    except DamagedMemoryError as error:
+                        self._leave_out(error)
+                    else:
+                        yield view
+            except DamagedMemoryError as error:  # of the order itself: what comes after it is not found
+                self._leave_out(error)
+
+    def listing(self, category: str | None = None) -> Iterator[ViewKey]:
+        """Iterate over category, id and time of the undamaged views."""
+        return (ViewKey(view.category, view.id, view.time) for view in self.views(category))
+
+    def categories(self) -> tuple[str, ...]:
+        """Return the categories of the undamaged views."""
+        return tuple(dict.fromkeys(key.category for key in self.listing()))
+
+    def category(self, name: str) -> CategoryRecord:
+        """Return what a learner left about a category, without arrays where that is damaged."""
+        try:
+            return super().category(name)
+        except DamagedMemoryError as error:
+            self._leave_out(error)
+            return CategoryRecord(name)
+
+    def _leave_out(self, error: DamagedMemoryError) -> None:
+        if str(error) not in self.left_out:
+            self.left_out.append(str(error))
+
+
+@dataclass(slots=True)
+class Change:
+    """What a write comes to: keys with their values, None to delete, to be written in one step.
+
+    ``places`` is where views are then, by id, None for a view that is gone; ``views``, how many more there are.
+    """
+
+    pairs: list[tuple[bytes, bytes | None]] = field(default_factory=list)
+    places: dict[str, bytes | None] = field(default_factory=dict)
+    views: int = 0
+
+    def add(self, view: View) -> None:
+        """Add a view that is not there, or was dropped."""
+        said, arrays = write_view(view)
+        self.pairs += (said, arrays)
+        self.places[view.id] = said[0]
+        self.views += 1
+
+    def move(self, said: About, category: str) -> None:
+        """Move a view that is there to another category; its arrays stay where they are."""
+        moved = write_about(said.moved(category))
+        self.pairs += ((said.key, None), moved)
+        self.places[said.id] = moved[0]
+
+    def drop(self, handle: Handle, id: str, key: bytes) -> None:
+        """Drop a view that is there, even a damaged one."""
+        self.pairs += [(each, None) for each in (key, *_arrays_of(handle, id, key))]
+        self.places[id] = None
+        self.views -= 1
+
+
+def _arrays_of(handle: Handle, id: str, key: bytes) -> list[bytes]:
+    """Return the keys of a view's arrays; all that can be its, where what says so is damaged."""
+    with Snapshot(handle) as now:
+        try:
+            said = now.about_at(key)
+            return [] if said is None else [said.arrays_key]
+        except DamagedMemoryError:
+            return [other for other in now.bare_keys(keys.ARRAYS) if keys.split_view_key(other)[1] == id]
+
+
+def _of_batch(handle: Handle, batch: Batch) -> Change:
+    """Return the change of a batch. Raises UnknownViewError for a view to forget that is not there."""
+    there, change = handle.places(), Change()
+    for id in batch.forgotten:
+        if check_name("a view's id", id) not in there:
+            raise UnknownViewError(f"no view '{id}' to forget; nothing was written")
+        change.drop(handle, id, there[id])
+    for view in batch.views:
+        if view.id in there:
+            change.drop(handle, view.id, there[view.id])
+        change.add(view)
+    change.pairs += [write_category(record) for record in batch.categories]
+    return change
+
+
+def _of_moving(now: Snapshot, category: str, record: CategoryRecord) -> Change:
+    """Return the change that gives all views of a category to that of the record; their arrays stay where they are.
+
+    Raises DamagedMemoryError where something is said of a view that was not written.
+    """
+    change = Change()
+    try:
+        for key, sealed in now.pairs(keys.category_prefix(category)):
+            change.move(read_about(key, sealed), record.name)
+    except DamagedMemoryError as error:
+        raise DamagedMemoryError(f"{error}; teach it again, or forget the category; nothing was changed") from error
+    change.pairs += [(keys.name_key(keys.CATEGORY, category), None), write_category(record)]
+    return change
+
+
+def _of_forgetting(handle: Handle, category: str) -> Change:
+    """Return the change that takes a category's views and its record away."""
+    change = Change()
+    for key in [key for key in handle.places().values() if key.startswith(keys.category_prefix(category))]:
+        change.drop(handle, keys.split_view_key(key)[1], key)
+    change.pairs.append((keys.name_key(keys.CATEGORY, category), None))
+    return change

@@ -50,7 +50,7 @@ class PerceptualReading(Protocol):
     """Reading a memory. What is listed comes in order of category, then view; arrays are read one view at a time."""
 
     def view(self, id: str) -> View:
-        """One view. Raises UnknownViewError; DamagedMemoryError where it is not what was written."""
+        """Return one view. Raises UnknownViewError; DamagedMemoryError where it is not what was written."""
 
     def views(self, category: str | None = None) -> Iterator[View]:
         """All views, or those of a category, as they were when this was called.
@@ -59,22 +59,22 @@ class PerceptualReading(Protocol):
         """
 
     def listing(self, category: str | None = None) -> Iterator[ViewKey]:
-        """The same without reading any array."""
+        """Iterate over category, id and time of the views that :meth:`views` gives, without reading arrays."""
 
     def categories(self) -> tuple[str, ...]:
-        """The names of all categories that have a view or a record, in order."""
+        """Return the names of all categories that have a view or a record, in order."""
 
     def category(self, name: str) -> CategoryRecord:
-        """What a learner left about a category; without arrays where it left nothing. Raises UnknownCategoryError."""
+        """Return what a learner left about a category, without arrays where nothing. Raises UnknownCategoryError."""
 
     def stats(self) -> PerceptualStats:
-        """Counts."""
+        """Return how much the memory keeps."""
 
     def verify(self, progress: Progress | None = None) -> tuple[Finding, ...]:
-        """Reads everything, and says what is not as it was written; nothing where all is well."""
+        """Read everything, and return what is not as it was written; nothing where all is well."""
 
     def close(self) -> None:
-        """Lets go; whatever is asked afterwards raises MemoryFormatError."""
+        """Release the memory; whatever is asked afterwards raises MemoryFormatError."""
 
     def __enter__(self) -> Self: ...
 
@@ -94,7 +94,7 @@ class PerceptualMemory(PerceptualReading, Protocol):
         """
 
     def rename(self, old: str, new: str) -> None:
-        """Gives a category another name. Raises UnknownCategoryError; RejectedWriteError where there is one already."""
+        """Give a category another name. Raises UnknownCategoryError; RejectedWriteError for a name that is taken."""
 
     def merge(self, source: str, into: str, record: CategoryRecord | None = None) -> None:
         """Moves the views of one category to another, and gives that ``record``.
@@ -104,10 +104,10 @@ class PerceptualMemory(PerceptualReading, Protocol):
         """
 
     def forget(self, category: str) -> None:
-        """Forgets a category with all its views. Raises UnknownCategoryError."""
+        """Forget a category with all its views. Raises UnknownCategoryError."""
 
     def exclusive(self) -> AbstractContextManager[object]:
-        """Keeps other threads from writing between reading categories and writing them back."""
+        """Keep other threads from writing between reading categories and writing them back."""
 
     def snapshot(self) -> PerceptualReading:
-        """All as it is now, whatever is written later, until closed."""
+        """Return the memory as it is now, whatever is written later, until closed."""

@@ -1,4 +1,4 @@
-"""Reading a database at one moment."""
+"""Read a database at one moment, and find what in it is not as it was written."""
 
 from __future__ import annotations
 
@@ -6,20 +6,27 @@ from collections.abc import Callable, Iterator
 from functools import partial
 from typing import Any
 
-from deixis.memory.errors import DamagedMemoryError, UnknownCategoryError, UnknownViewError
+from deixis.memory.errors import (
+    DamagedMemoryError,
+    MemoryFormatError,
+    MemoryWriteError,
+    UnknownCategoryError,
+    UnknownViewError,
+)
 from deixis.memory.folder import size
 from deixis.memory.owner import Closing
 from deixis.memory.perceptual import keys
-from deixis.memory.perceptual.codec import About, Counts, read_about, read_category, read_counts, read_view
-from deixis.memory.perceptual.handle import Handle, closed
+from deixis.memory.perceptual.codec import About, Counts, named, read_about, read_category, read_counts, read_view
+from deixis.memory.perceptual.handle import Handle, Places, closed, read_places
 from deixis.memory.perceptual.layout import VERSION
-from deixis.memory.perceptual.places import Places, read_places
 from deixis.memory.perceptual.protocol import Finding, PerceptualStats, Progress, ViewKey
 from deixis.memory.perceptual.records import CategoryRecord, View, check_name
 from deixis.ontology.relation import nearest
 
 MOST_LISTED = 5
 """Categories that a message names."""
+
+_WRONG = (MemoryFormatError, MemoryWriteError, ValueError)
 
 
 class Snapshot(Closing):
@@ -35,7 +42,7 @@ class Snapshot(Closing):
             self._source: Any = handle.keep(db.snapshot())
 
     def close(self) -> None:
-        """Lets go of the moment."""
+        """Release the snapshot."""
         source, self._source = self._source, None
         if source is not None:
             self._handle.let_go(source)
@@ -51,21 +58,21 @@ class Snapshot(Closing):
         return self._source
 
     def get(self, key: bytes) -> bytes | None:
-        """A value, or None."""
+        """Return a value, or None."""
         with self._handle:
             value: bytes | None = self._open.get(key, verify_checksums=True)
             return value
 
     def pairs(self, begin: bytes) -> Iterator[tuple[bytes, bytes]]:
-        """Keys that begin so, with their values, in order."""
+        """Iterate over the keys that begin so, with their values, in order."""
         return self._walk(_same, prefix=begin)
 
     def bare_keys(self, begin: bytes) -> Iterator[bytes]:
-        """The same without values."""
+        """Iterate over the keys that begin so, in order."""
         return self._walk(_same, prefix=begin, include_value=False)
 
     def _walk(self, made: Callable[[Any], Any], **what: Any) -> Iterator[Any]:
-        """What is made of each item, one call under way at a time."""
+        """Iterate over what is made of each item, one call under way at a time."""
         with self._handle:
             found = self._handle.keep(self._open.iterator(verify_checksums=True, **what))
         try:
@@ -80,7 +87,7 @@ class Snapshot(Closing):
             self._handle.let_go(found)
 
     def first_after(self, key: bytes, kind: bytes) -> tuple[bytes, bytes] | None:
-        """The first pair of a kind from a key on."""
+        """Return the first key of a kind from a key on, with its value."""
         with (
             self._handle,
             self._open.iterator(start=key, stop=keys.after(kind), verify_checksums=True) as found,
@@ -89,7 +96,7 @@ class Snapshot(Closing):
             return pair
 
     def about(self, id: str) -> About | None:
-        """All of a view but its arrays, or None."""
+        """Return all of a view but its arrays, or None."""
         place = self._handle.place_of(check_name("a view's id", id))
         said = None if place is None else self.about_at(place)
         if said is None:  # at this moment it was elsewhere, or nowhere
@@ -98,12 +105,12 @@ class Snapshot(Closing):
         return said
 
     def about_at(self, key: bytes) -> About | None:
-        """The same of the view with this key."""
+        """Return all but the arrays of the view with this key, or None."""
         sealed = self.get(key)
         return None if sealed is None else read_about(key, sealed)
 
     def _places(self) -> dict[str, bytes]:
-        """Where each view was at this moment; raises DamagedMemoryError where not all can be read."""
+        """Return where each view was at this moment; raises DamagedMemoryError where not all can be read."""
         with self._handle:
             if self._then is None:
                 self._then = read_places(self._open)
@@ -119,12 +126,12 @@ class Snapshot(Closing):
         return self.view_of(said)
 
     def view_of(self, said: About) -> View:
-        """A view of which all is known but the arrays."""
+        """Return a view of which all is known but the arrays."""
         with self._handle:
             return stored_arrays(self._open, said)
 
     def views(self, category: str | None = None) -> Iterator[View]:
-        """The views, read one by one."""
+        """Iterate over the views, which are read one by one."""
         return self._views(self._beginning(category))
 
     def _views(self, begin: bytes) -> Iterator[View]:
@@ -135,18 +142,18 @@ class Snapshot(Closing):
         finally:
             self._handle.let_go(arrays)
 
-    def _listed(self, arrays: Any, pair: tuple[bytes, bytes]) -> View:
-        """A view by its place in the order, in which its arrays mostly lie as well."""
+    def _listed(self, walk: Any, pair: tuple[bytes, bytes]) -> View:
+        """Return a view by its place in the order, in which its arrays mostly lie as well."""
         said = read_about(*pair)
         key = said.arrays_key
-        found, sealed = next(arrays, (b"", None))
+        found, arrays = next(walk, (b"", None))
         if found != key:  # after renaming and merging
-            arrays.seek(key)
-            found, sealed = next(arrays, (b"", None))
-        return read_view(said, key, sealed if found == key else None)
+            walk.seek(key)
+            found, arrays = next(walk, (b"", None))
+        return read_view(said, arrays if found == key else None)
 
     def listing(self, category: str | None = None) -> Iterator[ViewKey]:
-        """The views without their arrays."""
+        """Iterate over category, id and time of views, without reading arrays."""
         found = (read_about(*pair) for pair in self.pairs(self._beginning(category)))
         return (ViewKey(said.category, said.id, keys.moment(said.time)) for said in found)
 
@@ -157,7 +164,7 @@ class Snapshot(Closing):
         return keys.category_prefix(category)
 
     def categories(self) -> tuple[str, ...]:
-        """The names of the categories: one look-up each, however many views they have."""
+        """Return the names of the categories: one look-up each, however many views they have."""
         names = {key[1:].decode() for key, _ in self.pairs(keys.CATEGORY)}
         pair = self.first_after(keys.VIEW, keys.VIEW)
         while pair is not None:
@@ -167,13 +174,13 @@ class Snapshot(Closing):
         return tuple(sorted(names))
 
     def category(self, name: str) -> CategoryRecord:
-        """What a learner left."""
+        """Return what a learner left about a category."""
         self.require(name)
         sealed = self.get(keys.name_key(keys.CATEGORY, name))
         return CategoryRecord(name) if sealed is None else read_category(name, sealed)
 
     def has(self, category: str) -> bool:
-        """Whether there is a view or a record of it."""
+        """Return whether there is a view or a record of a category."""
         check_name("a category's name", category)
         if self.get(keys.name_key(keys.CATEGORY, category)) is not None:
             return True
@@ -182,16 +189,16 @@ class Snapshot(Closing):
         return pair is not None and pair[0].startswith(begin)
 
     def require(self, category: str) -> None:
-        """Raises UnknownCategoryError, naming the nearest, where there is none such."""
+        """Raise UnknownCategoryError, naming the nearest, where the category is unknown."""
         if not self.has(category):
             raise unknown_category(category, self.categories())
 
     def counts(self) -> Counts:
-        """The counts at this moment."""
+        """Return the counts at this moment."""
         return read_counts(self.get(keys.COUNT))
 
     def stats(self) -> PerceptualStats:
-        """The counts, and what they take on the disk."""
+        """Return the counts, and the bytes on the disk."""
         counts = self.counts()
         return PerceptualStats(
             views=counts.views,
@@ -203,10 +210,8 @@ class Snapshot(Closing):
         )
 
     def verify(self, progress: Progress | None = None) -> tuple[Finding, ...]:
-        """Everything that is not as it was written."""
-        from deixis.memory.perceptual.verifying import findings
-
-        return tuple(findings(self, progress))
+        """Return everything that is not as it was written."""
+        return tuple(_findings(self, progress))
 
 
 def glance(db: Any, place: bytes) -> View | None:
@@ -230,8 +235,7 @@ def stored_arrays(source: Any, said: About) -> View:
 
     These alone are read without LevelDB's checksums: ours is stronger, covers the key, and is known beforehand.
     """
-    key = said.arrays_key
-    return read_view(said, key, source.get(key, fill_cache=False))
+    return read_view(said, source.get(said.arrays_key, fill_cache=False))
 
 
 def _same(item: Any) -> Any:
@@ -239,9 +243,75 @@ def _same(item: Any) -> Any:
 
 
 def unknown_category(name: str, known: tuple[str, ...]) -> UnknownCategoryError:
-    """The error for a category that is not there."""
+    """Return the error for an unknown category."""
     near = nearest(name, known)
     listed = ", ".join(known[:MOST_LISTED]) + (", among others" if len(known) > MOST_LISTED else "")
     others = f"known are: {listed}" if known else "none is known yet"
     hint = f"did you mean '{near}'?" if near else others
     return UnknownCategoryError(f"no category '{name}'; {hint}")
+
+
+def _findings(now: Snapshot, progress: Progress | None = None) -> Iterator[Finding]:
+    """Find what is wrong in the counts, the categories, the views, and the arrays that belong to no view."""
+    counts = Counts(views=-1)
+    try:
+        counts = now.counts()
+    except _WRONG as error:
+        yield Finding("counts", _line(error))
+    if counts.lost:
+        yield Finding("counts", f"{counts.lost} batches that were acknowledged are not there")
+    yield from _categories(now)
+    found = 0
+    try:
+        for found, (key, sealed) in enumerate(now.pairs(keys.VIEW), start=1):
+            yield from _view(now, key, sealed)
+            if progress is not None:
+                progress(found, max(counts.views, found))
+    except _WRONG as error:
+        yield Finding("order of views", f"it cannot be read to its end: {_line(error)}")
+    if found != counts.views >= 0:
+        yield Finding("counts", f"{counts.views} views were written, and {found} are there")
+    yield from _strays(now)
+
+
+def _categories(now: Snapshot) -> Iterator[Finding]:
+    try:
+        for key, sealed in now.pairs(keys.CATEGORY):
+            name = key[1:].decode(errors="replace")
+            try:
+                read_category(name, sealed)
+            except _WRONG as error:
+                yield Finding(f"category '{name}'", _line(error))
+    except _WRONG as error:
+        yield Finding("categories", f"they cannot be read to their end: {_line(error)}")
+
+
+def _view(now: Snapshot, key: bytes, sealed: bytes) -> Iterator[Finding]:
+    where = named(key)
+    try:
+        said = read_about(key, sealed)
+        found = now.about(said.id)
+        if found is None or found.key != key:
+            yield Finding(where, "there is another view with this id")
+        now.view_of(said)
+    except _WRONG as error:
+        yield Finding(where, _line(error).removeprefix(f"{where}: "))
+
+
+def _strays(now: Snapshot) -> Iterator[Finding]:
+    """Find arrays that belong to no view."""
+    try:
+        for key in now.bare_keys(keys.ARRAYS):
+            try:
+                said = now.about(keys.split_view_key(key)[1])
+                if said is not None and said.arrays_key == key:
+                    continue
+            except _WRONG:
+                continue  # told of with its view
+            yield Finding(f"arrays at {key[1:60]!r}", "no view owns them")
+    except _WRONG as error:
+        yield Finding("arrays", f"they cannot be read to their end: {_line(error)}")
+
+
+def _line(error: BaseException) -> str:
+    return " ".join(str(error).split())

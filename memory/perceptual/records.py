@@ -21,14 +21,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.memory.errors import RecordError, RejectedWriteError
-from deixis.memory.perceptual.tensors import TYPES
-from deixis.memory.perceptual.written import Written, written
 
 Json = Mapping[str, Any]
 """An object of JSON: keys are strings; values are None, bools, numbers, strings, lists, and objects again."""
 
-DTYPES = {dtype.name for dtype in TYPES.values()}
-"""What the arrays of a learner's state may hold: bools, integers, floats."""
+DTYPES = frozenset(
+    ("bool", "int8", "int16", "int32", "int64", "uint8", "uint16", "uint32", "uint64", "float16", "float32", "float64")
+)
+"""Names of the types that the arrays of a learner's state may have."""
 
 _LONGEST = 1000  # bytes of a name in UTF-8
 _DESCRIPTOR, _POINTS = "descriptor/", "points"
@@ -73,27 +73,23 @@ class View:
     descriptors: Mapping[str, NDArray[np.float32]]
     points: NDArray[np.float32] | None = None
     metadata: Json = field(default_factory=dict)
-    written: Written | None = field(default=None, init=False, repr=False)  # None: read from a memory
 
     def __post_init__(self) -> None:
         check_name("a view's id", self.id)
         check_name("a category's name", self.category)
+        descriptors = {}
         for name, array in self.descriptors.items():
             check_name("a descriptor's name", name)
             _check_floats(f"descriptor '{name}' of view '{self.id}'", array)
+            descriptors[name] = frozen(array)
         if self.points is not None:
             _check_floats(f"the points of view '{self.id}'", self.points)
             if self.points.shape[1] != 3:
                 raise RecordError(f"the points of view '{self.id}' have shape {self.points.shape}, not (n, 3)")
-        time, metadata = _utc(self.id, self.time), _json(f"the metadata of view '{self.id}'", self.metadata)
-        arrays = arrays_by_name(self.descriptors, self.points)
-        whole, copies = written(self.category, self.id, time, arrays, metadata.text)
-        descriptors, points = arrays_by_use(copies)
+            object.__setattr__(self, "points", frozen(self.points))
         object.__setattr__(self, "descriptors", MappingProxyType(descriptors))
-        object.__setattr__(self, "points", points)
-        object.__setattr__(self, "time", time)
-        object.__setattr__(self, "metadata", metadata)
-        object.__setattr__(self, "written", whole)
+        object.__setattr__(self, "time", _utc(self.id, self.time))
+        object.__setattr__(self, "metadata", _json(f"the metadata of view '{self.id}'", self.metadata))
 
     @classmethod
     def stored(cls, **values: Any) -> View:
@@ -203,12 +199,10 @@ def name_taken(old: str, new: str) -> RejectedWriteError:
 
 
 def frozen(array: NDArray[Any]) -> NDArray[Any]:
-    """The array in one piece, little-endian, and such that nobody writes into it."""
-    plain = np.asarray(array, array.dtype.newbyteorder("<"), order="C")
-    if plain.flags.writeable:
-        plain = plain.copy()
-        plain.flags.writeable = False
-    return plain
+    """Return a copy of an array that is contiguous, little-endian and read-only."""
+    copy = np.array(array, array.dtype.newbyteorder("<"), order="C")
+    copy.flags.writeable = False
+    return copy
 
 
 def _check_floats(what: str, array: object) -> None:

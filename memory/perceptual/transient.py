@@ -40,7 +40,7 @@ class TransientReading(Closing):
         self._kept: _Content | None = content
 
     def close(self) -> None:
-        """Lets go."""
+        """Release what is kept."""
         self._kept = None
 
     @property
@@ -50,14 +50,14 @@ class TransientReading(Closing):
         return self._kept
 
     def view(self, id: str) -> View:
-        """One view."""
+        """Return one view."""
         check_name("a view's id", id)
         if id not in self._content.views:
             raise UnknownViewError(f"no view '{id}' in this memory")
         return self._content.views[id]
 
     def views(self, category: str | None = None) -> Iterator[View]:
-        """Views in order."""
+        """Iterate over views in order."""
         found = [view for view in self._content.views.values() if category is None or view.category == category]
         if category is not None and not found:
             self._require(category)
@@ -69,15 +69,15 @@ class TransientReading(Closing):
             yield view
 
     def listing(self, category: str | None = None) -> Iterator[ViewKey]:
-        """The same without arrays."""
+        """Iterate over category, id and time of views, without reading arrays."""
         return (ViewKey(view.category, view.id, view.time) for view in self.views(category))
 
     def categories(self) -> tuple[str, ...]:
-        """Names."""
+        """Return the names of all categories."""
         return tuple(sorted({view.category for view in self._content.views.values()} | set(self._content.records)))
 
     def category(self, name: str) -> CategoryRecord:
-        """What a learner left."""
+        """Return what a learner left about a category."""
         self._require(name)
         return self._content.records.get(name, CategoryRecord(name))
 
@@ -87,7 +87,7 @@ class TransientReading(Closing):
             raise unknown_category(category, self.categories())
 
     def stats(self) -> PerceptualStats:
-        """Counts; of bytes, those of the arrays."""
+        """Return how much the memory keeps; its bytes are those of the arrays."""
         arrays = [array for view in self._content.views.values() for array in view.descriptors.values()]
         return PerceptualStats(
             views=len(self._content.views),
@@ -99,7 +99,7 @@ class TransientReading(Closing):
         )
 
     def verify(self, progress: Progress | None = None) -> tuple[Finding, ...]:
-        """Nothing: what is in memory is as it was written."""
+        """Return nothing: what is in memory is as it was written."""
         _ = self._content
         return ()
 
@@ -112,15 +112,15 @@ class TransientMemory(TransientReading):
         self._writing = threading.RLock()
 
     def snapshot(self) -> TransientReading:
-        """All as it is now."""
+        """Return the memory as it is now, whatever is written later."""
         return TransientReading(self._content)
 
     def exclusive(self) -> AbstractContextManager[object]:
-        """Keeps other threads from writing."""
+        """Keep other threads from writing."""
         return self._writing
 
     def write(self, batch: Batch, sync: bool = False) -> None:
-        """Writes a batch in one step."""
+        """Write a batch in one step."""
         with self._writing:
             views, records = dict(self._content.views), dict(self._content.records)
             for id in batch.forgotten:
@@ -132,7 +132,7 @@ class TransientMemory(TransientReading):
             self._keep(views, records)
 
     def rename(self, old: str, new: str) -> None:
-        """Gives a category another name."""
+        """Give a category another name."""
         check_name("a category's name", new)
         with self._writing:
             record = self.category(old)
@@ -141,7 +141,7 @@ class TransientMemory(TransientReading):
             self._move(old, CategoryRecord(new, record.state, record.metadata))
 
     def merge(self, source: str, into: str, record: CategoryRecord | None = None) -> None:
-        """Moves the views of one category to another."""
+        """Move the views of one category to another."""
         check_merging(source, into, record)
         with self._writing:
             self._require(into)
@@ -149,7 +149,7 @@ class TransientMemory(TransientReading):
             self._move(source, record or CategoryRecord(into))
 
     def forget(self, category: str) -> None:
-        """Forgets a category."""
+        """Forget a category with its views."""
         with self._writing:
             self._require(category)
             views = {id: view for id, view in self._content.views.items() if view.category != category}

@@ -12,7 +12,8 @@ from deixis.ontology.graph import Fact, Source
 from deixis.ontology.lessons.types import LayoutConcept, MatchRecord, Role
 from deixis.ontology.lessons.write import lesson_iri
 from deixis.ontology.relation import Relation, Relations, nearest
-from deixis.ontology.triples import TripleIndex, last_part
+from deixis.ontology.triple_index import TripleIndex
+from deixis.ontology.triples import last_part
 from deixis.ontology.vocabulary import DX, PROV, W3C
 
 

@@ -13,7 +13,8 @@ import pyoxigraph as ox
 
 from deixis.errors import OntologyError
 from deixis.ontology.models.relations import Provenance, RelationModel, Term, Trend
-from deixis.ontology.triples import Description, TripleIndex, content_key, iri, last_part, learned_iri, text, typed
+from deixis.ontology.triple_index import TripleIndex
+from deixis.ontology.triples import Description, content_key, iri, last_part, learned_iri, text, typed
 from deixis.ontology.vocabulary import DX, PROV, W3C
 
 

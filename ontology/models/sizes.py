@@ -12,7 +12,8 @@ from dataclasses import dataclass
 import pyoxigraph as ox
 
 from deixis.errors import OntologyError
-from deixis.ontology.triples import LEARNED, Description, TripleIndex, iri, learned_iri, typed
+from deixis.ontology.triple_index import TripleIndex
+from deixis.ontology.triples import LEARNED, Description, iri, learned_iri, typed
 from deixis.ontology.vocabulary import BASE, DX, PROV, W3C
 
 

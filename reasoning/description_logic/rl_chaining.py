@@ -184,7 +184,7 @@ class ForwardChaining:
 
     def _process(self, fact: Fact) -> None:
         s, p, o = fact
-        self._index.add(fact)
+        self._index.add(s, p, o)
         if p in self._list_predicates:
             self._unread.append(fact)
         if p in self._closures:
@@ -305,7 +305,7 @@ class ForwardChaining:
         members, links = whole
         for (name, kind), expand in EXPANSIONS.items():
             given = (axiom,) if kind is None else (axiom, (node, self._type, self.terms.number(kind)))
-            if name == self._list_predicates[predicate] and given[-1] in self._index.facts:
+            if name == self._list_predicates[predicate] and given[-1] in self._index:
                 for rule in expand(self.terms.term(node), [self.terms.term(member) for member in members]):
                     yield rule, (*given, *links)
 

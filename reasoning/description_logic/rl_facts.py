@@ -5,31 +5,21 @@ In a pattern a number from 0 is a term, and a negative one a variable.
 
 from __future__ import annotations
 
-from collections import defaultdict
 from collections.abc import Iterator, Sequence
+
+from deixis.ontology.triple_index import TermIndex
 
 Fact = tuple[int, int, int]
 Atom = tuple[int, int, int]
 Binding = dict[int, int]
 
 
-class FactIndex:
-    """Facts by predicate and subject, and by predicate and object."""
+class FactIndex(TermIndex[int]):
+    """An index over facts that joins the patterns of a rule with them."""
 
-    def __init__(self) -> None:
-        self.facts: set[Fact] = set()
-        self._objects: dict[int, dict[int, set[int]]] = defaultdict(lambda: defaultdict(set))
-        self._subjects: dict[int, dict[int, set[int]]] = defaultdict(lambda: defaultdict(set))
-
-    def add(self, fact: Fact) -> None:
+    def __contains__(self, fact: Fact) -> bool:
         subject, predicate, object = fact
-        self.facts.add(fact)
-        self._objects[predicate][subject].add(object)
-        self._subjects[predicate][object].add(subject)
-
-    def objects(self, subject: int, predicate: int) -> set[int]:
-        """The objects of a subject under a predicate; to be read only."""
-        return self._objects[predicate].get(subject, set()) if predicate in self._objects else set()
+        return object in self.objects(subject, predicate)
 
     def matches(self, atom: Atom) -> Iterator[Fact]:
         """The facts that fit a pattern, each variable standing for anything."""
@@ -38,7 +28,7 @@ class FactIndex:
             if predicate not in self._objects:
                 continue
             if s >= 0 and o >= 0:
-                if (s, predicate, o) in self.facts:
+                if o in self._objects[predicate].get(s, ()):
                     yield s, predicate, o
             elif s >= 0:
                 yield from ((s, predicate, y) for y in tuple(self._objects[predicate].get(s, ())))

@@ -105,7 +105,7 @@ class PerceptualSession(MemorySession):
         Ended by force in between, it leaves the views: what they are called is what the grounding decided, and kept
         again they are the same views.
         """
-        from deixis.memory.perceptual.undoing import restored_on_failure
+        from deixis.memory.perceptual.in_folder import restored_on_failure
 
         if not views:
             yield ()

@@ -7,7 +7,6 @@ import re
 import shutil
 import subprocess
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
 import pyoxigraph
@@ -17,7 +16,7 @@ from hypothesis import strategies as st
 from rdflib import RDF, RDFS, Graph, Literal, URIRef
 
 from deixis.errors import GraphError
-from deixis.ontology.export import fact_to_dict, graph_from_dict, graph_to_dict, graph_to_dot, graph_to_turtle
+from deixis.ontology.export import fact_to_dict, graph_to_dict, graph_to_dot, graph_to_turtle
 from deixis.ontology.graph import Fact, RelationGraph, Source
 from deixis.ontology.tbox import default_ontology
 from deixis.ontology.vocabulary import DX
@@ -96,16 +95,18 @@ def test_colours_are_one_a_node() -> None:
 
 @settings(max_examples=60, deadline=None)
 @given(graphs())
-def test_a_graph_comes_back_from_its_json(graph: RelationGraph) -> None:
-    again = graph_from_dict(json.loads(json.dumps(graph_to_dict(graph))), R)
-    assert again.nodes == graph.nodes
-    assert list(again.facts()) == list(graph.facts())
-    assert [k for k in again.kinds if k] == [k for k in graph.kinds if k]
-    assert again.colours == (graph.colours if any(graph.colours) else ())
+def test_json_says_what_the_graph_says(graph: RelationGraph) -> None:
+    data = json.loads(json.dumps(graph_to_dict(graph)))
+    nodes = data["nodes"]
+    assert [node["id"] for node in nodes] == list(graph.nodes)
+    assert [node["kind"] for node in nodes if "kind" in node] == [kind for kind in graph.kinds if kind]
+    assert [node["colour"] for node in nodes if "colour" in node] == [colour for colour in graph.colours if colour]
     if graph.boxes is None:
-        assert again.boxes is None
+        assert not any("min" in node or "max" in node for node in nodes)
     else:
-        np.testing.assert_array_equal(again.boxes, graph.boxes)
+        np.testing.assert_array_equal([[node["min"], node["max"]] for node in nodes], graph.boxes)
+    spans = [{"end_line": fact.source.end_line, "end_column": 7} if fact.source else {} for fact in graph.facts()]
+    assert data["facts"] == [fact_to_dict(fact) | span for fact, span in zip(graph.facts(), spans, strict=True)]
 
 
 def test_a_fact_says_in_json_what_qualifies_it() -> None:
@@ -129,40 +130,6 @@ def test_a_choice_is_one_text_in_json() -> None:
     entry = fact_to_dict(Fact("a", (R["left"], R["top_left"]), "b"))
     assert (entry["relation"], entry["relations"]) == ("left or top_left", ["left", "top_left"])
     assert "line" not in entry
-
-
-FACT: dict[str, Any] = {"subject": "a", "object": "b", "relations": ["left"]}
-AB: list[dict[str, Any]] = [{"id": "a"}, {"id": "b"}]
-
-
-@pytest.mark.parametrize(
-    "data",
-    [
-        {},
-        {"nodes": []},
-        {"facts": []},
-        [],
-        None,
-        {"nodes": [{}], "facts": []},
-        {"nodes": ["a"], "facts": []},
-        {"nodes": [{"id": ["a"]}], "facts": []},
-        {"nodes": AB, "facts": [{}]},
-        {"nodes": AB, "facts": ["left(a, b)"]},
-        {"nodes": AB, "facts": [{**FACT, "relations": ["lefft"]}]},
-        {"nodes": AB, "facts": [{**FACT, "relations": 3}]},
-        {"nodes": AB, "facts": [{**FACT, "subject": "z"}]},
-        {"nodes": [{"id": "a"}, {"id": "a"}], "facts": []},
-        {"nodes": AB, "facts": [{**FACT, "weight": "heavy"}]},
-        {"nodes": AB, "facts": [{**FACT, "line": 1}]},
-        {"nodes": AB, "facts": [{**FACT, "file": "x", "line": "one", "column": 1, "end_line": 1, "end_column": 1}]},
-        {"nodes": [{"id": "a", "min": [0, 0]}], "facts": []},
-        {"nodes": [{"id": "a", "min": [0, 0], "max": [1]}], "facts": []},
-        {"nodes": [{"id": "a", "min": ["x", 0], "max": [1, 1]}], "facts": []},
-    ],
-)
-def test_data_that_is_no_graph_is_a_graph_error(data: Any) -> None:
-    with pytest.raises(GraphError):
-        graph_from_dict(data, R)
 
 
 @settings(max_examples=60, deadline=None)

@@ -27,12 +27,10 @@ class View:
         self._store = store
         self._names: dict[object, GraphName] = {graph_iri(name): name for name in DATA}
         self._removed = change.removed if change else {}
-        self._coming: dict[Node, list[ox.Triple]] = defaultdict(list)
-        self._pointing: dict[tuple[ox.NamedNode, Node], list[ox.Triple]] = defaultdict(list)
+        self._added = ox.Store()
         for name in DATA:
-            for triple in change.added.get(name, ()) if change else ():
-                self._coming[triple.subject].append(triple)
-                self._pointing[triple.predicate, triple.object].append(triple)
+            coming = change.added.get(name, ()) if change else ()
+            self._added.bulk_extend(ox.Quad(triple.subject, triple.predicate, triple.object) for triple in coming)
         self._about: dict[Node, dict[ox.NamedNode, set[Node]]] = {}
         self._broader: dict[Node, frozenset[Node]] = {}
 
@@ -45,8 +43,9 @@ class View:
                 for quad in self._store.quads_for_pattern(node, None, None, None):
                     if self._stays(quad):
                         known[quad.predicate].add(quad.object)
-            for triple in self._coming.get(node, ()):
-                known[triple.predicate].add(triple.object)
+            if isinstance(node, ox.NamedNode | ox.BlankNode):
+                for quad in self._added.quads_for_pattern(node, None, None):
+                    known[quad.predicate].add(quad.object)
         return known
 
     def values(self, node: Node, predicate: ox.NamedNode) -> Iterable[Node]:
@@ -55,7 +54,7 @@ class View:
 
     def subjects(self, predicate: ox.NamedNode, node: Node) -> set[Node]:
         """The nodes that lead to this one under a predicate."""
-        found: set[Node] = {triple.subject for triple in self._pointing.get((predicate, node), ())}
+        found: set[Node] = {quad.subject for quad in self._added.quads_for_pattern(None, predicate, node)}
         if isinstance(node, ox.NamedNode | ox.Literal):
             quads = self._store.quads_for_pattern(None, predicate, node, None)
             found.update(quad.subject for quad in quads if self._stays(quad))

@@ -143,7 +143,7 @@ def test_a_named_memory_that_is_not_there_has_no_categories_to_list(tmp_path: Pa
 
 
 def test_a_store_that_is_gone_is_told_and_nothing_is_begun_anew(views: Path) -> None:
-    shutil.rmtree(views / "perceptual" / "store-1")
+    shutil.rmtree(views / "perceptual" / "store-2")
     for arguments in (("memory", "verify"), ("category", "list"), ("memory", "stats")):
         code, out, err = deixis(*arguments, "--memory", views)
         assert (code, out) == (2, ""), arguments

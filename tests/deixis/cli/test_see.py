@@ -334,7 +334,7 @@ def test_damaged_views_are_left_out_and_told_and_mended_by_teaching_again(tables
     scene, memory = tables / "7.scene.json", ("--memory", tmp_path / "memory")
     for object, word in (("o1", "plate"), ("o3", "fork"), ("o4", "fork")):
         deixis("teach", scene, object, word, *memory)
-    store = tmp_path / "memory" / "perceptual" / "store-1"
+    store = tmp_path / "memory" / "perceptual" / "store-2"
     with plyvel.DB(str(store)) as db:
         key, value = next(db.iterator(prefix=b"aplate"))
         db.put(key, value[:-1] + bytes([value[-1] ^ 1]))
@@ -358,7 +358,7 @@ def test_damaged_views_are_left_out_and_told_and_mended_by_teaching_again(tables
 def test_a_memory_of_which_nothing_can_be_read_is_not_called_empty(tables: Path, tmp_path: Path) -> None:
     memory = ("--memory", tmp_path / "memory")
     deixis("teach", tables / "7.scene.json", "o1", "plate", *memory)
-    store = tmp_path / "memory" / "perceptual" / "store-1"
+    store = tmp_path / "memory" / "perceptual" / "store-2"
     with plyvel.DB(str(store)) as db:
         key, value = next(db.iterator(prefix=b"vplate"))
         db.put(key, value[:-1] + bytes([value[-1] ^ 1]))

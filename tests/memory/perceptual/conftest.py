@@ -50,7 +50,7 @@ def _record(name: str, threshold: float = 0.5) -> CategoryRecord:
 
 
 def _said(record: View | CategoryRecord) -> dict[str, Any]:
-    arrays_aside = ("descriptors", "state", "points", "written")
+    arrays_aside = ("descriptors", "state", "points")
     named = {name: value for name, value in vars(record).items() if name not in arrays_aside}
     arrays: dict[str, Any] = dict(record.descriptors if isinstance(record, View) else record.state)
     if isinstance(record, View) and record.points is not None:

@@ -90,7 +90,7 @@ def test_a_flipped_byte_of_any_file_is_detected_or_harmless(
 
 def tampered(folder: Path, kind: bytes, change: Callable[[bytes], bytes | None]) -> None:
     """Changes the first value of a kind behind the back of the memory, with LevelDB's own checksums right."""
-    with plyvel.DB(str(folder / "store-1")) as db:
+    with plyvel.DB(str(folder / "store-2")) as db:
         key, value = next(iter(db.iterator(prefix=kind)))
         new = change(value)
         db.delete(key) if new is None else db.put(key, new)
@@ -133,7 +133,7 @@ def test_a_value_that_is_gone_is_told(kept: Path, kind: bytes) -> None:
 
 
 def test_values_that_changed_places_are_told(kept: Path) -> None:
-    with plyvel.DB(str(kept / "store-1")) as db:
+    with plyvel.DB(str(kept / "store-2")) as db:
         (one, first), (two, second) = list(db.iterator(prefix=keys.ARRAYS))[:2]
         db.put(one, second)
         db.put(two, first)
@@ -154,7 +154,7 @@ def test_older_arrays_under_the_same_key_are_told(kept: Path) -> None:
         with memory.handle as db:
             older = dict(db.iterator(prefix=keys.ARRAYS))
         memory.write(Batch([replace(view, descriptors={name: array + 1 for name, array in view.descriptors.items()})]))
-    with plyvel.DB(str(kept / "store-1")) as db:
+    with plyvel.DB(str(kept / "store-2")) as db:
         for key, sealed in older.items():
             db.put(key, sealed)
     (kept / "seal.json").unlink()
@@ -175,7 +175,7 @@ def test_other_views_stay_readable_beside_a_damaged_one(kept: Path, make_view: C
 
 def test_listing_reads_no_arrays(kept: Path) -> None:
     """So that a memory larger than the machine's own can be listed: with every array spoilt, nothing is noticed."""
-    with plyvel.DB(str(kept / "store-1")) as db:
+    with plyvel.DB(str(kept / "store-2")) as db:
         for key in list(db.iterator(prefix=keys.ARRAYS, include_value=False)):
             db.put(key, b"")
     (kept / "seal.json").unlink()

@@ -37,7 +37,7 @@ def test_a_new_memory_is_empty(memory: PerceptualMemory) -> None:
     assert not list(memory.listing())
     assert memory.categories() == ()
     stats = memory.stats()
-    assert (stats.views, stats.categories, stats.batches, stats.lost, stats.version) == (0, 0, 0, 0, 1)
+    assert (stats.views, stats.categories, stats.batches, stats.lost, stats.version) == (0, 0, 0, 0, 2)
     assert memory.verify() == ()
 
 

@@ -24,11 +24,8 @@ WRITERS = """
 import os
 from datetime import UTC, datetime
 import numpy as np
-from deixis.memory.perceptual.checksum import seal_wide
 from deixis.memory.perceptual.level import LevelMemory
 from deixis.memory.perceptual.records import Batch, CategoryRecord, View
-
-seal_wide(b"", b"")  # compiles what every child needs
 
 def work(folder, seed):
     category, now = f"c{seed}", datetime(2026, 5, 1, tzinfo=UTC)

@@ -7,19 +7,24 @@ import os
 import shutil
 import subprocess
 import sys
+import zipfile
 from collections.abc import Callable
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import plyvel
 import pytest
 
 from deixis.memory import owner as disk
 from deixis.memory.errors import DamagedMemoryError, MemoryBusyError, MemoryFormatError, MemoryWriteError
 from deixis.memory.owner import OwnerLock
-from deixis.memory.perceptual import keys, layout
+from deixis.memory.perceptual import keys
 from deixis.memory.perceptual.level import LevelMemory
-from deixis.memory.perceptual.records import Batch, View
+from deixis.memory.perceptual.migrations import MIGRATIONS
+from deixis.memory.perceptual.records import Batch, CategoryRecord, View
+from deixis.memory.perceptual.transient import TransientMemory
 
 Content = Callable[..., Any]
 
@@ -42,7 +47,7 @@ def test_a_new_memory_is_made_only_when_asked(tmp_path: Path) -> None:
         LevelMemory.open(tmp_path / "a" / "b")
     assert not (tmp_path / "a").exists()
     LevelMemory.open(tmp_path / "a" / "b", create=True).close()
-    assert sorted(os.listdir(tmp_path / "a" / "b")) == ["acknowledged", "owner.lock", "seal.json", "store-1"]
+    assert sorted(os.listdir(tmp_path / "a" / "b")) == ["acknowledged", "owner.lock", "seal.json", "store-2"]
 
 
 def test_a_foreign_folder_a_file_and_a_dead_link_are_left_alone(tmp_path: Path) -> None:
@@ -61,28 +66,110 @@ def test_a_foreign_folder_a_file_and_a_dead_link_are_left_alone(tmp_path: Path) 
 
 
 def test_a_newer_memory_is_told_and_left_alone(kept: Path) -> None:
-    (kept / "store-1").rename(kept / "store-7")
+    (kept / "store-2").rename(kept / "store-7")
     before = digest(kept)
-    with pytest.raises(MemoryFormatError, match=r"written by a newer version \(format 7, .* knows 1\); upgrade deixis"):
+    with pytest.raises(MemoryFormatError, match=r"written by a newer version \(format 7, .* knows 2\); upgrade deixis"):
         LevelMemory.open(kept, create=True)
     assert digest(kept) == before
 
 
 def test_a_version_without_a_way_here_is_told(kept: Path) -> None:
-    (kept / "store-1").rename(kept / "store-0")
+    (kept / "store-2").rename(kept / "store-0")
     with pytest.raises(MemoryFormatError, match="unknown format version 0"):
         LevelMemory.open(kept)
 
 
-def _prefixed(key: bytes) -> bytes:
-    return b"old:" + key
+@pytest.fixture
+def version_1(tmp_path: Path) -> Path:
+    """A memory as version 1 wrote and closed it: the views of :func:`content_of_version_1`."""
+    folder = tmp_path / "old"
+    with zipfile.ZipFile(Path(__file__).with_name("version-1.zip")) as archive:
+        archive.extractall(folder)
+    return folder
 
 
-def make_old(folder: Path) -> None:
-    """Turns a memory into one of a version 0, whose keys all began with ``old:``."""
+def content_of_version_1(content: Content) -> Any:
+    noon, minute = datetime(2026, 5, 1, 12, tzinfo=UTC), timedelta(minutes=1)
+    spin = (np.arange(45 * 101) % 7).astype(np.float32).reshape(45, 101)
+    state = {
+        "threshold": np.array(0.5),
+        "icd": np.arange(4),
+        "none": np.zeros((0, 3), np.float32),
+        "odd": np.array([True, False, True]),
+    }
+    views = [
+        View("v1", "mug", noon, {"spin": spin}, None, {"scene": "s1", "teacher": "Ada"}),
+        View("v2", "mug", noon + minute, {"n": np.full((1, 3), 2, np.float32)}, np.eye(3, dtype=np.float32)),
+        View("v3", "plate", noon, {"n": np.full((2, 1), 3, np.float32)}),
+        View("v\0 4", "fork\0", noon, {}),
+    ]
+    with TransientMemory() as memory:
+        memory.write(Batch(views, [CategoryRecord("mug", state, {"learner": "instances"}), CategoryRecord("plate")]))
+        return content(memory)
+
+
+def test_a_memory_of_version_1_is_brought_up_to_date(version_1: Path, content: Content) -> None:
+    assert content_of(version_1, content) == content_of_version_1(content)
+    assert sorted(os.listdir(version_1)) == ["acknowledged", "owner.lock", "seal.json", "store-2"]
+    with LevelMemory.open(version_1) as memory:
+        assert memory.verify() == ()
+        stats = memory.stats()
+        assert (stats.views, stats.batches, stats.lost, stats.version) == (4, 3, 0, 2)
+        memory.rename("plate", "saucer")
+        assert memory.view("v3").category == "saucer"
+
+
+@pytest.mark.parametrize(
+    ("kind", "place", "told"),
+    [
+        (keys.ARRAYS, 500, "its arrays are not what was written"),
+        (keys.VIEW, -1, "what is said of it is not what was written"),
+        (keys.CATEGORY, 100, "what is known of category 'mug' is not what was written"),
+    ],
+)
+def test_what_was_damaged_in_version_1_stays_damaged(version_1: Path, kind: bytes, place: int, told: str) -> None:
+    with plyvel.DB(str(version_1 / "store-1")) as db:
+        key, value = next((key, value) for key, value in db.iterator(prefix=kind) if len(value) > 100 or place < 0)
+        changed = bytearray(value)
+        changed[place] ^= 1
+        db.put(key, bytes(changed))
+    (version_1 / "seal.json").unlink()
+    with LevelMemory.open(version_1) as memory:
+        (finding,) = memory.verify()
+        assert told in str(finding)
+
+
+def test_no_byte_that_flipped_in_version_1_gives_a_wrong_value(
+    version_1: Path, tmp_path: Path, content: Content
+) -> None:
+    expected = content_of_version_1(content)
+    (version_1 / "seal.json").unlink()
+    (table,) = (version_1 / "store-1").glob("*.ldb")
+    whole = table.read_bytes()
+    told = 0
+    for place in range(3, len(whole), len(whole) // 40):
+        copy = tmp_path / "copy"
+        shutil.copytree(version_1, copy)
+        changed = bytearray(whole)
+        changed[place] ^= 1 + place % 255
+        (copy / "store-1" / table.name).write_bytes(changed)
+        try:
+            with LevelMemory.open(copy) as memory:
+                if not memory.verify():
+                    assert content(memory) == expected
+                else:
+                    told += 1
+        except DamagedMemoryError:
+            told += 1
+        shutil.rmtree(copy)
+    assert told >= 20
+
+
+def make_older(folder: Path) -> None:
+    """Turns a memory of version 1 into one of a version 0, whose keys all began with ``old:``."""
     with plyvel.DB(str(folder / "store-1")) as new, plyvel.DB(str(folder / "store-0"), create_if_missing=True) as old:
         for key, value in new.iterator():
-            old.put(_prefixed(key), value)
+            old.put(b"old:" + key, value)
     disk.remove(folder / "store-1")
     (folder / "seal.json").unlink()
 
@@ -92,24 +179,24 @@ def from_0(old: plyvel.DB, new: plyvel.DB) -> None:
         new.put(key.removeprefix(b"old:"), value)
 
 
-def test_an_old_memory_is_brought_up_to_date(kept: Path, content: Content, monkeypatch: pytest.MonkeyPatch) -> None:
-    before = content_of(kept, content)
-    make_old(kept)
-    monkeypatch.setitem(layout.MIGRATIONS, 0, from_0)
-    assert content_of(kept, content) == before
-    assert sorted(os.listdir(kept)) == ["acknowledged", "owner.lock", "seal.json", "store-1"]
-    with LevelMemory.open(kept) as memory:
+def test_an_older_memory_takes_several_steps(
+    version_1: Path, content: Content, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    make_older(version_1)
+    monkeypatch.setitem(MIGRATIONS, 0, from_0)
+    assert content_of(version_1, content) == content_of_version_1(content)
+    assert sorted(os.listdir(version_1)) == ["acknowledged", "owner.lock", "seal.json", "store-2"]
+    with LevelMemory.open(version_1) as memory:
         assert memory.verify() == ()
         assert memory.stats().lost == 0
 
 
-@pytest.mark.parametrize("steps", range(4))
+@pytest.mark.parametrize("steps", range(8))
 def test_a_crash_while_migrating_loses_nothing(
-    kept: Path, content: Content, steps: int, monkeypatch: pytest.MonkeyPatch
+    version_1: Path, content: Content, steps: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    before = content_of(kept, content)
-    make_old(kept)
-    monkeypatch.setitem(layout.MIGRATIONS, 0, from_0)
+    make_older(version_1)
+    monkeypatch.setitem(MIGRATIONS, 0, from_0)
     left = [steps]
 
     def crashing(real: Callable[..., None]) -> Callable[..., None]:
@@ -124,10 +211,11 @@ def test_a_crash_while_migrating_loses_nothing(
     with monkeypatch.context() as patched:
         patched.setattr(disk, "rename", crashing(disk.rename))
         patched.setattr(disk, "remove", crashing(disk.remove))
-        patched.setitem(layout.MIGRATIONS, 0, crashing(from_0))
+        for version, migration in list(MIGRATIONS.items()):
+            patched.setitem(MIGRATIONS, version, crashing(migration))
         with pytest.raises(KeyboardInterrupt):
-            LevelMemory.open(kept)
-    assert content_of(kept, content) == before
+            LevelMemory.open(version_1)
+    assert content_of(version_1, content) == content_of_version_1(content)
 
 
 def test_a_second_opening_in_one_process_shares_the_handle(
@@ -143,14 +231,15 @@ def test_a_second_opening_in_one_process_shares_the_handle(
         with pytest.raises(MemoryFormatError, match="closed"):
             one.categories()
         with pytest.raises(plyvel.Error, match="lock"):
-            plyvel.DB(str(kept / "store-1"))
-    with plyvel.DB(str(kept / "store-1")) as free:
+            plyvel.DB(str(kept / "store-2"))
+    with plyvel.DB(str(kept / "store-2")) as free:
         assert list(free.iterator(prefix=keys.category_prefix("mug") + b"new"))
 
 
 HOLDER = """
 import sys, time
 from deixis.memory.perceptual.level import LevelMemory
+from deixis.memory.perceptual.migrations import MIGRATIONS
 memory = LevelMemory.open(sys.argv[1])
 print("open", flush=True)
 time.sleep(60)
@@ -214,7 +303,7 @@ def test_an_opening_that_fails_takes_away_what_it_made_and_nothing_else(
 
 @pytest.mark.parametrize("name", ["MANIFEST-*", "CURRENT", "*.ldb", "*.log"])
 def test_files_changed_or_gone_while_it_was_closed_are_told_and_nothing_is_touched(kept: Path, name: str) -> None:
-    next((kept / "store-1").glob(name)).unlink()
+    next((kept / "store-2").glob(name)).unlink()
     before = digest(kept)
     opens_rest = ", or delete seal.json to open what is left" if name == "*.log" else ""
     with pytest.raises(
@@ -226,17 +315,17 @@ def test_files_changed_or_gone_while_it_was_closed_are_told_and_nothing_is_touch
 
 def test_without_a_seal_a_missing_table_is_still_told(kept: Path) -> None:
     (kept / "seal.json").unlink()
-    next((kept / "store-1").glob("*.ldb")).unlink()
+    next((kept / "store-2").glob("*.ldb")).unlink()
     with pytest.raises(DamagedMemoryError, match="missing files"):
         LevelMemory.open(kept)
 
 
 def test_without_a_seal_a_missing_current_is_no_new_memory(kept: Path) -> None:
     (kept / "seal.json").unlink()
-    (kept / "store-1" / "CURRENT").unlink()
+    (kept / "store-2" / "CURRENT").unlink()
     with pytest.raises(DamagedMemoryError, match="damaged"):
         LevelMemory.open(kept, create=True)
-    assert list((kept / "store-1").glob("*.ldb"))
+    assert list((kept / "store-2").glob("*.ldb"))
 
 
 def test_batches_that_were_acknowledged_and_are_gone_are_counted(
@@ -262,6 +351,7 @@ FORKER = """
 import os, sys
 from deixis.memory.errors import MemoryFormatError
 from deixis.memory.perceptual.level import LevelMemory
+from deixis.memory.perceptual.migrations import MIGRATIONS
 from deixis.memory.perceptual.records import Batch
 
 memory = LevelMemory.open(sys.argv[1])

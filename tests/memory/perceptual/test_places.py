@@ -49,7 +49,7 @@ def spoilt(kept: Path) -> Path:
     """A memory in which a view that was renamed has an unreadable note, so that nobody knows where its arrays are."""
     with LevelMemory.open(kept) as memory:
         memory.rename("plate", "dish")
-    with plyvel.DB(str(kept / "store-1")) as db:
+    with plyvel.DB(str(kept / "store-2")) as db:
         key, value = next(db.iterator(prefix=keys.category_prefix("dish")))
         db.put(key, value[:-1] + bytes([value[-1] ^ 1]))
     (kept / "seal.json").unlink()
@@ -78,7 +78,7 @@ def test_where_the_order_of_views_cannot_be_read_nothing_is_written(kept: Path, 
     with LevelMemory.open(kept) as memory:
         views = [make_view(f"z{number:02}", "zoo") for number in range(99)]
         memory.write(Batch([replace(view, metadata={"note": f"marker {view.id}" * 9}) for view in views]))
-    for table in (kept / "store-1").glob("*.ldb"):
+    for table in (kept / "store-2").glob("*.ldb"):
         table.write_bytes(table.read_bytes().replace(b"marker z50", b"marker y50"))
     with LevelMemory.open(kept) as memory:
         assert memory.view("mug-0-0").category == "mug"

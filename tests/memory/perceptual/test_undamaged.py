@@ -13,11 +13,10 @@ import pytest
 from deixis.errors import DeixisError
 from deixis.memory.errors import MemoryWriteError
 from deixis.memory.perceptual import keys
-from deixis.memory.perceptual.level import LevelMemory
+from deixis.memory.perceptual.in_folder import restored_on_failure
+from deixis.memory.perceptual.level import LevelMemory, UndamagedMemory
 from deixis.memory.perceptual.protocol import PerceptualMemory
 from deixis.memory.perceptual.records import Batch, CategoryRecord, View
-from deixis.memory.perceptual.undamaged import UndamagedMemory
-from deixis.memory.perceptual.undoing import restored_on_failure
 
 Content = Callable[..., Any]
 Make = Callable[..., View]
@@ -25,7 +24,7 @@ Make = Callable[..., View]
 
 def spoil(folder: Path, kind: bytes, number: int) -> None:
     """Changes a value behind LevelDB's checksums."""
-    with plyvel.DB(str(folder / "store-1")) as db:
+    with plyvel.DB(str(folder / "store-2")) as db:
         key, value = list(db.iterator(prefix=kind))[number]
         db.put(key, value[:-1] + bytes([value[-1] ^ 1]))
     (folder / "seal.json").unlink(missing_ok=True)
