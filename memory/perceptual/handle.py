@@ -9,10 +9,11 @@ from __future__ import annotations
 import contextlib
 import os
 import threading
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 from types import TracebackType
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import plyvel
 
@@ -22,10 +23,8 @@ from deixis.memory.errors import DamagedMemoryError, MemoryFormatError, MemoryWr
 from deixis.memory.folder import one_line
 from deixis.memory.owner import LOCK_FILE, OwnerLock
 from deixis.memory.perceptual import keys, layout
-from deixis.memory.perceptual.codec import Counts, read_counts, write_counts
-
-if TYPE_CHECKING:
-    from deixis.memory.perceptual.level import Change
+from deixis.memory.perceptual.codec import About, Counts, read_counts, write_about, write_counts, write_view
+from deixis.memory.perceptual.records import View
 
 OPTIONS = {
     "paranoid_checks": True,  # indices and logs are checked too, and compaction does not pass on what is broken
@@ -65,6 +64,37 @@ def read_places(source: Any) -> Places:
     return Places(found, None)
 
 
+@dataclass(slots=True)
+class Change:
+    """What a write comes to: keys with their values, None to delete, to be written in one step.
+
+    ``places`` is where views are then, by id, None for a view that is gone; ``views``, how many more there are.
+    """
+
+    pairs: list[tuple[bytes, bytes | None]] = field(default_factory=list)
+    places: dict[str, bytes | None] = field(default_factory=dict)
+    views: int = 0
+
+    def add(self, view: View) -> None:
+        """Add a view that is not there, or was dropped."""
+        said, arrays = write_view(view)
+        self.pairs += (said, arrays)
+        self.places[view.id] = said[0]
+        self.views += 1
+
+    def move(self, said: About, category: str) -> None:
+        """Move a view that is there to another category; its arrays stay where they are."""
+        moved = write_about(said.moved(category))
+        self.pairs += ((said.key, None), moved)
+        self.places[said.id] = moved[0]
+
+    def drop(self, view_id: str, key: bytes, arrays: Sequence[bytes]) -> None:
+        """Drop a view that is there, and the keys of its arrays."""
+        self.pairs += [(each, None) for each in (key, *arrays)]
+        self.places[view_id] = None
+        self.views -= 1
+
+
 class Handle:
     """An open database. As a context manager it is a call under way, and gives the ``plyvel.DB``.
 
@@ -99,7 +129,7 @@ class Handle:
             if self._db is None and not self._calls:
                 self._idle.notify_all()
         if error is not None:
-            raise_told(self.folder, error)
+            raise_level_error(self.folder, error)
 
     def keep(self, source: Any) -> Any:
         """A snapshot or an iterator that outlives a call, until it is let go.
@@ -123,7 +153,7 @@ class Handle:
         """
         found = self._places or self._read_places()
         if found.damage is not None:
-            raise_told(self.folder, found.damage)
+            raise_level_error(self.folder, found.damage)
         return found.by_id
 
     def place_of(self, id: str) -> bytes | None:
@@ -204,16 +234,16 @@ def closed() -> MemoryFormatError:
 
 
 @contextlib.contextmanager
-def told(folder: Path) -> Iterator[None]:
+def wrap_level_errors(folder: Path) -> Iterator[None]:
     """Turn what LevelDB or the system raises within into errors of ours."""
     try:
         yield
     except (plyvel.Error, OSError) as error:
-        raise_told(folder, error)
+        raise_level_error(folder, error)
         raise
 
 
-def raise_told(folder: Path, error: BaseException) -> None:
+def raise_level_error(folder: Path, error: BaseException) -> None:
     """Raise what LevelDB or the system raised as an error of ours; return for others."""
     if isinstance(error, DeixisError) or not isinstance(error, plyvel.Error | OSError):
         return
@@ -267,7 +297,7 @@ def _opened(folder: Path, real: Path, create: bool) -> Handle:
 
 
 def _locked(folder: Path, made: bool) -> Handle:
-    with contextlib.ExitStack() as undo, told(folder):
+    with contextlib.ExitStack() as undo, wrap_level_errors(folder):
         lock = OwnerLock.acquire(folder)
         undo.callback(lock.release, undo=True)
         if made and layout.version_in(folder) is None:  # looked at by the owner only: two may have found no folder

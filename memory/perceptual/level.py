@@ -22,7 +22,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import AbstractContextManager
-from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from typing import Self
@@ -30,8 +29,8 @@ from typing import Self
 from deixis.memory.errors import DamagedMemoryError, UnknownViewError
 from deixis.memory.owner import Closing
 from deixis.memory.perceptual import keys
-from deixis.memory.perceptual.codec import About, read_about, write_about, write_category, write_view
-from deixis.memory.perceptual.handle import Handle, acquire, closed, release
+from deixis.memory.perceptual.codec import read_about, write_category
+from deixis.memory.perceptual.handle import Change, Handle, acquire, closed, release
 from deixis.memory.perceptual.protocol import Finding, PerceptualStats, Progress, ViewKey
 from deixis.memory.perceptual.reading import Snapshot, glance
 from deixis.memory.perceptual.records import Batch, CategoryRecord, View, check_merging, check_name, name_taken
@@ -196,37 +195,6 @@ class UndamagedMemory(LevelMemory):
             self.left_out.append(str(error))
 
 
-@dataclass(slots=True)
-class Change:
-    """What a write comes to: keys with their values, None to delete, to be written in one step.
-
-    ``places`` is where views are then, by id, None for a view that is gone; ``views``, how many more there are.
-    """
-
-    pairs: list[tuple[bytes, bytes | None]] = field(default_factory=list)
-    places: dict[str, bytes | None] = field(default_factory=dict)
-    views: int = 0
-
-    def add(self, view: View) -> None:
-        """Add a view that is not there, or was dropped."""
-        said, arrays = write_view(view)
-        self.pairs += (said, arrays)
-        self.places[view.id] = said[0]
-        self.views += 1
-
-    def move(self, said: About, category: str) -> None:
-        """Move a view that is there to another category; its arrays stay where they are."""
-        moved = write_about(said.moved(category))
-        self.pairs += ((said.key, None), moved)
-        self.places[said.id] = moved[0]
-
-    def drop(self, handle: Handle, id: str, key: bytes) -> None:
-        """Drop a view that is there, even a damaged one."""
-        self.pairs += [(each, None) for each in (key, *_arrays_of(handle, id, key))]
-        self.places[id] = None
-        self.views -= 1
-
-
 def _arrays_of(handle: Handle, id: str, key: bytes) -> list[bytes]:
     """Return the keys of a view's arrays; all that can be its, where what says so is damaged."""
     with Snapshot(handle) as now:
@@ -243,10 +211,10 @@ def _of_batch(handle: Handle, batch: Batch) -> Change:
     for id in batch.forgotten:
         if check_name("a view's id", id) not in there:
             raise UnknownViewError(f"no view '{id}' to forget; nothing was written")
-        change.drop(handle, id, there[id])
+        change.drop(id, there[id], _arrays_of(handle, id, there[id]))
     for view in batch.views:
         if view.id in there:
-            change.drop(handle, view.id, there[view.id])
+            change.drop(view.id, there[view.id], _arrays_of(handle, view.id, there[view.id]))
         change.add(view)
     change.pairs += [write_category(record) for record in batch.categories]
     return change
@@ -271,6 +239,7 @@ def _of_forgetting(handle: Handle, category: str) -> Change:
     """Return the change that takes a category's views and its record away."""
     change = Change()
     for key in [key for key in handle.places().values() if key.startswith(keys.category_prefix(category))]:
-        change.drop(handle, keys.split_view_key(key)[1], key)
+        view_id = keys.split_view_key(key)[1]
+        change.drop(view_id, key, _arrays_of(handle, view_id, key))
     change.pairs.append((keys.name_key(keys.CATEGORY, category), None))
     return change
