@@ -35,8 +35,7 @@ from deixis.perception.recognition.index import Nearest, ViewIndex, indexes_of
 from deixis.perception.recognition.instances import InstanceCategory
 from deixis.perception.recognition.recogniser import Recogniser
 from deixis.perception.recognition.settings import DEFAULT, PAPER
-from deixis.perception.recognition.view_file import open_views, write_views
-from deixis.perception.recognition.views import PackedViews
+from deixis.perception.recognition.views import PackedViews, open_views, write_views
 from deixis.perception.simulator.tableware import make
 from deixis.perception.simulator.views import views_of
 from deixis.session import ground

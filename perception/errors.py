@@ -1,4 +1,4 @@
-"""Errors that perception raises."""
+"""The errors of perception; each also derives from ValueError."""
 
 from __future__ import annotations
 

@@ -47,7 +47,7 @@ def turned_axes(yaw: float) -> NDArray[np.float64]:
     return np.array([[cosine, sine, 0.0], [-sine, cosine, 0.0], [0.0, 0.0, 1.0]])
 
 
-FARTHEST = 1e9
+MAX_COORDINATE = 1e9
 """Coordinates reach so far at the most, in metres or pixels."""
 
 
@@ -114,8 +114,8 @@ class Scene:
         seen = [unknown if thing.colour is None else thing.colour for thing in self.objects]
         return np.array(seen, dtype=np.float64).reshape(-1, 3)
 
-    def __getitem__(self, id: str) -> PerceivedObject:
-        return next(thing for thing in self.objects if thing.id == id)
+    def __getitem__(self, name: str) -> PerceivedObject:
+        return next(thing for thing in self.objects if thing.id == name)
 
     def graph(self, vocabulary: Relations, tolerance: float = 0.0) -> RelationGraph:
         """The complete relation graph: for every ordered pair its exact name (see reasoning.rectangle)."""
@@ -140,8 +140,8 @@ def _require_box(thing: PerceivedObject, file: str) -> None:
         raise SceneError(f"{where}: 'min' and 'max' must both have 2 coordinates, or both 3")
     if not np.isfinite([*thing.minimum, *thing.maximum]).all():
         raise SceneError(f"{where}: a coordinate is not finite")
-    if max(map(abs, (*thing.minimum, *thing.maximum))) > FARTHEST:
-        raise SceneError(f"{where}: a coordinate is beyond {FARTHEST:g}; is the unit right?")
+    if max(map(abs, (*thing.minimum, *thing.maximum))) > MAX_COORDINATE:
+        raise SceneError(f"{where}: a coordinate is beyond {MAX_COORDINATE:g}; is the unit right?")
     for axis, low, high in zip("xyz", thing.minimum, thing.maximum, strict=False):
         if low > high:
             raise SceneError(f"{where}: on {axis} its min {low:g} is above its max {high:g}; swap them")
@@ -163,5 +163,7 @@ def _require_oriented(box: OrientedBox, axes: int, where: str) -> None:
         raise SceneError(
             f"{where}: an oriented box has a centre and extents of 3 finite numbers each, and a finite yaw"
         )
-    if max(map(abs, numbers)) > FARTHEST or min(box.extents) < 0:
-        raise SceneError(f"{where}: an oriented box's extents are 0 or more, and nothing of it beyond {FARTHEST:g}")
+    if max(map(abs, numbers)) > MAX_COORDINATE or min(box.extents) < 0:
+        raise SceneError(
+            f"{where}: an oriented box's extents are 0 or more, and nothing of it beyond {MAX_COORDINATE:g}"
+        )

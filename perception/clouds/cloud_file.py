@@ -6,10 +6,8 @@ from pathlib import Path
 
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.clouds.content import Content, content_of
-from deixis.perception.clouds.depth import PNG, read_depth
-from deixis.perception.clouds.intrinsics import Intrinsics, read_intrinsics
-from deixis.perception.clouds.npy import MAGIC
-from deixis.perception.clouds.npz import read_npz_cloud
+from deixis.perception.clouds.depth import PNG, Intrinsics, read_depth, read_intrinsics
+from deixis.perception.clouds.npy import MAGIC, read_npz_cloud
 from deixis.perception.clouds.pcd import read_pcd
 from deixis.perception.clouds.ply import read_ply
 from deixis.perception.clouds.writing import pcd_bytes, ply_bytes

@@ -1,63 +1,59 @@
-"""numpy's array files, read without its evaluation of the header and without pickles: .npy, and .npz, a zip of them.
+"""numpy's array files, .npy and zips of them, .npz: arrays, and clouds kept as arrays.
 
-The format: https://numpy.org/doc/stable/reference/generated/numpy.lib.format.html. A member of a zip is unpacked only
-where the size that it declares can come out of the bytes that are there.
+numpy reads the header, which it parses without running code; the data behind it is looked at in place, so that nothing
+larger than the file is allocated and nothing is unpickled. A member of a zip is unpacked only where the size that it
+declares can come out of the bytes that are there.
+
+A cloud in a .npz file has the array points and, where they are known, colours, labels, normals and origin. Points are
+(n, 3), or (rows, columns, 3) where they are the pixels of an image; the others are shaped alike. Colours are bytes, or
+floats from 0 to 1, and may be called colors. Other arrays are passed over.
 """
 
 from __future__ import annotations
 
 import io
-import math
-import re
 import zipfile
 import zlib
 from collections.abc import Iterable
 
 import numpy as np
+from numpy.lib import format as npy_format
 from numpy.typing import NDArray
 
 from deixis.perception.checks import shown
+from deixis.perception.clouds.cloud import PointCloud
+from deixis.perception.clouds.columns import as_bytes, labels_of, single
 from deixis.perception.clouds.content import Content
 from deixis.perception.errors import CloudError
 
-MAGIC = b"\x93NUMPY"
+MAGIC = npy_format.MAGIC_PREFIX
+"""The first bytes of a .npy file."""
 MAX_MEMBER = 256 * 2**20
 """The largest array in a zip, in bytes."""
 MAX_DEFLATED = 1032
-"""How many bytes one of deflate's gives at the most."""
-
-_MAX_HEADER = 10_000
-_HEADER = re.compile(
-    r"\{\s*'descr':\s*'([<>|=]?[biuf][1248])',\s*'fortran_order':\s*(True|False),"
-    r"\s*'shape':\s*\(((?:[0-9]{1,15},?\s*)*)\)\s*,?\s*\}\s*"
-)
+"""The largest number of bytes that one byte of deflate's gives."""
+CLOUD_ARRAYS = ("points", "colours", "colors", "labels", "normals", "origin")
 
 
 def read_npy(data: bytes, where: str) -> NDArray[np.generic]:
-    """The array in a .npy file's bytes; raises CloudError where it is none of numbers, or not as long as it says."""
-    long = data[6:7] >= b"\x02"
-    begin = 12 if long else 10
-    size = int.from_bytes(data[8:begin], "little")
-    if data[:6] != MAGIC or len(data) < begin or size > _MAX_HEADER or len(data) < begin + size:
-        raise CloudError(f"{where}: byte 0: this is no whole .npy file; save it again with numpy.save")
-    found = _HEADER.fullmatch(data[begin : begin + size].decode("latin-1"))
-    if found is None:
-        header = shown(data[begin : begin + size].decode("latin-1").strip())
-        raise CloudError(f"{where}: byte {begin}: '{header}' is no array of plain numbers; save it as one, not pickled")
-    dtype = np.dtype(found[1])
-    shape = tuple(int(length) for length in found[3].replace(",", " ").split())
-    wanted = math.prod(shape) * dtype.itemsize
-    if wanted != len(data) - begin - size:
+    """Return the array in a .npy file's bytes; raise CloudError where it is not one of plain numbers, or not whole."""
+    file = io.BytesIO(data)
+    try:
+        version = npy_format.read_magic(file)
+        read_header = npy_format.read_array_header_1_0 if version == (1, 0) else npy_format.read_array_header_2_0
+        shape, in_columns, dtype = read_header(file)
+        if dtype.kind not in "biuf" or dtype.itemsize > 8 or min(shape, default=0) < 0:
+            raise ValueError(f"an array of {dtype} of shape {shape}")
+        return np.frombuffer(data, dtype, offset=file.tell()).reshape(shape, order="F" if in_columns else "C")
+    except Exception as error:  # a damaged header raises whatever Python's own parser raises, not ValueError alone
         raise CloudError(
-            f"{where}: byte {begin + size}: an array of shape {shape} takes {wanted} bytes, and"
-            f" {len(data) - begin - size} follow; get the whole file"
-        )
-    flat: NDArray[np.generic] = np.frombuffer(data, dtype, offset=begin + size)
-    return flat.reshape(shape[::-1]).T if found[2] == "True" else flat.reshape(shape)
+            f"{where}: this is no whole .npy file of plain numbers ({shown(error) or 'its header is damaged'}); save it"
+            " again with numpy.save, not pickled"
+        ) from error
 
 
 def read_npz(content: Content, names: Iterable[str]) -> dict[str, NDArray[np.generic]]:
-    """Those of the named arrays that a .npz file has; raises CloudError where the file or one of them is damaged."""
+    """Return those of the named arrays that a .npz file has; raise CloudError where it or one of them is damaged."""
     found = {}
     try:
         with zipfile.ZipFile(io.BytesIO(content.data.data)) as archive:
@@ -83,3 +79,30 @@ def _unpacked(archive: zipfile.ZipFile, info: zipfile.ZipInfo, where: str) -> by
         )
     with archive.open(info) as member:
         return member.read(info.file_size)
+
+
+def read_npz_cloud(content: Content) -> PointCloud:
+    """Return the cloud in a .npz file; raise CloudError, with the array, where it is malformed."""
+    arrays = read_npz(content, CLOUD_ARRAYS)
+    if "points" not in arrays:
+        raise CloudError(f"{content.name}: there is no array 'points'; save it with numpy.savez(file, points=…)")
+    points = arrays["points"]
+    if points.ndim not in (2, 3) or points.shape[-1] != 3:
+        raise CloudError(f"{content.name}: 'points' has shape {points.shape}; it is (n, 3) or (rows, columns, 3)")
+    shape = points.shape[:-1]
+    wanted = {"colours": (*shape, 3), "colors": (*shape, 3), "labels": shape, "normals": (*shape, 3), "origin": (3,)}
+    for name, array in arrays.items():
+        if array.shape != wanted.get(name, array.shape):
+            raise CloudError(
+                f"{content.name}: '{name}' has shape {array.shape}; it is {wanted[name]}, to go with the points"
+            )
+    colours, labels, normals = arrays.get("colours", arrays.get("colors")), arrays.get("labels"), arrays.get("normals")
+    x, y, z = single(arrays["origin"]).astype(np.float64).tolist() if "origin" in arrays else (0.0, 0.0, 0.0)
+    return PointCloud(
+        single(points).reshape(-1, 3),
+        None if colours is None else as_bytes(colours.reshape(-1, 3), content.name),
+        None if labels is None else labels_of(labels.reshape(-1), content.name),
+        None if normals is None else single(normals).reshape(-1, 3),
+        (shape[0], shape[1]) if len(shape) == 2 else None,
+        (x, y, z),
+    )

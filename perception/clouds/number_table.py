@@ -43,32 +43,30 @@ def read_table(
     CloudError, before anything is allocated, where the file is too short for so many values; and at a line with too few
     or too many, or with something that is no number.
     """
-    from deixis.perception.clouds import number_kernels as kernels
+    from deixis.perception.clouds.table_kernels import DONE, KEPT, LISTED, SKIPPED, count_rows, parse_rows
 
     room = (len(content) - at + 1) // 2  # a value is a digit and a blank
     declared = rows is not None
     if rows is None:
-        rows = min(kernels.count_rows(content.data, at), room // width + 1)  # for more, one of these is too short
+        rows = min(count_rows(content.data, at), room // width + 1)  # for more, one of these is too short
     elif rows * width > room:
         raise CloudError(
             f"{content.name}:{content.line_of(at)}: {rows} rows of {width} values are declared, and the file has room"
             f" for {room} values; correct the count, or get the whole file"
         )
-    roles = np.full(width, kernels.SKIPPED, np.int64)
+    roles = np.full(width, SKIPPED, np.int64)
     roles[list(wanted)] = np.arange(len(wanted))
-    roles[list(lists)] = kernels.LISTED
+    roles[list(lists)] = LISTED
     if kept >= 0:
-        roles[kept] = kernels.KEPT
+        roles[kept] = KEPT
     out = np.empty((len(wanted), rows)).T  # columns are what is looked at next
     lengths = np.zeros(rows if kept >= 0 else 0, np.int64)
     many, filled = _ROOM, 4 * len(lengths)
     again = True
     while again:  # once, or a second time with as much room as the first found to be needed
         inexact, values = np.empty((many, 4), np.int64), np.empty(filled)
-        status, end, row, column, many, filled = kernels.parse_rows(
-            content.data, at, roles, out, inexact, lengths, values
-        )
-        if status != kernels.DONE:
+        status, end, row, column, many, filled = parse_rows(content.data, at, roles, out, inexact, lengths, values)
+        if status != DONE:
             raise _error(content, status, end, row, rows, column, width, declared)
         again = many > len(inexact) or filled > len(values)
     _settle(content, out, inexact[:many])
@@ -92,17 +90,17 @@ def _error(
     content: Content, status: int, at: int, row: int, rows: int, column: int, width: int, declared: bool
 ) -> CloudError:
     """What a kernel found, in words."""
-    from deixis.perception.clouds import number_kernels as kernels
+    from deixis.perception.clouds.table_kernels import BAD_LENGTH, TOO_FEW, TOO_MANY
 
     where = f"{content.name}:{content.line_of(at)}"
     values = f"{width} values {'declared' if declared else 'of the first line'}"
-    if status == kernels.TOO_FEW and not content.data[at:].size and not column:
+    if status == TOO_FEW and not content.data[at:].size and not column:
         return CloudError(f"{where}: the file ends after {row} of {rows} rows; get the whole file")
-    if status == kernels.TOO_FEW:
+    if status == TOO_FEW:
         return CloudError(f"{where}: this line has {column} of the {values}; add what is missing")
-    if status == kernels.TOO_MANY:
+    if status == TOO_MANY:
         return CloudError(f"{where}: this line has more than the {values}; take the others out")
-    if status == kernels.BAD_LENGTH:
+    if status == BAD_LENGTH:
         return CloudError(f"{where}: the length of a list is a whole number of 0 or more that fits; correct it")
     word = content.data[at : at + 64].tobytes().split(maxsplit=1)[0].decode("latin-1")
     return CloudError(f"{where}: '{shown(word)}' is no number; put one there, or nan where there is none")

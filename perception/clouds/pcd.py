@@ -8,15 +8,201 @@ viewpoint's position becomes the cloud's origin; its orientation is not used, si
 
 from __future__ import annotations
 
+import math
+import re
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.perception.checks import shown
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.clouds.columns import KNOWN, cloud_of_columns, declared
 from deixis.perception.clouds.content import Content
 from deixis.perception.clouds.number_table import read_table
-from deixis.perception.clouds.pcd_header import PADDING, Field, PcdHeader, read_header
 from deixis.perception.errors import CloudError
+
+ENCODINGS = ("ascii", "binary", "binary_compressed")
+VERSIONS = frozenset({"0.5", ".5", "0.6", ".6", "0.7", ".7"})
+PADDING = "_"
+"""The name of fields that hold nothing."""
+MAX_POINT_BYTES = 2**20
+"""The largest point, all fields together."""
+
+_KEYWORDS = frozenset(
+    {"VERSION", "FIELDS", "COLUMNS", "SIZE", "TYPE", "COUNT", "WIDTH", "HEIGHT", "VIEWPOINT", "POINTS", "DATA"}
+)
+_TYPES = {"F": ("4", "8"), "I": ("1", "2", "4", "8"), "U": ("1", "2", "4", "8")}
+
+
+@dataclass(frozen=True)
+class Field:
+    """One entry of FIELDS: ``count`` little-endian numbers of one type, in every point."""
+
+    name: str
+    dtype: np.dtype[np.generic]
+    count: int
+
+    @property
+    def size(self) -> int:
+        """Bytes in a point."""
+        return self.dtype.itemsize * self.count
+
+
+@dataclass(frozen=True)
+class PcdHeader:
+    """What a header declares, and ``end``, the byte at which the data begins."""
+
+    fields: tuple[Field, ...]
+    width: int
+    height: int
+    origin: tuple[float, float, float]
+    encoding: str
+    end: int
+
+    @property
+    def points(self) -> int:
+        return self.width * self.height
+
+    @property
+    def organised(self) -> tuple[int, int] | None:
+        """Rows and columns, where the points are an image."""
+        return (self.height, self.width) if self.height > 1 else None
+
+
+@dataclass(frozen=True)
+class _Entry:
+    """The values behind a keyword, and where they stand: ``file:line``."""
+
+    values: list[str]
+    where: str
+
+    def whole(self, value: str) -> int:
+        if not re.fullmatch(r"[0-9]{1,15}", value):
+            raise CloudError(f"{self.where}: '{shown(value)}' is no count; put a whole number of 0 or more there")
+        return int(value)
+
+    def single(self) -> str:
+        if len(self.values) != 1:
+            raise CloudError(f"{self.where}: {len(self.values)} values, where one is wanted; give just one")
+        return self.values[0]
+
+
+def read_header(content: Content) -> PcdHeader:
+    """The header of a PCD file; raises CloudError, with the line, where it is none."""
+    entries, end = _entries(content)
+    encoding = entries["DATA"].single().lower()
+    if encoding not in ENCODINGS:
+        raise CloudError(
+            f"{entries['DATA'].where}: '{shown(encoding)}' is no encoding; it is one of {', '.join(ENCODINGS)}"
+        )
+    version = entries.get("VERSION")
+    if version is not None and version.single() not in VERSIONS:
+        raise CloudError(f"{version.where}: version '{shown(version.single())}' is not read; 0.5 to 0.7 are")
+    width, height = _size(entries, content.name)
+    return PcdHeader(_fields(entries, content.name), width, height, _origin(entries), encoding, end)
+
+
+def _entries(content: Content) -> tuple[dict[str, _Entry], int]:
+    """Entries by keyword up to DATA, and where the data begins."""
+    entries: dict[str, _Entry] = {}
+    for number, line, end in content.header_lines():
+        keyword, *values = line.split() or ["#"]
+        where = f"{content.name}:{number}"
+        if keyword.startswith("#"):
+            continue
+        if keyword not in _KEYWORDS:
+            raise CloudError(f"{where}: '{shown(keyword)}' is no entry of a PCD header; take the line out")
+        if keyword in entries:
+            raise CloudError(f"{where}: a second {keyword}; take one of them out")
+        entries[keyword] = _Entry(values, where)
+        if keyword == "DATA":
+            return entries, end
+    raise AssertionError("header_lines raises at the end of the file")
+
+
+def _fields(entries: dict[str, _Entry], file: str) -> tuple[Field, ...]:
+    named = entries.get("FIELDS", entries.get("COLUMNS"))
+    if named is None or not named.values:
+        raise CloudError(f"{file}: the header has no FIELDS; add the line FIELDS x y z")
+    n = len(named.values)
+    sizes, types, counts = (
+        _one_each(entries.get(keyword), keyword, n, usual)
+        for keyword, usual in (("SIZE", "4"), ("TYPE", "F"), ("COUNT", "1"))
+    )
+    fields = tuple(
+        Field(name.lower(), _dtype(entries, kind, size), _count(entries, count))
+        for name, kind, size, count in zip(named.values, types, sizes, counts, strict=True)
+    )
+    names = [field.name for field in fields if field.name != PADDING]
+    twice = next((name for place, name in enumerate(names) if name in names[:place]), None)
+    if twice is not None:
+        raise CloudError(f"{named.where}: the field '{shown(twice)}' is declared twice; rename one")
+    if sum(field.size for field in fields) > MAX_POINT_BYTES:
+        raise CloudError(f"{named.where}: a point of more than {MAX_POINT_BYTES} bytes; correct SIZE and COUNT")
+    return fields
+
+
+def _one_each(entry: _Entry | None, keyword: str, n: int, usual: str) -> list[str]:
+    if entry is None:
+        return [usual] * n
+    if len(entry.values) != n:
+        raise CloudError(f"{entry.where}: {keyword} has {len(entry.values)} values for {n} fields; give one for each")
+    return entry.values
+
+
+def _dtype(entries: dict[str, _Entry], kind: str, size: str) -> np.dtype[np.generic]:
+    if size not in _TYPES.get(kind, ()):
+        where = entries["TYPE" if "TYPE" in entries and kind not in _TYPES else "SIZE"].where
+        raise CloudError(
+            f"{where}: there is no type '{shown(kind)}' of {shown(size)} bytes; F has 4 or 8, I and U have 1, 2, 4 or 8"
+        )
+    return np.dtype(f"<{kind.lower()}{size}")
+
+
+def _count(entries: dict[str, _Entry], count: str) -> int:
+    if count == "1":
+        return 1
+    number = entries["COUNT"].whole(count)
+    if number == 0:
+        raise CloudError(f"{entries['COUNT'].where}: a field with no values; leave it out, or count 1 at the least")
+    return number
+
+
+def _size(entries: dict[str, _Entry], file: str) -> tuple[int, int]:
+    """Width and height, which agree with POINTS wherever that is given."""
+    found = {
+        keyword: entries[keyword].whole(entries[keyword].single())
+        for keyword in ("WIDTH", "HEIGHT", "POINTS")
+        if keyword in entries
+    }
+    width = found.get("WIDTH", found.get("POINTS"))
+    if width is None:
+        raise CloudError(f"{file}: the header has neither WIDTH nor POINTS; add how many points there are")
+    height = found.get("HEIGHT", 1)
+    if found.get("POINTS", width * height) != width * height:
+        raise CloudError(
+            f"{entries['POINTS'].where}: {found['POINTS']} points, and a width of {width} by a height of {height} makes"
+            f" {width * height}; correct one"
+        )
+    return width, height
+
+
+def _origin(entries: dict[str, _Entry]) -> tuple[float, float, float]:
+    """The position in VIEWPOINT: tx ty tz qw qx qy qz."""
+    entry = entries.get("VIEWPOINT")
+    if entry is None:
+        return (0.0, 0.0, 0.0)
+    try:
+        values = [float(value) for value in entry.values]
+    except ValueError:
+        values = []
+    if len(values) != 7 or not all(math.isfinite(value) for value in values):
+        raise CloudError(
+            f"{entry.where}: a VIEWPOINT has 7 finite numbers, position and quaternion; for none: 0 0 0 1 0 0 0"
+        )
+    return values[0], values[1], values[2]
+
 
 _Columns = dict[str, NDArray[np.generic]]
 
@@ -76,7 +262,7 @@ def _compressed(content: Content, header: PcdHeader) -> _Columns:
 
 def _unpacked(content: Content, header: PcdHeader) -> NDArray[np.uint8]:
     """The plain bytes; sizes are compared with header and file before anything is allocated."""
-    from deixis.perception.clouds import lzf
+    from deixis.perception.clouds.lzf import MAX_EXPANSION, decompress
 
     begin = header.end + 8
     if begin > len(content):
@@ -87,13 +273,13 @@ def _unpacked(content: Content, header: PcdHeader) -> NDArray[np.uint8]:
     content.refuse_rest(begin + packed)
     unpadded = sum(field.size for field in header.fields if field.name != PADDING) * header.points
     whole = sum(field.size for field in header.fields) * header.points
-    if plain not in (whole, unpadded) or plain > packed * lzf.MAX_EXPANSION:
+    if plain not in (whole, unpadded) or plain > packed * MAX_EXPANSION:
         raise CloudError(
             f"{content.name}: byte {header.end + 4}: {packed} bytes that hold {plain} are declared, and the header"
             f" wants {whole}; the file is damaged, write it again"
         )
     out = np.empty(plain, np.uint8)
-    read, written = lzf.decompress(content.data[begin : begin + packed], out)
+    read, written = decompress(content.data[begin : begin + packed], out)
     if read != packed or written != plain:
         raise CloudError(
             f"{content.name}: byte {begin + read}: the compressed data is damaged ({written} of {plain} bytes came"

@@ -7,16 +7,220 @@ over. A file read as a cloud is checked whole all the same.
 
 from __future__ import annotations
 
+import re
+from collections.abc import Set
+from dataclasses import dataclass, field
+
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.perception.checks import shown
 from deixis.perception.clouds.cloud import PointCloud
-from deixis.perception.clouds.columns import KNOWN, POINT, Columns, cloud_of_columns
+from deixis.perception.clouds.columns import KNOWN, POINT, Columns, cloud_of_columns, declared
 from deixis.perception.clouds.content import Content
 from deixis.perception.clouds.mesh import Mesh, fans
-from deixis.perception.clouds.ply_header import read_header
-from deixis.perception.clouds.ply_tables import Table, binary_table, text_table
+from deixis.perception.clouds.number_table import read_table
 from deixis.perception.errors import CloudError
+
+ORDERS = {"ascii": "=", "binary_little_endian": "<", "binary_big_endian": ">"}
+"""Formats, and the order of bytes as numpy writes it."""
+MAX_PROPERTIES = 1024
+"""How many properties an element has at the most."""
+
+_TYPES = {
+    **{"char": "i1", "uchar": "u1", "short": "i2", "ushort": "u2", "int": "i4", "uint": "u4"},
+    **{"float": "f4", "double": "f8", "int8": "i1", "uint8": "u1", "int16": "i2", "uint16": "u2"},
+    **{"int32": "i4", "uint32": "u4", "float32": "f4", "float64": "f8"},
+}
+
+
+@dataclass(frozen=True)
+class Property:
+    """A number in every row of an element; or, where ``length`` is given, a list with a length of that type first."""
+
+    name: str
+    dtype: np.dtype[np.generic]
+    length: np.dtype[np.generic] | None = None
+
+    @property
+    def least_bytes(self) -> int:
+        """How many bytes it has in a binary row at the least."""
+        return (self.length or self.dtype).itemsize
+
+
+@dataclass(frozen=True)
+class Element:
+    """A table of ``rows`` rows, in each its properties one after the other."""
+
+    name: str
+    rows: int
+    properties: tuple[Property, ...]
+
+    @property
+    def has_lists(self) -> bool:
+        return any(column.length is not None for column in self.properties)
+
+
+@dataclass(frozen=True)
+class PlyHeader:
+    """What a header declares, and ``end``, the byte at which the data begins."""
+
+    encoding: str
+    elements: tuple[Element, ...]
+    end: int
+
+
+def read_header(content: Content) -> PlyHeader:
+    """The header of a PLY file; raises CloudError, with the line, where it is none."""
+    encoding = ""
+    elements: list[Element] = []
+    for number, line, end in content.header_lines():
+        keyword, *words = line.split() or ["comment"]
+        where = f"{content.name}:{number}"
+        if number == 1 and line != "ply":
+            raise CloudError(f"{where}: a PLY file begins with the line 'ply'; this is another format")
+        if keyword == "format":
+            encoding = _encoding(words, encoding, where)
+        elif keyword == "element":
+            elements.append(_element(words, elements, encoding, where))
+        elif keyword == "property":
+            elements[-1:] = [_with_property(words, elements, ORDERS[encoding or "ascii"], where)]
+        elif keyword == "end_header":
+            if all(element.name != "vertex" for element in elements):
+                raise CloudError(f"{where}: the header has no element 'vertex', so there are no points; add it")
+            return PlyHeader(encoding, tuple(elements), end)
+        elif number > 1 and keyword not in ("comment", "obj_info"):
+            raise CloudError(f"{where}: '{shown(keyword)}' is no entry of a PLY header; take the line out")
+    raise AssertionError("header_lines raises at the end of the file")
+
+
+def _encoding(words: list[str], before: str, where: str) -> str:
+    if before or len(words) != 2 or words[0] not in ORDERS or words[1] != "1.0":
+        raise CloudError(f"{where}: give one format: {', '.join(ORDERS)}, and 1.0 after it")
+    return words[0]
+
+
+def _element(words: list[str], before: list[Element], encoding: str, where: str) -> Element:
+    if not encoding:
+        raise CloudError(f"{where}: an element before the format; put the line 'format ascii 1.0' or the like first")
+    if len(words) != 2 or not re.fullmatch(r"[0-9]{1,15}", words[1]):
+        raise CloudError(f"{where}: an element has a name and a whole number of rows: element vertex 8")
+    if any(element.name == words[0] for element in before):
+        raise CloudError(f"{where}: a second element '{shown(words[0])}'; rename one")
+    return Element(words[0], int(words[1]), ())
+
+
+def _with_property(words: list[str], elements: list[Element], order: str, where: str) -> Element:
+    """The last element with one property more."""
+    if not elements:
+        raise CloudError(f"{where}: a property before any element; put the line 'element …' before it")
+    types = [_TYPES.get(word) for word in (words[1:3] if words[:1] == ["list"] else words[:1])]
+    if len(words) != (4 if words[:1] == ["list"] else 2) or None in types:
+        raise CloudError(
+            f"{where}: a property has a type and a name ('float x'), or is a list ('list uchar int vertex_indices');"
+            f" types are {', '.join(sorted(_TYPES))}"
+        )
+    dtypes = [np.dtype(f"{order}{kind}") for kind in types]
+    last = elements[-1]
+    if any(column.name == words[-1] for column in last.properties):
+        raise CloudError(f"{where}: a second property '{shown(words[-1])}' of '{shown(last.name)}'; rename one")
+    if len(last.properties) == MAX_PROPERTIES:
+        raise CloudError(f"{where}: more than {MAX_PROPERTIES} properties of '{shown(last.name)}'; leave some out")
+    if len(dtypes) == 2 and dtypes[0].kind == "f":
+        raise CloudError(f"{where}: the length of a list is a whole number; give a type such as uchar")
+    added = Property(words[-1], dtypes[-1], dtypes[0] if len(dtypes) == 2 else None)
+    return Element(last.name, last.rows, (*last.properties, added))
+
+
+@dataclass(frozen=True, eq=False)
+class ElementTable:
+    """What was read of one element, and ``end``, where the next begins."""
+
+    end: int
+    columns: dict[str, NDArray[np.generic]] = field(default_factory=dict)
+    lengths: NDArray[np.int64] | None = None
+    values: NDArray[np.number] | None = None
+
+
+def text_table(content: Content, at: int, element: Element, wanted: Set[str]) -> ElementTable:
+    """An element in ascii, one row a line; raises CloudError, with the line, where it is malformed."""
+    properties = list(enumerate(element.properties))
+    lists = [place for place, column in properties if column.length is not None]
+    kept = next((place for place in lists if element.properties[place].name in wanted), -1)
+    scalars = [place for place, column in properties if column.length is None and column.name in wanted]
+    read = read_table(content, at, element.rows, len(properties), scalars, lists, kept)
+    columns = {}
+    for slot, place in enumerate(scalars):
+        column = element.properties[place]
+        columns[column.name] = declared(read.columns[:, slot], column.dtype, column.name, content.name)
+    return ElementTable(read.end, columns, *((read.lengths, read.values) if kept >= 0 else ()))
+
+
+def binary_table(content: Content, at: int, element: Element, wanted: Set[str]) -> ElementTable:
+    """An element in binary; raises CloudError, with the byte, where the file is too short for it."""
+    least = element.rows * sum(column.least_bytes for column in element.properties)
+    if at + least > len(content):
+        raise _too_short(content, at, element, least)
+    if element.has_lists:
+        return _binary_lists(content, at, element, wanted)
+    layout = np.dtype([(f"{place}", column.dtype) for place, column in enumerate(element.properties)])
+    rows = content.data[at : at + least].view(layout) if least else np.empty(element.rows, layout)
+    names = [column.name for column in element.properties]
+    return ElementTable(at + least, {name: rows[f"{place}"] for place, name in enumerate(names) if name in wanted})
+
+
+def _binary_lists(content: Content, at: int, element: Element, wanted: Set[str]) -> ElementTable:
+    from deixis.perception.clouds.table_kernels import BAD_LENGTH, SKIPPED, TOO_SHORT, walk_rows
+
+    properties = element.properties
+    chosen = [place for place, column in enumerate(properties) if column.name in wanted]
+    slots = np.full(len(properties), SKIPPED, np.int64)
+    slots[chosen] = np.arange(len(chosen))
+    starts, lengths = np.empty((2, element.rows, len(chosen)), np.int64)
+    status, at, row = walk_rows(
+        content.data,
+        at,
+        np.array([column.dtype.itemsize for column in properties]),
+        np.array([0 if column.length is None else column.length.itemsize for column in properties]),
+        np.array([column.length is not None and column.length.kind == "i" for column in properties]),
+        any((column.length or column.dtype).str[0] == ">" for column in properties),
+        slots,
+        starts,
+        lengths,
+    )
+    if status == BAD_LENGTH:
+        raise CloudError(f"{content.name}: byte {at}: {element.name} {row} has a list of negative length; correct it")
+    if status == TOO_SHORT:
+        raise _too_short(content, at, element, 0, row)
+    table = ElementTable(at)
+    for slot, place in enumerate(chosen):
+        column = properties[place]
+        values = _gathered(content.data, starts[:, slot], lengths[:, slot], column.dtype)
+        if column.length is None:
+            table.columns[column.name] = values
+        else:
+            table = ElementTable(at, table.columns, lengths[:, slot], values)
+    return table
+
+
+def _gathered(
+    data: NDArray[np.uint8], starts: NDArray[np.int64], lengths: NDArray[np.int64], dtype: np.dtype[np.generic]
+) -> NDArray[np.number]:
+    """The values of all lists, one after the other, each list at its own place in the bytes."""
+    size = dtype.itemsize
+    before = np.cumsum(lengths) - lengths
+    at = np.repeat(starts - before * size, lengths) + np.arange(lengths.sum()) * size
+    values: NDArray[np.number] = data[at[:, None] + np.arange(size)].view(dtype)[:, 0]
+    return values
+
+
+def _too_short(content: Content, at: int, element: Element, least: int, row: int = 0) -> CloudError:
+    what = f"row {row} of" if row or not least else f"{least} bytes at the least are declared for"
+    return CloudError(
+        f"{content.name}: byte {at}: the file ends within element '{shown(element.name)}' ({what} its {element.rows}"
+        f" rows), {len(content) - at} bytes on; correct the count, or get the whole file"
+    )
+
 
 CORNERS = frozenset({"vertex_indices", "vertex_index"})
 
@@ -43,7 +247,7 @@ def _body(content: Content) -> tuple[Columns, NDArray[np.int64], NDArray[np.int6
     """The vertices' columns, how many corners each face has, and all their corners one after the other."""
     header = read_header(content)
     read = text_table if header.encoding == "ascii" else binary_table
-    tables: dict[str, Table] = {}
+    tables: dict[str, ElementTable] = {}
     at = header.end
     for element in header.elements:
         wanted = {"vertex": KNOWN, "face": CORNERS}.get(element.name, frozenset[str]())

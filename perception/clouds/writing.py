@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.perception.clouds.cloud import PointCloud
-from deixis.perception.clouds.pcd_header import ENCODINGS as PCD_ENCODINGS
+from deixis.perception.clouds.pcd import ENCODINGS as PCD_ENCODINGS
 from deixis.perception.errors import CloudError
 
 PLY_ENCODINGS = ("ascii", "binary")

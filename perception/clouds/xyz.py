@@ -24,7 +24,7 @@ _SEPARATORS = b",;"
 
 def read_xyz(content: Content) -> PointCloud:
     """The cloud in a text file; raises CloudError, with the line, where it is malformed or has no point."""
-    from deixis.perception.clouds.number_kernels import row_start
+    from deixis.perception.clouds.table_kernels import row_start
 
     blank = content.data.copy()
     for separator in _SEPARATORS:

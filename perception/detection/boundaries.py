@@ -3,30 +3,22 @@
 Two surfaces of one thing mostly meet convexly, those of two things in a concave crease (Stein et al., Object
 partitioning using local convexity, CVPR 2014). Beside the crease two things are looked at: a step between surfaces
 that run alike, and a jump of depth. Colour says nothing here: most changes of colour are print on one thing.
+
+Regions of patches are then merged, the most alike first, until every boundary that is left speaks for two things.
 """
 
 from __future__ import annotations
 
+import heapq
+import math
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.perception.detection.settings import DetectionSettings
+from deixis.perception.detection.settings import BoundarySettings, DetectionSettings
 from deixis.perception.detection.supervoxels import Supervoxels, sums
 from deixis.perception.detection.surface import Surface
-
-JUMPED = 1.2
-"""What speaks for two things where the depth jumps."""
-
-MOST = 1.5
-"""No more than that speaks for two things at one place, so that one place does not outweigh a long boundary."""
-
-NOISE, COARSE = 2.5, 0.3
-"""A step is larger than so many standard deviations of the noise, and than that share of the distance of patches."""
-
-UNEVEN = 0.35
-"""How unevenly far from their common edge the middles of two patches may be: the difference by the sum."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,14 +33,18 @@ class Boundaries:
 
 
 def boundaries(surface: Surface, patches: Supervoxels, settings: DetectionSettings) -> Boundaries:
+    """Return where patches of a surface meet, and what speaks for two things there."""
+    limits = settings.boundaries
     pairs, smooth, jumped = _meetings(surface, patches)
     i, j = pairs.T
     sigma = sums(patches.of, surface.sigma) / patches.sizes
     apart = np.median(np.linalg.norm(patches.middles[i] - patches.middles[j], axis=1)) if len(pairs) else 0.0
-    step = np.maximum(max(settings.step, COARSE * apart), NOISE * np.maximum(sigma[i], sigma[j]))
-    shape = np.hypot(creases(patches, pairs) / settings.concavity, steps(patches, pairs) / step)
+    step = np.maximum(
+        max(settings.step, limits.step_distance_ratio * apart), limits.step_noise_ratio * np.maximum(sigma[i], sigma[j])
+    )
+    shape = np.hypot(creases(patches, pairs) / settings.concavity, steps(patches, pairs, limits.off_edge_share) / step)
     lengths = smooth + jumped
-    evidence = (smooth * np.minimum(shape, MOST) + jumped * JUMPED) / lengths
+    evidence = (smooth * np.minimum(shape, limits.max_evidence) + jumped * limits.jump_evidence) / lengths
     return Boundaries(pairs, lengths, evidence, jumped / lengths)
 
 
@@ -60,18 +56,18 @@ def creases(patches: Supervoxels, pairs: NDArray[np.int64]) -> NDArray[np.float6
     return np.where(opening < 0, np.arccos(np.clip(cosine, -1.0, 1.0)), 0.0)
 
 
-def steps(patches: Supervoxels, pairs: NDArray[np.int64]) -> NDArray[np.float64]:
+def steps(patches: Supervoxels, pairs: NDArray[np.int64], off_edge_share: float) -> NDArray[np.float64]:
     """How far (m,) one surface of each pair lies above the other along their common normal; 0 on a sphere.
 
-    Where two planes meet at an angle that is 0 only if both middles are as far from the edge; that one is twice
-    as far as the other is allowed for.
+    Where two planes meet at an angle that is 0 only if both middles are as far from the edge; ``off_edge_share`` is
+    the difference of the two distances by their sum that is allowed for.
     """
     i, j = pairs.T
     normal = patches.normals[i] + patches.normals[j]
     normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-9)
     between = patches.middles[i] - patches.middles[j]
     half_angle_sine = np.linalg.norm(patches.normals[i] - patches.normals[j], axis=1) / 2
-    allowed = UNEVEN * np.linalg.norm(between, axis=1) * half_angle_sine
+    allowed = off_edge_share * np.linalg.norm(between, axis=1) * half_angle_sine
     over: NDArray[np.float64] = np.maximum(np.abs((normal * between).sum(axis=1)) - allowed, 0.0)
     return over
 
@@ -92,3 +88,92 @@ def _meetings(
     total = sums(place)
     jumped = sums(place, jumps.astype(np.float64))
     return np.stack(np.divmod(codes, len(patches)), axis=1), total - jumped, jumped
+
+
+def agglomerated(
+    meeting: Boundaries, colours: NDArray[np.float64], weights: NDArray[np.float64], settings: BoundarySettings
+) -> NDArray[np.int32]:
+    """The region (s,) that each of s patches ends in, numbered from 0 in the order of their first patches.
+
+    The evidence between two regions is the mean over their common boundary (average linkage). Those with the least are
+    merged, as long as that is below ``merge_limit``; ties go to the pair with the smaller numbers. ``colours`` (s, 3),
+    with what each counts for in a mean, ``weights`` (s,), only decide what is merged first: where a knife ends on the
+    rim of a plate nothing but colour tells the two apart, and once the rim is whole, all else where the knife crosses
+    it does. What is of several colours is merged all the same, as what is printed on a box is.
+
+    >>> chain = Boundaries(np.array([[0, 1], [1, 2]]), np.ones(2), np.array([0.1, 0.9]), np.zeros(2))
+    >>> agglomerated(chain, np.zeros((3, 3)), np.ones(3), BoundarySettings(merge_limit=0.5)).tolist()
+    [0, 0, 1]
+    """
+    regions = _Regions(meeting, colours, weights, settings)
+    heap = [(regions.delay(a, b), a, b) for a, others in enumerate(regions.around) for b in others if a < b]
+    heapq.heapify(heap)
+    parent = list(range(len(weights)))
+    limit = settings.merge_limit
+    while heap and heap[0][0] < limit + settings.colour_delay:
+        delay, a, b = heapq.heappop(heap)
+        if b in regions.around[a] and regions.delay(a, b) == delay and regions.evidence(a, b) < limit:
+            parent[b] = a
+            regions.merge(a, b)
+            for c in regions.around[a]:
+                first, second = min(a, c), max(a, c)
+                heapq.heappush(heap, (regions.delay(first, second), first, second))
+    return numbered(parent)
+
+
+class _Regions:
+    """``around`` leads from a region to those that it meets, with how long, and the evidence times that."""
+
+    def __init__(
+        self,
+        meeting: Boundaries,
+        colours: NDArray[np.float64],
+        weights: NDArray[np.float64],
+        settings: BoundarySettings,
+    ) -> None:
+        self._settings = settings
+        self.around: list[dict[int, tuple[float, float]]] = [{} for _ in weights]
+        rows = zip(meeting.pairs.tolist(), meeting.lengths.tolist(), meeting.evidence.tolist(), strict=True)
+        for (a, b), length, evidence in rows:
+            self.around[a][b] = self.around[b][a] = (length, length * evidence)
+        self._weights: list[float] = weights.tolist()
+        self._colours: list[list[float]] = (colours * weights[:, None]).tolist()  # times the weights
+
+    def evidence(self, a: int, b: int) -> float:
+        """What speaks for two things."""
+        length, total = self.around[a][b]
+        return total / length
+
+    def delay(self, a: int, b: int) -> float:
+        """The same, and more where their colours differ."""
+        tint = 0.0
+        for one, other in zip(self._colours[a], self._colours[b], strict=True):
+            tint += (one / self._weights[a] - other / self._weights[b]) ** 2
+        share = min(math.sqrt(tint) / self._settings.full_colour_difference, 1.0)
+        return self.evidence(a, b) + self._settings.colour_delay * share
+
+    def merge(self, a: int, b: int) -> None:
+        """Region b becomes part of region a."""
+        del self.around[a][b], self.around[b][a]
+        for c, (length, total) in self.around[b].items():
+            del self.around[c][b]
+            before = self.around[a].get(c, (0.0, 0.0))
+            self.around[a][c] = self.around[c][a] = (before[0] + length, before[1] + total)
+        self.around[b] = {}
+        self._weights[a] += self._weights[b]
+        self._colours[a] = [one + other for one, other in zip(self._colours[a], self._colours[b], strict=True)]
+
+
+def numbered(parent: list[int]) -> NDArray[np.int32]:
+    """The trees that parents make, each root its own parent, numbered from 0 in the order of their first members."""
+    roots = []
+    for start in range(len(parent)):
+        at = start
+        while parent[at] != at:
+            parent[at] = at = parent[parent[at]]
+        roots.append(at)
+    _, first, place = np.unique(roots, return_index=True, return_inverse=True)
+    rank = np.empty(len(first), np.int32)
+    rank[np.argsort(first)] = np.arange(len(first))
+    result: NDArray[np.int32] = rank[place]
+    return result

@@ -9,39 +9,23 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.perception.clouds.cloud import PointCloud
-from deixis.perception.detection.boxes import oriented_box, upright_box
-from deixis.perception.detection.circles import rim_of
-from deixis.perception.detection.frame import moved, outlook_of, table_frame
+from deixis.perception.detection.boundaries import agglomerated, boundaries
 from deixis.perception.detection.heights import Raised, raised
+from deixis.perception.detection.joining import whole_things
 from deixis.perception.detection.neighbours import neighbour_table
-from deixis.perception.detection.outline import above_outline, in_largest_piece
+from deixis.perception.detection.outline import above_outline, in_largest_piece, oriented_box, rim_of, upright_box
+from deixis.perception.detection.parts import Parts
 from deixis.perception.detection.plane import Outlook, Plane
 from deixis.perception.detection.settings import DetectionSettings
-from deixis.perception.detection.tables import LEAST_TABLE, ON_TABLE, Table, tables
-from deixis.perception.detection.viewpoint import believed, likely
+from deixis.perception.detection.supervoxels import supervoxels
+from deixis.perception.detection.surface import Surface, surface_of
+from deixis.perception.detection.tables import Table, tables
+from deixis.perception.detection.viewpoint import believed, likely, moved, outlook_of, table_frame
 from deixis.perception.errors import CloudError
 from deixis.perception.scene import OrientedBox, PerceivedObject, Scene
 
-NONE = -1
+BACKGROUND = -1
 """The label of a point that belongs to no thing."""
-
-WIDEST, NARROWEST = 20.0, 0.002
-"""Metres from the middle of a cloud: where half the points are farther away, or nearer, the unit is another."""
-
-LONGEST_ALONE = 0.4
-"""Metres: a cloud that is no longer, and in its other directions shorter than a table, shows one thing alone."""
-
-LEAST_TOP = 0.1
-"""Metres: what is taken for a table and is shorter, with nothing on it, is nothing."""
-
-MOST_TABLE = 6.0
-"""Metres: nothing that a robot lays is longer."""
-
-FEW = 0.5
-"""Percent of the points at either end that say nothing of how large a thing is."""
-
-SURELY = 1.5
-"""A thing is so many times as high as what may be taken for a point above the table."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,11 +73,11 @@ def detect(cloud: PointCloud, settings: DetectionSettings | None = None) -> Dete
     if not len(kept):
         raise CloudError("a cloud without one finite point shows nothing; is its depth image empty?")
     points = cloud.points[kept].astype(np.float64)
-    _require_metres(points)
-    outlook = believed(outlook_of(cloud, settings), points, settings.seed)
+    _require_metres(points, settings)
+    outlook = believed(outlook_of(cloud, settings), points, settings)
     if len(points) >= settings.least_points and _is_alone(points, settings):
         return _alone(cloud, kept, points, outlook, settings)
-    seen = list(islice(tables(points, outlook, settings.seed), settings.table + 1))
+    seen = list(islice(tables(points, outlook, settings), settings.table + 1))
     if len(seen) < settings.table:
         return _nothing(len(cloud), None, np.eye(4), _no_table(settings, len(seen)))
     table = seen[settings.table - 1]
@@ -118,36 +102,37 @@ def _on_table(
 ) -> Detection:
     """The things on one table, among the points (n, 3) of those numbers in the cloud."""
     view = _view(points, table.plane, table.outlook, settings)
-    neighbours = neighbour_table(points, kept, cloud.organised, table.outlook.eye if table.outlook.known else None)
+    eye = table.outlook.eye if table.outlook.known else None
+    neighbours = neighbour_table(points, kept, cloud.organised, settings.surface, eye)
     rising = raised(view.heights, view.distance, neighbours, settings)
     colours = None if cloud.colours is None else cloud.colours[kept]
     found = _things(view, rising, neighbours, colours, settings)
-    large = _too_large(view)
-    if not found.max(initial=NONE) >= 0:
-        if not large and max(_sides(view)) < LEAST_TOP:
+    large = _too_large(view, settings)
+    if not found.max(initial=BACKGROUND) >= 0:
+        if not large and max(_sides(view)) < settings.scale.min_bare_table_length:
             return _nothing(len(cloud), None, np.eye(4), _no_table(settings, 0))
-        why = ("nothing is on the table", *(large or _too_small(view)), *_a_wall(view, settings))
+        why = ("nothing is on the table", *(large or _too_small(view, settings)), *_a_wall(view, settings))
         return _nothing(len(cloud), table.plane, view.frame, *why)
     members = [view.points[found == k] for k in range(int(found.max()) + 1)]
-    table_seen = view.points[(np.abs(view.heights) < ON_TABLE) & (found == NONE), :2]
-    rims = [rim_of(thing[:, :2], table_seen) for thing in members]
-    boxes = np.stack([upright_box(thing, rim) for thing, rim in zip(members, rims, strict=True)])
+    table_seen = view.points[(np.abs(view.heights) < settings.plane.table_band) & (found == BACKGROUND), :2]
+    rims = [rim_of(thing[:, :2], table_seen, settings.outlines) for thing in members]
+    boxes = np.stack([upright_box(thing, settings.outlines, rim) for thing, rim in zip(members, rims, strict=True)])
     order = _left_to_right(boxes)
-    labels = np.full(len(cloud), NONE, np.int32)
-    labels[kept] = np.append(np.argsort(order), NONE)[found]
-    oriented = tuple(oriented_box(members[k], rims[k]) for k in order)
-    return Detection(table.plane, view.frame, labels, boxes[order], oriented, large or _too_small(view))
+    labels = np.full(len(cloud), BACKGROUND, np.int32)
+    labels[kept] = np.append(np.argsort(order), BACKGROUND)[found]
+    oriented = tuple(oriented_box(members[k], settings.outlines, rims[k]) for k in order)
+    return Detection(table.plane, view.frame, labels, boxes[order], oriented, large or _too_small(view, settings))
 
 
-def _require_metres(points: NDArray[np.float64]) -> None:
+def _require_metres(points: NDArray[np.float64], settings: DetectionSettings) -> None:
     few = points[:: max(1, len(points) // 10_000)]
     spread = float(np.median(np.linalg.norm(few - np.median(few, axis=0), axis=1)))
-    if spread > WIDEST:
+    if spread > settings.scale.max_median_radius:
         raise CloudError(
             f"half of the points are more than {spread:.0f} m from the middle, too far for a table;"
             " coordinates are metres: divide millimetres by 1000, centimetres by 100; a depth image has a depth_scale"
         )
-    if len(few) > 100 and spread < NARROWEST:
+    if len(few) > 100 and spread < settings.scale.min_median_radius:
         raise CloudError(
             f"half of the points are within {1000 * spread:.2g} mm of the middle, too near for a table;"
             " coordinates are metres: is the unit, or the depth_scale of the intrinsics, another?"
@@ -157,9 +142,11 @@ def _require_metres(points: NDArray[np.float64]) -> None:
 def _is_alone(points: NDArray[np.float64], settings: DetectionSettings) -> bool:
     """Whether all there is, but for a few points, is as small as a thing."""
     axes = np.linalg.svd(np.cov(points.T))[0]
-    low, high = np.percentile(points @ axes, (FEW, 100 - FEW), axis=0)
+    limits = settings.scale
+    outliers = (limits.outlier_percent, 100 - limits.outlier_percent)
+    low, high = np.percentile(points @ axes, outliers, axis=0)
     _, middle, longest = np.sort(high - low).tolist()
-    return bool(settings.least_length <= longest < LONGEST_ALONE and middle < LEAST_TABLE)
+    return bool(settings.least_length <= longest < limits.max_single_object_length and middle < limits.min_table_length)
 
 
 def _alone(
@@ -172,20 +159,20 @@ def _alone(
     """One thing, all that is seen, as if it stood on a table: upright as told, else as the image, else as the cloud."""
     ups = (outlook.upwards, outlook.up, np.array([0.0, 0.0, 1.0]))
     up = next(direction for direction in ups if direction is not None)
-    below = Plane(up, float(np.percentile(points @ up, FEW)))
-    outlook = likely(outlook, points, below, settings.seed)
+    below = Plane(up, float(np.percentile(points @ up, settings.scale.outlier_percent)))
+    outlook = likely(outlook, points, below, settings)
     frame = table_frame(below, points, outlook, settings.viewer)
     thing = moved(points, frame)
-    labels = np.full(len(cloud), NONE, np.int32)
+    labels = np.full(len(cloud), BACKGROUND, np.int32)
     labels[kept] = 0
-    box = upright_box(thing)
+    box = upright_box(thing, settings.outlines)
     sides = " by ".join(f"{100 * side:.0f}" for side in (box[1] - box[0]).tolist())
     note = f"no table was found: all there is, {sides} cm, was taken for one thing seen alone"
-    return Detection(None, frame, labels, box[None], (oriented_box(thing),), (note,))
+    return Detection(None, frame, labels, box[None], (oriented_box(thing, settings.outlines),), (note,))
 
 
 @dataclass(frozen=True, eq=False)
-class _View:
+class _TableView:
     """The finite points in the table's frame, how far from the sensor they are and where it stands, and the table's."""
 
     frame: NDArray[np.float64]  # (4, 4)
@@ -199,78 +186,84 @@ class _View:
         return np.ascontiguousarray(self.points[:, 2])
 
 
-def _view(points: NDArray[np.float64], plane: Plane, outlook: Outlook, settings: DetectionSettings) -> _View:
-    level = np.flatnonzero(np.abs(plane.heights(points)) < ON_TABLE)
-    top = level[in_largest_piece(points[level] @ plane.across.T)]
+def _view(points: NDArray[np.float64], plane: Plane, outlook: Outlook, settings: DetectionSettings) -> _TableView:
+    level = np.flatnonzero(np.abs(plane.heights(points)) < settings.plane.table_band)
+    top = level[in_largest_piece(points[level] @ plane.across.T, settings.outlines.table_cell)]
     frame = table_frame(plane, points[top] if len(top) else points, outlook, settings.viewer)
     eye = moved(outlook.eye[None], frame)[0]
     at = np.ascontiguousarray(moved(points, frame))
-    return _View(frame, at, np.linalg.norm(at - eye, axis=1), eye, top)
+    return _TableView(frame, at, np.linalg.norm(at - eye, axis=1), eye, top)
 
 
-def _too_small(view: _View) -> tuple[str, ...]:
+def _too_small(view: _TableView, settings: DetectionSettings) -> tuple[str, ...]:
     """A note where the table is too small for one."""
     across, deep = _sides(view)
-    if max(across, deep) >= LEAST_TABLE:
+    if max(across, deep) >= settings.scale.min_table_length:
         return ()
     size = f"{100 * across:.0f} by {100 * deep:.0f} cm"
     return (f"what was taken for the table is only {size}: it may be a part of a thing seen alone",)
 
 
-def _too_large(view: _View) -> tuple[str, ...]:
+def _too_large(view: _TableView, settings: DetectionSettings) -> tuple[str, ...]:
     """A note where no table is so large: what is level with it is looked at, as points far apart are no one piece."""
-    level = view.points[np.abs(view.heights) < ON_TABLE, :2]
+    level = view.points[np.abs(view.heights) < settings.plane.table_band, :2]
     level = level[:: max(1, len(level) // 10_000)]
     if not len(level):
         return ()
     across, deep = np.subtract(*np.percentile(level, (95, 5), axis=0)).tolist()
-    if max(across, deep) <= MOST_TABLE:
+    if max(across, deep) <= settings.scale.max_table_length:
         return ()
     return (
         f"what was taken for the table is {across:.0f} by {deep:.0f} m: coordinates are metres; is the unit another?",
     )
 
 
-def _sides(view: _View) -> tuple[float, float]:
+def _sides(view: _TableView) -> tuple[float, float]:
     """How far the table reaches across and away, in metres."""
     across, deep = np.ptp(view.points[view.top, :2], axis=0).tolist() if len(view.top) else (0.0, 0.0)
     return across, deep
 
 
-def _a_wall(view: _View, settings: DetectionSettings) -> tuple[str, ...]:
+def _a_wall(view: _TableView, settings: DetectionSettings) -> tuple[str, ...]:
     """A note where more is far above the table than on it."""
     above = (view.heights > settings.reach).sum()
-    if above <= (np.abs(view.heights) < ON_TABLE).sum():
+    if above <= (np.abs(view.heights) < settings.plane.table_band).sum():
         return ()
     rise = f"{100 * settings.reach:.0f} cm"
     return (f"most of what is seen is more than {rise} above what was taken for the table: it may be a wall",)
 
 
 def _things(
-    view: _View,
+    view: _TableView,
     rising: Raised,
     neighbours: NDArray[np.int32],
     colours: NDArray[np.uint8] | None,
     settings: DetectionSettings,
 ) -> NDArray[np.int32]:
     """The number of its thing for each point (n,), in no particular order, -1 for none."""
-    from deixis.perception.detection.segmentation import segments
-    from deixis.perception.detection.surface import surface_of
-
-    found = np.full(len(view.points), NONE, np.int32)
+    found = np.full(len(view.points), BACKGROUND, np.int32)
     chosen = np.flatnonzero(rising.above)
     if not len(chosen):
         return found
-    number = np.full(len(view.points) + 1, NONE, np.int32)
+    number = np.full(len(view.points) + 1, BACKGROUND, np.int32)
     number[chosen] = np.arange(len(chosen))
     sigma = rising.noise * view.distance[chosen] ** 2
     painted = None if colours is None else colours[chosen]
-    surface = surface_of(view.points[chosen], painted, number[neighbours[chosen]], sigma, view.eye)
+    surface = surface_of(view.points[chosen], painted, number[neighbours[chosen]], sigma, view.eye, settings.surface)
     pieces = segments(surface, settings)
-    within = above_outline(view.points[np.abs(view.heights) < ON_TABLE], surface.points)
-    least = np.maximum(settings.height, SURELY * rising.upper(view.distance[chosen]))
+    table = view.points[np.abs(view.heights) < settings.plane.table_band]
+    within = above_outline(table, surface.points, settings.outlines)
+    least = np.maximum(settings.height, settings.heights.object_noise_ratio * rising.upper(view.distance[chosen]))
     found[chosen] = _kept(pieces, within, surface.points, least, settings)
     return found
+
+
+def segments(surface: Surface, settings: DetectionSettings) -> NDArray[np.int32]:
+    """Return the number of its thing for each point of the surface (n,), from 0: supervoxels, merged, then joined."""
+    patches = supervoxels(surface, settings.supervoxels)
+    meeting = boundaries(surface, patches, settings)
+    regions = agglomerated(meeting, patches.tints, patches.weights, settings.boundaries)
+    return whole_things(Parts(regions, patches, meeting, settings.joining)).of[patches.of]
 
 
 def _kept(
@@ -281,13 +274,13 @@ def _kept(
     settings: DetectionSettings,
 ) -> NDArray[np.int32]:
     """Pieces that are no things get -1: too small, too low to be told from noise, or mostly beside the table."""
-    result = np.full(len(pieces), NONE, np.int32)
+    result = np.full(len(pieces), BACKGROUND, np.int32)
     number = 0
     for piece in range(int(pieces.max()) + 1):
         of = pieces == piece
-        if of.sum() < settings.least_points or within[of].mean() < 0.5:
+        if of.sum() < settings.least_points or within[of].mean() < settings.heights.min_share_above_table:
             continue
-        rise = np.quantile(points[of, 2] / least[of], 0.9)
+        rise = np.quantile(points[of, 2] / least[of], settings.heights.object_quantile)
         if rise > 1.0 and np.ptp(points[of], axis=0).max() >= settings.least_length:
             result[of] = number
             number += 1
@@ -301,4 +294,4 @@ def _left_to_right(boxes: NDArray[np.float64]) -> NDArray[np.intp]:
 
 
 def _nothing(count: int, plane: Plane | None, frame: NDArray[np.float64], *why: str) -> Detection:
-    return Detection(plane, frame, np.full(count, NONE, np.int32), np.zeros((0, 2, 3)), (), why)
+    return Detection(plane, frame, np.full(count, BACKGROUND, np.int32), np.zeros((0, 2, 3)), (), why)

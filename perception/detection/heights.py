@@ -12,22 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.perception.detection.settings import DetectionSettings
-
-ROUNDS = 2
-"""How often heights are averaged over the neighbours: twice is about 5 by 5 pixels."""
-
-UPPER, LOWER = 4.5, 2.25
-"""The thresholds, in standard deviations of averaged heights."""
-
-SURELY_TABLE = 0.006
-"""Metres from the plane, at one metre from the sensor, within which noise is estimated."""
-
-LEAST_NOISE = 1e-4
-"""Metres at one metre: less noise than that is not reckoned with."""
-
-NEAREST = 0.3
-"""Metres: nearer to the sensor than that, noise becomes no less."""
+from deixis.perception.detection.settings import DetectionSettings, HeightSettings
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,10 +23,12 @@ class Raised:
     above: NDArray[np.bool_]
     noise: float
     averaged: float
+    settings: HeightSettings
 
     def upper(self, distance: NDArray[np.float64]) -> NDArray[np.float64]:
         """The height (n,) that is surely no noise, at distances (n,) from the sensor."""
-        return UPPER * self.averaged * np.maximum(distance, NEAREST) ** 2
+        nearest = self.settings.min_noise_distance
+        return self.settings.upper_threshold * self.averaged * np.maximum(distance, nearest) ** 2
 
 
 def raised(
@@ -55,24 +42,25 @@ def raised(
     A sensor's noise grows with the square of the distance (Khoshelham and Elberink 2012); how large it is, is measured
     on the table itself.
     """
-    from deixis.perception.detection.height_kernels import averaged, grown
+    from deixis.perception.detection.kernels import averaged, grown
 
-    growth = np.maximum(distance, NEAREST) ** 2
-    noise = _noise(heights, growth)
-    mean = averaged(heights, neighbours, np.maximum(6 * noise * growth, settings.height), ROUNDS)
-    left = _noise(mean, growth)
-    upper = np.maximum(settings.height, UPPER * left * growth)
-    lower = np.maximum(settings.height / 4, LOWER * left * growth)
+    limits = settings.heights
+    growth = np.maximum(distance, limits.min_noise_distance) ** 2
+    noise = _noise(heights, growth, limits)
+    mean = averaged(heights, neighbours, np.maximum(6 * noise * growth, settings.height), limits.smoothing_rounds)
+    left = _noise(mean, growth, limits)
+    upper = np.maximum(settings.height, limits.upper_threshold * left * growth)
+    lower = np.maximum(settings.height / 4, limits.lower_threshold * left * growth)
     highest = settings.reach
     above = grown((mean > upper) & (mean < highest), (mean > lower) & (mean < highest), neighbours)
-    return Raised(above, noise, left)
+    return Raised(above, noise, left, limits)
 
 
-def _noise(heights: NDArray[np.float64], growth: NDArray[np.float64]) -> float:
+def _noise(heights: NDArray[np.float64], growth: NDArray[np.float64], limits: HeightSettings) -> float:
     """The standard deviation of the table's heights at one metre, by the median, from the points below the plane.
 
     Those above are no use: what lies on the table is among them.
     """
     scaled = heights / growth
-    below = -scaled[(scaled < 0) & (scaled > -SURELY_TABLE)]
-    return max(float(1.4826 * np.median(below)), LEAST_NOISE) if len(below) else LEAST_NOISE
+    below = -scaled[(scaled < 0) & (scaled > -limits.noise_band)]
+    return max(float(1.4826 * np.median(below)), limits.min_noise) if len(below) else limits.min_noise

@@ -11,13 +11,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.perception.detection.settings import SurfaceSettings
 from deixis.perception.detection.viewpoint import directions
 
-COUNT = 8
-"""Neighbours of a point."""
-
-FAR = 6.0
-"""Points of a cloud that is no image are no neighbours beyond so many times the usual distance of the nearest."""
+NEIGHBOURS = 8
+"""Number of neighbours of a point."""
 
 _AROUND = ((-1, -1), (-1, 0), (-1, 1), (0, -1), (0, 1), (1, -1), (1, 0), (1, 1))
 
@@ -26,6 +24,7 @@ def neighbour_table(
     points: NDArray[np.float64],
     kept: NDArray[np.intp],
     organised: tuple[int, int] | None,
+    settings: SurfaceSettings,
     eye: NDArray[np.float64] | None = None,
 ) -> NDArray[np.int32]:
     """For each of the points (n, 3), finite, its neighbours (n, 8) as indices among these, -1 where there is none.
@@ -33,12 +32,12 @@ def neighbour_table(
     ``kept`` (n,) are the places of the points in the image of ``organised`` rows and columns; without these, ``eye``
     (3,) is from where they were seen, if that is known.
 
-    >>> neighbour_table(np.zeros((3, 3)), np.array([0, 1, 3]), (2, 2))[0].tolist()
+    >>> neighbour_table(np.zeros((3, 3)), np.array([0, 1, 3]), (2, 2), SurfaceSettings())[0].tolist()
     [-1, -1, -1, -1, 1, -1, -1, 2]
     """
     if organised is not None:
         return _pixels(kept, *organised)
-    return _nearest(points if eye is None else directions(points, eye))
+    return _nearest(points if eye is None else directions(points, eye), settings.max_neighbour_ratio)
 
 
 def _pixels(kept: NDArray[np.intp], rows: int, columns: int) -> NDArray[np.int32]:
@@ -49,16 +48,17 @@ def _pixels(kept: NDArray[np.intp], rows: int, columns: int) -> NDArray[np.int32
     return np.ascontiguousarray(np.stack(table, axis=1))
 
 
-def _nearest(points: NDArray[np.float64]) -> NDArray[np.int32]:
+def _nearest(points: NDArray[np.float64], max_ratio: float) -> NDArray[np.int32]:
+    """Return the nearest points, none beyond ``max_ratio`` times the usual distance of the nearest."""
     from scipy.spatial import cKDTree
 
-    count = min(COUNT + 1, len(points))
-    found = np.full((len(points), COUNT), -1, np.int32)
+    count = min(NEIGHBOURS + 1, len(points))
+    found = np.full((len(points), NEIGHBOURS), -1, np.int32)
     if count < 2:
         return found
     distance, index = cKDTree(points).query(points, k=count, workers=-1)
     usual = float(np.median(distance[:, 1:]))
     near = index.astype(np.int32)
-    near[(distance > FAR * usual) | (near == np.arange(len(points))[:, None])] = -1
+    near[(distance > max_ratio * usual) | (near == np.arange(len(points))[:, None])] = -1
     found[:, : count - 1] = near[:, 1:]
     return found

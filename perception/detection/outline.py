@@ -1,29 +1,31 @@
-"""Outlines as seen from above: the corners of a convex one, and what is within that of a table."""
+"""Outlines as seen from above: that of the table, circles where the rest of a rim is hidden, boxes around things."""
 
 from __future__ import annotations
+
+import math
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-CELL = 0.03
-"""Metres of the grid on which the points of a table are connected."""
+from deixis.perception.detection.settings import OutlineSettings
+from deixis.perception.scene import OrientedBox, turned_axes
 
-ENOUGH = 30_000
-"""Points of a table that its outline is drawn from."""
-
-SLACK = 0.02
-"""Metres by which a thing's point may lie beyond the outline."""
+SECTORS = 36
+"""Number of sectors into which a circle is divided."""
 
 
-def above_outline(table: NDArray[np.float64], points: NDArray[np.float64]) -> NDArray[np.bool_]:
+def above_outline(
+    table: NDArray[np.float64], points: NDArray[np.float64], settings: OutlineSettings
+) -> NDArray[np.bool_]:
     """Which of the points (n, 3) are above or below the convex hull of the table's points (m, 3), shape (n,).
 
     Only the largest connected piece of the table counts, so that what is level elsewhere in the room is left out.
     """
     from scipy.spatial import ConvexHull, QhullError
 
-    plan = table[:: max(1, len(table) // ENOUGH), :2]
-    piece = plan[in_largest_piece(plan)]
+    plan = table[:: max(1, len(table) // settings.table_sample_size), :2]
+    piece = plan[in_largest_piece(plan, settings.table_cell)]
     if len(piece) < 3:
         return np.zeros(len(points), dtype=np.bool_)
     try:
@@ -32,17 +34,23 @@ def above_outline(table: NDArray[np.float64], points: NDArray[np.float64]) -> ND
         return np.zeros(len(points), dtype=np.bool_)
     inside = np.ones(len(points), dtype=np.bool_)
     for a, b, c in sides.tolist():  # all at once would be tens of numbers for each point of the cloud
-        inside &= a * points[:, 0] + b * points[:, 1] + c <= SLACK
+        inside &= a * points[:, 0] + b * points[:, 1] + c <= settings.table_slack
     return inside
 
 
-def in_largest_piece(plan: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Which of points (n, 2) are in the connected piece that has most of them, shape (n,)."""
+def in_largest_piece(plan: NDArray[np.float64], cell_size: float) -> NDArray[np.bool_]:
+    """Which of points (n, 2) are in the connected piece that has most of them, shape (n,).
+
+    Points are connected over a grid of cells of ``cell_size`` (metres), or of a thousandth of the whole if that is
+    more.
+    """
     from scipy.ndimage import label
 
     if not len(plan):
         return np.zeros(0, dtype=np.bool_)
-    cell = np.floor((plan - plan.min(axis=0)) / max(CELL, float(np.ptp(plan, axis=0).max()) / 1000)).astype(np.int64)
+    cell = np.floor((plan - plan.min(axis=0)) / max(cell_size, float(np.ptp(plan, axis=0).max()) / 1000)).astype(
+        np.int64
+    )
     grid = np.zeros(cell.max(axis=0) + 1, dtype=np.bool_)
     grid[cell[:, 0], cell[:, 1]] = True
     pieces, _ = label(grid, np.ones((3, 3)))
@@ -60,3 +68,112 @@ def corners_of(plan: NDArray[np.float64]) -> NDArray[np.float64] | None:
     except (QhullError, ValueError):
         return None
     return corners
+
+
+@dataclass(frozen=True, eq=False)
+class Circle:
+    """A circle in the plan, metres."""
+
+    centre: NDArray[np.float64]  # (2,)
+    radius: float
+
+    def off(self, plan: NDArray[np.float64]) -> NDArray[np.float64]:
+        """How far places (n, 2) are beyond it, in its radius; within it below 0, shape (n,)."""
+        out: NDArray[np.float64] = np.linalg.norm(plan - self.centre, axis=1) / self.radius - 1.0
+        return out
+
+    def sectors(self, plan: NDArray[np.float64], edge: float) -> NDArray[np.int64]:
+        """The sectors in which there are places (n, 2) at its edge, in order."""
+        x, y = (plan[self.off(plan) > -edge] - self.centre).T
+        turn = np.arctan2(y, x) / (2 * np.pi) % 1.0
+        return np.unique(np.minimum(turn * SECTORS, SECTORS - 1).astype(np.int64))
+
+    def turned(self, axes: NDArray[np.float64]) -> Circle:
+        """The same along other axes, in rows, (2, 2)."""
+        return Circle(axes @ self.centre, self.radius)
+
+
+def circle_around(plan: NDArray[np.float64], edge: float) -> Circle | None:
+    """The circle on which all corners of the convex outline of places (n, 2) lie, as well as ``edge`` has it.
+
+    By algebraic least squares (Kasa, A circle fitting procedure and its error analysis, 1976). None where there is
+    none, or fewer than five corners.
+    """
+    corners = corners_of(plan)
+    if corners is None or len(corners) < 5:
+        return None
+    terms = np.column_stack([2 * corners, np.ones(len(corners))])
+    x, y, rest = np.linalg.lstsq(terms, (corners**2).sum(axis=1))[0].tolist()
+    circle = Circle(np.array([x, y]), math.sqrt(max(rest + x * x + y * y, 1e-12)))
+    return circle if np.abs(circle.off(corners)).max() <= edge else None
+
+
+def rim_of(plan: NDArray[np.float64], table: NDArray[np.float64], settings: OutlineSettings) -> Circle | None:
+    """The whole rim of a round thing of which places (n, 2) are seen, the rest being hidden by itself or by others.
+
+    None where what is seen is not round, where too little of its edge is, or where the table is seen at places (m, 2)
+    within what would be its rim.
+    """
+    circle = circle_around(plan, settings.rim_tolerance)
+    if circle is None or not settings.min_rim_radius <= circle.radius <= settings.max_rim_radius:
+        return None
+    seen = circle.sectors(plan, settings.rim_tolerance)
+    gaps = np.sort(np.diff(np.append(seen, seen[0] + SECTORS)) - 1)
+    if SECTORS - gaps[-1] < settings.min_rim_sectors or gaps[:-1].max(initial=0) > settings.rim_gap_sectors:
+        return None
+    within = table[circle.off(table) * circle.radius < -settings.rim_inset]
+    bare = len(np.unique(np.floor(within / settings.bare_cell), axis=0)) * settings.bare_cell**2
+    return circle if bare < settings.bare_share * np.pi * circle.radius**2 else None
+
+
+def upright_box(
+    points: NDArray[np.float64], settings: OutlineSettings, rim: Circle | None = None
+) -> NDArray[np.float64]:
+    """Least and greatest corner (2, 3) of points (n, 3) in the table's frame; it stands on the table or above it.
+
+    ``rim`` is a circle in the plan that it takes in, too.
+
+    >>> upright_box(np.array([[0.0, 0, -0.001], [1, 2, 3]]), OutlineSettings()).tolist()
+    [[0.0, 0.0, 0.0], [1.0, 2.0, 3.0]]
+    """
+    skip = int(settings.trim_share * len(points))  # the few at either end of an axis are noise
+    ordered = np.sort(points, axis=0)
+    box = np.stack([ordered[skip], ordered[len(points) - 1 - skip]])
+    if rim is not None:
+        box[0, :2] = np.minimum(box[0, :2], rim.centre - rim.radius)
+        box[1, :2] = np.maximum(box[1, :2], rim.centre + rim.radius)
+    box[:, 2] = np.maximum(box[:, 2], 0.0)
+    return box
+
+
+def oriented_box(points: NDArray[np.float64], settings: OutlineSettings, rim: Circle | None = None) -> OrientedBox:
+    """The upright box with the smallest plan, among those with a side along a side of the points' outline.
+
+    Its first side is the longer one, with a yaw above -pi/2, to pi/2. ``rim`` is a circle in the plan that it takes in,
+    too. That the smallest rectangle has such a side is the theorem of Freeman and Shapira (1975).
+    """
+    box = _box_along(_best_angle(points[:, :2]), points, settings, rim)
+    if box.extents[1] > box.extents[0]:
+        box = _box_along(box.yaw + np.pi / 2, points, settings, rim)
+    return box
+
+
+def _box_along(yaw: float, points: NDArray[np.float64], settings: OutlineSettings, rim: Circle | None) -> OrientedBox:
+    """The box with a side in that direction."""
+    yaw = float(np.pi / 2 - (np.pi / 2 - yaw) % np.pi)
+    axes = turned_axes(yaw)
+    low, high = upright_box(points @ axes.T, settings, rim and rim.turned(axes[:2, :2]))
+    (x, y, z), (length, width, height) = (axes.T @ ((low + high) / 2)).tolist(), (high - low).tolist()
+    return OrientedBox((x, y, z), yaw, (length, width, height))
+
+
+def _best_angle(plan: NDArray[np.float64]) -> float:
+    corners = corners_of(plan)
+    if corners is None:
+        along = np.ptp(plan, axis=0)
+        return float(np.arctan2(along[1], along[0])) if along.any() else 0.0
+    sides = np.roll(corners, -1, axis=0) - corners
+    angles = np.unique(np.arctan2(sides[:, 1], sides[:, 0]) % (np.pi / 2))
+    turned = corners @ np.stack([np.cos(angles), np.sin(angles)])
+    across = corners @ np.stack([-np.sin(angles), np.cos(angles)])
+    return float(angles[np.argmin(np.ptp(turned, axis=0) * np.ptp(across, axis=0))])

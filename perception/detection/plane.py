@@ -11,29 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-SAMPLE, MOST_REFINED = 10_000, 50_000
-"""Points that planes are looked for among, and that the table's is fitted to."""
-
-TRIES = 300
-NEAR = 0.01
-"""Metres within which a point lies on a plane at first, at one metre from the sensor; it grows with the square, as
-noise does."""
-
-FARTHEST = 2.5
-"""Metres up to which noise is reckoned with: what seems farther may have been moved."""
-
-MOST_PLANES = 5
-LEAST_SHARE = 0.04
-"""A plane that could be the table holds at least this share of the points."""
-
-STANDING = (0.008, 0.35)
-"""Metres above a plane between which things stand on it."""
-
-TABLE_HEIGHT, LEAST_STANDING = 0.4, 0.002
-"""Metres that a floor lies below a table at the least, and the share of all points that stand on what is no floor."""
-
-ALONG = 0.95
-"""The cosine between the normals of two planes that are as level is greater."""
+from deixis.perception.detection.settings import DetectionSettings, PlaneSettings
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,9 +32,9 @@ class Plane:
         along: NDArray[np.float64] = np.linalg.svd(self.normal[None])[2][1:]
         return along
 
-    def is_along(self, other: Plane) -> bool:
+    def is_along(self, other: Plane, settings: PlaneSettings) -> bool:
         """Whether both are as level, their normals to the same side."""
-        return bool(self.normal @ other.normal > ALONG)
+        return bool(self.normal @ other.normal > settings.min_normal_cosine)
 
     def turned(self) -> Plane:
         """The same plane, with its normal to the other side."""
@@ -85,27 +63,31 @@ class Outlook:
         return bool(normal @ self.up > -0.1 and abs(normal @ self.right) < 0.7)
 
 
-def table_plane(points: NDArray[np.float64], outlook: Outlook, seed: int) -> Plane | None:
+def table_plane(points: NDArray[np.float64], outlook: Outlook, settings: DetectionSettings) -> Plane | None:
     """The plane of the table under points (n, 3), all finite; None where there is none."""
-    rng = np.random.default_rng(seed)
-    sample = points if len(points) <= SAMPLE else points[np.sort(rng.choice(len(points), SAMPLE, replace=False))]
-    tolerance = tolerance_at(sample, outlook)
-    found = _planes(sample, tolerance, outlook, rng)
+    rng, limits = np.random.default_rng(settings.seed), settings.plane
+    size = limits.sample_size
+    sample = points if len(points) <= size else points[np.sort(rng.choice(len(points), size, replace=False))]
+    tolerance = tolerance_at(sample, outlook, limits)
+    found = _planes(sample, tolerance, outlook, rng, limits)
     planes = [plane for plane in found if outlook.could_be_table(plane.normal)]
     if not planes:
         return None
     free = np.ones(len(sample), dtype=np.bool_)
     for plane in found:  # a wall is nothing that stands on the floor
         free &= np.abs(plane.heights(sample)) > tolerance
-    levels = _without_floors([level_of(plane, sample, tolerance, sample[free]) for plane in planes], len(sample))
+    levels = [level_of(plane, sample, tolerance, sample[free], limits) for plane in planes]
+    levels = _without_floors(levels, len(sample), limits)
     # What stands on a table tells its upper side, should the sensor seem to be below: the origin may be a mere default.
     turned = [level.plane.turned() for level in levels]
     levels += [
-        level_of(plane, sample, tolerance, sample[free]) for plane in turned if outlook.could_be_table(plane.normal)
+        level_of(plane, sample, tolerance, sample[free], limits)
+        for plane in turned
+        if outlook.could_be_table(plane.normal)
     ]
     best = max(levels, key=lambda level: level.bearing).plane
-    chosen = points[:: max(1, len(points) // MOST_REFINED)]
-    return refined(best, chosen, tolerance_at(chosen, outlook))
+    chosen = points[:: max(1, len(points) // limits.refinement_size)]
+    return refined(best, chosen, tolerance_at(chosen, outlook, limits))
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,59 +103,72 @@ class Level:
         """How much is on it: its own area, and ten times that of what stands on it, as a number of points."""
         return len(self.points) + 10 * self.standing
 
-    def bears(self, total: int) -> bool:
+    def bears(self, total: int, settings: PlaneSettings) -> bool:
         """Whether enough of a ``total`` of points stand on it to be things."""
-        return self.standing >= LEAST_STANDING * total
+        return self.standing >= settings.min_standing_share * total
 
-    def is_floor_below(self, other: Level) -> bool:
+    def is_floor_below(self, other: Level, settings: PlaneSettings) -> bool:
         """Whether it lies a table's height below another level one."""
-        return self.plane.is_along(other.plane) and bool(np.median(self.plane.heights(other.points)) > TABLE_HEIGHT)
+        drop = np.median(self.plane.heights(other.points))
+        return self.plane.is_along(other.plane, settings) and bool(drop > settings.floor_drop)
 
 
 def level_of(
-    plane: Plane, sample: NDArray[np.float64], tolerance: NDArray[np.float64], free: NDArray[np.float64]
+    plane: Plane,
+    sample: NDArray[np.float64],
+    tolerance: NDArray[np.float64],
+    free: NDArray[np.float64],
+    settings: PlaneSettings,
 ) -> Level:
     """What of a sample (n, 3) is on a plane within a tolerance (n,), and what of the ``free`` points stands on it."""
     on = sample[np.abs(plane.heights(sample)) <= tolerance]
-    return Level(plane, on, _standing(plane, on, free))
+    return Level(plane, on, _standing(plane, on, free, settings))
 
 
-def _without_floors(levels: list[Level], total: int) -> list[Level]:
+def _without_floors(levels: list[Level], total: int, settings: PlaneSettings) -> list[Level]:
     """All but those that lie a table's height below one on which something stands, however large they are."""
-    tables = [level for level in levels if level.bears(total)]
-    return [level for level in levels if not any(level.is_floor_below(table) for table in tables)]
+    tables = [level for level in levels if level.bears(total, settings)]
+    return [level for level in levels if not any(level.is_floor_below(table, settings) for table in tables)]
 
 
-def tolerance_at(points: NDArray[np.float64], outlook: Outlook) -> NDArray[np.float64]:
-    """Metres from a plane, (n,), within which points (n, 3) may be on it."""
-    near: NDArray[np.float64] = NEAR * np.clip(((points - outlook.eye) ** 2).sum(axis=1), 0.25, FARTHEST**2)
+def tolerance_at(points: NDArray[np.float64], outlook: Outlook, settings: PlaneSettings) -> NDArray[np.float64]:
+    """Metres from a plane, (n,), within which points (n, 3) may be on it; they grow with the square of the distance."""
+    squared = ((points - outlook.eye) ** 2).sum(axis=1)
+    near: NDArray[np.float64] = settings.tolerance * np.clip(squared, 0.25, settings.max_noise_distance**2)
     return near
 
 
 def _planes(
-    sample: NDArray[np.float64], tolerance: NDArray[np.float64], outlook: Outlook, rng: np.random.Generator
+    sample: NDArray[np.float64],
+    tolerance: NDArray[np.float64],
+    outlook: Outlook,
+    rng: np.random.Generator,
+    settings: PlaneSettings,
 ) -> list[Plane]:
     """The large ones, the one with most points first."""
     found = []
     left = np.ones(len(sample), dtype=np.bool_)
-    for _ in range(MOST_PLANES):
-        if left.sum() < max(3, LEAST_SHARE * len(sample)):
+    least = max(3, settings.min_inlier_share * len(sample))
+    for _ in range(settings.max_planes):
+        if left.sum() < least:
             break
-        plane = _largest(sample[left], tolerance[left], rng)
+        plane = _largest(sample[left], tolerance[left], rng, settings.ransac_trials)
         if plane is None:
             break
-        plane = _towards(refined(plane, sample[left], tolerance[left]), outlook, sample)
+        plane = _towards(refined(plane, sample[left], tolerance[left]), outlook, sample, settings.min_standing_height)
         on = np.abs(plane.heights(sample)) <= 1.5 * tolerance
-        if (on & left).sum() < max(3, LEAST_SHARE * len(sample)):
+        if (on & left).sum() < least:
             break
         found.append(plane)
         left &= ~on
     return found
 
 
-def _largest(points: NDArray[np.float64], tolerance: NDArray[np.float64], rng: np.random.Generator) -> Plane | None:
+def _largest(
+    points: NDArray[np.float64], tolerance: NDArray[np.float64], rng: np.random.Generator, trials: int
+) -> Plane | None:
     """The plane through three of the points that most points are on; one far away counts for the area it stands for."""
-    triples = points[rng.integers(len(points), size=(TRIES, 3))]
+    triples = points[rng.integers(len(points), size=(trials, 3))]
     normals = np.cross(triples[:, 1] - triples[:, 0], triples[:, 2] - triples[:, 0])
     length = np.linalg.norm(normals, axis=1)
     good = length > 1e-9
@@ -207,23 +202,23 @@ def refined(plane: Plane, points: NDArray[np.float64], tolerance: NDArray[np.flo
     return plane
 
 
-def _towards(plane: Plane, outlook: Outlook, points: NDArray[np.float64]) -> Plane:
+def _towards(plane: Plane, outlook: Outlook, points: NDArray[np.float64], min_standing_height: float) -> Plane:
     """The plane with its normal to the side of the sensor; where that is in the plane, of the things on it."""
     side = float(plane.normal @ outlook.eye - plane.offset)
     if outlook.upwards is not None:
         side = float(plane.normal @ outlook.upwards)
     elif abs(side) < 0.05:
         heights = plane.heights(points)
-        side = float((heights > STANDING[0]).sum() - (heights < -STANDING[0]).sum())
+        side = float((heights > min_standing_height).sum() - (heights < -min_standing_height).sum())
     return plane if side >= 0 else plane.turned()
 
 
-def _standing(plane: Plane, on: NDArray[np.float64], free: NDArray[np.float64]) -> int:
+def _standing(plane: Plane, on: NDArray[np.float64], free: NDArray[np.float64], settings: PlaneSettings) -> int:
     """How many of the ``free`` points are above the box around those that are ``on`` the plane, not far up."""
     if len(on) < 3:
         return 0
     across = plane.across
     low, high = np.percentile(on @ across.T, (1, 99), axis=0)
     heights, plan = plane.heights(free), free @ across.T
-    above = (heights > STANDING[0]) & (heights < STANDING[1]) & ((plan >= low) & (plan <= high)).all(axis=1)
-    return int(above.sum())
+    standing = (heights > settings.min_standing_height) & (heights < settings.max_standing_height)
+    return int((standing & ((plan >= low) & (plan <= high)).all(axis=1)).sum())

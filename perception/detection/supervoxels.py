@@ -13,21 +13,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.perception.detection.settings import SupervoxelSettings
 from deixis.perception.detection.surface import Surface
-
-SPACING = 8.0
-SMALLEST, LARGEST = 0.008, 0.03
-"""Metres between seeds: so many times the noise, within these bounds."""
-
-FEWEST = 4.5
-"""But at least so many times the distance between neighbours."""
-
-
-LEAST_WEIGHT = 1e-4
-"""Metres: what a point on the table counts for in a mean that is weighted by height."""
-
-SHADE = 0.35
-"""How much lightness counts in a difference of colour: a shadow on one thing is mostly that."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,6 +28,7 @@ class Supervoxels:
     # What is higher counts more for a colour: at its border a low thing's points are mixed with the table's.
     colours: NDArray[np.float64]  # (s, 3)
     areas: NDArray[np.float64]  # (s,): square metres
+    settings: SupervoxelSettings
 
     def __len__(self) -> int:
         return len(self.sizes)
@@ -48,34 +36,35 @@ class Supervoxels:
     @cached_property
     def tints(self) -> NDArray[np.float64]:
         """The colours with their lightness scaled down, (s, 3)."""
-        tints: NDArray[np.float64] = self.colours * (SHADE, 1.0, 1.0)
+        tints: NDArray[np.float64] = self.colours * (self.settings.lightness_weight, 1.0, 1.0)
         return tints
 
     @cached_property
     def weights(self) -> NDArray[np.float64]:
         """What each counts for in a mean of colours, (s,): what is higher counts more, as in a patch."""
-        weights: NDArray[np.float64] = self.sizes * self.middles[:, 2].clip(LEAST_WEIGHT)
+        weights: NDArray[np.float64] = self.sizes * self.middles[:, 2].clip(self.settings.min_colour_height)
         return weights
 
 
-def supervoxels(surface: Surface) -> Supervoxels:
+def supervoxels(surface: Surface, settings: SupervoxelSettings) -> Supervoxels:
     """Patches of a surface of one point or more."""
-    from deixis.perception.detection.growing import grow
+    from deixis.perception.detection.kernels import grow
 
-    noisy = np.clip(SPACING * np.median(surface.sigma), SMALLEST, LARGEST)
-    spacing = float(max(noisy, FEWEST * np.median(surface.spacing)))
+    noisy = np.clip(settings.spacing_noise_ratio * np.median(surface.sigma), settings.min_spacing, settings.max_spacing)
+    spacing = float(max(noisy, settings.spacing_neighbour_ratio * np.median(surface.spacing)))
     seeds = _seeds(surface.smooth, spacing)
     shape = (surface.points, surface.smooth, surface.normals, surface.colours)
-    found = grow(seeds, spacing, *shape, surface.neighbours, surface.jump)
-    return described(surface, np.unique(found, return_inverse=True)[1].astype(np.int32))
+    costs = (settings.turn_cost, settings.step_cost, settings.colour_cost, settings.colour_noise)
+    found = grow(seeds, spacing, costs, *shape, surface.neighbours, surface.jump)
+    return _described(surface, np.unique(found, return_inverse=True)[1].astype(np.int32), settings)
 
 
-def described(surface: Surface, of: NDArray[np.int32]) -> Supervoxels:
+def _described(surface: Surface, of: NDArray[np.int32], settings: SupervoxelSettings) -> Supervoxels:
     """The patches with their means; ``of`` (n,) are numbers from 0 without a gap."""
     middles, normals = means(of, surface.smooth), means(of, surface.normals)
-    colours = means(of, surface.colours, surface.points[:, 2].clip(LEAST_WEIGHT))
+    colours = means(of, surface.colours, surface.points[:, 2].clip(settings.min_colour_height))
     normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
-    return Supervoxels(of, sums(of), middles, normals, colours, sums(of, surface.areas))
+    return Supervoxels(of, sums(of), middles, normals, colours, sums(of, surface.areas), settings)
 
 
 def means(

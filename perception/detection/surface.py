@@ -7,17 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.perception.detection.settings import SurfaceSettings
 from deixis.reasoning.grounding.evidence.colours import lab_of_srgb
-
-SMALLEST, LARGEST = 0.005, 0.018
-"""Metres around a point from which its plane is estimated: six times the noise, within these bounds."""
-
-FEWEST = 2.5
-"""But at least so many times the distance between neighbours."""
-
-LEAST_JUMP, JUMP, STRIDES = 0.006, 7.0, 3.5
-"""Neighbours farther apart than the first (metres), so many times the noise, and so many times the usual distance
-between neighbours are on no common surface."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,13 +39,17 @@ def surface_of(
     neighbours: NDArray[np.int32],
     sigma: NDArray[np.float64],
     eye: NDArray[np.float64],
+    settings: SurfaceSettings,
 ) -> Surface:
     """The surface through points (n, 3) with colours (n, 3), seen from ``eye`` (3,) with noise ``sigma`` (n,)."""
-    from deixis.perception.detection.surface_kernels import spreads
+    from deixis.perception.detection.kernels import spreads
 
     spacing = _spacing(points, neighbours, np.linalg.norm(points - eye, axis=1))
-    jump = np.maximum(np.maximum(LEAST_JUMP, JUMP * sigma), STRIDES * spacing)
-    radius = np.maximum(np.clip(6.0 * sigma, SMALLEST, LARGEST), FEWEST * spacing)
+    jump = np.maximum(
+        np.maximum(settings.min_jump, settings.jump_noise_ratio * sigma), settings.jump_spacing_ratio * spacing
+    )
+    noisy = np.clip(settings.radius_noise_ratio * sigma, settings.min_radius, settings.max_radius)
+    radius = np.maximum(noisy, settings.radius_spacing_ratio * spacing)
     middles, covariances = spreads(points, neighbours, radius, jump)
     normals = np.linalg.eigh(covariances)[1][:, :, 0]
     normals *= np.where(((eye - points) * normals).sum(axis=1) < 0, -1.0, 1.0)[:, None]

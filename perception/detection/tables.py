@@ -9,25 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.perception.detection.outline import above_outline, in_largest_piece
-from deixis.perception.detection.plane import (
-    LEAST_SHARE,
-    TABLE_HEIGHT,
-    Outlook,
-    Plane,
-    level_of,
-    table_plane,
-    tolerance_at,
-)
+from deixis.perception.detection.plane import Outlook, Plane, level_of, table_plane, tolerance_at
+from deixis.perception.detection.settings import DetectionSettings
 from deixis.perception.detection.viewpoint import likely
-
-ON_TABLE = 0.01
-"""Metres from the plane within which a point is the table's, as far as its outline goes."""
-
-LEAST_TABLE = 0.3
-"""Metres: what is shorter in both directions is hardly a table."""
-
-ENOUGH = 30_000
-"""Points by which another table is judged."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,44 +23,48 @@ class Table:
     points: NDArray[np.intp]
 
 
-def tables(points: NDArray[np.float64], outlook: Outlook, seed: int) -> Iterator[Table]:
+def tables(points: NDArray[np.float64], outlook: Outlook, settings: DetectionSettings) -> Iterator[Table]:
     """The tables under points (n, 3), all finite; none where nothing large is level."""
-    plane, outlook = _first(points, outlook, seed)
+    plane, outlook = _first(points, outlook, settings)
     left = np.arange(len(points))
     while plane is not None:
         yield Table(plane, outlook, left)
-        left = left[_beside(plane, points[left])]
-        plane = _another(points[left], plane, outlook, seed) if len(left) >= LEAST_SHARE * len(points) else None
+        left = left[_beside(plane, points[left], settings)]
+        enough = len(left) >= settings.plane.min_inlier_share * len(points)
+        plane = _another(points[left], plane, outlook, settings) if enough else None
 
 
-def _first(points: NDArray[np.float64], outlook: Outlook, seed: int) -> tuple[Plane | None, Outlook]:
+def _first(points: NDArray[np.float64], outlook: Outlook, settings: DetectionSettings) -> tuple[Plane | None, Outlook]:
     """The table's plane, for a camera that is held upright, else upside down; and from where it was seen."""
-    plane = table_plane(points, outlook, seed)
+    plane = table_plane(points, outlook, settings)
     if plane is None and outlook.up is not None and outlook.right is not None:
         outlook = replace(outlook, up=-outlook.up, right=-outlook.right)
-        plane = table_plane(points, outlook, seed)
-    return plane, outlook if plane is None else likely(outlook, points, plane, seed)
+        plane = table_plane(points, outlook, settings)
+    return plane, outlook if plane is None else likely(outlook, points, plane, settings)
 
 
-def _beside(plane: Plane, points: NDArray[np.float64]) -> NDArray[np.bool_]:
+def _beside(plane: Plane, points: NDArray[np.float64], settings: DetectionSettings) -> NDArray[np.bool_]:
     """Which points (n, 3) are neither the table's nor above or below it, shape (n,)."""
     plan = points @ plane.across.T
-    return ~above_outline(plan[np.abs(plane.heights(points)) < ON_TABLE], plan)
+    on = np.abs(plane.heights(points)) < settings.plane.table_band
+    return ~above_outline(plan[on], plan, settings.outlines)
 
 
-def _another(points: NDArray[np.float64], plane: Plane, outlook: Outlook, seed: int) -> Plane | None:
+def _another(points: NDArray[np.float64], plane: Plane, outlook: Outlook, settings: DetectionSettings) -> Plane | None:
     """One more table among points (n, 3), those beside the table of a ``plane``; None where there is none.
 
     It is as level and about as high, neither being a floor to the other, and something stands on it.
     """
-    few = points[:: max(1, len(points) // ENOUGH)]
-    other = table_plane(points, replace(outlook, upwards=plane.normal), seed)
-    if other is None or not other.is_along(plane):
+    limits = settings.plane
+    few = points[:: max(1, len(points) // limits.next_table_sample_size)]
+    other = table_plane(points, replace(outlook, upwards=plane.normal), settings)
+    if other is None or not other.is_along(plane, limits):
         return None
-    near = tolerance_at(few, outlook)
-    level = level_of(other, few, near, few[np.abs(other.heights(few)) > near])
-    if len(level.points) < LEAST_SHARE * len(few) or not level.bears(len(few)):
+    near = tolerance_at(few, outlook, limits)
+    level = level_of(other, few, near, few[np.abs(other.heights(few)) > near], limits)
+    if len(level.points) < limits.min_inlier_share * len(few) or not level.bears(len(few), limits):
         return None
     plan = level.points @ other.across.T
-    long = np.ptp(plan[in_largest_piece(plan)], axis=0).max()
-    return other if long >= LEAST_TABLE and abs(np.median(plane.heights(level.points))) < TABLE_HEIGHT else None
+    long = np.ptp(plan[in_largest_piece(plan, settings.outlines.table_cell)], axis=0).max()
+    drop = abs(np.median(plane.heights(level.points)))
+    return other if long >= settings.scale.min_table_length and drop < limits.floor_drop else None

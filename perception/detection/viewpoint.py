@@ -1,4 +1,4 @@
-"""Whether a cloud is what one sensor sees from its origin, and what is done where it is not.
+"""Where a cloud was seen from, and the frame of a table as its viewer sees it.
 
 A file may hold no viewpoint, or a cloud that was moved to another frame, or one made of several views. As seen from
 where a cloud was taken, points in nearly the same direction are near each other, but for the edges of things; as seen
@@ -12,81 +12,176 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.detection.plane import Outlook, Plane
-
-SAMPLE = 10_000
-"""Points that are looked at."""
-
-COUNT, APART = 8, 3.0
-"""Neighbours in direction; they are apart if so many times as far away as the farthest of as many nearest in space."""
-
-MOST_APART = 0.05
-"""The share that may be apart in one view: 0.002 to 0.02 was measured from the right place, 0.6 from a wrong one on the
-table."""
-
-LEAST_HEIGHT = 0.05
-"""Metres above the table from which its top is seen at all."""
-
-AWAY = 1.5
-ROUND, ELEVATION = 8, np.deg2rad(45.0)
-"""A viewpoint that is not known is looked for so many metres from the middle of the table: straight above it, and at
-so many places around it, at one elevation."""
+from deixis.perception.detection.settings import DetectionSettings, ViewpointSettings
 
 
-def believed(outlook: Outlook, points: NDArray[np.float64], seed: int) -> Outlook:
+def outlook_of(cloud: PointCloud, settings: DetectionSettings) -> Outlook:
+    """From where a cloud was seen, and which way up: the rows of its image go down as seen from its origin."""
+    eye = np.asarray(cloud.origin, dtype=np.float64)
+    upwards = None
+    if settings.up is not None:
+        upwards = np.asarray(settings.up, dtype=np.float64)
+        upwards = upwards / np.linalg.norm(upwards)
+    if cloud.organised is None or min(cloud.organised) < 2:
+        return Outlook(eye, upwards=upwards)
+    image = cloud.points.reshape(*cloud.organised, 3)
+    limits = settings.viewpoint
+    columns, rows = (_rays(pixels, eye, limits.image_lines) for pixels in (image, image.swapaxes(0, 1)))
+    uneven = (_uneven(rays, limits.direction_change_quantile) for rays in (columns, rows))
+    if max(uneven) > limits.max_direction_change:
+        return Outlook(eye, upwards=upwards, known=False)
+    down, right = _direction(columns), _direction(rows)
+    if down is None or right is None:
+        return Outlook(eye, upwards=upwards)
+    return Outlook(eye, -down, right, upwards)
+
+
+def _rays(image: NDArray[np.float32], eye: NDArray[np.float64], lines: int) -> NDArray[np.float64]:
+    """Unit vectors from the eye to the pixels of an image (r, c, 3), in about ``lines`` of its columns."""
+    rays = image[:, :: max(1, image.shape[1] // lines)] - eye
+    with np.errstate(invalid="ignore", divide="ignore"):
+        unit: NDArray[np.float64] = rays / np.linalg.norm(rays, axis=2, keepdims=True)
+    return unit
+
+
+def _uneven(rays: NDArray[np.float64], quantile: float) -> float:
+    """By what share most steps from ray to ray along the first axis of (r, c, 3) change to the next, at most, beyond
+    what those of a pinhole camera do: up to 45 degrees aside, twice the step's angle."""
+    steps = np.diff(rays, axis=0)
+    angles = np.linalg.norm(steps[1:], axis=2)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        change = np.linalg.norm(np.diff(steps, axis=0), axis=2) / angles - 2 * angles
+    return float(np.quantile(change[np.isfinite(change)], quantile)) if np.isfinite(change).any() else 0.0
+
+
+def _direction(rays: NDArray[np.float64]) -> NDArray[np.float64] | None:
+    """Where the first axis of an image leads, from rays (r, c, 3): the direction that is in the planes of all columns.
+
+    The mean step from ray to ray is aslant where more of one side of the image is seen.
+    """
+    one, other = rays[:-1].reshape(-1, 3), rays[1:].reshape(-1, 3)
+    both = np.isfinite(one + other).all(axis=1)
+    if both.sum() < 2:
+        return None
+    across = np.cross(one[both], other[both])
+    along: NDArray[np.float64] = np.linalg.eigh(across.T @ across)[1][:, 0]
+    step = (other[both] - one[both]).mean(axis=0) @ along
+    return along * np.sign(step) if abs(step) > 0 else None
+
+
+def believed(outlook: Outlook, points: NDArray[np.float64], settings: DetectionSettings) -> Outlook:
     """The outlook on the points (n, 3), if they may have been seen from there; else one from above, as not known."""
-    few = _sample(points, seed)
-    if outlook.known and apart(few, outlook.eye) < MOST_APART:
+    limits = settings.viewpoint
+    few = _sample(points, settings)
+    if outlook.known and apart(few, outlook.eye, limits) < limits.max_far_share:
         return outlook
-    above = np.median(few, axis=0) + np.array([0.0, 0.0, AWAY])
+    above = np.median(few, axis=0) + np.array([0.0, 0.0, limits.assumed_distance])
     return Outlook(above, upwards=outlook.upwards, known=False)
 
 
-def likely(outlook: Outlook, points: NDArray[np.float64], plane: Plane, seed: int) -> Outlook:
+def likely(outlook: Outlook, points: NDArray[np.float64], plane: Plane, settings: DetectionSettings) -> Outlook:
     """The outlook, if it is known and above the table; else from where the points (n, 3) look most as if seen."""
-    if outlook.known and plane.heights(outlook.eye[None])[0] > LEAST_HEIGHT:
+    limits = settings.viewpoint
+    if outlook.known and plane.heights(outlook.eye[None])[0] > limits.min_eye_height:
         return outlook
-    few = _sample(points, seed)
-    on = few[np.abs(plane.heights(few)) < 0.01]
-    places = _places_around((on if len(on) else few).mean(axis=0), plane)
-    eye = min(places, key=lambda place: apart(few, place))
+    few = _sample(points, settings)
+    on = few[np.abs(plane.heights(few)) < settings.plane.table_band]
+    places = _places_around((on if len(on) else few).mean(axis=0), plane, limits)
+    eye = min(places, key=lambda place: apart(few, place, limits))
     return replace(outlook, eye=eye, up=None, right=None, known=False)
 
 
-def _places_around(middle: NDArray[np.float64], plane: Plane) -> list[NDArray[np.float64]]:
-    turns = np.arange(ROUND) * 2 * np.pi / ROUND
+def _places_around(middle: NDArray[np.float64], plane: Plane, settings: ViewpointSettings) -> list[NDArray[np.float64]]:
+    turns = np.arange(settings.assumed_azimuths) * 2 * np.pi / settings.assumed_azimuths
     level = np.column_stack([np.cos(turns), np.sin(turns)]) @ plane.across
-    aslant = np.cos(ELEVATION) * level + np.sin(ELEVATION) * plane.normal
-    return [middle + AWAY * direction for direction in (plane.normal, *aslant)]
+    aslant = np.cos(settings.assumed_elevation) * level + np.sin(settings.assumed_elevation) * plane.normal
+    return [middle + settings.assumed_distance * direction for direction in (plane.normal, *aslant)]
 
 
-def _sample(points: NDArray[np.float64], seed: int) -> NDArray[np.float64]:
-    if len(points) <= SAMPLE:
+def _sample(points: NDArray[np.float64], settings: DetectionSettings) -> NDArray[np.float64]:
+    size = settings.viewpoint.sample_size
+    if len(points) <= size:
         return points
-    return points[np.random.default_rng(seed).choice(len(points), SAMPLE, replace=False)]
+    return points[np.random.default_rng(settings.seed).choice(len(points), size, replace=False)]
 
 
-def apart(points: NDArray[np.float64], eye: NDArray[np.float64]) -> float:
+def apart(points: NDArray[np.float64], eye: NDArray[np.float64], settings: ViewpointSettings) -> float:
     """The share of neighbours in direction, as seen from ``eye`` (3,), that are apart in space, of points (n, 3).
 
     >>> x, y = (axis.ravel() for axis in np.mgrid[-0.5:0.5:0.02, -0.5:0.5:0.02])
     >>> bowl = np.stack([x, y, x**2 + y**2], axis=1)
-    >>> apart(bowl, np.array([0.0, 0.0, 2.0])), apart(bowl, np.array([0.0, -3.0, 0.01])) > 0.1
+    >>> above, aside = np.array([0.0, 0.0, 2.0]), np.array([0.0, -3.0, 0.01])
+    >>> apart(bowl, above, ViewpointSettings()), apart(bowl, aside, ViewpointSettings()) > 0.1
     (0.0, True)
     """
     from scipy.spatial import cKDTree
 
-    if len(points) <= COUNT:
+    count = settings.neighbours
+    if len(points) <= count:
         return 0.0
     rays = directions(points, eye)
-    near = cKDTree(rays).query(rays, k=COUNT + 1)[1][:, 1:]
-    reach = cKDTree(points).query(points, k=COUNT + 1)[0][:, -1]
+    near = cKDTree(rays).query(rays, k=count + 1)[1][:, 1:]
+    reach = cKDTree(points).query(points, k=count + 1)[0][:, -1]
     away = np.linalg.norm(points[near] - points[:, None], axis=2)
-    return float((away > APART * reach[:, None]).mean())
+    return float((away > settings.far_ratio * reach[:, None]).mean())
 
 
 def directions(points: NDArray[np.float64], eye: NDArray[np.float64]) -> NDArray[np.float64]:
     """Unit vectors (n, 3) from the eye (3,) to points (n, 3)."""
     rays = points - eye
     result: NDArray[np.float64] = rays / np.maximum(np.linalg.norm(rays, axis=1, keepdims=True), 1e-9)
+    return result
+
+
+def table_frame(
+    plane: Plane, on: NDArray[np.float64], outlook: Outlook, viewer: tuple[float, float, float] | None
+) -> NDArray[np.float64]:
+    """The transform (4, 4) that takes points of the cloud's frame to the table's.
+
+    z is the height above the plane. y points away from the viewer: from a ``viewer`` that is given to the middle of
+    the table's points ``on`` (n, 3); else upwards in the image, as whoever holds the camera sees it; else from the
+    sensor to the middle. x is to the right. The origin is the middle of the rectangle around the table's points, on
+    the table.
+    """
+    up = plane.normal
+    away = _across(up, _away(plane, on.mean(axis=0), outlook, viewer))
+    right = np.cross(away, up)
+    turn = np.stack([right, away, up])
+    plan = on @ turn[:2].T
+    low, high = np.percentile(plan, (0.5, 99.5), axis=0)
+    origin = np.append((low + high) / 2, plane.offset)
+    frame = np.eye(4)
+    frame[:3, :3], frame[:3, 3] = turn, -origin
+    return frame
+
+
+def _away(
+    plane: Plane, middle: NDArray[np.float64], outlook: Outlook, viewer: tuple[float, float, float] | None
+) -> list[NDArray[np.float64]]:
+    """Directions away from the viewer, the best first; not all need to be of use."""
+    if viewer is not None:
+        return [middle - np.asarray(viewer, dtype=np.float64)]
+    if not outlook.known:
+        return []
+    if outlook.right is not None:
+        return [np.cross(plane.normal, outlook.right)]
+    return [middle - outlook.eye]
+
+
+def _across(up: NDArray[np.float64], wanted: list[NDArray[np.float64]]) -> NDArray[np.float64]:
+    """The first direction that is not along ``up``, made level; else y or x of the cloud's frame."""
+    for direction in (*wanted, np.array([0.0, 1.0, 0.0]), np.array([1.0, 0.0, 0.0])):
+        level = direction - (direction @ up) * up
+        length = float(np.linalg.norm(level))
+        if length > 0.02:
+            return level / length
+    raise AssertionError("one of two axes is not along a third direction")
+
+
+def moved(points: NDArray[np.floating], frame: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Points (n, 3) taken by a transform (4, 4); what is not finite stays so."""
+    with np.errstate(invalid="ignore"):  # infinity times nothing
+        result: NDArray[np.float64] = points @ frame[:3, :3].T + frame[:3, 3]
     return result

@@ -12,10 +12,10 @@ from collections.abc import Callable
 
 from deixis.perception.errors import CloudError
 
-LEAST = 32
+MIN_BLOCK = 32
 """Places handed to a thread at a time, at least: fewer are done before they are handed over."""
 
-SHARES = 4
+BLOCKS_PER_THREAD = 4
 """Blocks for each thread: enough that none waits long for the last one."""
 
 
@@ -31,13 +31,13 @@ def in_blocks(job: Callable[[int, int], object], count: int, threads: int | None
     """
     if threads is not None and threads < 1:
         raise CloudError(f"work is shared among 1 thread or more, not {threads}")
-    workers = min(threads or available(), count // LEAST)
+    workers = min(threads or available(), count // MIN_BLOCK)
     if workers <= 1:
         job(0, count)
         return
     from concurrent.futures import ThreadPoolExecutor
 
-    block = max(LEAST, -(-count // (SHARES * workers)))
+    block = max(MIN_BLOCK, -(-count // (BLOCKS_PER_THREAD * workers)))
     with ThreadPoolExecutor(workers) as pool:
         for _ in pool.map(lambda start: job(start, min(start + block, count)), range(0, count, block)):
             pass

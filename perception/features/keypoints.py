@@ -10,12 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.perception.errors import CloudError
-from deixis.perception.features.checks import require_length, require_points
+from deixis.perception.features.describer import require_length, require_points
 
-FINEST = 2**40
+MAX_VOXELS_ALONG_AXIS = 2**40
 """Voxels along an axis at most: beyond, coordinates in double precision no longer tell them apart."""
 
-GRAIN = float(2**24)
+SUBVOXELS = float(2**24)
 """Positions in a voxel are whole numbers of its edge / 2**24: their sums do not depend on order, and ties are exact."""
 
 
@@ -41,7 +41,7 @@ def voxel_keypoints(points: NDArray[np.floating], size: float) -> NDArray[np.int
     places = points[finite].astype(np.float64)
     inside = places - places.min(axis=0)
     inside /= size
-    if inside.max() > FINEST:
+    if inside.max() > MAX_VOXELS_ALONG_AXIS:
         raise CloudError(f"a voxel of {size:g} m is too small for a cloud of {inside.max() * size:g} m")
     voxels = np.floor(inside)
     inside -= voxels
@@ -57,7 +57,7 @@ def _nearest(
     """Of each group of points, from one of ``starts`` to the next, the index of that nearest to their mean."""
     sizes = np.diff(np.append(starts, len(indices)))
     group = np.repeat(np.arange(len(starts)), sizes)
-    whole = np.rint(inside * GRAIN).astype(np.int64)
+    whole = np.rint(inside * SUBVOXELS).astype(np.int64)
     sums = np.add.reduceat(whole, starts, axis=0)
     offsets = whole * sizes[group, None] - sums[group]  # from the centroid, times the number of points in the voxel
     distances = (offsets.astype(np.float64) ** 2).sum(axis=1)

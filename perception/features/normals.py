@@ -13,12 +13,12 @@ from numpy.typing import NDArray
 
 from deixis.perception.errors import CloudError
 from deixis.perception.features.blocks import in_blocks
-from deixis.perception.features.checks import require_indices, require_length, require_points
+from deixis.perception.features.describer import require_indices, require_length, require_points
 
-LINE = 1e-6
+LINE_SPREAD_RATIO = 1e-6
 """A neighbourhood whose second spread is below this share of its first lies in a line, and has no plane."""
 
-AT_ONCE = 50_000
+NEIGHBOURHOOD_BATCH = 50_000
 """Neighbourhoods of k points that are gathered at a time, which bounds memory."""
 
 
@@ -79,8 +79,7 @@ def _neighbourhoods(
 def _within(
     points: NDArray[np.floating], places: NDArray[np.floating], radius: float, threads: int | None
 ) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
-    from deixis.perception.features.cells import cell_grid, in_axes_of
-    from deixis.perception.features.normal_kernels import spreads
+    from deixis.perception.features.kernels import cell_grid, in_axes_of, spreads
 
     grid = cell_grid(points, radius)
     turned, radius = in_axes_of(grid, places), float(radius)
@@ -102,8 +101,8 @@ def _nearest(
     count = min(neighbours, len(points))
     tree = cKDTree(points)
     covariances = np.empty((len(places), 3, 3))
-    for start in range(0, len(places), AT_ONCE):
-        part = slice(start, start + AT_ONCE)
+    for start in range(0, len(places), NEIGHBOURHOOD_BATCH):
+        part = slice(start, start + NEIGHBOURHOOD_BATCH)
         nearest = tree.query(places[part], k=[*range(1, count + 1)], workers=threads or -1)[1]
         around = points[nearest].astype(np.float64) - places[part, None]
         around -= around.mean(axis=1, keepdims=True)
@@ -117,7 +116,7 @@ def _planes(counts: NDArray[np.int64], covariances: NDArray[np.float64]) -> NDAr
     scale = np.where(largest > 0, largest, 1.0)[:, None, None]
     values, vectors = np.linalg.eigh(covariances / scale)
     normals: NDArray[np.float64] = vectors[:, :, 0]
-    normals[(counts < 3) | (values[:, 1] <= LINE * values[:, 2])] = np.nan
+    normals[(counts < 3) | (values[:, 1] <= LINE_SPREAD_RATIO * values[:, 2])] = np.nan
     return normals
 
 

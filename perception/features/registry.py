@@ -10,8 +10,8 @@ from deixis.perception.features.d2_extents import D2ExtentsDescriber
 from deixis.perception.features.describer import Describer
 from deixis.perception.features.fpfh import FpfhDescriber
 from deixis.perception.features.good import GoodDescriber
-from deixis.perception.features.spin_describer import SpinImageDescriber
-from deixis.perception.features.upright_describer import UprightDescriber
+from deixis.perception.features.spin_images import SpinImageDescriber
+from deixis.perception.features.upright import UprightDescriber
 
 DESCRIBERS: Mapping[str, Callable[[], Describer]] = MappingProxyType(
     {

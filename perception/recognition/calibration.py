@@ -16,10 +16,10 @@ from numpy.typing import NDArray
 from deixis.perception.errors import RecognitionError
 from deixis.perception.recognition.held_out import HeldOut
 
-LEAST = 10
+MIN_HELD_OUT_ANSWERS = 10
 """Known and unknown answers held out, each, from which on a threshold is chosen by them."""
 
-NEAR = 1e-6
+MIN_NORMALISED = 1e-6
 """A normalised distance below this is taken for this: the same view again."""
 
 PRIOR_WIDTH = 1.0
@@ -50,7 +50,7 @@ class Calibration:
     @property
     def calibrated(self) -> bool:
         """Whether the threshold comes from the categories' own views."""
-        return min(self.known, self.unknown) >= LEAST
+        return min(self.known, self.unknown) >= MIN_HELD_OUT_ANSWERS
 
     def probabilities(self, normalised: NDArray[np.float64]) -> NDArray[np.float64]:
         """Probabilities (..., c + 1) of c categories and, last, of none of them, from their ND (..., c).
@@ -70,15 +70,15 @@ SHIPPED = Calibration(threshold=0.73, even=0.74, doubt=7.3, choice=10.5)
 def calibrate(held: HeldOut, prior_unknown: float = 0.5, start: Calibration = SHIPPED) -> Calibration:
     """Threshold and probabilities from held-out views, if ``prior_unknown`` of all things seen are of no category.
 
-    With fewer than ``LEAST`` known or unknown answers everything stays as in ``start``: of a few answers likelihood
-    makes certainties, beside a threshold that does not move. Raises RecognitionError where
-    the prior is not between 0 and 1.
+    With fewer than ``MIN_HELD_OUT_ANSWERS`` known or unknown answers everything stays as in ``start``: of a few answers
+    likelihood makes certainties, beside a threshold that does not move. Raises RecognitionError where the prior is not
+    between 0 and 1.
     """
     if not 0 < prior_unknown < 1:
         raise RecognitionError(f"the share of unknown things lies between 0 and 1, not at {prior_unknown}")
     known, truth = held.as_known
     unknown = held.as_unknown
-    if min(len(known), len(unknown)) < LEAST:
+    if min(len(known), len(unknown)) < MIN_HELD_OUT_ANSWERS:
         return start
     even, doubt, choice = _fitted(known, truth, unknown, prior_unknown, start)
     threshold = best_threshold(known.min(axis=1), unknown.min(axis=1), prior_unknown)
@@ -137,7 +137,7 @@ def auroc(known: NDArray[np.floating], unknown: NDArray[np.floating]) -> float:
 def _log_shares(normalised: NDArray[np.float64], logs: NDArray[np.float64]) -> NDArray[np.float64]:
     """Logarithms of the probabilities (..., c + 1); ``logs`` (3,) are those of even, doubt and choice."""
     log_even, (doubt, choice) = logs[0], np.exp(logs[1:])
-    apart = np.log(np.maximum(normalised, NEAR))
+    apart = np.log(np.maximum(normalised, MIN_NORMALISED))
     nearest = apart.min(axis=-1, keepdims=True)
     excess = doubt * (nearest - log_even)
     known, unknown = -np.logaddexp(0.0, excess), -np.logaddexp(0.0, -excess)

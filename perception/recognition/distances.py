@@ -57,12 +57,12 @@ def view_distance(target: NDArray[np.float32], view: NDArray[np.float32]) -> flo
 
 def view_distances(target: NDArray[np.float32] | Target, views: PackedViews) -> NDArray[np.float64]:
     """D_V (m,) between a target (q, d) and each of m views; raises RecognitionError where they do not fit."""
-    from deixis.perception.recognition import kernels
+    from deixis.perception.recognition.kernels import fill_view_distances
 
     seen = target if isinstance(target, Target) else Target.of(target)
     seen.require_fit(views)
     out = np.empty(len(views))
-    kernels.view_distances(
+    fill_view_distances(
         seen.descriptors, seen.columns, seen.lengths, views.descriptors, views.starts, views.squares, out
     )
     return out

@@ -1,4 +1,4 @@
-"""Views judged by what the others say: as if the thing that is seen, or its whole category, had never been taught."""
+"""Leave-one-thing-out and leave-one-category-out distances of the stored views."""
 
 from __future__ import annotations
 
@@ -9,13 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.perception.recognition.distances import Target
-from deixis.perception.recognition.index import ViewIndex
+from deixis.perception.recognition.index import Effort, ViewIndex
 from deixis.perception.recognition.instances import InstanceCategory
-from deixis.perception.recognition.inverted import Effort
 from deixis.perception.recognition.settings import RecognitionSettings
 from deixis.perception.recognition.spread import Width, spreads
 
-MOST = 400
+MAX_HELD_OUT = 400
 """Views that are held out, at most; evenly over the categories."""
 
 
@@ -52,7 +51,7 @@ def hold_out(
     categories: Sequence[InstanceCategory],
     indexes: Sequence[ViewIndex | None],
     settings: RecognitionSettings,
-    most: int = MOST,
+    most: int = MAX_HELD_OUT,
     progress: Progress | None = None,
 ) -> HeldOut:
     """Holds views out, ``most`` of all categories together, evenly chosen; views of one thing are held out together.

@@ -168,7 +168,7 @@ def _squared(one, other):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def view_distances(target, columns, lengths, descriptors, starts, squares, out):  # type: ignore[no-untyped-def]
+def fill_view_distances(target, columns, lengths, descriptors, starts, squares, out):  # type: ignore[no-untyped-def]
     """Fills ``out`` (m,) with D_V between the target and each of m views."""
     for view in range(len(out)):
         low, high = starts[view], starts[view + 1]

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from deixis.perception.errors import RecognitionError
-from deixis.perception.recognition.inverted import Effort
+from deixis.perception.recognition.index import Effort
 from deixis.perception.recognition.spread import PRIOR_SPREADS
 
 SHRINKAGE = 5.0

@@ -19,7 +19,7 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import NDArray
 
-FLOOR = 0.05
+MIN_ICD_SHARE = 0.05
 """An ICD below this share of the median one is no measure of a category's width: its views are copies of each other."""
 
 PRIOR_SPREADS: Mapping[str, float] = MappingProxyType(
@@ -95,7 +95,7 @@ def spreads(widths: Sequence[Width], prior: float, shrinkage: float = 0.0) -> li
 
 
 def _spread(width: Width, median: float, shrinkage: float) -> Spread:
-    if width.icd is None or width.icd < FLOOR * median:
+    if width.icd is None or width.icd < MIN_ICD_SHARE * median:
         return Spread(median, SpreadSource.POOLED, width)
     if not shrinkage:
         return Spread(width.icd, SpreadSource.MEASURED, width)

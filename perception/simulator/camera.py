@@ -12,14 +12,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from deixis.perception.clouds.intrinsics import Intrinsics
+from deixis.perception.clouds.depth import Intrinsics
 from deixis.perception.errors import SimulationError
 from deixis.perception.simulator.laying import LaidTable
 
 HEIGHT = 0.7
 """Metres of the usual camera above the table."""
 
-FARTHEST = 20.0
+MAX_CAMERA_DISTANCE = 20.0
 
 KINECT = Intrinsics(width=640, height=480, fx=525.0, fy=525.0, cx=319.5, cy=239.5)
 """The usual intrinsics of a first Kinect."""
@@ -108,10 +108,12 @@ def looking_pose(eye: ArrayLike, target: ArrayLike) -> NDArray[np.float64]:
 
 def check_place(height: float, back: float, azimuth: float) -> None:
     """Raises SimulationError for a place where no camera can be; lengths in metres, the azimuth in radians."""
-    if not 0 < height < FARTHEST:
-        raise SimulationError(f"a camera stands above the table, below {FARTHEST:g} m, not at {height:g} m")
-    if not abs(back) < FARTHEST:
-        raise SimulationError(f"a camera stands within {FARTHEST:g} m of the table's edge, not {back:g} m back")
+    if not 0 < height < MAX_CAMERA_DISTANCE:
+        raise SimulationError(f"a camera stands above the table, below {MAX_CAMERA_DISTANCE:g} m, not at {height:g} m")
+    if not abs(back) < MAX_CAMERA_DISTANCE:
+        raise SimulationError(
+            f"a camera stands within {MAX_CAMERA_DISTANCE:g} m of the table's edge, not {back:g} m back"
+        )
     if not np.isfinite(azimuth):
         raise SimulationError(f"a camera's azimuth is a number, not {azimuth:g}")
 

@@ -22,12 +22,12 @@ KINDS = (
 ON_PLATES = ("napkin", "butter knife", "teaspoon", "dessert fork")
 """What is laid on a plate half the time, where there is a free one that is large enough."""
 
-GAP = 0.012
+MIN_GAP = 0.012
 """Metres between things at least."""
 
-MOST = 300
+MAX_THINGS = 300
 
-_TRIES = 60
+_MAX_TRIES = 60
 
 
 def scattered(
@@ -39,11 +39,11 @@ def scattered(
 ) -> list[Placement]:
     """So many things of random kinds, and the ``foreign`` ones, which have meshes, at random places, turned at random.
 
-    They lie at least ``GAP`` apart, but some on plates; the area that they take up is wider than deep. Names are kinds
-    with numbers. Raises SimulationError for more than ``MOST`` things, or none.
+    They lie at least ``MIN_GAP`` apart, but some on plates; the area that they take up is wider than deep. Names are
+    kinds with numbers. Raises SimulationError for more than ``MAX_THINGS`` things, or none.
     """
-    if not 0 <= count <= MOST or count + len(foreign) == 0:
-        raise SimulationError(f"a random table has 1 to {MOST} things, not {count}")
+    if not 0 <= count <= MAX_THINGS or count + len(foreign) == 0:
+        raise SimulationError(f"a random table has 1 to {MAX_THINGS} things, not {count}")
     ontology, rng = ontology or default_ontology(), np.random.default_rng(seed)
     floor = _Floor(rng)
     placed = [floor.put(placement, placement.plan or (0.1, 0.1)) for placement in foreign]
@@ -71,7 +71,7 @@ class _Floor:
     def put(self, thing: Placement, plan: tuple[float, float]) -> Placement:
         """The thing at a free place; the area grows until there is one."""
         while True:
-            for _ in range(_TRIES):
+            for _ in range(_MAX_TRIES):
                 x, y = self._rng.uniform(-1, 1, 2) * (1.2 * self._half, 0.85 * self._half)
                 yaw = float(self._rng.uniform(0, 2 * np.pi))
                 corners = _corners(x, y, yaw, plan)
@@ -100,7 +100,7 @@ def _at(thing: Placement, x: float, y: float, yaw: float) -> Placement:
 
 def _corners(x: float, y: float, yaw: float, plan: tuple[float, float]) -> NDArray[np.float64]:
     """Of a rectangle with half a gap around it, counter-clockwise, (4, 2)."""
-    half = (np.array(plan) + GAP) / 2
+    half = (np.array(plan) + MIN_GAP) / 2
     corners = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)]) * half
     turn = np.array([[np.cos(yaw), np.sin(yaw)], [-np.sin(yaw), np.cos(yaw)]])
     turned: NDArray[np.float64] = corners @ turn + (x, y)

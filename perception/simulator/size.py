@@ -8,7 +8,7 @@ import numpy as np
 
 from deixis.ontology.sizes import Extent, SizeRange
 
-COMMON = 0.7
+SHARED_VARIATION = 0.7
 """How much of a thing's place between small and large its lengths share: a long spoon is wide and high too."""
 
 
@@ -38,7 +38,7 @@ def drawn_size(usual: SizeRange, rng: np.random.Generator, plan: tuple[float, fl
 
 
 def _mixed(common: float, own: float) -> float:
-    return COMMON * common + (1 - COMMON) * own
+    return SHARED_VARIATION * common + (1 - SHARED_VARIATION) * own
 
 
 def quantile(extent: Extent, share: float) -> float:

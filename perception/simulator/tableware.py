@@ -12,7 +12,19 @@ from deixis.ontology.sizes import Extent, Outline, SizeRange
 from deixis.ontology.tbox import Ontology, default_ontology
 from deixis.perception.clouds.mesh import Mesh
 from deixis.perception.errors import SimulationError
-from deixis.perception.simulator import blocks, crockery, cutlery, glassware
+from deixis.perception.simulator.blocks import block, cylinder, napkin
+from deixis.perception.simulator.crockery import (
+    bottle,
+    bowl,
+    champagne_glass,
+    cup,
+    mug,
+    plate,
+    tumbler,
+    water_glass,
+    wine_glass,
+)
+from deixis.perception.simulator.cutlery import fork, knife, spoon
 from deixis.perception.simulator.size import Size, drawn_size
 from deixis.perception.simulator.solids import fitted
 
@@ -47,32 +59,30 @@ _METAL = (STEEL, BRIGHT_STEEL)
 _GLASS = (FROST, BLUE_GLASS)
 
 FORMS: dict[str, Form] = {
-    "Plate": Form("plate", crockery.plate, _CHINA),
-    "Bowl": Form("bowl", crockery.bowl, _CHINA),
-    "Cup": Form("cup", crockery.cup, _CHINA, handle=True),
-    "Mug": Form("mug", crockery.mug, _STONEWARE, handle=True),
-    "Glassware": Form("tumbler", glassware.tumbler, _GLASS),
-    "WaterGlass": Form("water glass", glassware.water_glass, _GLASS),
-    "WineGlass": Form("wine glass", glassware.wine_glass, _GLASS),
-    "ChampagneGlass": Form("champagne glass", glassware.champagne_glass, _GLASS),
-    "Fork": Form("fork", cutlery.fork(), _METAL),
-    "DessertFork": Form("fork of three tines", cutlery.fork(tines=3), _METAL),
-    "Knife": Form("knife", cutlery.knife(), _METAL),
-    "FishKnife": Form("fish knife", cutlery.knife(blade=0.42, grip=0.55, pointed=True), _METAL),
-    "ButterKnife": Form("butter knife", cutlery.knife(blade=0.5, grip=0.62), _METAL),
-    "Spoon": Form("spoon", cutlery.spoon(), _METAL),
-    "SoupSpoon": Form("round spoon", cutlery.spoon(roundness=0.7), _METAL),
-    "Napkin": Form(
-        "napkin", blocks.napkin, (WINE_RED, NAVY, MOSS, SAND), height=Extent(0.003, 0.007, 0.015), soft=True
-    ),
-    "Bottle": Form("bottle", glassware.bottle, (GREEN_GLASS, BLUE_GLASS)),
-    "Carafe": Form("bottle", glassware.bottle, _GLASS),
+    "Plate": Form("plate", plate, _CHINA),
+    "Bowl": Form("bowl", bowl, _CHINA),
+    "Cup": Form("cup", cup, _CHINA, handle=True),
+    "Mug": Form("mug", mug, _STONEWARE, handle=True),
+    "Glassware": Form("tumbler", tumbler, _GLASS),
+    "WaterGlass": Form("water glass", water_glass, _GLASS),
+    "WineGlass": Form("wine glass", wine_glass, _GLASS),
+    "ChampagneGlass": Form("champagne glass", champagne_glass, _GLASS),
+    "Fork": Form("fork", fork(), _METAL),
+    "DessertFork": Form("fork of three tines", fork(tines=3), _METAL),
+    "Knife": Form("knife", knife(), _METAL),
+    "FishKnife": Form("fish knife", knife(blade=0.42, grip=0.55, pointed=True), _METAL),
+    "ButterKnife": Form("butter knife", knife(blade=0.5, grip=0.62), _METAL),
+    "Spoon": Form("spoon", spoon(), _METAL),
+    "SoupSpoon": Form("round spoon", spoon(roundness=0.7), _METAL),
+    "Napkin": Form("napkin", napkin, (WINE_RED, NAVY, MOSS, SAND), height=Extent(0.003, 0.007, 0.015), soft=True),
+    "Bottle": Form("bottle", bottle, (GREEN_GLASS, BLUE_GLASS)),
+    "Carafe": Form("bottle", bottle, _GLASS),
 }
 """The shape of a kind, by its name in the TBox, and of all kinds below it that have none of their own."""
 
 _OTHER = (SAND, GREY_WARE, MOSS, CREAM)
-CYLINDER = Form("cylinder", blocks.cylinder, _OTHER, generic=True)
-BLOCK = Form("block", blocks.block, _OTHER, generic=True)
+CYLINDER = Form("cylinder", cylinder, _OTHER, generic=True)
+BLOCK = Form("block", block, _OTHER, generic=True)
 """What stands for a kind without a shape."""
 
 

@@ -128,8 +128,7 @@ def compile_features() -> None:
     from deixis.perception.clouds.cloud import PointCloud
     from deixis.perception.features.keypoints import voxel_keypoints
     from deixis.perception.features.normals import estimate_normals
-    from deixis.perception.features.spin_describer import SpinImageDescriber
-    from deixis.perception.features.spin_images import spin_images
+    from deixis.perception.features.spin_images import SpinImageDescriber, spin_images
 
     side = np.linspace(0.0, 0.05, 6)
     x, y = (axis.ravel() for axis in np.meshgrid(side, side))
@@ -147,10 +146,9 @@ def compile_recognition() -> None:
     import numpy as np
 
     from deixis.perception.recognition.distances import Target
-    from deixis.perception.recognition.index import ViewIndex
+    from deixis.perception.recognition.index import Effort, ViewIndex
     from deixis.perception.recognition.instances import InstanceCategory
-    from deixis.perception.recognition.inverted import Effort
-    from deixis.perception.recognition.view_file import open_views, write_views
+    from deixis.perception.recognition.views import open_views, write_views
 
     views = [(str(i), np.full((2, 3), i, np.float32)) for i in range(3)]
     category, target = InstanceCategory.of("warm", views), Target.of(views[0][1])

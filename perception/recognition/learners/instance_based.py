@@ -6,8 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.perception.recognition.instances import InstanceCategory
-from deixis.perception.recognition.learners.learner import Prediction
-from deixis.perception.recognition.learners.taught_views import TaughtViews
+from deixis.perception.recognition.learners.learner import Prediction, TaughtViews
 from deixis.perception.recognition.learners.view_features import ViewFeatures, roots
 from deixis.perception.recognition.recogniser import Recogniser
 from deixis.perception.recognition.settings import DEFAULT, RecognitionSettings

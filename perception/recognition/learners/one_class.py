@@ -9,11 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.perception.errors import RecognitionError
-from deixis.perception.recognition.learners.learner import Prediction
-from deixis.perception.recognition.learners.taught_views import TaughtViews
+from deixis.perception.recognition.learners.learner import Prediction, TaughtViews
 from deixis.perception.recognition.learners.view_features import ViewFeatures, pooled
 
-SHAPES = ("spin_images", "good", "d2_extents")
+POOLED_DESCRIBERS = ("spin_images", "good", "d2_extents")
 """What a view's vector is pooled from."""
 
 
@@ -34,7 +33,9 @@ class SupportVectorDescription(TaughtViews):
 
     name = "SVDD"
 
-    def __init__(self, descriptors: Sequence[str] = SHAPES, outliers: float = 0.1, reach: float = 0.5) -> None:
+    def __init__(
+        self, descriptors: Sequence[str] = POOLED_DESCRIBERS, outliers: float = 0.1, reach: float = 0.5
+    ) -> None:
         super().__init__()
         if not 0.0 < outliers < 1.0 or not reach > 0.0:
             raise RecognitionError(f"a share of outliers in (0, 1) and a reach above 0, not {outliers:g} and {reach:g}")

@@ -9,9 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.perception.errors import RecognitionError
-from deixis.perception.recognition.learners.learner import Prediction
-from deixis.perception.recognition.learners.one_class import SHAPES
-from deixis.perception.recognition.learners.taught_views import require_free, require_known, require_two
+from deixis.perception.recognition.learners.learner import Prediction, require_free, require_known, require_two
+from deixis.perception.recognition.learners.one_class import POOLED_DESCRIBERS
 from deixis.perception.recognition.learners.view_features import ViewFeatures, pooled
 
 Vector = NDArray[np.float64]
@@ -69,7 +68,11 @@ class VectorQuantisation:
     name = "LVQ"
 
     def __init__(
-        self, descriptors: Sequence[str] = SHAPES, features: int = 200, rate: float = 0.2, decay: float = 10.0
+        self,
+        descriptors: Sequence[str] = POOLED_DESCRIBERS,
+        features: int = 200,
+        rate: float = 0.2,
+        decay: float = 10.0,
     ) -> None:
         if features < 1 or not 0.0 <= rate <= 1.0 or not decay > 0.0:
             raise RecognitionError(

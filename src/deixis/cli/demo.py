@@ -24,7 +24,7 @@ from deixis.session import Session, ground, infer, read_script
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from deixis.perception.recognition.recognition import Recognition
+    from deixis.perception.recognition.recogniser import Recognition
 
 
 QUERY = """SELECT ?object ?kind ?lesson WHERE {

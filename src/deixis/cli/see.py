@@ -24,7 +24,7 @@ from deixis.cli.common import (
 )
 
 if TYPE_CHECKING:
-    from deixis.perception.recognition.recognition import Recognition
+    from deixis.perception.recognition.recogniser import Recognition
     from deixis.perception.scene import Scene
     from deixis.workflows.recognise import Recognised, Taught
 

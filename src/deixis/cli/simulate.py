@@ -59,7 +59,7 @@ def simulate(
 ) -> None:
     """Lay a table as a layout says, or at random, and look at it with a simulated depth camera."""
     from deixis.errors import DeixisError
-    from deixis.perception.clouds.intrinsics import read_intrinsics
+    from deixis.perception.clouds.depth import read_intrinsics
     from deixis.perception.simulator.camera import KINECT
     from deixis.perception.simulator.depth import DepthSensor, in_table_frame
     from deixis.workflows.lay_table import NoTableError

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.perception.detection.tables import ON_TABLE
+from deixis.perception.detection.settings import PlaneSettings
 from deixis.plots.camera import MARGIN, Camera, camera_of, colours_of, draw_camera
 from deixis.plots.figure import INK, dress_table, new_figure, save
 from deixis.plots.names import write_names
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from deixis.perception.recognition.recognition import Recognition
+    from deixis.perception.recognition.recogniser import Recognition
     from deixis.perception.scene import Scene
     from deixis.workflows.perceive import Perceived
     from deixis.workflows.recognise import Recognised
@@ -120,7 +120,7 @@ def window_of(points: NDArray[np.float32], found: Perceived) -> Window:
         return _around_boxes(found.scene)
     flat = points[np.isfinite(points).all(axis=1)]
     if found.detection.table is not None:
-        flat = flat[np.abs(flat[:, 2]) < ON_TABLE]
+        flat = flat[np.abs(flat[:, 2]) < PlaneSettings().table_band]
     low, high = np.quantile(flat[:, :2].astype(np.float64), [FEW, 1.0 - FEW], axis=0)
     return _widened(low, high)
 

@@ -18,8 +18,8 @@ from deixis.memory.owner import rename
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.clouds.cloud_file import read_cloud, write_cloud
 from deixis.perception.detection.detect import Detection, detect
-from deixis.perception.detection.frame import moved
 from deixis.perception.detection.settings import DetectionSettings
+from deixis.perception.detection.viewpoint import moved
 from deixis.perception.errors import CloudError, SceneError
 from deixis.perception.formats.scene_json import write_scene
 from deixis.perception.scene import PerceivedObject, Scene

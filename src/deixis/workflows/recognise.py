@@ -22,16 +22,14 @@ from deixis.memory.perceptual.records import Batch, CategoryRecord, View
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.errors import CloudError
 from deixis.perception.features.describer import Describer
-from deixis.perception.features.spin_describer import SpinImageDescriber
-from deixis.perception.features.upright_describer import UprightDescriber
+from deixis.perception.features.spin_images import SpinImageDescriber
+from deixis.perception.features.upright import UprightDescriber
 from deixis.perception.recognition.instances import InstanceCategory
 from deixis.perception.recognition.learners.view_features import roots
-from deixis.perception.recognition.recogniser import Recogniser
-from deixis.perception.recognition.recognition import Recognition
+from deixis.perception.recognition.recogniser import Recogniser, Recognition
 from deixis.perception.recognition.settings import RecognitionSettings
 from deixis.perception.recognition.spread import PRIOR_SPREADS
-from deixis.perception.recognition.view_file import mapped
-from deixis.perception.recognition.views import PackedViews
+from deixis.perception.recognition.views import PackedViews, mapped
 from deixis.perception.scene import Scene
 
 

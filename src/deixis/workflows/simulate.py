@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 from deixis.grammar.parser import read_script
 from deixis.grammar.script import Script
 from deixis.perception.clouds.cloud import PointCloud
-from deixis.perception.clouds.intrinsics import Intrinsics
+from deixis.perception.clouds.depth import Intrinsics
 from deixis.perception.scene import Scene
 from deixis.perception.simulator.camera import HEIGHT, KINECT, Camera, chair_camera, check_place
 from deixis.perception.simulator.depth import FIRST_THING, DepthSensor, see
-from deixis.perception.simulator.truth import truth_scene
+from deixis.perception.simulator.laying import truth_scene
 from deixis.workflows.lay_table import LaidScript, lay_script, require_seed
 
 

@@ -27,7 +27,7 @@ from deixis.experiments.open_ended.things import (
     upright,
 )
 from deixis.perception.clouds.mesh import Mesh
-from deixis.perception.recognition.learners.codebook import Codebook
+from deixis.perception.recognition.learners.naive_bayes import Codebook
 from deixis.perception.recognition.learners.view_features import ViewFeatures
 from deixis.perception.recognition.settings import DEFAULT, PAPER
 from deixis.perception.simulator.tableware import FORMS, make

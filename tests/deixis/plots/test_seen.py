@@ -14,7 +14,7 @@ from deixis.grammar.parser import parse_script
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.clouds.cloud_file import write_cloud
 from deixis.perception.recognition.calibration import Calibration
-from deixis.perception.recognition.recognition import Recognition
+from deixis.perception.recognition.recogniser import Recognition
 from deixis.perception.scene import PerceivedObject, Scene
 from deixis.plots import seen as plot_seen
 from deixis.plots.camera import camera_of

@@ -20,9 +20,9 @@ from deixis.perception.clouds.cloud_file import read_cloud
 from deixis.perception.clouds.mesh import Mesh
 from deixis.perception.errors import SimulationError
 from deixis.perception.formats.scene_json import read_scene
+from deixis.perception.simulator.laying import truth_scene
 from deixis.perception.simulator.solids import fitted
 from deixis.perception.simulator.tableware import make
-from deixis.perception.simulator.truth import truth_scene
 from deixis.session import Session
 from deixis.workflows.lay_table import LaidScript, NoTableError, TimeIsUpError, lay_random, lay_script
 from deixis.workflows.simulate import View, simulate

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from deixis.perception.clouds.cloud_file import read_cloud
-from deixis.perception.clouds.intrinsics import Intrinsics, read_intrinsics
+from deixis.perception.clouds.depth import Intrinsics, read_intrinsics
 from deixis.perception.errors import CloudError
 
 CAMERA = Intrinsics(width=3, height=2, fx=2.0, fy=4.0, cx=1.0, cy=0.5)

@@ -14,7 +14,7 @@ from PIL import Image
 
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.clouds.cloud_file import read_cloud, write_cloud
-from deixis.perception.clouds.intrinsics import Intrinsics
+from deixis.perception.clouds.depth import Intrinsics
 from deixis.perception.clouds.mesh_file import read_mesh
 from deixis.perception.errors import CloudError
 

@@ -15,7 +15,7 @@ import pytest
 
 from deixis.errors import DeixisError
 from deixis.perception.clouds.cloud_file import read_cloud
-from deixis.perception.clouds.intrinsics import Intrinsics
+from deixis.perception.clouds.depth import Intrinsics
 from deixis.perception.clouds.mesh_file import read_mesh
 from deixis.perception.errors import CloudError
 
@@ -198,6 +198,11 @@ def other_files() -> Iterator[tuple[str, str, bytes]]:
     yield "png", "a signature and no more", b"\x89PNG\r\n\x1a\n"
     yield "npy", "depth as a list", npy("(12,)", "<u2", bytes(24))
     yield "npy", "depth by the hundred million", npy(f"({MANY}, 2)", "<u2", bytes(24))
+    yield "npy", "depth of a negative size", npy("(-3, -4)", "<u2", bytes(24))
+    yield "npy", "a header of brackets", npy("(" * 9000, "<u2", bytes(24))
+    yield "npy", "a header of signs", npy("-" * 9000 + "1", "<u2", bytes(24))
+    yield "npy", "a type without a name", npy("(3, 4)", "', (), '", bytes(24))
+    yield "npy", "more dimensions than there are", npy("(" + "0, " * 100 + ")", "<u2", b"")
     yield "npy", "pickled objects", npy("(3, 4)", "|O", bytes(24))
     yield "jpg", "a picture", b"\xff\xd8\xff\xe0" + bytes(100)
 
@@ -221,6 +226,7 @@ def mesh_files() -> Iterator[tuple[str, str, bytes]]:
     yield "stl", "no triangles", bytes(84)
     yield "stl", "a coordinate that is none", bytes(80) + struct.pack("<I12fH", 1, *[float("nan")] * 12, 0)
     yield "stl", "corners that make no triangle", b"solid a\nvertex 0 0 0\n"
+    yield "stl", "numbers shifted between lines", b"solid a\nvertex 0 0\nvertex 1 0 0 7\nvertex 0 1 0\nendsolid a\n"
     yield "stl", "a vertex of words", b"solid a\nvertex a b c\n"
     yield "dae", "another format", b"<COLLADA/>"
 

@@ -54,6 +54,11 @@ def test_obj_faces_before_any_name_are_in_a_part_without_one(tmp_path: Path) -> 
     assert mesh_in(tmp_path, "a.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").names == ("",)
 
 
+def test_obj_counts_back_from_the_last_vertex_so_far(tmp_path: Path) -> None:
+    lines = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\nv 5 0 0\nv 6 0 0\nv 5 1 0\nf -3 -2 -1\n"
+    assert mesh_in(tmp_path, "a.obj", lines).faces.tolist() == [[0, 1, 2], [3, 4, 5]]
+
+
 def binary_stl(triangles: list[list[tuple[int, int, int]]], header: bytes = b"") -> bytes:
     body = b"".join(struct.pack("<12fH", 0, 0, 1, *(x for corner in t for x in corner), 0) for t in triangles)
     return header.ljust(80, b"\0") + struct.pack("<I", len(triangles)) + body
@@ -71,6 +76,12 @@ def ascii_stl(triangles: list[list[tuple[int, int, int]]]) -> bytes:
 def test_stl_corners_at_one_place_are_one_vertex(content: bytes, tmp_path: Path) -> None:
     mesh = mesh_in(tmp_path, "square.stl", content)
     assert mesh.vertices.shape == (4, 3)
+    np.testing.assert_array_equal(mesh.vertices[mesh.faces], TRIANGLES)
+
+
+def test_all_solids_of_an_stl_file_are_one_mesh(tmp_path: Path) -> None:
+    solid = ascii_stl(TRIANGLES[:1]).replace(b"square", b"vertex buffer")
+    mesh = mesh_in(tmp_path, "two.stl", solid + ascii_stl(TRIANGLES[1:]))
     np.testing.assert_array_equal(mesh.vertices[mesh.faces], TRIANGLES)
 
 

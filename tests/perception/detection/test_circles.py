@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from deixis.perception.detection.boxes import oriented_box, upright_box
-from deixis.perception.detection.circles import circle_around, rim_of
+from deixis.perception.detection.outline import circle_around, oriented_box, rim_of, upright_box
+from deixis.perception.detection.settings import OutlineSettings
 
+LIMITS = OutlineSettings()
 NO_TABLE = np.zeros((0, 2))
 
 
@@ -27,7 +28,7 @@ def _crescent(below: float) -> NDArray[np.float64]:
 
 @pytest.mark.parametrize("below", [-0.05, 0.0, 0.08])
 def test_the_rim_of_a_plate_goes_on_behind_what_stands_on_it(below: float) -> None:
-    rim = rim_of(_crescent(below) + np.array([0.3, 0.1]), NO_TABLE)
+    rim = rim_of(_crescent(below) + np.array([0.3, 0.1]), NO_TABLE, LIMITS)
     assert rim is not None
     assert rim.centre == pytest.approx([0.3, 0.1], abs=0.003)
     assert rim.radius == pytest.approx(0.12, abs=0.003)
@@ -35,9 +36,9 @@ def test_the_rim_of_a_plate_goes_on_behind_what_stands_on_it(below: float) -> No
 
 def test_a_box_takes_in_the_hidden_part_of_a_rim_whichever_way_it_is_turned() -> None:
     plan = _crescent(-0.03) + np.array([0.2, 0.3])
-    points, rim = np.column_stack([plan, np.full(len(plan), 0.02)]), rim_of(plan, NO_TABLE)
-    assert upright_box(points, rim)[:, :2] == pytest.approx(np.array([[0.08, 0.18], [0.32, 0.42]]), abs=0.004)
-    turned = oriented_box(points, rim)
+    points, rim = np.column_stack([plan, np.full(len(plan), 0.02)]), rim_of(plan, NO_TABLE, LIMITS)
+    assert upright_box(points, LIMITS, rim)[:, :2] == pytest.approx(np.array([[0.08, 0.18], [0.32, 0.42]]), abs=0.004)
+    turned = oriented_box(points, LIMITS, rim)
     assert turned.centre[:2] == pytest.approx([0.2, 0.3], abs=0.004)
     assert turned.extents[:2] == pytest.approx([0.24, 0.24], abs=0.006)
 
@@ -45,8 +46,8 @@ def test_a_box_takes_in_the_hidden_part_of_a_rim_whichever_way_it_is_turned() ->
 def test_where_the_table_is_seen_no_rim_goes_on() -> None:
     crescent = _crescent(-0.03)
     behind = _disc(0.12)[_disc(0.12)[:, 1] > 0.02]
-    assert rim_of(crescent, behind) is None
-    assert rim_of(crescent, behind + np.array([0.0, 0.3])) is not None
+    assert rim_of(crescent, behind, LIMITS) is None
+    assert rim_of(crescent, behind + np.array([0.0, 0.3]), LIMITS) is not None
 
 
 @pytest.mark.parametrize(
@@ -62,14 +63,14 @@ def test_where_the_table_is_seen_no_rim_goes_on() -> None:
     ids=["too little of an edge", "a spoon", "a strip of a plate", "a napkin", "points in a line", "a round table"],
 )
 def test_what_is_not_surely_round_has_no_rim(seen: NDArray[np.float64]) -> None:
-    assert rim_of(seen, NO_TABLE) is None
+    assert rim_of(seen, NO_TABLE, LIMITS) is None
 
 
 def test_a_circle_is_found_wherever_it_is_and_however_it_is_turned() -> None:
     rng, turn = np.random.default_rng(0), 0.7
     axes = np.array([[np.cos(turn), np.sin(turn)], [-np.sin(turn), np.cos(turn)]])
     plan = _disc(0.08) + rng.normal(size=2)
-    there, here = circle_around(plan @ axes.T), circle_around(plan)
+    there, here = (circle_around(places, LIMITS.rim_tolerance) for places in (plan @ axes.T, plan))
     assert there is not None and here is not None
     assert there.centre == pytest.approx(here.turned(axes).centre, abs=1e-6)
     assert there.radius == pytest.approx(here.radius, abs=1e-6)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+import re
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -11,8 +13,14 @@ from numpy.typing import NDArray
 
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.detection.detect import Detection, detect
-from deixis.perception.detection.frame import moved
-from deixis.perception.detection.settings import DetectionSettings
+from deixis.perception.detection.settings import (
+    BoundarySettings,
+    DetectionSettings,
+    JoiningSettings,
+    PlaneSettings,
+    SurfaceSettings,
+)
+from deixis.perception.detection.viewpoint import moved
 from deixis.perception.errors import CloudError
 
 Look = Callable[..., PointCloud]
@@ -147,6 +155,35 @@ def test_a_cloud_without_a_finite_point_is_bad_input() -> None:
         detect(PointCloud(np.full((4, 3), np.nan, np.float32), organised=(2, 2)))
     with pytest.raises(CloudError, match="without one finite point"):
         detect(PointCloud(np.zeros((0, 3), np.float32)))
+
+
+@pytest.mark.parametrize(
+    ("group", "wrong", "message"),
+    [
+        (
+            SurfaceSettings,
+            {"min_jump": -0.1},
+            "SurfaceSettings's min_jump must be a finite number of 0 or more",
+        ),
+        (SurfaceSettings, {"min_radius": 0.5}, "SurfaceSettings's max_radius must be at least 0.5"),
+        (PlaneSettings, {"max_planes": 0}, "PlaneSettings's max_planes must be a whole number of 1 or more, got 0"),
+        (JoiningSettings, {"patch_width": math.nan}, "JoiningSettings's patch_width must be a finite number"),
+        (DetectionSettings, {"joining": {"patch_width": 0.1}}, "detection's joining must be JoiningSettings"),
+    ],
+)
+def test_thresholds_that_cannot_be_are_refused(
+    group: Callable[..., object], wrong: dict[str, object], message: str
+) -> None:
+    with pytest.raises(CloudError, match=re.escape(message)):
+        group(**wrong)
+
+
+def test_other_thresholds_give_other_things(boxes_seen: Look) -> None:
+    cloud = boxes_seen([LOW, STACKED])
+    unjoined = DetectionSettings(
+        boundaries=BoundarySettings(merge_limit=0.0), joining=JoiningSettings(fragment_area=0.0)
+    )
+    assert len(detect(cloud).boxes) == 2 < len(detect(cloud, unjoined).boxes)
 
 
 @pytest.mark.parametrize(

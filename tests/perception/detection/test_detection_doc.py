@@ -12,8 +12,9 @@ PAGE = (Path(__file__).parents[3] / "docs" / "detection.md").read_text(encoding=
 
 
 def test_the_python_on_the_page_runs() -> None:
-    (program,) = re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)
-    exec(compile(program, "docs/detection.md", "exec"), {})
+    programs = re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)
+    assert len(programs) == 2
+    exec(compile("\n".join(programs), "docs/detection.md", "exec"), {})
 
 
 def test_the_page_names_every_setting() -> None:

@@ -7,9 +7,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from deixis.perception.clouds.cloud import PointCloud
-from deixis.perception.detection.frame import moved, outlook_of, table_frame
 from deixis.perception.detection.plane import Outlook, Plane
 from deixis.perception.detection.settings import DetectionSettings
+from deixis.perception.detection.viewpoint import moved, outlook_of, table_frame
 
 LEVEL = Plane(np.array([0.0, 0.0, 1.0]), 0.7)
 SQUARE = np.array([[0.0, 0.0, 0.7], [1.0, 0.0, 0.7], [1.0, 1.0, 0.7], [0.0, 1.0, 0.7]])

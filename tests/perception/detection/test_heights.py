@@ -7,7 +7,7 @@ import pytest
 
 from deixis.perception.detection.heights import raised
 from deixis.perception.detection.neighbours import neighbour_table
-from deixis.perception.detection.settings import DetectionSettings
+from deixis.perception.detection.settings import DetectionSettings, SurfaceSettings
 
 ROWS, COLUMNS = 60, 80
 
@@ -18,7 +18,9 @@ def test_a_strip_of_a_few_millimetres_survives_and_the_table_does_not(noise: flo
     strip = np.zeros((ROWS, COLUMNS), dtype=np.bool_)
     strip[25:32, 10:70] = True
     heights[strip] += 0.005
-    neighbours = neighbour_table(np.zeros((ROWS * COLUMNS, 3)), np.arange(ROWS * COLUMNS), (ROWS, COLUMNS))
+    neighbours = neighbour_table(
+        np.zeros((ROWS * COLUMNS, 3)), np.arange(ROWS * COLUMNS), (ROWS, COLUMNS), SurfaceSettings()
+    )
     found = raised(heights.ravel(), np.full(ROWS * COLUMNS, 1.0), neighbours, DetectionSettings())
     above = found.above.reshape(ROWS, COLUMNS)
     assert above[strip].mean() > 0.97

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from deixis.perception.detection.boundaries import Boundaries
 from deixis.perception.detection.joining import bridged, round_rims, whole_things
 from deixis.perception.detection.parts import Parts
+from deixis.perception.detection.settings import JoiningSettings, SupervoxelSettings
 from deixis.perception.detection.supervoxels import Supervoxels
 
 ROWS, AROUND = 8, 12
@@ -28,11 +29,11 @@ def _cup(tint: NDArray[np.float64], mottle: float, handle: int = 0) -> Parts:
     of = np.repeat([0, 1], [len(out), len(into) + handle]).astype(np.int32)
     colours = of[:, None] * tint + mottle * np.random.default_rng(0).choice([-1.0, 1.0], (len(of), 3)) / np.sqrt(3)
     ones, number = np.ones(len(of)), np.arange(len(of), dtype=np.int32)
-    patches = Supervoxels(number, ones, middles, normals, colours / (0.35, 1.0, 1.0), 1e-4 * ones)
+    patches = Supervoxels(number, ones, middles, normals, colours / (0.35, 1.0, 1.0), 1e-4 * ones, SupervoxelSettings())
     top = np.arange(AROUND) + (ROWS - 1) * AROUND
     pairs = np.stack([top, len(out) + np.arange(AROUND) + (ROWS // 2) * AROUND], axis=1).astype(np.int64)
     meeting = Boundaries(pairs, np.ones(AROUND), np.full(AROUND, 1.2), np.ones(AROUND))
-    return Parts(of, patches, meeting)
+    return Parts(of, patches, meeting, JoiningSettings())
 
 
 def test_the_inside_of_a_cup_is_the_cup() -> None:
@@ -62,9 +63,9 @@ def test_a_glass_whose_stem_is_seen_stands_on_its_foot_but_not_on_a_plate(width:
     ones, of = np.ones(len(middles)), np.repeat([0, 1], [len(stem) + len(bowl), len(foot)]).astype(np.int32)
     normals = np.tile([0.0, 0.0, 1.0], (len(middles), 1))
     number = np.arange(len(middles), dtype=np.int32)
-    patches = Supervoxels(number, ones, middles, normals, np.zeros_like(middles), 1e-4 * ones)
+    patches = Supervoxels(number, ones, middles, normals, np.zeros_like(middles), 1e-4 * ones, SupervoxelSettings())
     meeting = Boundaries(np.array([[0, len(stem) + len(bowl) + 27]]), np.ones(1), np.full(1, 1.2), np.ones(1))
-    parts = Parts(of, patches, meeting)
+    parts = Parts(of, patches, meeting, JoiningSettings())
     assert 0.015 < parts.rise[0, 1] < 0.03
     assert len(whole_things(parts)) == count
 
@@ -86,10 +87,12 @@ def test_a_neck_is_the_bottles_on_whose_middle_it_is(height: float, off: float, 
     middles = np.concatenate([body, neck])
     ones, of = np.ones(len(middles)), np.repeat([0, 1], [len(body), len(neck)]).astype(np.int32)
     number = np.arange(len(middles), dtype=np.int32)
-    patches = Supervoxels(number, ones, middles, middles * (1.0, 1.0, 0.0), np.zeros_like(middles), 1e-4 * ones)
+    patches = Supervoxels(
+        number, ones, middles, middles * (1.0, 1.0, 0.0), np.zeros_like(middles), 1e-4 * ones, SupervoxelSettings()
+    )
     pairs = np.stack([len(body) - AROUND + np.arange(AROUND), len(body) + np.arange(AROUND)], axis=1).astype(np.int64)
     meeting = Boundaries(pairs, np.ones(AROUND), np.full(AROUND, 1.2), np.ones(AROUND))
-    assert len(whole_things(Parts(of, patches, meeting))) == count
+    assert len(whole_things(Parts(of, patches, meeting, JoiningSettings()))) == count
 
 
 def _grid(x: tuple[float, float], y: tuple[float, float], z: float) -> NDArray[np.float64]:
@@ -104,9 +107,9 @@ def _below(cover: NDArray[np.float64], one: NDArray[np.float64], other: NDArray[
     ones, number = np.ones(len(middles)), np.arange(len(middles), dtype=np.int32)
     of = np.repeat([0, 1, 2], [len(cover), len(one), len(other)]).astype(np.int32)
     normals, colours = np.tile([0.0, 0.0, 1.0], (len(middles), 1)), np.zeros((len(middles), 3))
-    patches = Supervoxels(number, ones, middles, normals, colours, 1e-4 * ones)
+    patches = Supervoxels(number, ones, middles, normals, colours, 1e-4 * ones, SupervoxelSettings())
     pairs = np.array([[0, len(cover)], [0, len(cover) + len(one)]])
-    return Parts(of, patches, Boundaries(pairs, np.ones(2), np.full(2, 1.2), np.ones(2)))
+    return Parts(of, patches, Boundaries(pairs, np.ones(2), np.full(2, 1.2), np.ones(2)), JoiningSettings())
 
 
 def test_a_surface_goes_on_below_what_lies_between_its_parts() -> None:
@@ -143,9 +146,9 @@ def _apart(*pieces: NDArray[np.float64], normals: tuple[float, float, float] = (
     ones, number = np.ones(len(middles)), np.arange(len(middles), dtype=np.int32)
     of = np.repeat(np.arange(len(pieces)), [len(piece) for piece in pieces]).astype(np.int32)
     facing = np.where((of == of.max())[:, None], normals, (0.0, 0.0, 1.0))
-    patches = Supervoxels(number, ones, middles, facing, np.zeros_like(middles), 1e-4 * ones)
+    patches = Supervoxels(number, ones, middles, facing, np.zeros_like(middles), 1e-4 * ones, SupervoxelSettings())
     none = np.zeros(0)
-    return Parts(of, patches, Boundaries(np.zeros((0, 2), np.int64), none, none, none))
+    return Parts(of, patches, Boundaries(np.zeros((0, 2), np.int64), none, none, none), JoiningSettings())
 
 
 HANDLE = _grid((0.0, 0.01), (0.0, 0.12), 0.004)

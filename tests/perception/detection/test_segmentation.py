@@ -8,11 +8,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from deixis.perception.detection.agglomeration import agglomerated
-from deixis.perception.detection.boundaries import Boundaries, boundaries, creases
+from deixis.perception.detection.boundaries import Boundaries, agglomerated, boundaries, creases
+from deixis.perception.detection.detect import segments
 from deixis.perception.detection.neighbours import neighbour_table
-from deixis.perception.detection.segmentation import segments
-from deixis.perception.detection.settings import DetectionSettings
+from deixis.perception.detection.settings import (
+    BoundarySettings,
+    DetectionSettings,
+    SupervoxelSettings,
+    SurfaceSettings,
+)
 from deixis.perception.detection.supervoxels import supervoxels
 from deixis.perception.detection.surface import Surface, surface_of
 
@@ -25,8 +29,8 @@ def _folded(angle: float, paint: NDArray[np.uint8] | None = None) -> Surface:
     x, y = (axis.ravel() for axis in np.meshgrid(np.linspace(0, 0.12, SIDE), np.linspace(0, 0.12, SIDE)))
     z = np.abs(x - 0.06) * np.tan(angle / 2) + 0.1
     points = np.stack([x, y, z], axis=1)
-    neighbours = neighbour_table(points, np.arange(SIDE * SIDE), (SIDE, SIDE))
-    return surface_of(points, paint, neighbours, np.full(len(points), 2e-4), EYE)
+    neighbours = neighbour_table(points, np.arange(SIDE * SIDE), (SIDE, SIDE), SurfaceSettings())
+    return surface_of(points, paint, neighbours, np.full(len(points), 2e-4), EYE, SurfaceSettings())
 
 
 @pytest.mark.parametrize(("angle", "count"), [(-1.6, 1), (-0.8, 1), (0.0, 1), (1.6, 2)])
@@ -40,7 +44,7 @@ def test_surfaces_part_in_a_valley_and_not_on_a_ridge(angle: float, count: int) 
 
 def test_only_the_valley_is_a_crease_and_no_deeper_than_it_is() -> None:
     surface = _folded(1.2)
-    patches = supervoxels(surface)
+    patches = supervoxels(surface, SupervoxelSettings())
     pairs = boundaries(surface, patches, DetectionSettings()).pairs
     near = np.abs(patches.middles[pairs, 0] - 0.06).min(axis=1) < 0.008
     assert 0.5 < np.median(creases(patches, pairs)[near & (creases(patches, pairs) > 0.1)]) <= 1.25
@@ -51,7 +55,7 @@ def test_patches_meet_where_the_colour_changes() -> None:
     paint = np.full((SIDE * SIDE, 3), 200, np.uint8)
     dark = np.tile(np.arange(SIDE) < 23, SIDE)
     paint[dark] = (120, 30, 40)
-    patches = supervoxels(_folded(0.0, paint))
+    patches = supervoxels(_folded(0.0, paint), SupervoxelSettings())
     share = np.bincount(patches.of, dark) / np.bincount(patches.of)
     mixed = np.minimum(share, 1 - share) * np.bincount(patches.of)
     assert mixed.sum() < 0.03 * SIDE * SIDE
@@ -66,7 +70,7 @@ def test_no_boundary_that_speaks_for_one_thing_is_left(count: int, seed: int) ->
     pairs = np.stack([a[chosen], b[chosen]], axis=1).astype(np.int64)
     lengths, evidence = rng.integers(1, 9, len(pairs)).astype(float), rng.random(len(pairs))
     meeting = Boundaries(pairs, lengths, evidence, np.zeros(len(pairs)))
-    of = agglomerated(meeting, 0.5, 20 * rng.random((count, 3)), rng.random(count))
+    of = agglomerated(meeting, 20 * rng.random((count, 3)), rng.random(count), BoundarySettings(merge_limit=0.5))
     assert of[0] == 0 and set(of.tolist()) == set(range(of.max() + 1))
     left = of[pairs]
     for one, other in {(int(min(p)), int(max(p))) for p in left if p[0] != p[1]}:
@@ -81,9 +85,11 @@ def test_colour_decides_what_is_merged_first(tint: float, expected: list[int]) -
     knife, rim, other = (tint, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
     pairs, evidence = np.array([[0, 1], [0, 2], [1, 2]]), np.array([0.0, 1.4, 0.1])
     meeting = Boundaries(pairs, np.array([4.0, 8.0, 4.0]), evidence, np.zeros(3))
-    assert agglomerated(meeting, 0.6, np.array([knife, rim, other]), np.ones(3)).tolist() == expected
+    assert agglomerated(meeting, np.array([knife, rim, other]), np.ones(3), BoundarySettings()).tolist() == expected
 
 
 def test_what_is_of_two_colours_and_meets_smoothly_is_one() -> None:
     meeting = Boundaries(np.array([[0, 1]]), np.ones(1), np.array([0.55]), np.zeros(1))
-    assert agglomerated(meeting, 0.6, np.array([[0.0, 0.0, 0.0], [90.0, 0.0, 0.0]]), np.ones(2)).tolist() == [0, 0]
+    assert agglomerated(
+        meeting, np.array([[0.0, 0.0, 0.0], [90.0, 0.0, 0.0]]), np.ones(2), BoundarySettings()
+    ).tolist() == [0, 0]

@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.detection.detect import Detection, detect
 from deixis.perception.detection.neighbours import neighbour_table
-from deixis.perception.detection.viewpoint import MOST_APART, apart
+from deixis.perception.detection.settings import SurfaceSettings, ViewpointSettings
+from deixis.perception.detection.viewpoint import apart
 from deixis.perception.errors import CloudError
 
 Look = Callable[..., PointCloud]
@@ -38,9 +39,9 @@ def test_neighbours_in_direction_are_the_pixels_around_a_pixel(boxes_seen: Look)
     cloud = boxes_seen([CUBE, STACKED])
     kept = np.flatnonzero(cloud.finite)
     points = cloud.points[kept].astype(np.float64)
-    pixels = neighbour_table(points, kept, cloud.organised)
+    pixels = neighbour_table(points, kept, cloud.organised, SurfaceSettings())
     inner = (pixels >= 0).all(axis=1)
-    found = neighbour_table(points, kept, None, np.zeros(3))
+    found = neighbour_table(points, kept, None, SurfaceSettings(), np.zeros(3))
     assert inner.sum() > 10_000
     assert (np.sort(found[inner], axis=1) == np.sort(pixels[inner], axis=1)).all()
 
@@ -58,8 +59,9 @@ def test_without_its_order_an_image_shows_the_same_things(boxes_seen: Look) -> N
 
 def test_points_seen_from_elsewhere_have_neighbours_that_are_apart(boxes_seen: Look, to_table: ToTable) -> None:
     points = no_image(boxes_seen([CUBE, STACKED, LOW])).points.astype(np.float64)
-    assert apart(points, np.zeros(3)) < MOST_APART / 2
-    assert apart(to_table(points), np.zeros(3)) > 2 * MOST_APART
+    limits = ViewpointSettings()
+    assert apart(points, np.zeros(3), limits) < limits.max_far_share / 2
+    assert apart(to_table(points), np.zeros(3), limits) > 2 * limits.max_far_share
 
 
 @pytest.mark.parametrize("shift", [(0.0, 0.0, 0.0), (0.8, 0.1, 0.75), (3.0, 2.0, 1.0)])

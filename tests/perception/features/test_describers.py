@@ -17,7 +17,7 @@ from deixis.perception.features.d2_extents import D2ExtentsDescriber
 from deixis.perception.features.describer import Describer
 from deixis.perception.features.good import GoodDescriber
 from deixis.perception.features.registry import DESCRIBERS, describer_named
-from deixis.perception.features.spin_describer import SpinImageDescriber
+from deixis.perception.features.spin_images import SpinImageDescriber
 
 ALL = [describer_named(name) for name in DESCRIBERS]
 GLOBAL = [describer for describer in ALL if not describer.local]

@@ -8,8 +8,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from deixis.perception.clouds.cloud import PointCloud
-from deixis.perception.features.upright_describer import UprightDescriber
-from deixis.perception.features.upright_shape import CELLS, GRAIN, upright_shape
+from deixis.perception.features.upright import EXTENT_OFFSET, HISTOGRAM_CELLS, UprightDescriber, upright_shape
 
 EYE = (0.0, -1.0, 0.8)
 
@@ -35,14 +34,14 @@ def test_extents_are_height_and_the_sides_of_the_smallest_rectangle_in_plan() ->
     for turned in (0.0, np.deg2rad(35)):
         shape = upright_shape(box(0.2, 0.1, 0.05, turned))
         assert shape is not None
-        np.testing.assert_allclose(np.exp(shape.extents) - GRAIN, [0.05, 0.2, 0.1], atol=0.002)
+        np.testing.assert_allclose(np.exp(shape.extents) - EXTENT_OFFSET, [0.05, 0.2, 0.1], atol=0.002)
 
 
 def test_a_profile_says_at_which_height_a_thing_is_wide() -> None:
     (below, _), (above, _) = upright_shape(cone(1)), upright_shape(cone(0))  # type: ignore[misc]
-    shares = np.stack([below, above]).reshape(2, CELLS, CELLS) ** 2
+    shares = np.stack([below, above]).reshape(2, HISTOGRAM_CELLS, HISTOGRAM_CELLS) ** 2
     np.testing.assert_allclose(shares.sum(axis=(1, 2)), 1.0)
-    outside = shares[:, :, CELLS // 2 :].sum(axis=2)  # by height: what is far from the middle
+    outside = shares[:, :, HISTOGRAM_CELLS // 2 :].sum(axis=2)  # by height: what is far from the middle
     assert outside[0, 0] > 0.1 > outside[0, -1] == 0
     assert outside[1, -1] > 0.1 > outside[1, 0] == 0
 
@@ -62,8 +61,8 @@ def test_height_is_that_above_the_table() -> None:
     tray = box(0.2, 0.1, 0.02)
     low, high = upright_shape(tray), upright_shape(tray + np.array([0, 0, 0.08]))
     assert low is not None and high is not None
-    np.testing.assert_allclose(np.exp([low.extents[0], high.extents[0]]) - GRAIN, [0.02, 0.10], atol=0.002)
-    assert not high.profile.reshape(CELLS, CELLS)[:4].any()
+    np.testing.assert_allclose(np.exp([low.extents[0], high.extents[0]]) - EXTENT_OFFSET, [0.02, 0.10], atol=0.002)
+    assert not high.profile.reshape(HISTOGRAM_CELLS, HISTOGRAM_CELLS)[:4].any()
 
 
 def test_where_the_table_is_not_at_0_a_thing_below_it_has_its_own_foot() -> None:
@@ -91,7 +90,7 @@ def test_a_descriptor_is_two_images_and_then_the_weighted_whole() -> None:
 
 
 def test_without_the_whole_it_is_the_roots_of_spin_images() -> None:
-    from deixis.perception.features.spin_describer import SpinImageDescriber
+    from deixis.perception.features.spin_images import SpinImageDescriber
 
     cloud = PointCloud(box(0.1, 0.06, 0.04).astype(np.float32), origin=EYE)
     found = UprightDescriber(profile=0, extents=0).describe(cloud)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from deixis.perception.errors import RecognitionError
 from deixis.perception.recognition.calibration import (
-    LEAST,
+    MIN_HELD_OUT_ANSWERS,
     SHIPPED,
     Calibration,
     auroc,
@@ -22,8 +22,8 @@ from deixis.perception.recognition.calibration import (
 )
 from deixis.perception.recognition.distances import category_distance
 from deixis.perception.recognition.held_out import HeldOut, hold_out
+from deixis.perception.recognition.index import Effort
 from deixis.perception.recognition.instances import InstanceCategory
-from deixis.perception.recognition.inverted import Effort
 from deixis.perception.recognition.recogniser import Recogniser
 from deixis.perception.recognition.settings import DEFAULT, RecognitionSettings
 
@@ -100,7 +100,7 @@ def test_probabilities_fitted_to_held_out_answers_are_calibrated_on_fresh_ones()
 
 
 def test_too_few_answers_leave_the_shipped_threshold() -> None:
-    calibration = calibrate(drawn(0, LEAST - 1))
+    calibration = calibrate(drawn(0, MIN_HELD_OUT_ANSWERS - 1))
     assert calibration.threshold == SHIPPED.threshold and not calibration.calibrated
     assert calibrate(HeldOut(np.empty((0, 0)), np.empty(0, np.int64))) == SHIPPED
 
@@ -191,5 +191,5 @@ def test_auroc_of_nothing_is_no_number() -> None:
 def test_a_few_answers_calibrate_nothing() -> None:
     held = HeldOut(np.array([[0.9, 2.0], [2.0, 0.8]]), np.array([0, 1]))
     assert calibrate(held) == SHIPPED
-    many = HeldOut(np.tile(held.normalised, (LEAST, 1)), np.tile(held.truth, LEAST))
+    many = HeldOut(np.tile(held.normalised, (MIN_HELD_OUT_ANSWERS, 1)), np.tile(held.truth, MIN_HELD_OUT_ANSWERS))
     assert calibrate(many).calibrated

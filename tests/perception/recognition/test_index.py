@@ -13,11 +13,9 @@ from numpy.typing import NDArray
 
 from deixis.perception.errors import RecognitionError
 from deixis.perception.recognition.distances import Target, category_distance, view_distances
-from deixis.perception.recognition.index import ViewIndex
-from deixis.perception.recognition.inverted import Effort, InvertedFile
+from deixis.perception.recognition.index import Effort, InvertedFile, ViewIndex
 from deixis.perception.recognition.kernels import AXES
-from deixis.perception.recognition.view_file import mapped, open_views, write_views
-from deixis.perception.recognition.views import PackedViews
+from deixis.perception.recognition.views import PackedViews, mapped, open_views, write_views
 
 
 def clustered(seed: int, count: int, size: int = 60, scale: float = 1.0) -> list[NDArray[np.float32]]:

@@ -5,10 +5,10 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from deixis.perception.recognition.calibration import LEAST, SHIPPED
-from deixis.perception.recognition.held_out import MOST
+from deixis.perception.recognition.calibration import MIN_HELD_OUT_ANSWERS, SHIPPED
+from deixis.perception.recognition.held_out import MAX_HELD_OUT
 from deixis.perception.recognition.settings import DEFAULT
-from deixis.perception.recognition.spread import FLOOR
+from deixis.perception.recognition.spread import MIN_ICD_SHARE
 
 PAGE = (Path(__file__).parents[3] / "docs" / "recognition.md").read_text(encoding="utf-8")
 
@@ -22,7 +22,7 @@ def test_the_python_on_the_page_runs() -> None:
 
 def test_the_constants_on_the_page_are_those_of_the_code() -> None:
     assert f"shipped one, {SHIPPED.threshold}," in PAGE
-    assert f"fewer than {LEAST} known or {LEAST} unknown" in PAGE
-    assert f"({MOST} at most" in PAGE and f"({DEFAULT.exact_up_to:,})" in PAGE
-    assert f"below {100 * FLOOR:.0f} % of that median" in PAGE
+    assert f"fewer than {MIN_HELD_OUT_ANSWERS} known or {MIN_HELD_OUT_ANSWERS} unknown" in PAGE
+    assert f"({MAX_HELD_OUT} at most" in PAGE and f"({DEFAULT.exact_up_to:,})" in PAGE
+    assert f"below {100 * MIN_ICD_SHARE:.0f} % of that median" in PAGE
     assert (DEFAULT.effort.lists, DEFAULT.effort.few) == (6, 10)

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from deixis.perception.clouds.intrinsics import Intrinsics
+from deixis.perception.clouds.depth import Intrinsics
 from deixis.perception.errors import SimulationError
 from deixis.perception.simulator.camera import Camera, chair_camera, looking_pose
 from deixis.perception.simulator.laying import LaidTable, Placement, TableTop, lay

@@ -11,10 +11,9 @@ from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.errors import SimulationError
 from deixis.perception.simulator.camera import Camera, chair_camera, looking_pose
 from deixis.perception.simulator.depth import DISPARITY_STEP, NOISE, DepthSensor, in_table_frame, look, see
-from deixis.perception.simulator.laying import LaidTable, Placement, TableTop, lay
+from deixis.perception.simulator.laying import LaidTable, Placement, TableTop, lay, truth_scene
 from deixis.perception.simulator.rays import RayCaster
 from deixis.perception.simulator.scatter import scattered
-from deixis.perception.simulator.truth import truth_scene
 
 BARE = LaidTable(TableTop((-5.0, -5.0), (5.0, 5.0)), ())
 IDEAL = DepthSensor.ideal()

@@ -11,7 +11,7 @@ from solid_checks import boxes_within, deepest, distances, surface_points
 from deixis.perception.clouds.mesh import Mesh
 from deixis.perception.errors import SimulationError
 from deixis.perception.simulator.laying import LaidTable, Placement, TableTop, lay
-from deixis.perception.simulator.scatter import GAP, MOST, scattered
+from deixis.perception.simulator.scatter import MAX_THINGS, MIN_GAP, scattered
 from deixis.perception.simulator.solids import thick_sheet
 
 TOUCHING = 0.0003
@@ -88,7 +88,7 @@ def test_things_scattered_at_random_are_apart_or_on_plates(seed: int) -> None:
     assert all(thing.kind in ("napkin", "butter knife", "teaspoon", "dessert fork") for thing in raised)
     on_table = [thing for thing in table.things if thing.box[0, 2] == 0]
     for a, b in combinations(on_table, 2):
-        assert not boxes_within(a.mesh, b.mesh, GAP) or distances(a.mesh.vertices, b.mesh).min() > 0.9 * GAP
+        assert not boxes_within(a.mesh, b.mesh, MIN_GAP) or distances(a.mesh.vertices, b.mesh).min() > 0.9 * MIN_GAP
 
 
 def test_random_tables_have_as_many_things_as_asked_for_of_different_kinds_and_depend_on_the_seed_only() -> None:
@@ -100,14 +100,14 @@ def test_random_tables_have_as_many_things_as_asked_for_of_different_kinds_and_d
 
 
 def test_too_many_things_or_none_are_refused() -> None:
-    for count in (0, MOST + 1):
+    for count in (0, MAX_THINGS + 1):
         with pytest.raises(SimulationError, match="random table"):
             scattered(count, 0)
 
 
 def test_as_many_things_as_are_allowed_find_room() -> None:
-    table = lay(scattered(MOST, 3))
-    assert len(table.things) == MOST
+    table = lay(scattered(MAX_THINGS, 3))
+    assert len(table.things) == MAX_THINGS
     boxes = np.array([thing.box for thing in table.things if thing.box[0, 2] == 0])
     area = np.prod(boxes[:, 1, :2] - boxes[:, 0, :2], axis=1).sum()
     assert area > 1.0 and np.ptp(boxes[:, :, 0]) > np.ptp(boxes[:, :, 1])

@@ -9,7 +9,7 @@ from deixis.perception.clouds.mesh import Mesh
 from deixis.perception.errors import SimulationError
 from deixis.perception.simulator.solids import moved
 from deixis.perception.simulator.tableware import make
-from deixis.perception.simulator.views import DISTANCE, views_of
+from deixis.perception.simulator.views import CAMERA_DISTANCES, views_of
 
 
 def test_views_are_of_the_thing_alone_at_about_the_stated_distance_in_the_cameras_frame() -> None:
@@ -19,7 +19,7 @@ def test_views_are_of_the_thing_alone_at_about_the_stated_distance_in_the_camera
         assert view.finite.all()
         assert view.origin == (0.0, 0.0, 0.0)
         middle = (view.points.min(axis=0) + view.points.max(axis=0)) / 2
-        assert DISTANCE[0] - 0.1 < np.linalg.norm(middle) < DISTANCE[1] + 0.1
+        assert CAMERA_DISTANCES[0] - 0.1 < np.linalg.norm(middle) < CAMERA_DISTANCES[1] + 0.1
         assert len(view) > 2000
 
 

@@ -23,8 +23,8 @@ from deixis.experiments.open_ended.contestants import (
 from deixis.experiments.open_ended.shown import Shown, described, kept
 from deixis.experiments.open_ended.splits import Split, by_things, by_views
 from deixis.experiments.open_ended.things import FOLDER, from_meshes, rows_of, simulated
-from deixis.perception.recognition.learners.codebook import Codebook
 from deixis.perception.recognition.learners.learner import Learner
+from deixis.perception.recognition.learners.naive_bayes import Codebook
 from deixis.perception.recognition.learners.teaching import Course, Teaching, teach
 from deixis.perception.recognition.learners.view_features import ViewFeatures
 from deixis.perception.recognition.settings import DEFAULT, PAPER

@@ -8,8 +8,7 @@ from hypothesis import strategies as st
 
 from deixis.perception.errors import RecognitionError
 from deixis.perception.recognition.learners.committee import BELIEF, VOTE, Committee, dempster_shafer, majority
-from deixis.perception.recognition.learners.learner import Prediction
-from deixis.perception.recognition.learners.taught_views import TaughtViews
+from deixis.perception.recognition.learners.learner import Prediction, TaughtViews
 from deixis.perception.recognition.learners.view_features import ViewFeatures
 
 VIEW = ViewFeatures({})

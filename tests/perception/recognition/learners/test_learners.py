@@ -8,11 +8,10 @@ import numpy as np
 import pytest
 
 from deixis.perception.errors import RecognitionError
-from deixis.perception.recognition.learners.codebook import Codebook
 from deixis.perception.recognition.learners.committee import Committee
 from deixis.perception.recognition.learners.instance_based import InstanceBased
 from deixis.perception.recognition.learners.learner import Learner
-from deixis.perception.recognition.learners.naive_bayes import NaiveBayes
+from deixis.perception.recognition.learners.naive_bayes import Codebook, NaiveBayes
 from deixis.perception.recognition.learners.one_class import SupportVectorDescription
 from deixis.perception.recognition.learners.vector_quantisation import VectorQuantisation
 from deixis.perception.recognition.learners.view_features import ViewFeatures

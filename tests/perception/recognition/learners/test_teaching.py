@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 from deixis.perception.errors import RecognitionError
-from deixis.perception.recognition.learners.learner import Prediction
-from deixis.perception.recognition.learners.taught_views import TaughtViews
+from deixis.perception.recognition.learners.learner import Prediction, TaughtViews
 from deixis.perception.recognition.learners.teaching import Course, End, Teaching, teach
 from deixis.perception.recognition.learners.view_features import ViewFeatures
 

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from deixis.perception.errors import RecognitionError
-from deixis.perception.recognition.learners.codebook import Codebook
-from deixis.perception.recognition.learners.naive_bayes import NaiveBayes
+from deixis.perception.recognition.learners.naive_bayes import Codebook, NaiveBayes
 from deixis.perception.recognition.learners.view_features import ViewFeatures
 
 BOOK = Codebook("spin_images", np.array([[0.0], [10.0]]))
