@@ -45,7 +45,6 @@ class DX(StrEnum):
     WIDE = BASE + "wide"
     EXACT = BASE + "exact"
     # classes
-    ALLEN_RELATION = BASE + "AllenRelation"
     HEDGE = BASE + "Hedge"
     COLOUR = BASE + "Colour"
     THING = BASE + "Thing"
@@ -141,7 +140,6 @@ class W3C(StrEnum):
     OWL_INVERSE_OF = "http://www.w3.org/2002/07/owl#inverseOf"
     OWL_TRANSITIVE_PROPERTY = "http://www.w3.org/2002/07/owl#TransitiveProperty"
     SKOS_ALT_LABEL = "http://www.w3.org/2004/02/skos/core#altLabel"
-    SKOS_DEFINITION = "http://www.w3.org/2004/02/skos/core#definition"
     OWL_RESTRICTION = "http://www.w3.org/2002/07/owl#Restriction"
     OWL_ON_PROPERTY = "http://www.w3.org/2002/07/owl#onProperty"
     OWL_SOME_VALUES_FROM = "http://www.w3.org/2002/07/owl#someValuesFrom"

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from importlib.resources import files
 from pathlib import Path
 
-EXAMPLES = Path(__file__).parent / "examples"
+EXAMPLES = Path(str(files("deixis.examples")))
 
 
 def example(name: str) -> Path:
-    """The path of a shipped example, such as ``script1.layout``."""
+    """Return the path of a shipped example, such as ``script1.layout``."""
     return EXAMPLES / name

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import csv
 import json
+import sys
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from commands import deixis
 
 from deixis.experiments.open_ended.comparison import compared
 from deixis.experiments.open_ended.contestants import EQUATIONS, NEAREST, contestants
@@ -178,6 +180,14 @@ def test_a_folder_without_a_list_of_meshes_is_named(tmp_path: Path, text: str | 
 def test_every_contestant_bears_its_name() -> None:
     book = Codebook("spin_images", np.zeros((2, 3)))
     assert all(make().name == name for name, make in contestants(book).items())
+
+
+def test_a_missing_scikit_learn_is_named_before_any_work(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "sklearn", None)
+    code, out, err = deixis("experiment", "open-ended")
+    assert (code, out) == (2, "")
+    assert "pip install 'deixis[experiments]'" in err
+    assert err.count("\n") == 1
 
 
 def test_every_order_is_run_for_every_contestant_and_the_same_plan_gives_the_same_figures(found: OpenEnded) -> None:

@@ -17,6 +17,7 @@ THINGS = "ICD of things"
 NEAREST = "equations 1-2"
 D2 = "d2_extents"
 SPIN = "spin_images"
+SVDD = "SVDD"
 UPRIGHT = "upright"
 
 Contestants = Mapping[str, Callable[[], Learner]]
@@ -30,7 +31,7 @@ def contestants(codebook: Codebook) -> Contestants:
         UPRIGHT: lambda: InstanceBased(UPRIGHT, root=False, name=UPRIGHT),
         NEAREST: lambda: InstanceBased(by_distance=True, name=NEAREST),
         "D2 and extents": lambda: InstanceBased(D2, root=False, by_distance=True, name="D2 and extents"),
-        "SVDD": SupportVectorDescription,
+        SVDD: SupportVectorDescription,
         "committee": lambda: _committee(codebook),
         "LVQ": VectorQuantisation,
         "naive Bayes": lambda: NaiveBayes(codebook),

@@ -15,6 +15,7 @@ from deixis.experiments.open_ended.contestants import (
     EQUATIONS,
     NEAREST,
     SPIN,
+    SVDD,
     THINGS,
     UPRIGHT,
     Contestants,
@@ -25,6 +26,7 @@ from deixis.experiments.open_ended.splits import Split, by_things, by_views
 from deixis.experiments.open_ended.things import FOLDER, from_meshes, rows_of, simulated
 from deixis.perception.recognition.learners.learner import Learner
 from deixis.perception.recognition.learners.naive_bayes import Codebook
+from deixis.perception.recognition.learners.one_class import require_scikit_learn
 from deixis.perception.recognition.learners.teaching import Course, Teaching, teach
 from deixis.perception.recognition.learners.view_features import ViewFeatures
 from deixis.perception.recognition.settings import DEFAULT, PAPER
@@ -120,7 +122,12 @@ def silent(_: int) -> Iterator[Tick]:
 
 
 def run(plan: Plan, stage: Stage = silent, entered: Sequence[str] | None = None) -> OpenEnded:
-    """Runs everything; ``entered`` are the contestants, all if None."""
+    """Runs everything; ``entered`` are the contestants, all if None.
+
+    Raises RecognitionError, before any work, where a contestant needs scikit-learn and it is not installed.
+    """
+    if entered is None or SVDD in entered:
+        require_scikit_learn()
     codebook = Codebook.of(_simulated(plan, 2, plan.seed + 1000, stage).views, seed=plan.seed)
     able = {name: make for name, make in contestants(codebook).items() if entered is None or name in entered}
     findings = [_found(plan, _simulated(plan, plan.instances, plan.seed, stage), able, stage)]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import sys
+
 import numpy as np
 import pytest
 from numpy.typing import NDArray
@@ -57,6 +59,12 @@ def test_what_lies_far_from_every_word_is_unknown() -> None:
     learner.learn("cup", view(0.5, 0.5))
     assert learner.predict(view(0.5, 0.5)).unknown == pytest.approx(0.0)
     assert learner.predict(view(5.0, 5.0)).unknown == pytest.approx(1.0)
+
+
+def test_a_missing_scikit_learn_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "sklearn", None)
+    with pytest.raises(RecognitionError, match=r"scikit-learn; install it: pip install 'deixis\[experiments\]'"):
+        SupportVectorDescription()
 
 
 @pytest.mark.parametrize("wrong", [{"outliers": 0.0}, {"outliers": 1.0}, {"reach": 0.0}])

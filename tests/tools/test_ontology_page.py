@@ -1,0 +1,74 @@
+"""The page about the ontology: in step with the TBox, and every term on it with its definition and words."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+from ontology_page import PAGE, page
+from rdflib import RDF, RDFS, SKOS, Graph, URIRef
+
+from deixis.ontology.tbox import default_ontology, tbox_turtle
+from deixis.ontology.vocabulary import BASE, DX
+
+TEXT = PAGE.read_text(encoding="utf-8")
+GRAPH = Graph().parse(data=tbox_turtle(), format="turtle")
+TERMS = sorted({s for s in GRAPH.subjects(RDF.type) if isinstance(s, URIRef) and s.startswith(BASE)})
+
+
+def block(term: URIRef) -> str:
+    """What the page says of a term: its line, or of a relation its section."""
+    code = f"`dx:{term.removeprefix(BASE)}`"
+    section = re.search(rf"^### [^\n]*\({re.escape(code)}\)\n(.*?)(?=^##|\Z)", TEXT, re.MULTILINE | re.DOTALL)
+    if section:
+        return section[0]
+    lines = [
+        line
+        for line in TEXT.splitlines()
+        if f"({code}):" in line or re.search(rf"^\|[^`]*(`[^`]*` \| )?[^`]*{code} \|", line)
+    ]
+    return "\n".join(lines)
+
+
+def test_the_page_in_the_docs_is_in_step() -> None:
+    assert page() == TEXT, "write it anew: python tools/ontology_page.py"
+
+
+@pytest.mark.parametrize("term", TERMS, ids=lambda term: term.removeprefix(BASE))
+def test_a_term_is_listed_with_its_definition_and_every_word(term: URIRef) -> None:
+    said = block(term)
+    wanted = [*GRAPH.objects(term, SKOS.definition), *GRAPH.objects(term, RDFS.label)]
+    wanted += [*GRAPH.objects(term, SKOS.altLabel), *GRAPH.objects(term, URIRef(DX.PHRASE))]
+    assert [str(text) for text in wanted if str(text) not in said] == []
+
+
+def test_a_relation_is_given_with_inverse_transitivity_and_atoms() -> None:
+    for relation in default_ontology().relations.values():
+        said = block(URIRef(relation.iri))
+        inverse = default_ontology().relations[relation.inverse]
+        assert f"inverse `dx:{inverse.iri.removeprefix(BASE)}`" in said
+        assert ("; transitive;" in said) == relation.transitive
+        assert "on x " in said
+        assert "; on y " in said
+        assert ("on z, where heights are known" in said) == bool(relation.z_atoms)
+
+
+def test_a_relation_stands_once_and_under_its_reading() -> None:
+    wide, exact = TEXT.split("## Relations, the exact reading")
+    assert len(re.findall("^### ", wide, re.MULTILINE)) == 10
+    assert len(re.findall("^### ", exact, re.MULTILINE)) == 10
+    assert "### left (`dx:left`)" in wide
+    assert "- on x `<` `m`; on y any\n" in wide
+    assert "### exactly left (`dx:exactlyLeft`)" in exact
+
+
+def test_kinds_are_indented_under_what_they_are() -> None:
+    assert "\n    - **cutlery** (`dx:Cutlery`)" in TEXT
+    assert "\n      - **fork** (`dx:Fork`)" in TEXT
+    assert "\n        - **cake" not in TEXT
+    assert TEXT.count("(`dx:Fork`)") == 1
+
+
+def test_a_property_is_given_with_domain_and_range() -> None:
+    assert "| in scene | `dx:inScene` | `dx:PerceivedObject` | `dx:Scene` | functional, inverse of `dx:shows` |" in TEXT
+    assert "| 0.8 | usually, normally, typically, generally, mostly | `dx:usually` |" in TEXT
