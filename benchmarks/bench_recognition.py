@@ -26,6 +26,7 @@ from scipy.spatial import cKDTree
 
 from deixis.examples_data import example
 from deixis.grammar.parser import parse_script
+from deixis.learning import views as recognising
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.clouds.cloud_file import write_cloud
 from deixis.perception.features.registry import describer_named
@@ -39,7 +40,6 @@ from deixis.perception.recognition.views import PackedViews, open_views, write_v
 from deixis.perception.simulator.tableware import make
 from deixis.perception.simulator.views import views_of
 from deixis.session import ground
-from deixis.workflows import recognise as recognising
 from deixis.workflows.lay_table import lay_script
 from deixis.workflows.perceive import cloud_of, perceive, write_perceived
 from deixis.workflows.simulate import simulate

@@ -19,11 +19,11 @@ from deixis.perception.formats.scene_json import read_scene
 from deixis.perception.scene import PerceivedObject, Scene
 
 if TYPE_CHECKING:
+    from deixis.learning.views import Recognised, StandingWord, Taught
     from deixis.memory.perceptual.level import LevelMemory
     from deixis.memory.perceptual.protocol import Progress
     from deixis.memory.perceptual.records import View
     from deixis.reasoning.grounding.answer import Match
-    from deixis.workflows.recognise import Recognised, StandingWord, Taught
 
 Done = TypeVar("Done")
 
@@ -80,14 +80,14 @@ class PerceptualSession(MemorySession):
 
     def keep_views(self, views: Sequence[View]) -> tuple[Taught, ...]:
         """Keeps views, all or none. A damaged one in the way teaches nothing, and is mended where it is kept again."""
-        from deixis.workflows.recognise import keep_views
+        from deixis.learning.views import keep_views
 
         memory = self.views(create=True)
         return self._despite_damage(memory, lambda readable: keep_views(readable, views))
 
     def but_for_taught(self, views: Sequence[View]) -> tuple[list[View], tuple[StandingWord, ...]]:
         """The views of a grounding that no teacher has named, and what is named otherwise."""
-        from deixis.workflows.recognise import StandingWord, taught_by_hand
+        from deixis.learning.views import StandingWord, taught_by_hand
 
         named = taught_by_hand(self.views(), views) if self.has_views() else {}
         standing = []
@@ -124,9 +124,9 @@ class PerceptualSession(MemorySession):
         ``progress`` is told of reading what was taught, and of the calibration, which take seconds after many views;
         ``left_out``, in one line, of views that are damaged and teach nothing.
         """
+        from deixis.learning.views import UPRIGHT, Known, recognise, recogniser_of
         from deixis.perception.recognition.recogniser import Recogniser
         from deixis.workflows.perceive import cloud_of
-        from deixis.workflows.recognise import UPRIGHT, Known, recognise, recogniser_of
 
         scene = scene if isinstance(scene, Scene) else read_scene(scene)
         clouds = [cloud_of(scene, thing) if thing.cloud is not None else None for thing in scene.objects]
@@ -171,7 +171,7 @@ def views_of_matches(scene: Scene, matches: Iterable[Match]) -> list[View]:
 
     Raises SceneError where two things have the same points.
     """
-    from deixis.workflows.recognise import GROUNDING
+    from deixis.learning.views import GROUNDING
 
     seen = [match for match in matches if match.decided and scene[match.perceived].cloud is not None]
     views = [_view(scene, match.perceived, plain_name(match.object), GROUNDING) for match in seen]
@@ -186,8 +186,8 @@ def views_of_matches(scene: Scene, matches: Iterable[Match]) -> list[View]:
 
 
 def _view(scene: Scene, object: str, category: str, teacher: str) -> View:
+    from deixis.learning.views import view_of
     from deixis.workflows.perceive import cloud_of
-    from deixis.workflows.recognise import view_of
 
     file, boxes = os.path.abspath(scene.file), hashlib.sha256(scene.boxes.tobytes()).hexdigest()[:16]
     metadata = {"scene": file, "boxes": boxes, "object": object, "teacher": teacher}

@@ -31,9 +31,9 @@ from deixis.version import VERSION
 from deixis.workflows.infer import Inference, inference_of, ready_to_infer
 
 if TYPE_CHECKING:
+    from deixis.learning.views import StandingWord, Taught
     from deixis.ontology.lessons.types import LayoutConcept, Lesson
     from deixis.reasoning.comparison.checking import TableCheck
-    from deixis.workflows.recognise import StandingWord, Taught
 
 
 def read_script(path: str | Path | None = None, *, text: str | None = None, ontology: Ontology | None = None) -> Script:

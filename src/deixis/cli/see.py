@@ -24,9 +24,9 @@ from deixis.cli.common import (
 )
 
 if TYPE_CHECKING:
+    from deixis.learning.views import Recognised, Taught
     from deixis.perception.recognition.recogniser import Recognition
     from deixis.perception.scene import Scene
-    from deixis.workflows.recognise import Recognised, Taught
 
 PerceivedScene = Annotated[str, typer.Argument(metavar="SCENE", help="A scene that perceive wrote, with clouds.")]
 Picture = Annotated[Path | None, typer.Option("--plot", metavar="FILE", help="Draw it (.png, .svg, .pdf).")]

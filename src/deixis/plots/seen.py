@@ -18,10 +18,10 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+    from deixis.learning.views import Recognised
     from deixis.perception.recognition.recogniser import Recognition
     from deixis.perception.scene import Scene
     from deixis.workflows.perceive import Perceived
-    from deixis.workflows.recognise import Recognised
 
 MOST_POINTS = 60_000
 """Points that are drawn of the things, and of the table."""

@@ -134,8 +134,8 @@ def test_what_a_teacher_named_is_not_overruled_by_a_grounding(tables: Path, tmp_
 
 
 def test_what_a_category_has_learned_is_kept_and_is_what_its_views_give(tables: Path, tmp_path: Path) -> None:
+    from deixis.learning.views import DISTANCES, UPRIGHT, instances_of
     from deixis.perception.recognition.instances import InstanceCategory
-    from deixis.workflows.recognise import DISTANCES, UPRIGHT, instances_of
 
     with Session(tmp_path / "memory") as session:
         for object in ("o1", "o5", "o8"):
@@ -241,8 +241,8 @@ def test_a_camera_that_cannot_be_is_refused_before_a_table_is_laid(monkeypatch: 
 def test_a_calibration_is_kept_while_a_tenth_of_the_views_stays(
     tables: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    from deixis.learning.views import recogniser_of
     from deixis.perception.recognition.recogniser import Recogniser
-    from deixis.workflows.recognise import recogniser_of
 
     scene, file = tables / "7.scene.json", tmp_path / "memory" / "perceptual" / "calibration.json"
     calls: list[dict[str, str]] = []  # the thing that each view shows

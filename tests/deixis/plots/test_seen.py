@@ -11,6 +11,7 @@ from commands import deixis
 from matplotlib.figure import Figure
 
 from deixis.grammar.parser import parse_script
+from deixis.learning.views import Recognised
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.clouds.cloud_file import write_cloud
 from deixis.perception.recognition.calibration import Calibration
@@ -20,7 +21,6 @@ from deixis.plots import seen as plot_seen
 from deixis.plots.camera import camera_of
 from deixis.workflows.lay_table import lay_script
 from deixis.workflows.perceive import Perceived, in_frame, perceive
-from deixis.workflows.recognise import Recognised
 from deixis.workflows.simulate import simulate
 
 

@@ -9,12 +9,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from deixis.learning.views import COMPARED, ROOTS, TABLE, UPRIGHT, instances_of, keep_views, recogniser_of, view_of
 from deixis.memory.perceptual.level import LevelMemory
 from deixis.memory.perceptual.records import Batch, CategoryRecord, View
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.simulator.tableware import make
 from deixis.perception.simulator.views import views_of
-from deixis.workflows.recognise import COMPARED, ROOTS, TABLE, UPRIGHT, instances_of, keep_views, recogniser_of, view_of
 
 THINGS = (("plate", 1), ("plate", 2), ("fork", 1), ("fork", 2))
 
@@ -103,7 +103,7 @@ def test_very_many_views_are_mapped_from_a_file_and_give_the_same_answers(
     with LevelMemory.open(tmp_path / "perceptual", create=True) as memory:
         keep_views(memory, [view(kind, seed) for kind, seed in THINGS])
         held = recogniser_of(memory, TABLE)
-        monkeypatch.setattr("deixis.workflows.recognise.MAPPED", len(THINGS))
+        monkeypatch.setattr("deixis.learning.views.MAPPED", len(THINGS))
         mapped = recogniser_of(memory, TABLE)
     for one, other in zip(held.recogniser.categories, mapped.recogniser.categories, strict=True):
         assert one.views.descriptors.flags.owndata and not other.views.descriptors.flags.owndata
