@@ -28,7 +28,6 @@ from deixis.examples_data import example
 from deixis.grammar.parser import parse_script
 from deixis.learning import views as recognising
 from deixis.perception.clouds.cloud import PointCloud
-from deixis.perception.clouds.cloud_file import write_cloud
 from deixis.perception.features.registry import describer_named
 from deixis.perception.recognition.calibration import auroc, expected_calibration_error
 from deixis.perception.recognition.distances import Target
@@ -41,7 +40,7 @@ from deixis.perception.simulator.tableware import make
 from deixis.perception.simulator.views import views_of
 from deixis.session import ground
 from deixis.workflows.lay_table import lay_script
-from deixis.workflows.perceive import cloud_of, perceive, write_perceived
+from deixis.workflows.perceive import perceive
 from deixis.workflows.simulate import simulate
 
 KINDS = (
@@ -235,12 +234,9 @@ def _answers(
 def found_on_table(seed: int) -> list[tuple[str, PointCloud]]:
     """What detection finds on a table laid for a formal dinner, by the words that its layout grounds there."""
     script = parse_script(example("formal_dinner.layout").read_text(encoding="utf-8"))
-    with tempfile.TemporaryDirectory() as folder:
-        cloud, file = Path(folder) / "table.pcd", Path(folder) / "table.scene.json"
-        write_cloud(cloud, simulate(lay_script(script, seed=seed), seed=seed).cloud)
-        scene = write_perceived(perceive(cloud), file)
-        matches = ground(example("formal_dinner.layout"), scene).matches
-        return [(name, cloud_of(scene, scene[match.perceived])) for name, match in matches.items()]
+    scene = perceive(simulate(lay_script(script, seed=seed), seed=seed).cloud)
+    matches = ground(example("formal_dinner.layout"), scene).matches
+    return [(name, scene.cloud_of(match.perceived)) for name, match in matches.items()]
 
 
 def tables() -> None:

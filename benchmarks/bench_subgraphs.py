@@ -17,7 +17,7 @@ from deixis.examples_data import example
 from deixis.perception.formats.scene_json import read_scene
 from deixis.reasoning.grounding.engines import described
 from deixis.reasoning.grounding.similarity import node_similarity
-from deixis.session import read_script
+from deixis.workflows.read import read_script
 
 
 def main() -> None:

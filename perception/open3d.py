@@ -16,15 +16,16 @@ _NAME = "open3d.cpu.pybind"
 def open3d() -> ModuleType:
     """``open3d`` with ``core``, ``geometry``, ``pipelines``, ``t`` and ``utility``; whole where it is imported already.
 
-    ``import open3d`` after this finds the same module, and brings the rest.
+    ``import open3d`` after this finds the same module, and brings the rest: what is made with this one is what the
+    drawing functions of the whole take. A build for CUDA chooses its compiled part itself, and is imported whole.
     """
     if _NAME in sys.modules:
         return sys.modules[_NAME]
     package = importlib.util.find_spec("open3d")
-    folders = package.submodule_search_locations if package is not None else None
-    library = next((file for folder in folders or () for file in (Path(folder) / "cpu").glob("pybind*")), None)
+    folders = list(package.submodule_search_locations or ()) if package is not None else []
+    library = next((file for folder in folders for file in (Path(folder) / "cpu").glob("pybind*")), None)
     spec = importlib.util.spec_from_file_location(_NAME, library) if library is not None else None
-    if spec is None or spec.loader is None:
+    if spec is None or spec.loader is None or any((Path(folder) / "cuda").is_dir() for folder in folders):
         return importlib.import_module("open3d")
     try:
         module = importlib.util.module_from_spec(spec)

@@ -6,6 +6,8 @@ import unicodedata
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from pathlib import Path
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +15,8 @@ from numpy.typing import NDArray
 from deixis.ontology.colours import Rgb
 from deixis.ontology.graph import RelationGraph
 from deixis.ontology.relation import Relations
-from deixis.perception.errors import SceneError
+from deixis.perception.clouds.cloud import PointCloud
+from deixis.perception.errors import CloudError, SceneError
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,6 +43,12 @@ class OrientedBox:
         """Unit vectors (3, 3) along the extents, in rows, right-handed, the last one up."""
         return turned_axes(self.yaw)
 
+    def to_open3d(self) -> Any:
+        """Return the box as an ``open3d.geometry.OrientedBoundingBox``."""
+        from deixis.perception.open3d import open3d
+
+        return open3d().geometry.OrientedBoundingBox(np.array(self.centre), self.axes.T, np.array(self.extents))
+
 
 def turned_axes(yaw: float) -> NDArray[np.float64]:
     """The axes (3, 3), in rows, turned about the vertical."""
@@ -57,8 +66,9 @@ class PerceivedObject:
 
     ``minimum`` and ``maximum`` are its least and greatest corner in the scene's frame, 2 or 3 coordinates: x to the
     viewer's right, y away from the viewer, z up; metres, unless the scene is in pixels. ``label`` is a name for it,
-    right with probability ``confidence``. ``cloud`` names the file of its points. ``colour`` is the one that it is seen
-    in, in sRGB. ``oriented`` is the narrowest box about it that is turned about the vertical, where there are heights.
+    right with probability ``confidence``. ``cloud`` holds its points in the scene's frame, or names their file, as seen
+    from the scene's file; :meth:`Scene.cloud_of` gives the points either way. ``colour`` is the one that it is seen in,
+    in sRGB. ``oriented`` is the narrowest box about it that is turned about the vertical, where there are heights.
     """
 
     id: str
@@ -66,18 +76,41 @@ class PerceivedObject:
     maximum: tuple[float, ...]
     label: str | None = None
     confidence: float = 1.0
-    cloud: str | None = None
+    cloud: PointCloud | str | None = None
     colour: Rgb | None = None
     oriented: OrientedBox | None = None
+
+    def to_open3d(self) -> Any:
+        """Return the box as an ``open3d.geometry.AxisAlignedBoundingBox``; one without heights lies at z = 0."""
+        from deixis.perception.open3d import open3d
+
+        low, high = (np.array([*corner, 0.0][:3]) for corner in (self.minimum, self.maximum))
+        return open3d().geometry.AxisAlignedBoundingBox(low, high)
+
+
+class Detected(Protocol):
+    """How the objects of a scene were found in a cloud: what perception's ``Detection`` says of it."""
+
+    @property
+    def cloud(self) -> PointCloud: ...
+    @property
+    def table(self) -> object | None: ...
+    @property
+    def frame(self) -> NDArray[np.float64]: ...
+    @property
+    def labels(self) -> NDArray[np.int32]: ...
+    @property
+    def notes(self) -> tuple[str, ...]: ...
 
 
 @dataclass(frozen=True)
 class Scene:
     """Perceived objects in one frame, seen from one viewpoint.
 
-    ``unit`` is ``m``, or ``px`` for what was measured in an image; relations do not depend on it. Raises SceneError
-    where two objects share an id, a corner is not finite, a box is inside out, a colour is none, or some boxes are flat
-    (2-D) and others are not.
+    ``unit`` is ``m``, or ``px`` for what was measured in an image; relations do not depend on it. ``detection`` says
+    how the objects were found, where they were found in a cloud; neither it nor ``file`` counts in comparisons. Raises
+    SceneError where two objects share an id, a corner is not finite, a box is inside out, a colour is none, or some
+    boxes are flat (2-D) and others are not.
     """
 
     objects: tuple[PerceivedObject, ...]
@@ -85,6 +118,7 @@ class Scene:
     viewpoint: str = "chair"
     unit: str = "m"
     file: str = field(default="<scene>", compare=False)
+    detection: Detected | None = field(default=None, compare=False, repr=False)
 
     def __post_init__(self) -> None:
         seen: set[str] = set()
@@ -117,6 +151,43 @@ class Scene:
     def __getitem__(self, name: str) -> PerceivedObject:
         return next(thing for thing in self.objects if thing.id == name)
 
+    def cloud_of(self, id: str) -> PointCloud:
+        """Return the points of an object, in the scene's frame; those in a file are read anew each time.
+
+        Raises SceneError where the scene has no such object, knows no points of it, or names a file that is no cloud.
+        """
+        if id not in self.ids:
+            raise SceneError(f"{self.file}: there is no object '{id}'; there are: {', '.join(self.ids) or 'none'}")
+        cloud = self[id].cloud
+        if isinstance(cloud, PointCloud):
+            return cloud
+        if cloud is None:
+            raise SceneError(
+                f"{self.file}: the object '{id}' has no cloud, so that what it looks like is not known; "
+                "deixis perceive -o writes scenes with clouds"
+            )
+        from deixis.perception.clouds.cloud_file import read_cloud
+
+        try:
+            return read_cloud(Path(self.file).parent / cloud)
+        except CloudError as error:
+            raise SceneError(f"{self.file}: the cloud of '{id}': {error}") from error
+
+    def to_open3d(self) -> list[Any]:
+        """Return what ``open3d.visualization.draw_geometries`` draws: the points of each object, and a box about it.
+
+        The box is the oriented one where the object has one, else the axis-aligned one, and bears the object's colour,
+        where that is known. Raises SceneError as :meth:`cloud_of` does for a named file that cannot be read.
+        """
+        shapes: list[Any] = []
+        for thing in self.objects:
+            if thing.cloud is not None:
+                shapes.append(self.cloud_of(thing.id).to_open3d())
+            box = (thing if thing.oriented is None else thing.oriented).to_open3d()
+            box.color = np.zeros(3) if thing.colour is None else np.array(thing.colour) / 255
+            shapes.append(box)
+        return shapes
+
     def graph(self, vocabulary: Relations, tolerance: float = 0.0) -> RelationGraph:
         """The complete relation graph: for every ordered pair its exact name (see reasoning.rectangle)."""
         from deixis.reasoning.geometry.rectangle import perceived_graph
@@ -129,7 +200,7 @@ class Scene:
 
     def reordered(self, order: Sequence[int]) -> Scene:
         """The same scene with its objects listed in another order."""
-        return replace(self, objects=tuple(self.objects[i] for i in order))
+        return replace(self, objects=tuple(self.objects[i] for i in order), detection=None)
 
 
 def _require_box(thing: PerceivedObject, file: str) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 
@@ -9,7 +10,7 @@ import pyoxigraph as ox
 
 from deixis.errors import UnknownTermError
 from deixis.ontology.graph import Fact, Source
-from deixis.ontology.lessons.types import LayoutConcept, MatchRecord, Role
+from deixis.ontology.lessons.types import Alternative, LayoutConcept, Match, Role
 from deixis.ontology.lessons.write import lesson_iri
 from deixis.ontology.relation import Relation, Relations, nearest
 from deixis.ontology.triple_index import TripleIndex
@@ -106,7 +107,7 @@ class LessonRecord:
     script_file: str
     script_text: str
     scene_text: str
-    matches: tuple[MatchRecord, ...]
+    matches: tuple[Match, ...]
     words_only: bool = False
 
 
@@ -124,20 +125,25 @@ def _record(id: str, told: TripleIndex, said: TripleIndex) -> LessonRecord | Non
     if texts[0] is None or texts[1] is None:
         return None
     parts = said.subjects(PROV.WAS_GENERATED_BY, lesson)
-    matches = tuple(_match(part, said) for part in parts if DX.MATCH in said.values(part, W3C.RDF_TYPE))
+    kept = [_match(part, said) for part in parts if DX.MATCH in said.values(part, W3C.RDF_TYPE)]
+    matches = tuple(match for match in kept if match is not None)
     words_only = DX.WORD_LESSON in told.values(lesson, W3C.RDF_TYPE)
     return LessonRecord(id, told.value(lesson, DX.SCRIPT_FILE) or id, texts[0], texts[1], matches, words_only)
 
 
-def _match(part: str, said: TripleIndex) -> MatchRecord:
-    perceived, likeliest = (said.value(part, predicate) for predicate in (DX.PERCEIVED_AS, DX.LIKELIEST))
+def _match(part: str, said: TripleIndex) -> Match | None:
+    """A match as it was kept; None where that does not say what is likeliest, as the first lessons did not."""
+    taken = said.value(part, DX.PERCEIVED_AS) or said.value(part, DX.LIKELIEST)
+    if taken is None:
+        return None
     probability = said.value(part, DX.PROBABILITY)
-    return MatchRecord(
-        role=last_part(said.value(part, DX.OF_ROLE) or ""),
-        perceived=last_part(perceived) if perceived is not None else None,
-        decided=said.value(part, DX.DECIDED) == "true",
+    could_be = (last_part(thing) for thing in said.values(part, DX.COULD_BE))
+    return Match(
+        object=last_part(said.value(part, DX.OF_ROLE) or ""),
+        perceived=last_part(taken),
         score=float(said.value(part, DX.SCORE) or 0),
-        could_be=tuple(last_part(thing) for thing in said.values(part, DX.COULD_BE)),
+        similarity=math.nan,
+        decided=said.value(part, DX.DECIDED) == "true",
+        alternatives=tuple(Alternative(thing) for thing in could_be if thing != last_part(taken)),
         probability=None if probability is None else float(probability),
-        likeliest=last_part(likeliest) if likeliest is not None else None,
     )

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import datetime
+from typing import Protocol
 
 from deixis.ontology.colours import Rgb
 from deixis.ontology.graph import Fact, RelationGraph
@@ -43,69 +45,100 @@ class LayoutConcept:
 
 
 @dataclass(frozen=True, slots=True)
-class MatchRecord:
-    """What a lesson found to fill a role. ``perceived`` is None where that is not decided.
+class Alternative:
+    """Something else that an object could be; ``perceived`` None is that it is not there.
 
-    ``could_be`` are then what it may be, and ``likeliest`` the one of them that goes best with all other matches.
-    ``probability`` is that of ``perceived`` or ``likeliest``; None where the engine gave none.
+    ``cost`` is what choosing it would lose: log-likelihood, or similarity where the engine gives no ``probability``. A
+    lesson does not keep it: NaN.
     """
 
-    role: str
     perceived: str | None
-    decided: bool
-    score: float
-    could_be: tuple[str, ...] = ()
+    cost: float = math.nan
     probability: float | None = None
-    likeliest: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Match:
+    """An object of the description and the perceived thing that it is.
+
+    ``score`` is the share of what is said of the object and can be compared that holds (by degree and weight; 1 where
+    there is nothing), ``similarity`` the paper's (NaN in a lesson, which does not keep it), ``probability`` that of the
+    match given all the evidence (None where the engine gives none). ``decided`` says that it is high enough
+    (:func:`deixis.reasoning.grounding.answer.is_decided`), or that nothing else is as similar.
+    """
+
+    object: str
+    perceived: str
+    score: float
+    similarity: float
+    decided: bool
+    alternatives: tuple[Alternative, ...]
+    probability: float | None = None
 
     @property
-    def taken(self) -> str | None:
-        """What the role is best taken for; None where nothing is known to fill it."""
-        return self.perceived if self.perceived is not None else self.likeliest
+    def could_be(self) -> tuple[str, ...]:
+        """What the object may be, the match first, where that is not decided."""
+        others = tuple(other.perceived for other in self.alternatives if other.perceived is not None)
+        return () if self.decided else (self.perceived, *others)
 
     @property
     def sureness(self) -> float:
-        """How sure that is, 0 to 1: the probability; without one 1, or an equal share among what it could be.
+        """How sure the match is, 0 to 1: its probability; without one 1, or an equal share among what it could be.
 
         0 where it is not decided, and not known what else it could be.
         """
         if self.probability is not None:
             return self.probability
-        if self.perceived is not None:
+        if self.decided:
             return 1.0
         return 1.0 / len(self.could_be) if len(self.could_be) > 1 else 0.0
 
 
-@dataclass(frozen=True, slots=True)
-class SeenObject:
-    """A perceived object as a lesson keeps it; corners of 2 or 3 coordinates, the colour in sRGB."""
+class SeenObject(Protocol):
+    """What a lesson keeps of a perceived object: corners of 2 or 3 coordinates, the colour in sRGB."""
 
-    id: str
-    minimum: tuple[float, ...]
-    maximum: tuple[float, ...]
-    label: str | None = None
-    confidence: float = 1.0
-    colour: Rgb | None = None
+    @property
+    def id(self) -> str: ...
+    @property
+    def minimum(self) -> tuple[float, ...]: ...
+    @property
+    def maximum(self) -> tuple[float, ...]: ...
+    @property
+    def label(self) -> str | None: ...
+    @property
+    def confidence(self) -> float: ...
+    @property
+    def colour(self) -> Rgb | None: ...
 
 
-@dataclass(frozen=True)
-class SceneRecord:
-    """A scene as a lesson keeps it: its objects, and the exact relation of pairs of them."""
+class SeenScene(Protocol):
+    """What a lesson keeps of a scene; perception's ``Scene`` is one."""
 
-    frame: str
-    viewpoint: str
-    unit: str
-    objects: tuple[SeenObject, ...]
-    relations: tuple[tuple[str, Relation, str], ...]
+    @property
+    def frame(self) -> str: ...
+    @property
+    def viewpoint(self) -> str: ...
+    @property
+    def unit(self) -> str: ...
+    @property
+    def objects(self) -> Sequence[SeenObject]: ...
+
+
+SeenRelation = tuple[str, Relation, str]
+"""The exact relation of a pair of perceived objects, by their ids."""
 
 
 @dataclass(frozen=True)
 class Lesson:
-    """The learning of one layout, and of what fills its roles, from one script and one scene."""
+    """The learning of one layout, and of what fills its roles, from one script and one scene.
+
+    ``relations`` are those of pairs of the scene's objects.
+    """
 
     layout: LayoutConcept
-    scene: SceneRecord
-    matches: tuple[MatchRecord, ...]
+    scene: SeenScene
+    relations: tuple[SeenRelation, ...]
+    matches: tuple[Match, ...]
     engine: str
     proved_best: bool
     started: datetime
@@ -119,9 +152,9 @@ class Lesson:
     def id(self) -> str:
         return self.layout.lesson
 
-    def categories(self) -> tuple[MatchRecord, ...]:
+    def categories(self) -> tuple[Match, ...]:
         """The matches that teach a category: decided ones; what is doubtful or interchangeable teaches nothing."""
-        return tuple(match for match in self.matches if match.decided and match.perceived is not None)
+        return tuple(match for match in self.matches if match.decided)
 
 
 @dataclass(frozen=True)
@@ -129,7 +162,7 @@ class WordLesson:
     """What a script and a scene whose labels name its things teach: words and sizes, and no layout."""
 
     id: str
-    scene: SceneRecord
+    scene: SeenScene
     started: datetime
     ended: datetime
     version: str

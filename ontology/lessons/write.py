@@ -8,7 +8,7 @@ import pyoxigraph as ox
 
 from deixis.ontology.colours import hex_of_rgb
 from deixis.ontology.graph import Fact
-from deixis.ontology.lessons.types import LayoutConcept, Lesson, MatchRecord, Role, SeenObject, WordLesson
+from deixis.ontology.lessons.types import LayoutConcept, Lesson, Match, Role, SeenObject, WordLesson
 from deixis.ontology.relation import Relations
 from deixis.ontology.triples import (
     Description,
@@ -38,7 +38,7 @@ def learned_triples(lesson: Lesson, relations: Relations) -> Iterator[ox.Triple]
     for match in lesson.matches:
         yield from _match(lesson, match)
     for match in lesson.categories():
-        yield from _category(match.role, kinds.get(match.role), lesson)
+        yield from _category(match.object, kinds.get(match.object), lesson)
 
 
 def asserted_triples(lesson: Lesson | WordLesson) -> Iterator[ox.Triple]:
@@ -53,11 +53,11 @@ def asserted_triples(lesson: Lesson | WordLesson) -> Iterator[ox.Triple]:
     yield from _viewpoint_triples(record.viewpoint)
     for seen in record.objects:
         yield from _seen(lesson, seen)
-    for subject, relation, object in record.relations:
+    for subject, relation, object in lesson.relations if isinstance(lesson, Lesson) else ():
         yield ox.Triple(iri(thing_iri(lesson, subject)), iri(relation.iri), iri(thing_iri(lesson, object)))
     for match in lesson.categories() if isinstance(lesson, Lesson) else ():
-        category = category_iri(match.role)
-        yield ox.Triple(iri(thing_iri(lesson, match.perceived or "")), iri(W3C.RDF_TYPE), iri(category))
+        category = category_iri(match.object)
+        yield ox.Triple(iri(thing_iri(lesson, match.perceived)), iri(W3C.RDF_TYPE), iri(category))
 
 
 def episode_triples(lesson: Lesson | WordLesson) -> Iterator[ox.Triple]:
@@ -193,22 +193,19 @@ def _statement(layout: LayoutConcept, fact: Fact, position: int) -> Iterator[ox.
     return iter(about)
 
 
-def _match(lesson: Lesson, match: MatchRecord) -> Iterator[ox.Triple]:
-    about = Description(learned_iri("lesson", lesson.id, "match", match.role))
+def _match(lesson: Lesson, match: Match) -> Iterator[ox.Triple]:
+    about = Description(learned_iri("lesson", lesson.id, "match", match.object))
     about.say(W3C.RDF_TYPE, iri(DX.MATCH))
-    about.say(DX.OF_ROLE, iri(role_iri(lesson.id, match.role)))
+    about.say(DX.OF_ROLE, iri(role_iri(lesson.id, match.object)))
     about.say(DX.DECIDED, typed(match.decided))
     about.say(DX.SCORE, decimal(match.score))
     if match.probability is not None:
         about.say(DX.PROBABILITY, decimal(match.probability))
     about.say(PROV.WAS_GENERATED_BY, iri(lesson_iri(lesson.id)))
-    if match.perceived is not None:
-        about.say(DX.PERCEIVED_AS, iri(thing_iri(lesson, match.perceived)))
     about.say(DX.COULD_BE, *(iri(thing_iri(lesson, other)) for other in match.could_be))
-    if match.likeliest is not None:
-        about.say(DX.LIKELIEST, iri(thing_iri(lesson, match.likeliest)))
-    if match.decided and match.perceived is not None:
-        about.say(DX.CATEGORY, iri(category_iri(match.role)))
+    about.say(DX.PERCEIVED_AS if match.decided else DX.LIKELIEST, iri(thing_iri(lesson, match.perceived)))
+    if match.decided:
+        about.say(DX.CATEGORY, iri(category_iri(match.object)))
     return iter(about)
 
 

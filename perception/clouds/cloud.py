@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -59,3 +60,20 @@ class PointCloud:
             None if self.normals is None else self.normals[chosen],
             origin=self.origin,
         )
+
+    def to_open3d(self) -> Any:
+        """Return the points that have a depth as an ``open3d.geometry.PointCloud``, with their colours and normals.
+
+        >>> cloud = PointCloud(np.array([[0, 0, 1], [np.nan, 0, 0]], np.float32))
+        >>> cloud.to_open3d()
+        PointCloud with 1 points.
+        """
+        from deixis.perception.open3d import open3d
+
+        kept = self.take(self.finite)
+        cloud = open3d().geometry.PointCloud(open3d().utility.Vector3dVector(kept.points.astype(np.float64)))
+        if kept.colours is not None:
+            cloud.colors = open3d().utility.Vector3dVector(kept.colours / 255.0)
+        if kept.normals is not None:
+            cloud.normals = open3d().utility.Vector3dVector(kept.normals.astype(np.float64))
+        return cloud

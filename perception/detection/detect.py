@@ -20,7 +20,7 @@ from deixis.perception.detection.settings import DetectionSettings
 from deixis.perception.detection.supervoxels import supervoxels
 from deixis.perception.detection.surface import Surface, surface_of
 from deixis.perception.detection.tables import Table, tables
-from deixis.perception.detection.viewpoint import believed, likely, moved, outlook_of, table_frame
+from deixis.perception.detection.viewpoint import believed, in_frame, likely, moved, outlook_of, table_frame
 from deixis.perception.errors import CloudError
 from deixis.perception.scene import OrientedBox, PerceivedObject, Scene
 
@@ -30,8 +30,8 @@ BACKGROUND = -1
 
 @dataclass(frozen=True, eq=False)
 class Detection:
-    """What is on a table. ``frame`` takes points of the cloud's frame to the table's: z up from its plane, x to the
-    viewer's right, y away from the viewer.
+    """What is on a table of ``cloud``. ``frame`` takes points of the cloud's frame to the table's: z up from its plane,
+    x to the viewer's right, y away from the viewer.
 
     ``labels`` (n,) has for each point of the cloud, in its order, the number k of its thing, -1 for none. Thing k has
     ``boxes[k]``, least and greatest corner in the table's frame, shape (2, 3), ``oriented[k]``, and the id
@@ -39,6 +39,7 @@ class Detection:
     ``table`` is None where no table was found, and ``notes`` say what was not as one would expect.
     """
 
+    cloud: PointCloud
     table: Plane | None
     frame: NDArray[np.float64]  # (4, 4)
     labels: NDArray[np.int32]  # (n,)
@@ -46,14 +47,20 @@ class Detection:
     oriented: tuple[OrientedBox, ...]
     notes: tuple[str, ...] = ()
 
-    def scene(self, viewpoint: str = "chair") -> Scene:
-        """The boxes as a scene, ready for grounding."""
+    def scene(self, viewpoint: str = "chair", file: str = "<cloud>") -> Scene:
+        """Return the things as a scene, each with its points in the table's frame; ``file`` is what errors name."""
         boxes = zip(self.boxes.round(6).tolist(), self.oriented, strict=True)
         things = [
-            PerceivedObject(f"o{number}", tuple(low), tuple(high), oriented=oriented.rounded(6))
-            for number, ((low, high), oriented) in enumerate(boxes, start=1)
+            PerceivedObject(
+                f"o{number + 1}",
+                tuple(low),
+                tuple(high),
+                cloud=in_frame(self.cloud.take(self.labels == number), self.frame),
+                oriented=oriented.rounded(6),
+            )
+            for number, ((low, high), oriented) in enumerate(boxes)
         ]
-        return Scene(tuple(things), viewpoint=viewpoint)
+        return Scene(tuple(things), viewpoint=viewpoint, file=file, detection=self)
 
 
 def detect(cloud: PointCloud, settings: DetectionSettings | None = None) -> Detection:
@@ -79,7 +86,7 @@ def detect(cloud: PointCloud, settings: DetectionSettings | None = None) -> Dete
         return _alone(cloud, kept, points, outlook, settings)
     seen = list(islice(tables(points, outlook, settings), settings.table + 1))
     if len(seen) < settings.table:
-        return _nothing(len(cloud), None, np.eye(4), _no_table(settings, len(seen)))
+        return _nothing(cloud, None, np.eye(4), _no_table(settings, len(seen)))
     table = seen[settings.table - 1]
     found = _on_table(cloud, kept[table.points], points[table.points], table, settings)
     return found if len(seen) == settings.table else replace(found, notes=(*found.notes, _more(settings.table)))
@@ -110,9 +117,9 @@ def _on_table(
     large = _too_large(view, settings)
     if not found.max(initial=BACKGROUND) >= 0:
         if not large and max(_sides(view)) < settings.scale.min_bare_table_length:
-            return _nothing(len(cloud), None, np.eye(4), _no_table(settings, 0))
+            return _nothing(cloud, None, np.eye(4), _no_table(settings, 0))
         why = ("nothing is on the table", *(large or _too_small(view, settings)), *_a_wall(view, settings))
-        return _nothing(len(cloud), table.plane, view.frame, *why)
+        return _nothing(cloud, table.plane, view.frame, *why)
     members = [view.points[found == k] for k in range(int(found.max()) + 1)]
     table_seen = view.points[(np.abs(view.heights) < settings.plane.table_band) & (found == BACKGROUND), :2]
     rims = [rim_of(thing[:, :2], table_seen, settings.outlines) for thing in members]
@@ -121,7 +128,8 @@ def _on_table(
     labels = np.full(len(cloud), BACKGROUND, np.int32)
     labels[kept] = np.append(np.argsort(order), BACKGROUND)[found]
     oriented = tuple(oriented_box(members[k], settings.outlines, rims[k]) for k in order)
-    return Detection(table.plane, view.frame, labels, boxes[order], oriented, large or _too_small(view, settings))
+    notes = large or _too_small(view, settings)
+    return Detection(cloud, table.plane, view.frame, labels, boxes[order], oriented, notes)
 
 
 def _require_metres(points: NDArray[np.float64], settings: DetectionSettings) -> None:
@@ -168,7 +176,7 @@ def _alone(
     box = upright_box(thing, settings.outlines)
     sides = " by ".join(f"{100 * side:.0f}" for side in (box[1] - box[0]).tolist())
     note = f"no table was found: all there is, {sides} cm, was taken for one thing seen alone"
-    return Detection(None, frame, labels, box[None], (oriented_box(thing, settings.outlines),), (note,))
+    return Detection(cloud, None, frame, labels, box[None], (oriented_box(thing, settings.outlines),), (note,))
 
 
 @dataclass(frozen=True, eq=False)
@@ -293,5 +301,5 @@ def _left_to_right(boxes: NDArray[np.float64]) -> NDArray[np.intp]:
     return np.lexsort((low[:, 1], low[:, 0].round(2)))
 
 
-def _nothing(count: int, plane: Plane | None, frame: NDArray[np.float64], *why: str) -> Detection:
-    return Detection(plane, frame, np.full(count, BACKGROUND, np.int32), np.zeros((0, 2, 3)), (), why)
+def _nothing(cloud: PointCloud, plane: Plane | None, frame: NDArray[np.float64], *why: str) -> Detection:
+    return Detection(cloud, plane, frame, np.full(len(cloud), BACKGROUND, np.int32), np.zeros((0, 2, 3)), (), why)

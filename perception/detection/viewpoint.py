@@ -185,3 +185,12 @@ def moved(points: NDArray[np.floating], frame: NDArray[np.float64]) -> NDArray[n
     with np.errstate(invalid="ignore"):  # infinity times nothing
         result: NDArray[np.float64] = points @ frame[:3, :3].T + frame[:3, 3]
     return result
+
+
+def in_frame(cloud: PointCloud, frame: NDArray[np.float64]) -> PointCloud:
+    """Return the same points in another frame, without labels; ``frame`` (4, 4) takes the cloud's frame to it."""
+    origin = moved(np.array([cloud.origin]), frame)[0]
+    normals = None if cloud.normals is None else (cloud.normals @ frame[:3, :3].T).astype(np.float32)
+    points = moved(cloud.points, frame).astype(np.float32)
+    x, y, z = origin.tolist()
+    return PointCloud(points, cloud.colours, None, normals, origin=(x, y, z))

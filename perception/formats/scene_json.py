@@ -1,4 +1,4 @@
-"""Scenes as files: ``.scene.json``, read with an error that names the place, and written.
+"""Scenes as JSON: ``.scene.json``, read with an error that names the place, and as text to be written.
 
 Annotation files (COCO, LabelMe) are told by their content and read too: see
 :mod:`deixis.perception.formats.scene_json`.
@@ -63,7 +63,7 @@ def read_scene(source: str | Path | Mapping[str, Any], image: str | int | None =
     if not isinstance(source, str | Path):
         raise SceneError(
             f"a scene is read from a file or from parsed JSON, not from {type(source).__name__};"
-            " what 'perceive' gives in Python has a 'scene', and 'write(file)' writes it with its clouds"
+            " what 'perceive' gives in Python is a scene already"
         )
     path = Path(source)
     return scene_from_dict(_parsed(path), str(path), image)
@@ -196,14 +196,14 @@ def _numbers(data: Any, where: str, scale: float, counts: Sequence[int]) -> tupl
 
 
 def scene_to_dict(scene: Scene) -> dict[str, Any]:
-    """The scene as :func:`read_scene` takes it, coordinates in metres (or pixels)."""
+    """The scene as :func:`read_scene` takes it, coordinates in metres (or pixels); points in memory are left out."""
     objects = []
     for thing in scene.objects:
         entry: dict[str, Any] = {"id": thing.id, "min": list(thing.minimum), "max": list(thing.maximum)}
         entry["label"] = thing.label
         if thing.label is not None and thing.confidence < 1:
             entry["confidence"] = thing.confidence
-        if thing.cloud is not None:
+        if isinstance(thing.cloud, str):
             entry["cloud"] = thing.cloud
         if thing.colour is not None:
             entry["colour"] = hex_of_rgb(thing.colour)
@@ -214,9 +214,9 @@ def scene_to_dict(scene: Scene) -> dict[str, Any]:
     return {"frame": scene.frame, "viewpoint": scene.viewpoint, "unit": scene.unit, "objects": objects}
 
 
-def write_scene(scene: Scene, path: str | Path) -> None:
-    """Writes a ``.scene.json``, an object a line."""
+def scene_text(scene: Scene) -> str:
+    """Return the text of a ``.scene.json``, an object a line, as :func:`scene_to_dict` has it."""
     data = scene_to_dict(scene)
     lines = ",\n".join("    " + json.dumps(entry, ensure_ascii=False) for entry in data.pop("objects"))
     head = "".join(f'  "{key}": {json.dumps(value, ensure_ascii=False)},\n' for key, value in data.items())
-    Path(path).write_text(f'{{\n{head}  "objects": [\n{lines}\n  ]\n}}\n', encoding="utf-8")
+    return f'{{\n{head}  "objects": [\n{lines}\n  ]\n}}\n'

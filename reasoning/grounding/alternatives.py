@@ -6,7 +6,8 @@ import math
 
 import numpy as np
 
-from deixis.reasoning.grounding.answer import Alternative, LeftOut
+from deixis.ontology.lessons.types import Alternative
+from deixis.reasoning.grounding.answer import LeftOut
 from deixis.reasoning.grounding.engines import Alignment
 from deixis.reasoning.grounding.evidence.evidence import Evidence
 from deixis.reasoning.grounding.matching.problem import UNMATCHED

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.ontology.graph import Fact
+from deixis.ontology.lessons.types import Alternative, Match
 from deixis.ontology.relation import Relation
 
 DECIDED = 0.99
@@ -47,37 +48,6 @@ class Outcome(StrEnum):
     VIOLATED = "violated"  # does not hold of the matched pair
     WAIVED = "waived"  # does not hold, and was optional
     OPEN = "open"  # an object of it is not matched
-
-
-@dataclass(frozen=True, slots=True)
-class Alternative:
-    """Something else that an object could be; ``perceived`` None is that it is not there.
-
-    ``cost`` is what choosing it would lose: log-likelihood, or similarity where the engine gives no ``probability``.
-    """
-
-    perceived: str | None
-    cost: float
-    probability: float | None = None
-
-
-@dataclass(frozen=True, slots=True)
-class Match:
-    """An object of the description and the perceived thing that it is.
-
-    ``score`` is the share of what is said of the object and can be compared that holds (by degree and weight; 1 where
-    there is nothing), ``similarity`` the paper's, ``probability`` that of the match given all the evidence (None where
-    the engine gives none). ``decided`` says that it is high enough (:func:`is_decided`), or that nothing else is as
-    similar.
-    """
-
-    object: str
-    perceived: str
-    score: float
-    similarity: float
-    decided: bool
-    alternatives: tuple[Alternative, ...]
-    probability: float | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,16 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.ontology.graph import Fact
+from deixis.ontology.lessons.types import Match
 from deixis.reasoning.grounding.alternatives import WORTH_NAMING, alternatives, left_out_objects, left_out_things
-from deixis.reasoning.grounding.answer import (
-    FactOutcome,
-    Grounding,
-    Match,
-    Outcome,
-    Pivotal,
-    Standing,
-    is_decided,
-)
+from deixis.reasoning.grounding.answer import FactOutcome, Grounding, Outcome, Pivotal, Standing, is_decided
 from deixis.reasoning.grounding.engines import Alignment, Engine
 from deixis.reasoning.grounding.evidence.evidence import Evidence
 from deixis.reasoning.grounding.matching.problem import UNMATCHED

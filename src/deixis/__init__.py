@@ -24,11 +24,14 @@ from deixis.version import VERSION
 if TYPE_CHECKING:
     from deixis.errors import DeixisError
     from deixis.grammar.format import format_script
-    from deixis.perception.formats.scene_json import read_scene, write_scene
-    from deixis.session import Session, ground, infer, read_script
+    from deixis.perception.formats.scene_json import read_scene
+    from deixis.session import Session, ground
     from deixis.workflows.ask import ask
+    from deixis.workflows.check import check
     from deixis.workflows.imagine import imagine
-    from deixis.workflows.perceive import perceive
+    from deixis.workflows.infer import infer
+    from deixis.workflows.perceive import perceive, write_scene
+    from deixis.workflows.read import read_script
     from deixis.workflows.retrieve import retrieve
     from deixis.workflows.simulate import simulate
 
@@ -37,6 +40,7 @@ __all__ = [
     "DeixisError",
     "Session",
     "ask",
+    "check",
     "format_script",
     "ground",
     "imagine",
@@ -53,16 +57,17 @@ _HOMES = {
     "DeixisError": "deixis.errors",
     "Session": "deixis.session",
     "ask": "deixis.workflows.ask",
+    "check": "deixis.workflows.check",
     "format_script": "deixis.grammar.format",
     "ground": "deixis.session",
     "imagine": "deixis.workflows.imagine",
-    "infer": "deixis.session",
+    "infer": "deixis.workflows.infer",
     "perceive": "deixis.workflows.perceive",
     "read_scene": "deixis.perception.formats.scene_json",
-    "read_script": "deixis.session",
+    "read_script": "deixis.workflows.read",
     "retrieve": "deixis.workflows.retrieve",
     "simulate": "deixis.workflows.simulate",
-    "write_scene": "deixis.perception.formats.scene_json",
+    "write_scene": "deixis.workflows.perceive",
 }
 
 

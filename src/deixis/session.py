@@ -1,61 +1,43 @@
-"""Who calls whom: the one place that wires the rooms together. The command line and Python users come in here."""
+"""A session: a memory of what was learned and one of what was seen, and the commands that use them as methods."""
 
 from __future__ import annotations
 
-import os
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
-from datetime import UTC, datetime
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Self
 
-from deixis.grammar.parser import parse_script
-from deixis.grammar.parser import read_script as read_script_file
 from deixis.grammar.script import Script
 from deixis.kernels import ready_to_ground
-from deixis.learning.scene_evidence import conflict_notes, evidence_of, graph_evidence, scene_labels
+from deixis.knowledge_store import KnowledgeStore
+from deixis.learning.scene_evidence import conflict_notes, evidence_of
+from deixis.memory.on_demand import default_memory
+from deixis.memory.owner import Closing
 from deixis.ontology.tbox import Ontology
-from deixis.perception.formats.scene_json import read_scene
 from deixis.perception.scene import Scene
-from deixis.perceptual_session import PerceptualSession, views_of_matches
-from deixis.reasoning.entailment.conflict import find_conflict
-from deixis.reasoning.entailment.implications import TIME_LIMIT, Implications
-from deixis.reasoning.errors import InconsistencyError, NothingFoundError, SettingError, require_time_limit
+from deixis.reasoning.errors import SettingError, require_time_limit
 from deixis.reasoning.grounding.answer import Grounding
 from deixis.reasoning.grounding.engines import Select, engine_named
 from deixis.reasoning.grounding.evidence.meaning import SHIPPED, Meaning
 from deixis.reasoning.grounding.ground import DEFAULT_TIME_LIMIT
 from deixis.reasoning.grounding.ground import ground as ground_evidence
 from deixis.reasoning.grounding.options import ViewpointName
-from deixis.version import VERSION
-from deixis.workflows.infer import Inference, inference_of, ready_to_infer
+from deixis.view_store import ViewStore
+from deixis.workflows.check import Checked, check
+from deixis.workflows.learn import Learned, learn
+from deixis.workflows.read import as_scene, as_script, viewpoint_notes
+from deixis.workflows.recognise import recognise
+from deixis.workflows.teach import teach
 
 if TYPE_CHECKING:
-    from deixis.learning.views import StandingWord, Taught
-    from deixis.ontology.lessons.types import LayoutConcept, Lesson
-    from deixis.reasoning.comparison.checking import TableCheck
-
-
-def read_script(path: str | Path | None = None, *, text: str | None = None, ontology: Ontology | None = None) -> Script:
-    """Reads a layout script from a file, or from ``text``.
-
-    Raises ScriptError with every mistake in it, each with file, line and column; TypeError unless exactly one of the
-    two is given.
-    """
-    if (path is None) == (text is None):
-        raise TypeError("read_script takes a path or text=, and one of them only")
-    return parse_script(text, ontology=ontology) if text is not None else read_script_file(str(path), ontology=ontology)
-
-
-def infer(script: Script | str | Path, time_limit: float = TIME_LIMIT) -> Inference:
-    """What follows from a script in the wide reading, and whether it contradicts itself.
-
-    The time limit is for facts that leave a choice; the others need no search.
-    """
-    script = _script(script)
-    if not all(fact.plain for fact in script.facts):
-        ready_to_infer()
-    return inference_of(script, time_limit)
+    from deixis.learning.recollection import Recollection
+    from deixis.learning.views import Recognised, Taught
+    from deixis.learning.words import LearnedWords
+    from deixis.memory.perceptual.level import LevelMemory
+    from deixis.memory.perceptual.protocol import Progress
+    from deixis.memory.semantic.queries.results import QueryResult
+    from deixis.memory.semantic.store import SemanticMemory
+    from deixis.ontology.lessons.types import LayoutConcept
+    from deixis.reasoning.description_logic.object_view import ObjectView
 
 
 def ground(
@@ -75,8 +57,7 @@ def ground(
     ``quarter`` turns, or ``unknown``, from any side (:mod:`deixis.workflows.viewpoint`). The answer comes within about
     ``time_limit`` seconds, proved or not, and says which. Raises DeixisError for bad input.
     """
-    script = _script(script)
-    scene = scene if isinstance(scene, Scene) else read_scene(scene)
+    script, scene = as_script(script), as_scene(scene)
     require_time_limit(time_limit)
     if select not in list(Select):
         raise SettingError(f"select is one of {', '.join(Select)}, not '{select}'")
@@ -88,58 +69,37 @@ def ground(
         from deixis.workflows.viewpoint import ground_from_anywhere
 
         return ground_from_anywhere(script, scene, chosen, meaning, viewpoint == ViewpointName.UNKNOWN, time_limit)
-    notes = _viewpoint_notes(script.viewpoint, scene) + conflict_notes(script.graph())
+    notes = viewpoint_notes(script.viewpoint, scene) + conflict_notes(script.graph())
     return ground_evidence(evidence_of(script, scene, meaning), chosen, time_limit, notes)
 
 
-def _script(script: Script | str | Path) -> Script:
-    return script if isinstance(script, Script) else read_script(script)
-
-
-def _viewpoint_notes(viewpoint: str | None, scene: Scene) -> tuple[str, ...]:
-    if viewpoint is None or viewpoint == scene.viewpoint:
-        return ()
-    return (
-        f"the script speaks as seen from '{viewpoint}' and the scene is seen from '{scene.viewpoint}': "
-        "left and right were compared as they stand",
-    )
-
-
-@dataclass(frozen=True)
-class Learned:
-    """What a lesson left behind."""
-
-    lesson: Lesson
-    grounding: Grounding
-    seen: tuple[Taught, ...] = ()  # the views that it taught, of things with clouds
-    standing: tuple[StandingWord, ...] = ()  # what it would call otherwise than a teacher did
-
-    @property
-    def categories(self) -> tuple[str, ...]:
-        """The objects whose category it taught."""
-        return tuple(match.role for match in self.lesson.categories())
-
-    @property
-    def doubtful(self) -> tuple[str, ...]:
-        """The objects that it recorded as not settled."""
-        return tuple(match.role for match in self.lesson.matches if not match.decided)
-
-
-@dataclass(frozen=True)
-class Checked:
-    """A table against a layout: the verdicts, and the same as a SHACL validation report."""
-
-    layout: LayoutConcept
-    table: TableCheck
-    conforms: bool
-    report: str  # Turtle
-
-
-class Session(PerceptualSession):
+class Session(Closing):
     """A memory, and what is done with it and a table. Use it as a context manager, or close it.
 
-    The memory is opened by the first call that needs it, and held by this process until the session is closed.
+    ``knowledge_store`` holds what was learned, ``view_store`` what things look like. Each is opened by the first call
+    that needs it, and held by this process until the session is closed.
     """
+
+    def __init__(self, memory: str | Path | None = None, ontology: Ontology | None = None) -> None:
+        self.path = default_memory() if memory is None else Path(memory)
+        self.knowledge_store = KnowledgeStore(self.path, ontology)
+        self.view_store = ViewStore(self.path)
+
+    def __enter__(self) -> Self:
+        self.knowledge_store.require_usable()
+        return super().__enter__()
+
+    def close(self) -> None:
+        """Lets go of the memory; what would need it afterwards raises MemoryFormatError."""
+        self.view_store.close()
+        self.knowledge_store.close()
+
+    @property
+    def ontology(self) -> Ontology:
+        """The words that scripts may use."""
+        return self.knowledge_store.ontology
+
+    # ---- what is done with a table
 
     def ground(
         self,
@@ -165,28 +125,7 @@ class Session(PerceptualSession):
         for :meth:`learn_relations`. Sizes are learned at once. What a teacher named stays of that name. Raises
         DeixisError, having changed nothing, where the script contradicts itself or what was learned before.
         """
-        from deixis.learning.lesson import Occasion, layout_name, lesson_of
-        from deixis.learning.update import keep
-        from deixis.ontology.lessons.types import next_lesson_id
-
-        script = self._script(script)
-        scene = scene if isinstance(scene, Scene) else read_scene(scene)
-        conflict = find_conflict(Implications(script.graph()))
-        if conflict is not None:
-            lines = ", ".join(str(fact.source) for fact in conflict.facts)
-            raise InconsistencyError(f"the script contradicts itself, nothing was learned: {conflict.reason} ({lines})")
-        started = datetime.now(UTC)
-        found = self.ground(script, scene, engine, time_limit)
-        if not found.matches:
-            raise NothingFoundError("nothing that the script names was found in the scene, so nothing was learned")
-        memory = self.memory(create=True)
-        id = next_lesson_id(layout_name(script), memory.lessons())
-        lesson = lesson_of(script, scene, found, id, Occasion(started, datetime.now(UTC), VERSION))
-        views, standing = self.but_for_taught(views_of_matches(scene, found.matches.values()))
-        with self.keeping_views(views) as seen:
-            keep(memory, self.ontology, lesson)
-        self._meaning = None
-        return Learned(lesson, found, seen, standing)
+        return learn(script, scene, self.knowledge_store, self.view_store, engine, time_limit)
 
     def check(
         self,
@@ -195,38 +134,116 @@ class Session(PerceptualSession):
         time_limit: float = DEFAULT_TIME_LIMIT,
     ) -> Checked:
         """What is wrong with a table: ``layout`` is a learned layout's name, or a script or its file."""
-        from deixis.learning.lesson import layout_concept
-        from deixis.reasoning.comparison.checking import checked_table
-        from deixis.workflows.shacl_report import shacl_report
+        return check(layout, scene, time_limit, self.knowledge_store)
 
-        concept = (
-            layout_concept(self._script(layout), "script")
-            if isinstance(layout, Script) or is_script_file(layout)
-            else self.layout(str(layout))
-        )
-        scene = scene if isinstance(scene, Scene) else read_scene(scene)
-        graph, relations = concept.graph(self.ontology.relations), self.ontology.relations
-        labels = scene_labels(scene)
-        evidence = graph_evidence(graph, scene, self.ontology, self.meaning())
-        notes = _viewpoint_notes(concept.viewpoint, scene) + conflict_notes(graph)
-        ready_to_ground("exact")
-        known, engine = self.ontology, engine_named("exact")
-        table = checked_table(evidence, labels, known.kinds, engine, time_limit, scene.colours, known.colours)
-        found = table.grounding
-        kept = tuple(note for note in found.notes if "similarity" not in note)  # a check shows no similarity
-        table = replace(table, grounding=replace(found, notes=notes + kept))
-        return Checked(concept, table, *shacl_report(concept, scene, table, relations))
+    def teach(
+        self, scene: Scene | str | Path | Mapping[str, Any], object: str, category: str, teacher: str = "user"
+    ) -> Taught:
+        """Keeps what a thing of a scene looks like as a view of a category: see :func:`deixis.workflows.teach.teach`.
 
-    def _script(self, script: Script | str | Path) -> Script:
-        return script if isinstance(script, Script) else read_script(script, ontology=self.ontology)
+        Raises SceneError where the scene has no such thing, or no cloud of it; SettingError for a name that is none.
+        """
+        return teach(scene, object, category, self.view_store, teacher)
 
+    def recognise(
+        self,
+        scene: Scene | str | Path | Mapping[str, Any],
+        progress: Progress | None = None,
+        left_out: Callable[[str], None] | None = None,
+    ) -> Recognised:
+        """Names what is known among the things of a scene; where nothing was taught, nothing is.
 
-def load_scene(file: str | Path, hide_labels: bool = False, image: str | None = None) -> Scene:
-    """A scene from a file, its labels kept or hidden; ``image`` chooses one of several that the file describes."""
-    scene = read_scene(file, image=image) if image is not None else read_scene(file)
-    return scene.without_labels() if hide_labels else scene
+        ``progress`` is told of reading what was taught, and of the calibration, which take seconds after many views;
+        ``left_out``, in one line, of views that are damaged and teach nothing.
+        """
+        return recognise(scene, self.view_store, progress, left_out)
 
+    # ---- what was learned
 
-def is_script_file(layout: str | Path) -> bool:
-    """Whether a layout is given as a file rather than by its name."""
-    return isinstance(layout, Path) or layout.endswith(".layout") or os.sep in layout
+    def remembers(self) -> bool:
+        """Whether there is a memory at the path; raises MemoryFormatError where something else or a damaged one is."""
+        return self.knowledge_store.exists()
+
+    def memory(self, create: bool = False) -> SemanticMemory:
+        """The open memory; raises DeixisError where there is none and ``create`` is not set."""
+        return self.knowledge_store.memory(create)
+
+    def meaning(self) -> Meaning:
+        """The words and sizes in force: what is shipped, but for what was learned; where there is no memory, all of it.
+
+        Raises OntologyError where a learned model in the memory is not whole, MemoryBusyError where another process
+        has the memory.
+        """
+        return self.knowledge_store.meaning()
+
+    def recollection(self) -> Recollection:
+        """All lessons of the memory, ready to be learned from; none where there is no memory."""
+        return self.knowledge_store.recollection()
+
+    def learn_relations(self, examples: Sequence[tuple[Script, Scene]] = (), strength: float = 3.0) -> LearnedWords:
+        """Fits what relation words mean to everything remembered, and to examples: scripts, each with a labelled scene.
+
+        The examples are kept as lessons, and the models take the place of those that were learned before. Raises
+        NothingFoundError, having changed nothing, where there is nothing to learn from; SettingError for a strength
+        that is not above 0.
+        """
+        return self.knowledge_store.learn_relations(examples, strength)
+
+    def forget_relations(self) -> None:
+        """Takes the learned models of relation words away: the shipped ones are in force again. Lessons stay."""
+        self.knowledge_store.forget_relations()
+
+    def forget(self, lesson: str) -> None:
+        """Takes back one lesson, with everything that follows from it alone, and what it taught of words and sizes.
+
+        What it kept of how things look stays.
+        """
+        self.knowledge_store.forget(lesson)
+
+    def import_(self, file: str | Path) -> None:
+        """Takes in what another memory exported, or plain triples; what is there stays.
+
+        Raises InconsistencyError, having changed nothing, where what is there and what comes contradict each other.
+        """
+        self.knowledge_store.import_(file)
+
+    def layouts(self) -> tuple[LayoutConcept, ...]:
+        """Every learned layout."""
+        return self.knowledge_store.layouts()
+
+    def layout(self, name: str) -> LayoutConcept:
+        """The layout of that name, learned last, or of the lesson with that id; raises UnknownTermError for none."""
+        return self.knowledge_store.layout(name)
+
+    def show(self, name: str) -> str:
+        """A learned layout as a script again."""
+        return self.knowledge_store.show(name)
+
+    def query(self, sparql: str) -> QueryResult:
+        """Asks SPARQL of everything remembered: SELECT, ASK, CONSTRUCT or DESCRIBE; nothing else is let in."""
+        return self.knowledge_store.query(sparql)
+
+    def owl(self) -> ObjectView:
+        """The ontology with everything learned, as owlready2's objects in a world of their own; to be closed.
+
+        It has what was stated and what followed when it was made. Without a memory it has the ontology alone.
+        """
+        return self.knowledge_store.owl()
+
+    # ---- what things look like
+
+    def has_views(self) -> bool:
+        """Whether anything was ever taught."""
+        return self.view_store.exists()
+
+    def views(self, create: bool = False) -> LevelMemory:
+        """The open perceptual memory; raises DeixisError where there is none and ``create`` is not set."""
+        return self.view_store.memory(create)
+
+    def category_meant(self, name: str) -> str:
+        """The known category of that name, else the first that differs from it only in case, else the name itself."""
+        return self.view_store.category_meant(name)
+
+    def categories(self, left_out: Callable[[str], None] | None = None) -> dict[str, int]:
+        """The names of what was taught, each with its number of views; ``left_out`` as in :meth:`recognise`."""
+        return self.view_store.categories(left_out)

@@ -17,7 +17,7 @@ LOADED_LATER = """
 import json, sys
 from numba.core.dispatcher import Dispatcher
 from deixis.learning.scene_evidence import evidence_of
-from deixis.session import load_scene, read_script
+from deixis.workflows.read import load_scene, read_script
 from deixis.reasoning.grounding.engines import engine_named
 from deixis.reasoning.grounding.ground import ground
 from deixis.grammar.formats.networks import read_networks

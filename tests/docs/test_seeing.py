@@ -35,4 +35,9 @@ def test_the_page_runs_as_it_stands(tmp_path: Path, monkeypatch: pytest.MonkeyPa
             assert any(found.startswith(line) for found in printed), (entry.command, line, printed)
         ran += 1
     assert ran > 10
+    (program,) = [text for language, text in blocks(PAGE) if language == "python"]
+    names: dict[str, object] = {}
+    exec(compile(program, str(PAGE), "exec"), names)
+    assert names["shapes"] and "butter_knife" in dict(names["names"]).values()  # type: ignore[call-overload]
+    assert Path("tea.scene.json").exists()
     assert all(Path(name).exists() for name in re.findall(r"--plot (\S+)", PAGE.read_text(encoding="utf-8")))

@@ -43,8 +43,8 @@ def rename(
     memory: MemoryDir = None,
 ) -> None:
     """Give a category another name; its views stay."""
-    from deixis.perceptual_session import category_name, new_category_name
     from deixis.session import Session
+    from deixis.view_store import category_name, new_category_name
 
     name = new_category_name(new)
     with Session(memory) as session:
@@ -59,8 +59,8 @@ def merge(
     memory: MemoryDir = None,
 ) -> None:
     """Make the views of one category views of another: two words for one thing."""
-    from deixis.perceptual_session import category_name
     from deixis.session import Session
+    from deixis.view_store import category_name
 
     with Session(memory) as session:
         session.views().merge(category_name(source), category_name(into))
@@ -73,8 +73,8 @@ def forget_category(
     memory: MemoryDir = None,
 ) -> None:
     """Forget a category with all its views."""
-    from deixis.perceptual_session import category_name
     from deixis.session import Session
+    from deixis.view_store import category_name
 
     with Session(memory) as session:
         session.views().forget(category_name(name))

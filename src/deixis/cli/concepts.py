@@ -17,6 +17,7 @@ from deixis.cli.common import (
     HideLabels,
     Image,
     MemoryDir,
+    NoMemory,
     SceneFile,
     Script,
     TimeLimit,
@@ -57,7 +58,8 @@ def learn(
     from deixis.reasoning.errors import NothingFoundError
     from deixis.report.json_answers import learned_to_dict
     from deixis.report.script import learned_lines
-    from deixis.session import Session, load_scene
+    from deixis.session import Session
+    from deixis.workflows.read import load_scene
 
     seen = load_scene(scene, hide_labels, image)
     ready_to_ground(engine)
@@ -104,18 +106,21 @@ def check(
     hide_labels: HideLabels = False,
     image: Image = None,
     memory: MemoryDir = None,
+    no_memory: NoMemory = False,
     as_json: AsJson = False,
 ) -> None:
     """Say what is missing, misplaced, miscoloured and extra on a table; exit 0 where all is well, 1 where not."""
     from deixis.report.json_answers import check_to_dict
     from deixis.report.script import check_lines
-    from deixis.session import Session, load_scene
+    from deixis.session import Session
+    from deixis.workflows.check import check as run
+    from deixis.workflows.read import load_scene
 
     require_plot(plot)
     seen = load_scene(scene, hide_labels, image)
     ready_to_ground()
     with Session(memory) as session, working("grounding"):
-        checked = session.check(layout, seen, time_limit)
+        checked = run(layout, seen, time_limit, None if no_memory else session.knowledge_store)
     if report is not None:
         report.parent.mkdir(parents=True, exist_ok=True)
         report.write_text(checked.report, encoding="utf-8")

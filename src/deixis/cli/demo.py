@@ -19,7 +19,9 @@ from deixis.reasoning.grounding.evidence.meaning import Meaning
 from deixis.reasoning.grounding.evidence.unary import UnaryWeights
 from deixis.report.ground import grounding_lines
 from deixis.report.script import check_lines, inference_lines, learned_lines, script_lines
-from deixis.session import Session, ground, infer, read_script
+from deixis.session import Session, ground
+from deixis.workflows.infer import infer
+from deixis.workflows.read import read_script
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -97,27 +99,29 @@ def _seen(console: Console, session: Session, full: Script, out: Path) -> None:
     """The part of the story that begins with a point cloud."""
     from deixis.plots.seen import plot_perceived, plot_recognised
     from deixis.workflows.lay_table import lay_script
-    from deixis.workflows.perceive import Perceived, perceive, write_perceived
+    from deixis.workflows.perceive import perceive, write_scene
     from deixis.workflows.simulate import simulate
 
-    def look(seed: int) -> Perceived:
-        return perceive(simulate(lay_script(full, seed), seed=seed).cloud)
+    def look(seed: int, name: str) -> Scene:
+        scene = perceive(simulate(lay_script(full, seed), seed=seed).cloud)
+        write_scene(scene, out / f"{name}.scene.json")
+        return scene
 
     _chapter(console, 10, "The same with a depth camera, simulated: points, and no boxes")
-    first = look(7)
-    table = write_perceived(first, out / "table.scene.json")
-    _say(console, f"{len(first.cloud)} points; {len(table.objects)} things found on the table.")
-    plot_perceived(first, out / "table.png")
+    table = look(7, "table")
+    points = 0 if table.detection is None else len(table.detection.cloud)
+    _say(console, f"{points} points; {len(table.objects)} things found on the table.")
+    plot_perceived(table, out / "table.png")
     _say(console, f"Picture: {out / 'table.png'}")
     taught = session.learn(full, table)
     _listing(console, grounding_lines(taught.grounding)[: len(taught.grounding.matches)])
     for seed in MORE_TABLES:
-        session.learn(full, write_perceived(look(seed), out / f"table-{seed}.scene.json"))
+        session.learn(full, look(seed, f"table-{seed}"))
     views = sum(session.categories().values())
     _say(console, f"After {len(MORE_TABLES)} more tables it has kept {views} views, each under its name.")
 
     _chapter(console, 11, "Another table of points, and nobody says a word. What looks familiar?")
-    found = session.recognise(write_perceived(look(20), out / "another.scene.json"))
+    found = session.recognise(look(20, "another"))
     _listing(console, [f"{id:<5} {_name(answer)}" for id, answer in found.answers.items()])
     plot_recognised(found, out / "another.png")
     _say(console, f"Picture: {out / 'another.png'}")

@@ -64,7 +64,7 @@ def ground(
     from deixis.report.ground import grounding_lines
     from deixis.report.json_answers import exchanges_to_dict, grounding_to_dict, viewpoints_to_dict
     from deixis.session import ground as run
-    from deixis.session import load_scene, read_script
+    from deixis.workflows.read import load_scene, read_script
 
     require_plot(plot)
     parsed, seen = read_script(script), load_scene(scene, hide_labels, image)

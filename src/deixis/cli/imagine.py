@@ -93,7 +93,7 @@ def _require_writable(script: str, scenes: list[Path], pictures: list[Path]) -> 
 
 
 def _write(found: Imagination, scenes: list[Path], pictures: list[Path]) -> None:
-    from deixis.perception.formats.scene_json import write_scene
+    from deixis.workflows.perceive import write_scene
 
     for table, file in zip(found.tables, scenes, strict=False):
         write_scene(table.scene, file)

@@ -30,7 +30,7 @@ def infer(
     from deixis.errors import DeixisError
     from deixis.report.json_answers import inference_to_dict
     from deixis.report.script import inference_lines
-    from deixis.session import infer as run
+    from deixis.workflows.infer import infer as run
 
     if explain is not None and why_not is not None:
         raise DeixisError("infer: --explain and --why-not exclude each other")

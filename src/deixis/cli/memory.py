@@ -45,7 +45,7 @@ def export(
 ) -> None:
     """Write everything remembered, sorted: the same bytes for the same content."""
     from deixis.errors import DeixisError
-    from deixis.memory_session import default_memory
+    from deixis.memory.on_demand import default_memory
 
     where = memory or default_memory()
     if format is DumpFormat.VIEWS:
@@ -96,8 +96,8 @@ def import_(
 ) -> None:
     """Take in what was exported; what is there stays."""
     from deixis.errors import DeixisError
+    from deixis.memory.on_demand import default_memory
     from deixis.memory.perceptual.in_folder import import_all, is_archive
-    from deixis.memory_session import default_memory
     from deixis.session import Session
 
     if not dump.exists():
@@ -140,8 +140,8 @@ def stats(memory: MemoryDir = None, as_json: AsJson = False) -> None:
 @memory_app.command("verify")
 def verify(memory: MemoryDir = None, as_json: AsJson = False) -> None:
     """Read all that was learned and taught, and say what is not as it was written; exit 1 where something is not."""
+    from deixis.memory.on_demand import default_memory
     from deixis.memory.verify import verify as run
-    from deixis.memory_session import default_memory
 
     where = memory or default_memory()
     require_memory(where)

@@ -42,7 +42,7 @@ def relate(
     from deixis.reasoning.qualitative.relate import ALONG_AN_AXIS, RELATED, Related
     from deixis.reasoning.qualitative.relate import relate as codes_of
     from deixis.report.relate import json_lines, matrix_lines, pair_lines
-    from deixis.session import load_scene
+    from deixis.workflows.read import load_scene
 
     chosen = of or []
     if len(chosen) > 2 or (matrix and chosen):

@@ -142,7 +142,7 @@ def _require_fitting(
 
 
 def _examples(files: list[str]) -> list[tuple[Script, Scene]]:
-    from deixis.session import load_scene, read_script
+    from deixis.workflows.read import load_scene, read_script
 
     return [(read_script(script), load_scene(scene)) for script, scene in zip(files[::2], files[1::2], strict=True)]
 

@@ -63,7 +63,7 @@ def perceive(
     from deixis.perception.detection.settings import DetectionSettings
     from deixis.perception.formats.scene_json import scene_to_dict
     from deixis.workflows.perceive import perceive as run
-    from deixis.workflows.perceive import write_perceived
+    from deixis.workflows.perceive import write_scene
 
     require_plot(plot)
     if labels is not None and labels.suffix != ".npy":
@@ -71,22 +71,24 @@ def perceive(
     require_scene_name(out)
     require_writable([out, labels, plot], [cloud, intrinsics])
     with working("looking for the table"):
-        found = run(cloud, intrinsics, viewpoint, DetectionSettings(table=table, up=up))
-    seen = bool(found.detection.table is not None or found.scene.objects)
-    scene = write_perceived(found, out) if out is not None and seen else found.scene
+        scene = run(cloud, intrinsics, viewpoint, DetectionSettings(table=table, up=up))
+    found = scene.detection
+    assert found is not None
+    seen = bool(found.table is not None or scene.objects)
+    written = write_scene(scene, out) if out is not None and seen else scene
     if labels is not None:
-        _write_labels(labels, found.detection.labels)
+        _write_labels(labels, found.labels)
     if plot is not None:
         from deixis.plots.seen import plot_perceived
 
-        plot_perceived(found, plot)
+        plot_perceived(scene, plot)
     if as_json or out is None:
-        print_json(scene_to_dict(scene))
-        for note in found.detection.notes:
+        print_json(scene_to_dict(written))
+        for note in found.notes:
             _print_note(note)
     else:
         print_lines(_scene_lines(scene))
-        print_lines(f"Note: {note}." for note in found.detection.notes)
+        print_lines(f"Note: {note}." for note in found.notes)
         print_written(out if seen else None)
     if not as_json:
         print_written(labels, plot, aside=out is None)
@@ -130,8 +132,8 @@ def teach(
     as_json: AsJson = False,
 ) -> None:
     """Show what a word looks like: one view more of a category; said again of the same view, a correction."""
-    from deixis.perceptual_session import category_name
     from deixis.session import Session
+    from deixis.view_store import category_name
 
     with Session(memory) as session:
         taught = session.teach(scene, object, label, teacher)
@@ -159,17 +161,20 @@ def recognise(
     as_json: AsJson = False,
 ) -> None:
     """Name the things of a scene that look like what was taught; exit 1 where none is known."""
-    from deixis.session import Session, load_scene
+    from deixis.session import Session
+    from deixis.workflows.read import load_scene
 
     require_plot(plot)
     require_scene_name(out)
     require_memory(memory)
     seen = load_scene(scene)
-    require_writable([out, plot], [thing.cloud and Path(seen.file).parent / thing.cloud for thing in seen.objects])
+    require_writable([out, plot], _cloud_files(seen))
     with Session(memory) as session, progress_bar("reading what was taught") as progress:
         found = session.recognise(seen, progress, _print_note)
     if out is not None:
-        _write_scene(found.scene, out)
+        from deixis.workflows.perceive import write_scene
+
+        write_scene(found.scene, out)
     if plot is not None:
         from deixis.plots.seen import plot_recognised
 
@@ -185,19 +190,8 @@ def recognise(
         raise typer.Exit(NO)
 
 
-def _write_scene(scene: Scene, out: Path) -> None:
-    """With the clouds' places as seen from where the scene is written."""
-    import os
-    from dataclasses import replace
-
-    from deixis.workflows.perceive import replace_scene
-
-    base = Path(scene.file).parent
-    things = tuple(
-        thing if thing.cloud is None else replace(thing, cloud=os.path.relpath(base / thing.cloud, out.parent))
-        for thing in scene.objects
-    )
-    replace_scene(replace(scene, objects=things), out)
+def _cloud_files(scene: Scene) -> list[Path]:
+    return [Path(scene.file).parent / thing.cloud for thing in scene.objects if isinstance(thing.cloud, str)]
 
 
 def _answer_line(id: str, answer: Recognition) -> str:
@@ -252,8 +246,9 @@ def ask(
     Where the word is known, it says which things it takes for one, and asks nothing, unless --points-at shows it one
     more. Exit 1 without an answer.
     """
-    from deixis.perceptual_session import new_category_name
-    from deixis.session import Session, load_scene
+    from deixis.session import Session
+    from deixis.view_store import new_category_name
+    from deixis.workflows.read import load_scene
 
     said, seen = new_category_name(word), load_scene(scene)
     _require_something_to_show(seen)

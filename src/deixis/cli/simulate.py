@@ -85,7 +85,7 @@ def simulate(
 
         write_cloud(out, in_table_frame(found.cloud, found.camera) if table_frame else found.cloud)
     if truth is not None:
-        from deixis.perception.formats.scene_json import write_scene
+        from deixis.workflows.perceive import write_scene
 
         write_scene(found.truth, truth)
     if as_json:

@@ -33,7 +33,7 @@ from deixis.reasoning.grounding.evidence.evidence import Evidence, no_unary_evid
 from deixis.reasoning.grounding.matching.problem import UNMATCHED
 from deixis.reasoning.grounding.similarity import node_similarity
 from deixis.reasoning.grounding.symmetry import interchangeable
-from deixis.session import read_script
+from deixis.workflows.read import read_script
 
 
 def plot_points(points: Points, path: Path, title: str, rho: float) -> None:

@@ -16,15 +16,15 @@ from deixis.grammar.format import format_script
 from deixis.grammar.language import language_of
 from deixis.grammar.script import Script
 from deixis.memory.semantic.rdf.graphs import GraphName, graph_iri
-from deixis.ontology.lessons.types import LayoutConcept, Lesson, MatchRecord, Role, SceneRecord, SeenObject
-from deixis.ontology.relation import Reading, Relation, Relations
+from deixis.ontology.lessons.types import LayoutConcept, Lesson, Role, SeenRelation
+from deixis.ontology.relation import Reading, Relations
 from deixis.ontology.triples import GENID, iri, learned_iri, text, with_blank_nodes
 from deixis.ontology.vocabulary import PROV, W3C
 from deixis.perception.formats.scene_json import scene_to_dict
 from deixis.perception.scene import Scene
 from deixis.reasoning.description_logic.reasoners import Classification, classify
 from deixis.reasoning.errors import InconsistencyError
-from deixis.reasoning.grounding.answer import Grounding, Match
+from deixis.reasoning.grounding.answer import Grounding
 from deixis.reasoning.grounding.evidence.evidence import exact_names
 
 MAX_PAIRS = 2000
@@ -74,8 +74,9 @@ def lesson_of(script: Script, scene: Scene, found: Grounding, id: str, occasion:
     """Everything that one grounding teaches."""
     return Lesson(
         layout=layout_concept(script, id, found.interchangeable),
-        scene=scene_record(scene, script.ontology.relations, found),
-        matches=tuple(_match(match) for match in found.matches.values()),
+        scene=scene,
+        relations=tuple(_seen_relations(scene, script.ontology.relations, found)),
+        matches=tuple(found.matches.values()),
         engine=found.engine,
         proved_best=found.proved_best,
         started=occasion.started,
@@ -87,32 +88,7 @@ def lesson_of(script: Script, scene: Scene, found: Grounding, id: str, occasion:
     )
 
 
-def _match(match: Match) -> MatchRecord:
-    others = tuple(other.perceived for other in match.alternatives if other.perceived is not None)
-    could_be = () if match.decided else (match.perceived, *others)
-    return MatchRecord(
-        role=match.object,
-        perceived=match.perceived if match.decided else None,
-        decided=match.decided,
-        score=match.score,
-        could_be=could_be,
-        probability=match.probability,
-        likeliest=None if match.decided else match.perceived,
-    )
-
-
-def scene_record(scene: Scene, relations: Relations, found: Grounding | None) -> SceneRecord:
-    """A scene as a lesson keeps it; without a grounding, the relations of its things are left out."""
-    return SceneRecord(
-        frame=scene.frame,
-        viewpoint=scene.viewpoint,
-        unit=scene.unit,
-        objects=tuple(SeenObject(o.id, o.minimum, o.maximum, o.label, o.confidence, o.colour) for o in scene.objects),
-        relations=tuple(_seen_relations(scene, relations, found)) if found is not None else (),
-    )
-
-
-def _seen_relations(scene: Scene, relations: Relations, found: Grounding) -> Iterator[tuple[str, Relation, str]]:
+def _seen_relations(scene: Scene, relations: Relations, found: Grounding) -> Iterator[SeenRelation]:
     names, ids = exact_names(scene.graph(relations)), scene.ids
     compared = {entry.perceived for entry in found.outcomes if entry.perceived is not None}
     few = len(ids) * (len(ids) - 1) <= MAX_PAIRS

@@ -80,10 +80,10 @@ def _remembered(record: LessonRecord, layout: LayoutConcept | None, ontology: On
 
 def _matched(record: LessonRecord, description: RelationGraph, scene: Scene) -> Who:
     places = {id: place for place, id in enumerate(scene.ids)}
-    matches = {match.role: match for match in record.matches}
+    matches = {match.object: match for match in record.matches}
     found = [matches.get(name) for name in description.nodes]
     return Who(
-        tuple(places.get(match.taken or "") if match else None for match in found),
+        tuple(places.get(match.perceived) if match else None for match in found),
         tuple(match.sureness if match else 0.0 for match in found),
         tuple(match is not None and match.decided for match in found),
     )

@@ -9,7 +9,7 @@ from datetime import UTC, datetime
 
 from deixis.grammar.format import layout_script
 from deixis.grammar.script import Script
-from deixis.learning.lesson import Occasion, layout_concept, layout_name, scene_record
+from deixis.learning.lesson import Occasion, layout_concept, layout_name
 from deixis.learning.recollection import Recollection, Remembered, labelled
 from deixis.ontology.lessons.types import WordLesson, next_lesson_id
 from deixis.ontology.models.relations import RelationModel, RelationModels
@@ -129,7 +129,7 @@ def word_lesson(script: Script, scene: Scene, id: str, occasion: Occasion) -> Wo
     """The lesson that a script and a labelled scene are; the script's includes become a part of its text."""
     return WordLesson(
         id=id,
-        scene=scene_record(scene, script.ontology.relations, None),
+        scene=scene,
         started=occasion.started,
         ended=occasion.ended,
         version=occasion.version,

@@ -9,7 +9,7 @@ from deixis.perception.scene import Scene
 from deixis.plots.figure import save
 from deixis.plots.grounding import Marks, grounding_figure
 from deixis.reasoning.comparison.checking import Verdict
-from deixis.session import Checked
+from deixis.workflows.check import Checked
 
 
 def plot_check(checked: Checked, scene: Scene, path: str | Path) -> None:

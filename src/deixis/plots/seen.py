@@ -20,8 +20,7 @@ if TYPE_CHECKING:
 
     from deixis.learning.views import Recognised
     from deixis.perception.recognition.recogniser import Recognition
-    from deixis.perception.scene import Scene
-    from deixis.workflows.perceive import Perceived
+    from deixis.perception.scene import Detected, Scene
 
 MOST_POINTS = 60_000
 """Points that are drawn of the things, and of the table."""
@@ -51,41 +50,46 @@ Window = tuple[NDArray[np.float64], NDArray[np.float64]]
 """The least and the greatest x and y that are drawn, in metres."""
 
 
-def plot_perceived(found: Perceived, path: str | Path) -> None:
-    """The points from above, grey where they belong to no thing; beside it the image, where the cloud is one."""
-    from deixis.workflows.perceive import in_frame
+def plot_perceived(scene: Scene, path: str | Path) -> None:
+    """Draws the points from above, grey where they belong to no thing; beside it the image, where the cloud is one.
 
-    points, labels = in_frame(found.cloud, found.detection.frame).points, found.detection.labels
-    window = window_of(points, found)
-    camera = camera_of(found.cloud, labels, found.scene) if found.cloud.organised else None
+    Raises SceneError for a scene that was not found in a cloud, or is read from a file.
+    """
+    from deixis.perception.detection.viewpoint import in_frame
+    from deixis.perception.errors import SceneError
+
+    if scene.detection is None:
+        raise SceneError(f"{scene.file}: the scene must be as 'perceive' gives it, got one without its cloud")
+    cloud, labels = scene.detection.cloud, scene.detection.labels
+    points = in_frame(cloud, scene.detection.frame).points
+    window = window_of(points, scene, scene.detection)
+    camera = camera_of(cloud, labels, scene) if cloud.organised else None
     figure, axes, scale = _panels(window, camera)
     _points(axes[0], points, labels, window, scale)
-    level = found.detection.table is not None or bool(found.scene.objects)
-    _dress(axes[0], found.scene, window, _title(found))
-    if not found.scene.objects:
-        _say(axes[0], "; ".join(found.detection.notes) or "nothing was found")
+    level = scene.detection.table is not None or bool(scene.objects)
+    _dress(axes[0], scene, window, _title(scene, scene.detection))
+    if not scene.objects:
+        _say(axes[0], "; ".join(scene.detection.notes) or "nothing was found")
     if not level:
         axes[0].set_xlabel("metres, x of the cloud")
         axes[0].set_ylabel("metres, y of the cloud")
-    write_names(figure, axes[0], [replace(thing, label=thing.label or thing.id) for thing in found.scene.objects])
+    write_names(figure, axes[0], [replace(thing, label=thing.label or thing.id) for thing in scene.objects])
     if camera is not None:
         draw_camera(axes[1], camera)
         write_names(figure, axes[1], camera.things)
     save(figure, path)
 
 
-def _title(found: Perceived) -> str:
-    if found.detection.table is not None:
+def _title(scene: Scene, found: Detected) -> str:
+    if found.table is not None:
         return "From above, in the table's frame"
-    return "One thing alone, from above" if found.scene.objects else "All points, as they stand"
+    return "One thing alone, from above" if scene.objects else "All points, as they stand"
 
 
 def plot_recognised(found: Recognised, path: str | Path) -> None:
     """The things from above, each with its name and how probable that is; what is unknown says so."""
-    from deixis.workflows.perceive import cloud_of
-
     clouds = [
-        (number, cloud_of(found.scene, thing).points)
+        (number, found.scene.cloud_of(thing.id).points)
         for number, thing in enumerate(found.scene.objects)
         if thing.cloud is not None
     ]
@@ -111,15 +115,15 @@ def _answered(id: str, label: str | None, found: Recognised) -> str:
     return f"{id} {name}" if answer is None else f"{id} {name} {answer.probability:.2f}"
 
 
-def window_of(points: NDArray[np.float32], found: Perceived) -> Window:
+def window_of(points: NDArray[np.float32], scene: Scene, found: Detected) -> Window:
     """What is drawn of points (n, 3) in the table's frame: the things, and some of the table around them.
 
     The whole table where nothing is on it, and all points where no table was found.
     """
-    if found.scene.objects:
-        return _around_boxes(found.scene)
+    if scene.objects:
+        return _around_boxes(scene)
     flat = points[np.isfinite(points).all(axis=1)]
-    if found.detection.table is not None:
+    if found.table is not None:
         flat = flat[np.abs(flat[:, 2]) < PlaneSettings().table_band]
     low, high = np.quantile(flat[:, :2].astype(np.float64), [FEW, 1.0 - FEW], axis=0)
     return _widened(low, high)

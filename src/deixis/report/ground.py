@@ -7,7 +7,8 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from deixis.reasoning.grounding.answer import Alternative, FactOutcome, Grounding, LeftOut, Match, Pivotal
+    from deixis.ontology.lessons.types import Alternative, Match
+    from deixis.reasoning.grounding.answer import FactOutcome, Grounding, LeftOut, Pivotal
 
 MANY = 12
 """Names, and facts that matter, that are listed one by one."""

@@ -11,13 +11,15 @@ from deixis.ontology.export import fact_to_dict, graph_to_dict
 
 if TYPE_CHECKING:
     from deixis.grammar.script import Script
+    from deixis.ontology.lessons.types import Alternative
     from deixis.reasoning.entailment.derivation import Claim, Derivation
     from deixis.reasoning.entailment.why_not import WhyNot
-    from deixis.reasoning.grounding.answer import Alternative, FactOutcome, Grounding, Pivotal
+    from deixis.reasoning.grounding.answer import FactOutcome, Grounding, Pivotal
     from deixis.reasoning.grounding.questions.inquiry import Exchange
     from deixis.reasoning.grounding.viewpoint import Viewpoints
-    from deixis.session import Checked, Learned
+    from deixis.workflows.check import Checked
     from deixis.workflows.infer import Inference, Inferred
+    from deixis.workflows.learn import Learned
 
 
 def script_to_dict(script: Script) -> dict[str, Any]:

@@ -20,8 +20,9 @@ if TYPE_CHECKING:
     from deixis.ontology.graph import Fact
     from deixis.reasoning.comparison.checking import RoleCheck
     from deixis.reasoning.entailment.why_not import WhyNot
-    from deixis.session import Checked, Learned
+    from deixis.workflows.check import Checked
     from deixis.workflows.infer import Inference, Inferred
+    from deixis.workflows.learn import Learned
 
 
 def script_lines(script: Script) -> list[str]:

@@ -29,8 +29,8 @@ from deixis.reasoning.grounding.questions.candidates import Candidates, candidat
 from deixis.reasoning.grounding.questions.inquiry import ContradictionError, Exchange, Inquiry, Outcome, begin, update
 from deixis.reasoning.grounding.questions.selection import ABSENT, NO, YES, QuestionKind
 from deixis.reasoning.grounding.questions.situation import Situation, situation_of
-from deixis.session import read_script
 from deixis.workflows.dialogue import AnswerSource, closing_lines, run
+from deixis.workflows.read import read_script
 
 MARGINS = (6.0, 2.0)
 """How much less likely than the best (in nats) a grounding may be that is still asked about: 400 times.

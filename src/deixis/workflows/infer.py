@@ -1,4 +1,4 @@
-"""What a script implies, ready to be listed: the facts that follow with their lines, or the conflict."""
+"""What follows from a script."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import time
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
+from pathlib import Path
 
 from deixis.grammar.script import Script
 from deixis.ontology.graph import Fact
@@ -13,6 +14,7 @@ from deixis.reasoning.entailment.choices import OutOfTimeError
 from deixis.reasoning.entailment.conflict import Conflict, find_conflict
 from deixis.reasoning.entailment.derivation import Rule
 from deixis.reasoning.entailment.implications import TIME_LIMIT, Implications
+from deixis.workflows.read import as_script
 
 MANY_STEPS = 12
 """Stated facts of which an inferred one is listed with all its lines; ``--explain`` has the others."""
@@ -103,3 +105,14 @@ def ready_to_infer() -> None:
     why_not(inference.implications, parse_script("a left of c").facts[0])
     inference.implications.derive(relations["left"], "a", "b")
     inference_of(parse_script("a left of b\nb left of a\n"))
+
+
+def infer(script: Script | str | Path, time_limit: float = TIME_LIMIT) -> Inference:
+    """What follows from a script in the wide reading, and whether it contradicts itself.
+
+    The time limit is for facts that leave a choice; the others need no search.
+    """
+    script = as_script(script)
+    if not all(fact.plain for fact in script.facts):
+        ready_to_infer()
+    return inference_of(script, time_limit)

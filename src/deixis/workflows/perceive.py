@@ -1,4 +1,4 @@
-"""From a cloud file to a scene on disk: what ``deixis perceive`` does."""
+"""From a cloud to a scene with the points of each thing, in memory; and a scene written, clouds and all."""
 
 from __future__ import annotations
 
@@ -6,42 +6,21 @@ import contextlib
 import hashlib
 import os
 import re
-from collections.abc import Set
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
-
-import numpy as np
-from numpy.typing import NDArray
 
 from deixis.errors import DeixisError
 from deixis.memory.owner import rename
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.clouds.cloud_file import read_cloud, write_cloud
-from deixis.perception.detection.detect import Detection, detect
+from deixis.perception.detection.detect import detect
 from deixis.perception.detection.settings import DetectionSettings
-from deixis.perception.detection.viewpoint import moved
 from deixis.perception.errors import CloudError, SceneError
-from deixis.perception.formats.scene_json import write_scene
-from deixis.perception.scene import PerceivedObject, Scene
+from deixis.perception.formats.scene_json import scene_text
+from deixis.perception.scene import Scene
 
+_NUMBERED = re.compile(r"o\d+")
 _CLOUD = re.compile(r"o\d+(-[0-9a-f]{8}|\.new)\.pcd")
-
-
-@dataclass(frozen=True, eq=False)
-class Perceived:
-    """A cloud, what was detected in it, and the scene that this makes."""
-
-    cloud: PointCloud
-    detection: Detection
-    scene: Scene
-
-    def cloud_of(self, number: int) -> PointCloud:
-        """The points of one thing, counted from 0, in the table's frame, with where the sensor stood."""
-        return in_frame(self.cloud.take(self.detection.labels == number), self.detection.frame)
-
-    def write(self, file: str | Path) -> Scene:
-        """Writes the scene with its clouds, as :func:`write_perceived` does: what it gives can be taught from."""
-        return write_perceived(self, Path(file))
 
 
 def perceive(
@@ -49,85 +28,67 @@ def perceive(
     intrinsics: str | Path | None = None,
     viewpoint: str = "chair",
     settings: DetectionSettings | None = None,
-) -> Perceived:
-    """Finds the table and the things on it; ``settings`` tell which table, and what is known of the cloud's frame.
+) -> Scene:
+    """Find the table in a cloud and the things on it; ``settings`` tell which table, and what is known of the frame.
 
-    Raises CloudError for a file that is no cloud, or one without a point; SceneError for a viewpoint that is no word.
+    Each object of the scene has its points, so that it can be taught, learned and recognised at once;
+    :func:`write_scene` keeps it. ``scene.detection`` has the cloud, the thing of each of its points, and notes on what
+    was not as one would expect. Raises CloudError for a file that is no cloud, or one without a point; SceneError for a
+    viewpoint that is no word.
     """
     if not viewpoint.strip() or not viewpoint.isprintable():
         raise SceneError(f"a viewpoint is a word such as 'chair', not {viewpoint!r}")
-    seen = cloud if isinstance(cloud, PointCloud) else read_cloud(cloud, intrinsics)
+    if isinstance(cloud, PointCloud):
+        return detect(cloud, settings).scene(viewpoint)
+    seen = read_cloud(cloud, intrinsics)
     try:
-        found = detect(seen, settings)
+        return detect(seen, settings).scene(viewpoint, str(cloud))
     except CloudError as error:
-        raise error if isinstance(cloud, PointCloud) else CloudError(f"{cloud}: {error}") from error
-    return Perceived(seen, found, found.scene(viewpoint))
+        raise CloudError(f"{cloud}: {error}") from error
 
 
-def in_frame(cloud: PointCloud, frame: NDArray[np.float64]) -> PointCloud:
-    """The same points in another frame; ``frame`` (4, 4) takes the cloud's frame to it."""
-    origin = moved(np.array([cloud.origin]), frame)[0]
-    normals = None if cloud.normals is None else (cloud.normals @ frame[:3, :3].T).astype(np.float32)
-    points = moved(cloud.points, frame).astype(np.float32)
-    x, y, z = origin.tolist()
-    return PointCloud(points, cloud.colours, None, normals, origin=(x, y, z))
+def write_scene(scene: Scene, file: str | Path) -> Scene:
+    """Write a ``.scene.json``, and clouds that are in memory into a folder beside it; return the scene as written.
 
-
-def write_perceived(perceived: Perceived, file: Path) -> Scene:
-    """Writes the scene, and each thing's points into a folder beside it, which the scene names.
-
-    The clouds of a scene that is written over stay until the new scene is in its place, in one step, and then go: each
-    cloud bears a name of its content, so that at any moment there is a whole scene, the old one or the new. Raises
-    DeixisError where the place cannot be written.
+    A cloud in a file stays where it is, and is named as seen from the scene. The clouds of a scene that is written over
+    stay until the new scene is in its place, in one step, and then go: each cloud bears a name of its content, so that
+    at any moment there is a whole scene, the old one or the new. Raises DeixisError where the place cannot be written.
     """
-    folder = clouds_folder(file)
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        before = set(os.listdir(folder))
-    except OSError as error:
-        raise DeixisError(f"{file}: the scene cannot be written: {error.strerror}") from error
-    try:
-        things = []
-        for number, thing in enumerate(perceived.scene.objects):
-            cloud = _write_named(folder, thing.id, perceived.cloud_of(number))
-            things.append(replace(thing, cloud=os.fspath(cloud.relative_to(file.parent))))
-        scene = replace(perceived.scene, objects=tuple(things), file=str(file))
-        replace_scene(scene, file)
-    except BaseException:
-        _remove_others(folder, before)
-        raise
-    _remove_others(folder, {Path(thing.cloud or "").name for thing in things})
-    return scene
-
-
-def replace_scene(scene: Scene, file: Path) -> None:
-    """Writes a scene, in one step where one is there already. Raises DeixisError where that cannot be."""
+    file = Path(file)
+    if not file.name or file.is_dir():
+        raise DeixisError(f"{file}: this is a folder; name a file")
+    folder, base = clouds_folder(file), Path(scene.file).parent
+    perceived = scene.detection is not None or any(isinstance(thing.cloud, PointCloud) for thing in scene.objects)
+    before: set[str] = set()
     new = file.with_name(file.name + ".new")
     try:
-        write_scene(scene, new)
+        if perceived:
+            folder.mkdir(parents=True, exist_ok=True)
+            before = set(os.listdir(folder))
+        things = []
+        for number, thing in enumerate(scene.objects, start=1):
+            if isinstance(thing.cloud, PointCloud):
+                name = thing.id if _NUMBERED.fullmatch(thing.id) else f"o{number}"
+                cloud = _write_named(folder, name, thing.cloud)
+                thing = replace(thing, cloud=os.fspath(cloud.relative_to(file.parent)))
+            elif thing.cloud is not None and base != file.parent:
+                thing = replace(thing, cloud=os.path.relpath(base / thing.cloud, file.parent))
+            things.append(thing)
+        written = replace(scene, objects=tuple(things), file=str(file))
+        new.write_text(scene_text(written), encoding="utf-8")
         rename(new, file)
-    except OSError as error:
-        raise DeixisError(f"{file}: the scene cannot be written: {error.strerror}") from error
+    except BaseException as error:
+        if perceived:
+            _remove_others(folder, before)
+        if isinstance(error, OSError):
+            raise DeixisError(f"{file}: the scene cannot be written: {error.strerror}") from error
+        raise
     finally:
         with contextlib.suppress(OSError):
             new.unlink(missing_ok=True)
-
-
-def _write_named(folder: Path, id: str, cloud: PointCloud) -> Path:
-    """Writes a cloud under a name that says its content: ``o3-9f86d081.pcd``."""
-    new = folder / f"{id}.new.pcd"
-    write_cloud(new, cloud)
-    named = folder / f"{id}-{hashlib.sha256(new.read_bytes()).hexdigest()[:8]}.pcd"
-    rename(new, named)
-    return named
-
-
-def _remove_others(folder: Path, kept: Set[str]) -> None:
-    """Removes what other scenes, whole or not, left in the folder; what cannot be removed does no harm."""
-    for name in set(os.listdir(folder)) - kept:
-        if _CLOUD.fullmatch(name):
-            with contextlib.suppress(OSError):
-                (folder / name).unlink()
+    if perceived:
+        _remove_others(folder, {Path(str(thing.cloud)).name for thing in things})
+    return written
 
 
 def clouds_folder(scene: Path) -> Path:
@@ -135,14 +96,19 @@ def clouds_folder(scene: Path) -> Path:
     return scene.with_name(f"{scene.name.removesuffix('.json').removesuffix('.scene')}.clouds")
 
 
-def cloud_of(scene: Scene, thing: PerceivedObject) -> PointCloud:
-    """The points of a thing of a scene; raises SceneError where the scene names no cloud of it, or one that is none."""
-    if thing.cloud is None:
-        raise SceneError(
-            f"{scene.file}: the object '{thing.id}' has no cloud, so that what it looks like is not known; "
-            "deixis perceive -o writes scenes with clouds"
-        )
-    try:
-        return read_cloud(Path(scene.file).parent / thing.cloud)
-    except CloudError as error:
-        raise SceneError(f"{scene.file}: the cloud of '{thing.id}': {error}") from error
+def _write_named(folder: Path, name: str, cloud: PointCloud) -> Path:
+    """Writes a cloud under a name that says its content: ``o3-9f86d081.pcd``."""
+    new = folder / f"{name}.new.pcd"
+    write_cloud(new, cloud)
+    named = folder / f"{name}-{hashlib.sha256(new.read_bytes()).hexdigest()[:8]}.pcd"
+    rename(new, named)
+    return named
+
+
+def _remove_others(folder: Path, kept: set[str]) -> None:
+    """Removes what other scenes, whole or not, left in the folder; what cannot be removed does no harm."""
+    with contextlib.suppress(OSError):
+        for name in set(os.listdir(folder)) - kept:
+            if _CLOUD.fullmatch(name):
+                with contextlib.suppress(OSError):
+                    (folder / name).unlink()

@@ -7,19 +7,23 @@ import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 from deixis.errors import DeixisError
 from deixis.grammar.parser import read_script
 from deixis.grammar.script import Script
 from deixis.kernels import ready_to_ground
-from deixis.memory_session import MemorySession
 from deixis.ontology.tbox import default_ontology
 from deixis.perception.formats.scene_json import read_scene
 from deixis.perception.scene import Scene
 from deixis.reasoning.comparison.likeness import Comparison, Described, Likeness, Seen, seen
 from deixis.reasoning.comparison.retrieval import rank_layouts, rank_scenes
 from deixis.reasoning.grounding.evidence.labels import category_of
+from deixis.reasoning.grounding.evidence.meaning import Meaning
+
+if TYPE_CHECKING:
+    from deixis.learning.recollection import Recollection
+    from deixis.ontology.lessons.types import LayoutConcept
 
 SURE = 0.5
 """A label of less confidence does not tell a thing's kind."""
@@ -28,6 +32,14 @@ TIME_LIMIT = 60.0
 
 LeftOut = Callable[[str], None]
 Known = TypeVar("Known")
+
+
+class Knowledge(Protocol):
+    """What was learned, as a session, or its knowledge store, has it."""
+
+    def meaning(self) -> Meaning: ...
+    def layouts(self) -> tuple[LayoutConcept, ...]: ...
+    def recollection(self) -> Recollection: ...
 
 
 @dataclass(frozen=True)
@@ -53,7 +65,7 @@ class Retrieval:
 def retrieve(
     query: Script | Scene | str | Path | Mapping[str, Any],
     among: str | Path | None = None,
-    memory: MemorySession | None = None,
+    memory: Knowledge | None = None,
     *,
     top: int = 5,
     least: float = 0.5,
@@ -114,7 +126,7 @@ def _seen(name: str, scene: Scene) -> Seen:
     return seen(name, replace(scene.graph(ontology.relations), kinds=tuple(kinds)), metric=scene.unit == "m")
 
 
-def _known_layouts(memory: MemorySession | None, among: Path | None) -> dict[str, Described]:
+def _known_layouts(memory: Knowledge | None, among: Path | None) -> dict[str, Described]:
     """The scripts of a folder, and every layout in memory; of a name learned more than once, every lesson by its id."""
     paths = _files(among, "*.layout", "layout scripts") if among is not None else []
     known = {path.name: Described(path.name, read_script(str(path)).graph()) for path in paths}
@@ -127,7 +139,7 @@ def _known_layouts(memory: MemorySession | None, among: Path | None) -> dict[str
 
 
 def _known_scenes(
-    memory: MemorySession | None, among: Path | None, hide_labels: bool, left_out: LeftOut | None
+    memory: Knowledge | None, among: Path | None, hide_labels: bool, left_out: LeftOut | None
 ) -> dict[str, Seen]:
     """The scenes of a folder, and every scene in memory, told by the first lesson, by name, that showed it."""
     paths = _files(among, "*.scene.json", "scenes") if among is not None else []

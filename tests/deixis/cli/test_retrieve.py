@@ -13,8 +13,9 @@ import typer
 import deixis as package
 from deixis.cli.retrieve import retrieve
 from deixis.errors import DeixisError
-from deixis.perception.formats.scene_json import read_scene, write_scene
+from deixis.perception.formats.scene_json import read_scene
 from deixis.session import Session
+from deixis.workflows.perceive import write_scene
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 SETTING = EXAMPLES / "place_setting.scene.json"

@@ -19,8 +19,9 @@ from deixis.memory.owner import rename
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.clouds.cloud_file import read_cloud, write_cloud
 from deixis.perception.formats.scene_json import read_scene
+from deixis.perception.scene import Scene
 from deixis.session import Session, ground
-from deixis.workflows.perceive import Perceived, perceive
+from deixis.workflows.perceive import perceive, write_scene
 
 FULL = example("formal_dinner.layout")
 
@@ -281,33 +282,30 @@ def test_a_table_with_nothing_on_it_is_an_answer(tmp_path: Path) -> None:
 
 
 @pytest.fixture(scope="module")
-def seen(tables: Path) -> tuple[Perceived, Perceived]:
+def seen(tables: Path) -> tuple[Scene, Scene]:
     """The two tables again, not yet written."""
     return perceive(tables / "7.pcd"), perceive(tables / "20.pcd")
 
 
-def test_which_table_and_which_way_is_up_can_be_told(
-    tables: Path, seen: tuple[Perceived, Perceived], tmp_path: Path
-) -> None:
+def test_which_table_and_which_way_is_up_can_be_told(tables: Path, seen: tuple[Scene, Scene], tmp_path: Path) -> None:
     scene, before = tables / "7.scene.json", (tables / "7.scene.json").read_bytes()
     code, out, _ = deixis("perceive", tables / "7.pcd", "--table", "2", "-o", scene)
     assert code == 1 and out.startswith("Nothing was found.\nNote: there is no table 2")
     assert "Written" not in out and scene.read_bytes() == before
-    found = seen[0]
+    found = seen[0].detection
+    assert found is not None
     turn = np.array([[0, 1, 0], [-1, 0, 0], [0, 0, 1]], np.float32)  # a quarter turn of the camera
     np.savez(tmp_path / "aside.npz", points=found.cloud.points.reshape(480, 640, 3)[::-1].swapaxes(0, 1) @ turn)
-    up = [f"{number:.3f}" for number in found.detection.frame[2, :3] @ turn]
+    up = [f"{number:.3f}" for number in found.frame[2, :3] @ turn]
     code, out, _ = deixis("perceive", tmp_path / "aside.npz", "--up", *up)
-    assert code == 0 and len(json.loads(out)["objects"]) == len(found.scene.objects) == 12
+    assert code == 0 and len(json.loads(out)["objects"]) == len(seen[0].objects) == 12
 
 
 @pytest.mark.parametrize("step", range(6))
-def test_a_scene_is_written_over_in_one_step(seen: tuple[Perceived, Perceived], tmp_path: Path, step: int) -> None:
+def test_a_scene_is_written_over_in_one_step(seen: tuple[Scene, Scene], tmp_path: Path, step: int) -> None:
     """Ended by force after any step, the old scene is whole with its clouds, or the new one is."""
-    from deixis.workflows import perceive as perceiving
-
     (first, other), file = seen, tmp_path / "table.scene.json"
-    perceiving.write_perceived(first, file)
+    write_scene(first, file)
     old = [(thing, read_cloud(tmp_path / str(thing.cloud)).points.tobytes()) for thing in read_scene(file).objects]
     left = [3 * step]
 
@@ -318,14 +316,16 @@ def test_a_scene_is_written_over_in_one_step(seen: tuple[Perceived, Perceived], 
         rename(old, new)
 
     with pytest.MonkeyPatch.context() as patched:
-        patched.setattr(perceiving, "rename", stopping)
-        patched.setattr(perceiving, "_remove_others", lambda *_: None)  # as nothing is cleaned up when killed
+        patched.setattr("deixis.workflows.perceive.rename", stopping)
+        patched.setattr(
+            "deixis.workflows.perceive._remove_others", lambda *_: None
+        )  # as nothing is cleaned up when killed
         with contextlib.suppress(KeyboardInterrupt):
-            perceiving.write_perceived(other, file)
+            write_scene(other, file)
     found = read_scene(file).objects
     now = [(thing, read_cloud(tmp_path / str(thing.cloud)).points.tobytes()) for thing in found]
     assert (now == old) == (step < 5)
-    perceiving.write_perceived(other, file)
+    write_scene(other, file)
     named = {str(thing.cloud) for thing in read_scene(file).objects}
     assert {f"table.clouds/{cloud.name}" for cloud in (tmp_path / "table.clouds").iterdir()} == named
 
@@ -404,13 +404,13 @@ def test_what_is_no_memory_is_told_by_every_command(tables: Path, tmp_path: Path
 
 def test_views_are_taken_back_where_the_lesson_cannot_be_kept(tables: Path, tmp_path: Path) -> None:
     from deixis.errors import DeixisError
-    from deixis.perceptual_session import views_of_matches
+    from deixis.view_store import views_of_matches
 
     scene = read_scene(tables / "7.scene.json")
     views = views_of_matches(scene, ground(FULL, scene).matches.values())
 
     def keep_and_fail(session: Session) -> None:
-        with session.keeping_views(views) as taught:
+        with session.view_store.keeping(views) as taught:
             assert len(taught) == len(views) > 3
             raise DeixisError("the lesson is refused")
 
@@ -420,7 +420,7 @@ def test_views_are_taken_back_where_the_lesson_cannot_be_kept(tables: Path, tmp_
             keep_and_fail(session)
         assert session.categories() == {"thing": 1}
         assert session.views().verify() == ()
-        with session.keeping_views(views):
+        with session.view_store.keeping(views):
             pass
         assert sum(session.categories().values()) == len(views)
 

@@ -17,7 +17,8 @@ from deixis.perception.formats.scene_json import read_scene
 from deixis.perception.scene import Scene
 from deixis.reasoning.errors import NothingFoundError
 from deixis.reasoning.grounding.evidence.meaning import SHIPPED
-from deixis.session import Session, read_script
+from deixis.session import Session
+from deixis.workflows.read import read_script
 
 FULL, LABELLED = (example(name) for name in ("formal_dinner.layout", "place_setting.labelled.scene.json"))
 PLATE = "https://w3id.org/deixis/onto#DinnerPlate"

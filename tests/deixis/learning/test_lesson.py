@@ -14,14 +14,15 @@ from deixis.examples_data import example
 from deixis.experiments.place_settings import formal_setting
 from deixis.grammar.format import layout_script
 from deixis.learning.lesson import layout_concept, layout_name
+from deixis.memory.on_demand import default_memory
 from deixis.memory.semantic.exchange import export_memory
 from deixis.memory.semantic.rdf.graphs import GraphName
-from deixis.memory_session import default_memory
 from deixis.ontology.triples import with_blank_nodes
 from deixis.perception.formats.scene_json import read_scene
 from deixis.reasoning.description_logic.reasoners import classify
 from deixis.reasoning.errors import InconsistencyError
-from deixis.session import Session, read_script
+from deixis.session import Session
+from deixis.workflows.read import read_script
 
 FULL, SCRIPT1, SCENE = (example(n) for n in ("formal_dinner.layout", "script1.layout", "place_setting.scene.json"))
 LEARNED = "https://w3id.org/deixis/learned/"

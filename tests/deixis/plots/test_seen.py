@@ -14,17 +14,18 @@ from deixis.grammar.parser import parse_script
 from deixis.learning.views import Recognised
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.clouds.cloud_file import write_cloud
+from deixis.perception.detection.viewpoint import in_frame
 from deixis.perception.recognition.calibration import Calibration
 from deixis.perception.recognition.recogniser import Recognition
 from deixis.perception.scene import PerceivedObject, Scene
 from deixis.plots import seen as plot_seen
 from deixis.plots.camera import camera_of
 from deixis.workflows.lay_table import lay_script
-from deixis.workflows.perceive import Perceived, in_frame, perceive
+from deixis.workflows.perceive import perceive
 from deixis.workflows.simulate import simulate
 
 
-def table_before_a_wall() -> Perceived:
+def table_before_a_wall() -> Scene:
     """A simulated plate on a table, and behind the points of these those of a wall."""
     cloud = simulate(lay_script(parse_script("plate on table"), seed=1), seed=1).cloud
     cloud = cloud.take(cloud.finite)
@@ -33,10 +34,16 @@ def table_before_a_wall() -> Perceived:
     return perceive(PointCloud(np.concatenate([cloud.points, wall]).astype(np.float32)))
 
 
+def drawn_window(found: Scene) -> plot_seen.Window:
+    """What is drawn of the points of a scene that was perceived."""
+    assert found.detection is not None
+    return plot_seen.window_of(in_frame(found.detection.cloud, found.detection.frame).points, found, found.detection)
+
+
 def test_the_things_are_drawn_with_little_around_them() -> None:
     found = table_before_a_wall()
-    low, high = plot_seen.window_of(in_frame(found.cloud, found.detection.frame).points, found)
-    (box,) = found.scene.boxes[:, :, :2]
+    low, high = drawn_window(found)
+    (box,) = found.boxes[:, :, :2]
     assert (low < box[0]).all() and (high > box[1]).all()
     assert (high - low < 1.3 * (box[1] - box[0]).max()).all()
 
@@ -45,19 +52,19 @@ def test_the_whole_table_is_drawn_where_nothing_is_on_it() -> None:
     x, y = (axis.ravel() for axis in np.mgrid[-0.5:0.5:0.01, 0.5:1.5:0.01])
     table = PointCloud(np.stack([x, y, np.full(x.shape, -0.7)], axis=1).astype(np.float32))
     found = perceive(table)
-    low, high = plot_seen.window_of(in_frame(table, found.detection.frame).points, found)
-    assert found.detection.table is not None and not found.scene.objects
+    low, high = drawn_window(found)
+    assert found.detection is not None and found.detection.table is not None and not found.objects
     assert (high - low).tolist() == pytest.approx([1.18, 1.18], abs=0.02)
 
 
 def test_all_points_are_drawn_where_there_is_no_table() -> None:
     found = perceive(PointCloud(np.array([[0.0, 0.0, 1.0], [9.0, 9.0, 9.0]], np.float32)))
-    assert found.detection.table is None
-    low, high = plot_seen.window_of(found.cloud.points, found)
+    assert found.detection is not None and found.detection.table is None
+    low, high = plot_seen.window_of(found.detection.cloud.points, found, found.detection)
     assert (low < 0).all() and (high > 9).all()
 
 
-def texts(found: Perceived, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> list[list[str]]:
+def texts(found: Scene, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> list[list[str]]:
     """What is written in each panel of the picture of what was perceived."""
     drawn: list[Figure] = []
     monkeypatch.setattr(plot_seen, "save", lambda figure, _: drawn.append(figure))

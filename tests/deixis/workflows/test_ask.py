@@ -28,9 +28,9 @@ from deixis.reasoning.grounding.questions.inquiry import begin
 from deixis.reasoning.grounding.questions.selection import questions
 from deixis.reasoning.grounding.questions.situation import situation_of
 from deixis.reasoning.grounding.viewpoint import Viewpoint, Viewpoints, turned
-from deixis.session import read_script
 from deixis.workflows.ask import _narrowed
 from deixis.workflows.dialogue import Oracle
+from deixis.workflows.read import read_script
 from deixis.workflows.viewpoint import SeenFrom
 
 SCENE = example("place_setting.scene.json")

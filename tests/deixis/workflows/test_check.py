@@ -18,7 +18,9 @@ from deixis.perception.scene import PerceivedObject, Scene
 from deixis.reasoning.comparison.checking import Verdict
 from deixis.report.json_answers import check_to_dict
 from deixis.report.script import check_lines
-from deixis.session import Checked, Session, read_script
+from deixis.session import Session
+from deixis.workflows.check import Checked
+from deixis.workflows.read import read_script
 
 SH = rdflib.Namespace("http://www.w3.org/ns/shacl#")
 FULL = read_script(example("formal_dinner.layout"))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from datetime import UTC, datetime
 
@@ -13,19 +14,12 @@ from hypothesis import strategies as st
 from deixis.errors import UnknownTermError
 from deixis.ontology.graph import Fact, Source
 from deixis.ontology.lessons.read import layout_named, layouts, lesson_records
-from deixis.ontology.lessons.types import (
-    LayoutConcept,
-    Lesson,
-    MatchRecord,
-    Role,
-    SceneRecord,
-    SeenObject,
-    next_lesson_id,
-)
+from deixis.ontology.lessons.types import Alternative, LayoutConcept, Lesson, Match, Role, next_lesson_id
 from deixis.ontology.lessons.write import asserted_triples, episode_triples, learned_triples
 from deixis.ontology.tbox import default_ontology
 from deixis.ontology.triples import GENID, LEARNED, decimal, last_part, learned_iri, typed, with_blank_nodes, with_names
 from deixis.ontology.vocabulary import DX
+from deixis.perception.scene import PerceivedObject, Scene
 
 RELATIONS = default_ontology().relations
 RED = "https://w3id.org/deixis/onto#red"
@@ -42,12 +36,13 @@ def lesson(names: list[str], id: str = "dinner-1", decided: bool = True) -> Less
         Fact(names[1], (RELATIONS["right"], RELATIONS["top_right"]), names[0], weight=0.8),
         Fact(names[0], (RELATIONS["exactly_on"],), names[1], positive=False, optional=True),
     ]
-    seen = tuple(SeenObject(f"o{i}", (0.0, float(i)), (1.0, i + 0.5), name, 0.5) for i, name in enumerate(names))
+    seen = tuple(PerceivedObject(f"o{i}", (0.0, float(i)), (1.0, i + 0.5), name, 0.5) for i, name in enumerate(names))
     return Lesson(
         layout=LayoutConcept(id, "dinner", 'Say "dinner"', "chair", roles, tuple(facts), (tuple(sorted(names[:2])),)),
-        scene=SceneRecord("table", "chair", "m", seen, (("o0", RELATIONS["exactly_bottom"], "o1"),)),
+        scene=Scene(seen),
+        relations=(("o0", RELATIONS["exactly_bottom"], "o1"),),
         matches=tuple(
-            MatchRecord(name, f"o{i}" if decided else None, decided, 1.0, () if decided else ("o0", "o1"))
+            Match(name, f"o{i}" if decided else "o1", 1.0, math.nan, decided, () if decided else (Alternative("o0"),))
             for i, name in enumerate(names)
         ),
         engine="exact",
@@ -75,22 +70,31 @@ def test_a_record_read_back_holds_the_texts_and_how_sure_every_match_is(
     names: list[str], decided: bool, probability: float
 ) -> None:
     plain = lesson(names, "dinner 1/x", decided)
-    likeliest = None if decided else "o1"
-    matches = tuple(replace(match, probability=probability, likeliest=likeliest) for match in plain.matches)
+    matches = tuple(replace(match, probability=probability) for match in plain.matches)
     taught = replace(plain, matches=matches)
     (record,) = lesson_records(learned_triples(taught, RELATIONS), episode_triples(taught))
     assert (record.id, record.script_file, record.words_only) == ("dinner 1/x", "a.layout", False)
     assert (record.script_text, record.scene_text) == (taught.script_text, taught.scene_text)
-    assert sorted(record.matches, key=str) == sorted(matches, key=str)
+    assert sorted(map(str, record.matches)) == sorted(map(str, matches))
     taken = {f"o{i}" for i in range(len(names))} if decided else {"o1"}
-    assert {match.taken for match in record.matches} == taken
+    assert {match.perceived for match in record.matches} == taken
+    assert {match.could_be for match in record.matches} == ({()} if decided else {("o1", "o0")})
 
 
 def test_a_match_without_a_probability_is_sure_where_it_is_decided_and_else_shares() -> None:
-    assert MatchRecord("fork", "o1", True, 1.0).sureness == 1
-    assert MatchRecord("fork", None, False, 1.0, ("o1",), likeliest="o1").sureness == 0
-    assert MatchRecord("fork", None, False, 1.0, ("o1", "o2"), likeliest="o2").sureness == 0.5
-    assert MatchRecord("fork", None, False, 1.0, ("o1", "o2"), 0.3, "o2").sureness == 0.3
+    other = (Alternative("o1"), Alternative(None))
+    assert Match("fork", "o1", 1.0, math.nan, True, ()).sureness == 1
+    assert Match("fork", "o1", 1.0, math.nan, False, ()).sureness == 0
+    assert Match("fork", "o2", 1.0, math.nan, False, other).sureness == 0.5
+    assert Match("fork", "o2", 1.0, math.nan, False, other, 0.3).sureness == 0.3
+
+
+def test_a_match_of_which_the_likeliest_was_not_kept_is_none() -> None:
+    """Lessons of the first versions kept for what is not decided only what it could be."""
+    taught = lesson(["fork", "plate"], decided=False)
+    learned = [t for t in learned_triples(taught, RELATIONS) if t.predicate.value != DX.LIKELIEST]
+    (record,) = lesson_records(learned, episode_triples(taught))
+    assert record.matches == ()
 
 
 def test_a_lesson_without_its_texts_is_no_record() -> None:

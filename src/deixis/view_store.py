@@ -1,29 +1,29 @@
-"""A memory of what things look like, beside what is known of them: teaching, recognising, asking for a word."""
+"""What a session has seen: the perceptual memory, opened when it is needed, and what is recognised by it."""
 
 from __future__ import annotations
 
 import hashlib
 import os
 import unicodedata
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 from deixis.grammar.names import key_of
-from deixis.memory_session import MemorySession
+from deixis.memory.on_demand import OnDemand
+from deixis.memory.owner import Closing
 from deixis.ontology.kinds import plain_name
 from deixis.perception.errors import SceneError
-from deixis.perception.formats.scene_json import read_scene
-from deixis.perception.scene import PerceivedObject, Scene
+from deixis.perception.scene import Scene
 
 if TYPE_CHECKING:
-    from deixis.learning.views import Recognised, StandingWord, Taught
+    from deixis.learning.views import Known, StandingWord, Taught
     from deixis.memory.perceptual.level import LevelMemory
     from deixis.memory.perceptual.protocol import Progress
     from deixis.memory.perceptual.records import View
-    from deixis.reasoning.grounding.answer import Match
+    from deixis.ontology.lessons.types import Match
 
 Done = TypeVar("Done")
 
@@ -31,65 +31,51 @@ UNKNOWN = "unknown"
 """What is said of a thing that is of no category."""
 
 
-class PerceptualSession(MemorySession):
-    """What a session does with clouds; its perceptual memory is opened by the first call that needs it."""
+class ViewStore(Closing):
+    """Categories and their views, as they were taught; the memory is held from the first call that needs it."""
 
-    _views: LevelMemory | None = None
+    def __init__(self, path: Path) -> None:
+        self._memory = OnDemand(path, _open)
 
-    def _let_go(self) -> None:
-        """Closes both memories."""
-        if self._views is not None:
-            self._views.close()
-            self._views = None
-        super()._let_go()
+    @property
+    def path(self) -> Path:
+        """The folder of the memory."""
+        return self._memory.path
 
-    def has_views(self) -> bool:
+    def close(self) -> None:
+        """Lets go of the memory; what would need it afterwards raises MemoryFormatError."""
+        self._memory.close()
+
+    def exists(self) -> bool:
         """Whether anything was ever taught."""
         from deixis.memory.perceptual.in_folder import has_views
 
-        return self._views is not None or has_views(self.path)
+        return self._memory.is_open or has_views(self.path)
 
-    def views(self, create: bool = False) -> LevelMemory:
+    def memory(self, create: bool = False) -> LevelMemory:
         """The open perceptual memory; raises DeixisError where there is none and ``create`` is not set."""
-        from deixis.memory.perceptual.in_folder import open_in
-
-        self._require_open()
-        if self._views is None:
-            self._views = open_in(self.path, create)
-        return self._views
-
-    def teach(
-        self, scene: Scene | str | Path | Mapping[str, Any], object: str, category: str, teacher: str = "user"
-    ) -> Taught:
-        """Keeps what a thing of a scene looks like as a view of a category, which comes into being if it is new.
-
-        A word that differs from a known category only in case means that one. Taught again under another word, the
-        view is corrected. Raises SceneError where the scene has no such thing, or no cloud of it; SettingError for a
-        name that is none.
-        """
-        scene = scene if isinstance(scene, Scene) else read_scene(scene)
-        return self.keep_views([_view(scene, object, self.category_meant(new_category_name(category)), teacher)])[0]
+        return self._memory.get(create)
 
     def category_meant(self, name: str) -> str:
         """The known category of that name, else the first that differs from it only in case, else the name itself."""
-        if not self.has_views():
+        if not self.exists():
             return name
-        known = self._despite_damage(self.views(), lambda memory: memory.categories())
+        known = self._despite_damage(self.memory(), lambda memory: memory.categories())
         alike = [category for category in known if key_of(category) == key_of(name)]
         return name if name in alike or not alike else alike[0]
 
-    def keep_views(self, views: Sequence[View]) -> tuple[Taught, ...]:
+    def keep(self, views: Sequence[View]) -> tuple[Taught, ...]:
         """Keeps views, all or none. A damaged one in the way teaches nothing, and is mended where it is kept again."""
         from deixis.learning.views import keep_views
 
-        memory = self.views(create=True)
+        memory = self.memory(create=True)
         return self._despite_damage(memory, lambda readable: keep_views(readable, views))
 
     def but_for_taught(self, views: Sequence[View]) -> tuple[list[View], tuple[StandingWord, ...]]:
         """The views of a grounding that no teacher has named, and what is named otherwise."""
         from deixis.learning.views import StandingWord, taught_by_hand
 
-        named = taught_by_hand(self.views(), views) if self.has_views() else {}
+        named = taught_by_hand(self.memory(), views) if self.exists() else {}
         standing = []
         for view in views:
             taught = named.get(view.id)
@@ -99,7 +85,7 @@ class PerceptualSession(MemorySession):
         return [view for view in views if view.id not in named], tuple(standing)
 
     @contextmanager
-    def keeping_views(self, views: Sequence[View]) -> Iterator[tuple[Taught, ...]]:
+    def keeping(self, views: Sequence[View]) -> Iterator[tuple[Taught, ...]]:
         """Keeps views for what is done within, and takes them back where that fails.
 
         Ended by force in between, it leaves the views: what they are called is what the grounding decided, and kept
@@ -110,33 +96,23 @@ class PerceptualSession(MemorySession):
         if not views:
             yield ()
             return
-        with restored_on_failure(self.views(create=True), views):
-            yield self.keep_views(views)
+        with restored_on_failure(self.memory(create=True), views):
+            yield self.keep(views)
 
-    def recognise(
-        self,
-        scene: Scene | str | Path | Mapping[str, Any],
-        progress: Progress | None = None,
-        left_out: Callable[[str], None] | None = None,
-    ) -> Recognised:
-        """Names what is known among the things of a scene; without a memory nothing is.
+    def known(
+        self, frame: str, progress: Progress | None = None, left_out: Callable[[str], None] | None = None
+    ) -> Known:
+        """Return what recognises the categories in a frame; one that knows nothing where nothing was taught.
 
         ``progress`` is told of reading what was taught, and of the calibration, which take seconds after many views;
         ``left_out``, in one line, of views that are damaged and teach nothing.
         """
-        from deixis.learning.views import UPRIGHT, Known, recognise, recogniser_of
+        from deixis.learning.views import UPRIGHT, Known, recogniser_of
         from deixis.perception.recognition.recogniser import Recogniser
-        from deixis.workflows.perceive import cloud_of
 
-        scene = scene if isinstance(scene, Scene) else read_scene(scene)
-        clouds = [cloud_of(scene, thing) if thing.cloud is not None else None for thing in scene.objects]
-        if self.has_views():
-            known = self._despite_damage(
-                self.views(), lambda memory: recogniser_of(memory, scene.frame, progress), left_out
-            )
-        else:
-            known = Known(Recogniser.of([]), UPRIGHT)
-        return recognise(known, scene, clouds)
+        if not self.exists():
+            return Known(Recogniser.of([]), UPRIGHT)
+        return self._despite_damage(self.memory(), lambda memory: recogniser_of(memory, frame, progress), left_out)
 
     def _despite_damage(
         self, memory: LevelMemory, work: Callable[[LevelMemory], Done], left_out: Callable[[str], None] | None = None
@@ -156,10 +132,16 @@ class PerceptualSession(MemorySession):
             return done
 
     def categories(self, left_out: Callable[[str], None] | None = None) -> dict[str, int]:
-        """The names of what was taught, each with its number of views; ``left_out`` as in :meth:`recognise`."""
-        if not self.has_views():
+        """The names of what was taught, each with its number of views; ``left_out`` as in :meth:`known`."""
+        if not self.exists():
             return {}
-        return self._despite_damage(self.views(), _counted, left_out)
+        return self._despite_damage(self.memory(), _counted, left_out)
+
+
+def _open(path: Path, create: bool) -> LevelMemory:
+    from deixis.memory.perceptual.in_folder import open_in
+
+    return open_in(path, create)
 
 
 def _counted(memory: LevelMemory) -> dict[str, int]:
@@ -174,7 +156,7 @@ def views_of_matches(scene: Scene, matches: Iterable[Match]) -> list[View]:
     from deixis.learning.views import GROUNDING
 
     seen = [match for match in matches if match.decided and scene[match.perceived].cloud is not None]
-    views = [_view(scene, match.perceived, plain_name(match.object), GROUNDING) for match in seen]
+    views = [view_of_thing(scene, match.perceived, plain_name(match.object), GROUNDING) for match in seen]
     first: dict[str, str] = {}
     for match, view in zip(seen, views, strict=True):
         if first.setdefault(view.id, match.perceived) != match.perceived:
@@ -185,13 +167,14 @@ def views_of_matches(scene: Scene, matches: Iterable[Match]) -> list[View]:
     return views
 
 
-def _view(scene: Scene, object: str, category: str, teacher: str) -> View:
+def view_of_thing(scene: Scene, object: str, category: str, teacher: str) -> View:
+    """Return a view of a thing of a scene, ready to be kept; raises SceneError where the scene has no points of it."""
     from deixis.learning.views import view_of
-    from deixis.workflows.perceive import cloud_of
 
-    file, boxes = os.path.abspath(scene.file), hashlib.sha256(scene.boxes.tobytes()).hexdigest()[:16]
+    file = scene.file if scene.file.startswith("<") else os.path.abspath(scene.file)
+    boxes = hashlib.sha256(scene.boxes.tobytes()).hexdigest()[:16]
     metadata = {"scene": file, "boxes": boxes, "object": object, "teacher": teacher}
-    return view_of(cloud_of(scene, _thing(scene, object)), scene.frame, category, datetime.now(UTC), metadata)
+    return view_of(scene.cloud_of(object), scene.frame, category, datetime.now(UTC), metadata)
 
 
 def category_name(text: str) -> str:
@@ -217,9 +200,3 @@ def new_category_name(text: str) -> str:
     if name.lower() == UNKNOWN:
         raise SettingError(f"'{name}' is said of what is of no known category; choose another word")
     return name
-
-
-def _thing(scene: Scene, object: str) -> PerceivedObject:
-    if object not in scene.ids:
-        raise SceneError(f"{scene.file}: there is no object '{object}'; there are: {', '.join(scene.ids) or 'none'}")
-    return scene[object]

@@ -1,14 +1,14 @@
-"""A memory that is opened when it is needed: what is done with it alone, without a table to look at."""
+"""What a session knows: the semantic memory, opened when it is needed, and what follows from it for the next table."""
 
 from __future__ import annotations
 
-import os
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Self
+from typing import TYPE_CHECKING
 
 from deixis.grammar.script import Script
+from deixis.memory.on_demand import OnDemand
 from deixis.memory.owner import Closing
 from deixis.ontology.tbox import Ontology, default_ontology
 from deixis.perception.scene import Scene
@@ -20,64 +20,41 @@ if TYPE_CHECKING:
     from deixis.learning.words import LearnedWords
     from deixis.memory.semantic.queries.results import QueryResult
     from deixis.memory.semantic.store import SemanticMemory
-    from deixis.ontology.lessons.types import LayoutConcept
+    from deixis.ontology.lessons.types import LayoutConcept, Lesson
+    from deixis.reasoning.description_logic.object_view import ObjectView
 
 
-def default_memory() -> Path:
-    """``$DEIXIS_MEMORY``, else a folder for the user's data."""
-    named = os.environ.get("DEIXIS_MEMORY")
-    if named:
-        return Path(named)
-    data = os.environ.get("XDG_DATA_HOME")
-    return (Path(data) if data else Path.home() / ".local" / "share") / "deixis" / "memory"
+class KnowledgeStore(Closing):
+    """Layouts, lessons, words and sizes as they were learned; the memory is held from the first call that needs it."""
 
-
-class MemorySession(Closing):
-    """A memory held by this process from the first call that needs it until the session is closed, and never after."""
-
-    def __init__(self, memory: str | Path | None = None, ontology: Ontology | None = None) -> None:
-        self.path = default_memory() if memory is None else Path(memory)
+    def __init__(self, path: Path, ontology: Ontology | None = None) -> None:
         self.ontology = default_ontology() if ontology is None else ontology
-        self._memory: SemanticMemory | None = None
+        self._memory = OnDemand(path, _open)
         self._meaning: Meaning | None = None  # what is in force, since the last change
-        self._closed = False
 
-    def __enter__(self) -> Self:
-        self._require_open()
-        return super().__enter__()
+    @property
+    def path(self) -> Path:
+        """The folder of the memory."""
+        return self._memory.path
 
     def close(self) -> None:
         """Lets go of the memory; what would need it afterwards raises MemoryFormatError."""
-        self._closed = True
-        self._let_go()
-
-    def _let_go(self) -> None:
-        """Closes what is open, until it is needed again."""
         self._meaning = None
-        if self._memory is not None:
-            self._memory.close()
-            self._memory = None
+        self._memory.close()
 
-    def remembers(self) -> bool:
+    def require_usable(self) -> None:
+        """Raises MemoryFormatError where this was closed."""
+        self._memory.require_usable()
+
+    def exists(self) -> bool:
         """Whether there is a memory at the path; raises MemoryFormatError where something else or a damaged one is."""
         from deixis.memory.folder import State, inspect
 
-        return self._memory is not None or inspect(self.path) not in (State.ABSENT, State.EMPTY)
+        return self._memory.is_open or inspect(self.path) not in (State.ABSENT, State.EMPTY)
 
     def memory(self, create: bool = False) -> SemanticMemory:
         """The open memory; raises DeixisError where there is none and ``create`` is not set."""
-        from deixis.memory.semantic.store import SemanticMemory
-
-        self._require_open()
-        if self._memory is None:
-            self._memory = SemanticMemory.open(self.path, create=create)
-        return self._memory
-
-    def _require_open(self) -> None:
-        from deixis.memory.errors import MemoryFormatError
-
-        if self._closed:
-            raise MemoryFormatError(f"{self.path}: this session is closed, and holds no memory; open another")
+        return self._memory.get(create)
 
     def meaning(self) -> Meaning:
         """The words and sizes in force: what is shipped, but for what was learned; where there is no memory, all of it.
@@ -86,7 +63,7 @@ class MemorySession(Closing):
         has the memory.
         """
         if self._meaning is None:
-            self._meaning = self._in_force() if self.remembers() else SHIPPED
+            self._meaning = self._in_force() if self.exists() else SHIPPED
         return self._meaning
 
     def _in_force(self) -> Meaning:
@@ -104,7 +81,14 @@ class MemorySession(Closing):
         from deixis.learning.recollection import Recollection
         from deixis.learning.update import remembered
 
-        return remembered(self.memory(), self.ontology) if self.remembers() else Recollection(())
+        return remembered(self.memory(), self.ontology) if self.exists() else Recollection(())
+
+    def keep(self, lesson: Lesson) -> None:
+        """Writes a lesson, and what follows; raises DeixisError, having changed nothing, where it is refused."""
+        from deixis.learning.update import keep
+
+        keep(self.memory(create=True), self.ontology, lesson)
+        self._meaning = None
 
     def learn_relations(self, examples: Sequence[tuple[Script, Scene]] = (), strength: float = 3.0) -> LearnedWords:
         """Fits what relation words mean to everything remembered, and to examples: scripts, each with a labelled scene.
@@ -116,9 +100,9 @@ class MemorySession(Closing):
         from deixis.learning.update import keep_words
         from deixis.learning.words import new_lessons
 
-        ids = self.memory().lessons() if self.remembers() else ()
+        ids = self.memory().lessons() if self.exists() else ()
         lessons, left_out = new_lessons(examples, self.recollection(), ids)
-        if not lessons and not self.remembers():
+        if not lessons and not self.exists():
             none = f"nothing is remembered at {self.path}, and no example teaches anything"
             raise NothingFoundError("; ".join((f"nothing to learn: {none}", *left_out)))
         learned = keep_words(self.memory(create=True), self.ontology, lessons, strength)
@@ -149,8 +133,9 @@ class MemorySession(Closing):
         """
         from deixis.learning.update import take_in
 
-        self._require_open()
-        self._let_go()
+        self._memory.require_usable()
+        self._memory.release()
+        self._meaning = None
         take_in(file, self.path, self.ontology)
 
     def layouts(self) -> tuple[LayoutConcept, ...]:
@@ -175,3 +160,31 @@ class MemorySession(Closing):
     def query(self, sparql: str) -> QueryResult:
         """Asks SPARQL of everything remembered: SELECT, ASK, CONSTRUCT or DESCRIBE; nothing else is let in."""
         return self.memory().query(sparql)
+
+    def owl(self) -> ObjectView:
+        """The ontology with everything learned as owlready2's objects: see :class:`ObjectView`.
+
+        It has what is stated and what follows as they are now, and knows of no later change. Where there is no memory,
+        it has the ontology alone.
+        """
+        import pyoxigraph as ox
+
+        from deixis.memory.semantic.exchange import TURTLE_GRAPHS
+        from deixis.memory.semantic.rdf.graphs import GraphName
+        from deixis.memory.semantic.rdf.package import packaged
+        from deixis.ontology.triples import with_blank_nodes
+        from deixis.ontology.vocabulary import BASE
+        from deixis.reasoning.description_logic.object_view import ObjectView
+
+        if self.exists():
+            triples = {triple for name in TURTLE_GRAPHS for triple in self.memory().triples(name)}
+        else:
+            triples = set(packaged()[GraphName.ONTOLOGY])
+        text = ox.serialize(with_blank_nodes(triples), format=ox.RdfFormat.N_TRIPLES) or b""
+        return ObjectView.of(text.decode("utf-8"), BASE)
+
+
+def _open(path: Path, create: bool) -> SemanticMemory:
+    from deixis.memory.semantic.store import SemanticMemory
+
+    return SemanticMemory.open(path, create=create)

@@ -1,0 +1,66 @@
+"""A memory that is opened by the first call that needs it, and held until its holder is closed."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from pathlib import Path
+from typing import Generic, Protocol, TypeVar
+
+from deixis.memory.errors import MemoryFormatError
+
+
+class Closable(Protocol):
+    """What is held: a memory that can be let go of."""
+
+    def close(self) -> None: ...
+
+
+Held = TypeVar("Held", bound=Closable)
+
+
+class OnDemand(Generic[Held]):
+    """A memory at a place, opened by ``open_at(path, create)`` when it is first asked for."""
+
+    def __init__(self, path: Path, open_at: Callable[[Path, bool], Held]) -> None:
+        self.path = path
+        self._open_at = open_at
+        self._held: Held | None = None
+        self._closed = False
+
+    @property
+    def is_open(self) -> bool:
+        """Whether the memory is held now."""
+        return self._held is not None
+
+    def get(self, create: bool = False) -> Held:
+        """Return the open memory; raises DeixisError where there is none and ``create`` is not set."""
+        self.require_usable()
+        if self._held is None:
+            self._held = self._open_at(self.path, create)
+        return self._held
+
+    def release(self) -> None:
+        """Close the memory, if it is open, until it is asked for again."""
+        if self._held is not None:
+            held, self._held = self._held, None
+            held.close()
+
+    def close(self) -> None:
+        """Close the memory for good: what would need it afterwards raises MemoryFormatError."""
+        self._closed = True
+        self.release()
+
+    def require_usable(self) -> None:
+        """Raises MemoryFormatError where this was closed."""
+        if self._closed:
+            raise MemoryFormatError(f"{self.path}: this session is closed, and holds no memory; open another")
+
+
+def default_memory() -> Path:
+    """``$DEIXIS_MEMORY``, else a folder for the user's data."""
+    named = os.environ.get("DEIXIS_MEMORY")
+    if named:
+        return Path(named)
+    data = os.environ.get("XDG_DATA_HOME")
+    return (Path(data) if data else Path.home() / ".local" / "share") / "deixis" / "memory"

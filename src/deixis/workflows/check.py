@@ -1,0 +1,71 @@
+"""A table is compared with a layout: what is missing, misplaced, miscoloured and extra."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from deixis.grammar.script import Script
+from deixis.kernels import ready_to_ground
+from deixis.knowledge_store import KnowledgeStore
+from deixis.learning.scene_evidence import conflict_notes, graph_evidence, scene_labels
+from deixis.ontology.tbox import default_ontology
+from deixis.perception.scene import Scene
+from deixis.reasoning.errors import SettingError
+from deixis.reasoning.grounding.engines import engine_named
+from deixis.reasoning.grounding.evidence.meaning import SHIPPED
+from deixis.reasoning.grounding.ground import DEFAULT_TIME_LIMIT
+from deixis.workflows.read import as_scene, as_script, is_script_file, viewpoint_notes
+
+if TYPE_CHECKING:
+    from deixis.ontology.lessons.types import LayoutConcept
+    from deixis.reasoning.comparison.checking import TableCheck
+
+
+@dataclass(frozen=True)
+class Checked:
+    """A table against a layout: the verdicts, and the same as a SHACL validation report."""
+
+    layout: LayoutConcept
+    table: TableCheck
+    conforms: bool
+    report: str  # Turtle
+
+
+def check(
+    layout: str | Path | Script,
+    scene: Scene | str | Path | Mapping[str, Any],
+    time_limit: float = DEFAULT_TIME_LIMIT,
+    knowledge: KnowledgeStore | None = None,
+) -> Checked:
+    """Return what is wrong with a table: ``layout`` is a script or its file, or the name of a layout in ``knowledge``.
+
+    Words and sizes are taken as ``knowledge`` has learned them; without it, and where it has no memory, as they are
+    shipped. Raises DeixisError for bad input, as for a name where there is no memory.
+    """
+    from deixis.learning.lesson import layout_concept
+    from deixis.reasoning.comparison.checking import checked_table
+    from deixis.workflows.shacl_report import shacl_report
+
+    known = default_ontology() if knowledge is None else knowledge.ontology
+    if isinstance(layout, Script) or is_script_file(layout):
+        concept = layout_concept(as_script(layout, known), "script")
+    elif knowledge is None:
+        told = f"layout must be a script or its file (.layout) where there is no memory, got the name '{layout}'"
+        raise SettingError(told)
+    else:
+        concept = knowledge.layout(str(layout))
+    scene, relations = as_scene(scene), known.relations
+    graph = concept.graph(relations)
+    meaning = SHIPPED if knowledge is None else knowledge.meaning()
+    evidence = graph_evidence(graph, scene, known, meaning)
+    notes = viewpoint_notes(concept.viewpoint, scene) + conflict_notes(graph)
+    ready_to_ground("exact")
+    labels, engine = scene_labels(scene), engine_named("exact")
+    table = checked_table(evidence, labels, known.kinds, engine, time_limit, scene.colours, known.colours)
+    found = table.grounding
+    kept = tuple(note for note in found.notes if "similarity" not in note)  # a check shows no similarity
+    table = replace(table, grounding=replace(found, notes=notes + kept))
+    return Checked(concept, table, *shacl_report(concept, scene, table, relations))

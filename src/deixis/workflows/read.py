@@ -1,0 +1,57 @@
+"""Scripts and scenes as the other workflows take them: read from a file, or taken as they are."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from deixis.grammar.parser import parse_script
+from deixis.grammar.parser import read_script as read_script_file
+from deixis.grammar.script import Script
+from deixis.ontology.tbox import Ontology
+from deixis.perception.formats.scene_json import read_scene
+from deixis.perception.scene import Scene
+
+
+def read_script(path: str | Path | None = None, *, text: str | None = None, ontology: Ontology | None = None) -> Script:
+    """Reads a layout script from a file, or from ``text``.
+
+    Raises ScriptError with every mistake in it, each with file, line and column; TypeError unless exactly one of the
+    two is given.
+    """
+    if (path is None) == (text is None):
+        raise TypeError("read_script takes a path or text=, and one of them only")
+    return parse_script(text, ontology=ontology) if text is not None else read_script_file(str(path), ontology=ontology)
+
+
+def load_scene(file: str | Path, hide_labels: bool = False, image: str | None = None) -> Scene:
+    """A scene from a file, its labels kept or hidden; ``image`` chooses one of several that the file describes."""
+    scene = read_scene(file, image=image) if image is not None else read_scene(file)
+    return scene.without_labels() if hide_labels else scene
+
+
+def as_script(script: Script | str | Path, ontology: Ontology | None = None) -> Script:
+    """Return the script itself, or the one in the file of that name."""
+    return script if isinstance(script, Script) else read_script(script, ontology=ontology)
+
+
+def as_scene(scene: Scene | str | Path | Mapping[str, Any]) -> Scene:
+    """Return the scene itself, or the one in the file of that name, or in parsed JSON."""
+    return scene if isinstance(scene, Scene) else read_scene(scene)
+
+
+def is_script_file(layout: str | Path) -> bool:
+    """Whether a layout is given as a file rather than by its name."""
+    return isinstance(layout, Path) or layout.endswith(".layout") or os.sep in layout
+
+
+def viewpoint_notes(viewpoint: str | None, scene: Scene) -> tuple[str, ...]:
+    """What is to be said with an answer where a script, or a layout, speaks as seen from another place than a scene."""
+    if viewpoint is None or viewpoint == scene.viewpoint:
+        return ()
+    return (
+        f"the script speaks as seen from '{viewpoint}' and the scene is seen from '{scene.viewpoint}': "
+        "left and right were compared as they stand",
+    )

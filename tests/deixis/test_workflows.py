@@ -1,0 +1,194 @@
+"""From a cloud to a category in memory, commands without a memory, and what was learned as objects."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from commands import deixis as command
+from consoles import ROOT, blocks
+
+import deixis
+from deixis.errors import DeixisError
+from deixis.examples_data import example
+from deixis.memory.errors import MemoryFormatError
+from deixis.perception.clouds.cloud import PointCloud
+from deixis.perception.clouds.cloud_file import read_cloud, write_cloud
+from deixis.perception.errors import CloudError, SceneError
+from deixis.perception.scene import PerceivedObject, Scene
+from deixis.reasoning.comparison.checking import Verdict
+from deixis.reasoning.errors import SettingError
+from deixis.workflows.lay_table import lay_script
+from deixis.workflows.simulate import simulate
+
+TEA = "fork left of plate; knife right of plate"
+FULL = example("formal_dinner.layout")
+SECOND = example("second_table.scene.json")
+
+
+def look(seed: int) -> PointCloud:
+    """A table laid for tea, as a simulated camera sees it."""
+    return simulate(lay_script(deixis.read_script(text=TEA), seed=seed), seed=seed).cloud
+
+
+@pytest.fixture(scope="module")
+def seen() -> Scene:
+    return deixis.perceive(look(3))
+
+
+def test_what_is_perceived_has_its_points_in_memory(seen: Scene) -> None:
+    assert len(seen.objects) == 3 and seen.detection is not None
+    for number, thing in enumerate(seen.objects):
+        cloud = seen.cloud_of(thing.id)
+        assert thing.cloud is cloud and len(cloud) == (seen.detection.labels == number).sum()
+        middle = cloud.points.mean(axis=0)
+        assert (middle > np.array(thing.minimum)).all() and (middle < np.array(thing.maximum)).all()
+
+
+def test_taught_learned_and_recognised_without_a_file(seen: Scene, tmp_path: Path) -> None:
+    with deixis.Session(tmp_path / "memory") as session:
+        learned = session.learn(deixis.read_script(text=TEA), seen)
+        assert {taught.category for taught in learned.seen} == {"fork", "knife", "plate"}
+        fork = learned.grounding.matches["fork"].perceived
+        assert session.teach(seen, fork, "pitchfork").before == "fork"
+        found = session.recognise(deixis.perceive(look(3)))
+        assert found.scene[fork].label == "pitchfork"
+        assert found.scene[fork].cloud is not None
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["memory"]
+
+
+def test_from_memory_and_from_files_the_same_is_kept(seen: Scene, tmp_path: Path) -> None:
+    written = deixis.write_scene(seen, tmp_path / "tea.scene.json")
+    read = deixis.read_scene(tmp_path / "tea.scene.json")
+    assert read == written != seen
+    kept = []
+    for number, scene in enumerate((seen, written, read)):
+        with deixis.Session(tmp_path / str(number)) as session:
+            session.learn(deixis.read_script(text=TEA), scene)
+            kept.append({(view.id, view.category) for view in session.views().views()})
+    assert len(kept[0]) == 3 and kept[0] == kept[1] == kept[2]
+
+
+def test_a_scene_is_written_elsewhere_with_its_clouds(seen: Scene, tmp_path: Path) -> None:
+    first = deixis.write_scene(seen, tmp_path / "a" / "tea.scene.json")
+    moved = deixis.write_scene(deixis.read_scene(first.file), tmp_path / "b.scene.json")
+    assert not (tmp_path / "b.clouds").exists()
+    odd = replace(seen, objects=tuple(replace(thing, id=f"../{thing.id}") for thing in seen.objects))
+    again = deixis.write_scene(odd, tmp_path / "c.scene.json")
+    for scene in (moved, again):
+        for thing, original in zip(deixis.read_scene(scene.file).objects, seen.objects, strict=True):
+            points = read_cloud(Path(scene.file).parent / str(thing.cloud)).points
+            np.testing.assert_array_equal(points, seen.cloud_of(original.id).points)
+    assert {path.name for path in tmp_path.iterdir()} == {"a", "b.scene.json", "c.clouds", "c.scene.json"}
+
+
+def test_a_scene_that_cannot_be_written_leaves_nothing(seen: Scene, tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    for place in (tmp_path, tmp_path / "file" / "a.scene.json"):
+        with pytest.raises(DeixisError, match=str(place)):
+            deixis.write_scene(seen, place)
+    assert [path.name for path in tmp_path.iterdir()] == ["file"]
+
+
+def test_errors_name_the_cloud_that_was_perceived(tmp_path: Path) -> None:
+    file = tmp_path / "nothing.pcd"
+    write_cloud(file, PointCloud(np.full((4, 3), np.nan, np.float32)))
+    with pytest.raises(CloudError, match=r"nothing\.pcd: a cloud without one finite point"):
+        deixis.perceive(file)
+    with pytest.raises(CloudError, match=r"^a cloud without one finite point"):
+        deixis.perceive(read_cloud(file))
+
+
+def test_what_has_no_points_is_told(seen: Scene) -> None:
+    bare = Scene((PerceivedObject("o1", (0.0, 0.0), (1.0, 1.0)),))
+    with pytest.raises(SceneError, match="the object 'o1' has no cloud"):
+        bare.cloud_of("o1")
+    with pytest.raises(SceneError, match="there is no object 'o9'; there are: o1, o2, o3"):
+        seen.cloud_of("o9")
+
+
+def test_a_table_is_checked_by_a_script_without_a_memory() -> None:
+    checked = deixis.check(FULL, SECOND)
+    assert [entry.role for entry in checked.table.of(Verdict.MISSING)] == ["water_glass"]
+    assert not checked.conforms
+    with pytest.raises(SettingError, match="layout must be a script or its file"):
+        deixis.check("formal_dinner", SECOND)
+
+
+def test_check_and_recognise_run_where_no_memory_is(
+    seen: Scene, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("DEIXIS_MEMORY", str(tmp_path / "none"))
+    deixis.write_scene(seen, tmp_path / "tea.scene.json")
+    code, out, err = command("check", FULL, SECOND, "--json")
+    assert (code, err) == (1, "")
+    assert json.loads(out)["layout"] == "formal_dinner"
+    code, out, err = command("recognise", tmp_path / "tea.scene.json")
+    assert (code, err) == (1, "")
+    lines = out.splitlines()
+    assert len(lines) == 3
+    assert all("unknown" in line and "no category has been taught" in line for line in lines)
+    assert not (tmp_path / "none").exists()
+
+
+def test_check_leaves_a_memory_that_somebody_holds_alone(tmp_path: Path) -> None:
+    with deixis.Session(tmp_path / "memory") as session:
+        session.memory(create=True)
+        code, out, err = command("check", FULL, SECOND, "--memory", tmp_path / "memory", "--no-memory")
+        assert (code, err) == (1, "") and "water_glass" in out
+        assert command("check", FULL, SECOND, "--memory", tmp_path / "memory")[0] == 2
+    code, out, err = command("check", "formal_dinner", SECOND, "--no-memory")
+    assert (code, out) == (2, "") and "where there is no memory, got the name 'formal_dinner'" in err
+
+
+def test_recognise_makes_no_memory(seen: Scene, tmp_path: Path) -> None:
+    with deixis.Session(tmp_path / "none") as session:
+        found = session.recognise(seen)
+        assert set(found.answers) == set(seen.ids)
+        assert not any(answer.label for answer in found.answers.values())
+        assert session.categories() == {}
+        assert session.check(FULL, SECOND).table.of(Verdict.MISSING)
+    assert not (tmp_path / "none").exists()
+
+
+def test_the_stores_of_a_session_are_closed_with_it(tmp_path: Path) -> None:
+    with deixis.Session(tmp_path / "memory") as session:
+        assert not session.knowledge_store.exists() and not session.view_store.exists()
+        session.memory(create=True)
+        session.views(create=True)
+        assert session.knowledge_store.exists() and session.view_store.exists()
+    for store in (session.knowledge_store, session.view_store):
+        with pytest.raises(MemoryFormatError, match="this session is closed"):
+            store.memory()
+
+
+@pytest.mark.skipif(not (PAGE := ROOT / "docs" / "description_logic.md").exists(), reason="there is no such page")
+def test_the_page_on_objects_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("DEIXIS_MEMORY", str(tmp_path / "memory"))
+    (program,) = [text for language, text in blocks(PAGE) if language == "python" and "session.owl()" in text]
+    names: dict[str, object] = {}
+    exec(compile(program, str(PAGE), "exec"), names)
+    assert names["forks"] == [] and names["everything"]
+
+
+def test_what_was_learned_is_there_as_objects(tmp_path: Path) -> None:
+    with deixis.Session(tmp_path / "memory") as session:
+        with session.owl() as shipped:
+            assert shipped.ontology.Fork.instances() == []
+        assert not (tmp_path / "memory").exists()
+        session.learn(FULL, example("place_setting.scene.json"))
+        with session.owl() as view:
+            forks = view.ontology.Fork.instances()
+            assert {one.identifier for one in forks} == {"o7", "o9", "o10"}
+            (layout,) = view.search(iri="*/layout/formal_dinner-1")
+            assert view.ontology.Layout in layout.is_a
+            shown = {part.value for part in layout.is_a if hasattr(part, "property")}
+            assert view.ontology.SoupSpoon in shown
+            assert set(forks) <= set(view.individuals())
+            session.forget("formal_dinner-1")
+            assert view.ontology.Fork.instances() == forks
+        with session.owl() as later:
+            assert later.ontology.Fork.instances() == []
