@@ -48,7 +48,7 @@ class ScaleSettings(_Thresholds):
     """Metres: half of a cloud nearer to its middle is refused, as its unit is another. Shown by
     test_a_cloud_in_another_unit_is_refused_with_a_hint[0.001]."""
     max_median_radius: float = 20.0
-    """Metres: half of a cloud farther from its middle is refused, as millimetres are. A few far points do not count.0],
+    """Metres: half of a cloud farther from its middle is refused, as millimetres are. A few far points do not count.
     No scene or test tried shows it."""
     min_table_length: float = 0.3
     """Metres: what is shorter in both directions is hardly a table: a note, or one thing alone. Shown by
