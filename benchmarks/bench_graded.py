@@ -27,8 +27,7 @@ from deixis.experiments.generated_tables import generate
 from deixis.experiments.photographs import Photograph, photographs
 from deixis.experiments.scoreboard.bayes_limit import bayes_limit
 from deixis.ontology.tbox import default_ontology
-from deixis.reasoning.geometry.rectangle import perceived_graph
-from deixis.reasoning.grounding.evidence.evidence import exact_names
+from deixis.reasoning.geometry.rectangle import scene_relations
 from deixis.reasoning.grounding.evidence.facts import FactTables, crisp_tables, fact_tables
 from deixis.reasoning.grounding.evidence.labels import classes
 from deixis.reasoning.grounding.evidence.meaning import SHIPPED, Meaning
@@ -77,7 +76,7 @@ def crisp_shares(images: Sequence[Photograph], orders: int) -> NDArray[np.float6
     """Degrees 1, 0.5 and 0: the special case."""
     rng, shares = np.random.default_rng(1), []
     for said, boxes in images:
-        names = exact_names(perceived_graph([f"o{i:03}" for i in range(len(boxes))], boxes, said.vocabulary))
+        names = scene_relations([f"o{i:03}" for i in range(len(boxes))], boxes, said.vocabulary).names
         nothing = np.zeros((len(boxes), len(boxes)))
         shares.append(share_right(crisp_tables(said, names), nothing, len(boxes), rng, orders))
     return np.array(shares)

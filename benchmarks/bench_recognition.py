@@ -38,7 +38,7 @@ from deixis.perception.recognition.settings import DEFAULT, PAPER
 from deixis.perception.recognition.views import PackedViews, open_views, write_views
 from deixis.perception.simulator.tableware import make
 from deixis.perception.simulator.views import views_of
-from deixis.session import ground
+from deixis.workflows.ground import ground
 from deixis.workflows.lay_table import lay_script
 from deixis.workflows.perceive import perceive
 from deixis.workflows.simulate import simulate

@@ -21,7 +21,7 @@ from deixis.ontology.graph import Fact, RelationGraph
 from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.comparison.likeness import Comparison, Described, Seen, seen
 from deixis.reasoning.comparison.retrieval import rank_layouts, rank_scenes
-from deixis.reasoning.geometry.rectangle import box_relations, perceived_graph
+from deixis.reasoning.geometry.rectangle import box_relations, scene_relations
 
 ONTOLOGY = default_ontology()
 RELATIONS = ONTOLOGY.relations
@@ -100,7 +100,7 @@ def scene(name: str, layout: Laid, labelled: float, rng: np.random.Generator) ->
     seen_kinds = [iri(kind) if rng.random() < labelled else None for kind in (*kinds, *more)]
     order = rng.permutation(len(boxes))
     ids = [f"o{k}" for k in range(len(boxes))]
-    return seen(name, perceived_graph(ids, boxes[order], RELATIONS, [seen_kinds[k] for k in order]))
+    return seen(name, scene_relations(ids, boxes[order], RELATIONS, [seen_kinds[k] for k in order]))
 
 
 def iri(word: str) -> str:

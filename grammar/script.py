@@ -195,6 +195,10 @@ class Script:
         >>> [colour and colour.rpartition("#")[2] for colour in graph.colours]
         [None, None, 'red']
         """
+        return self._graph
+
+    @cached_property
+    def _graph(self) -> RelationGraph:
         kinds = [self._kind_of(name) for name in self.objects]
         colours = [self.colours[name].iri if name in self.colours else None for name in self.objects]
         shown = colours if self.colours else ()

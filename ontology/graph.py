@@ -242,7 +242,26 @@ class RelationGraph:
         )
 
     def to_networkx(self) -> nx.MultiDiGraph[Any]:
-        """The graph as a ``networkx.MultiDiGraph``; edge attributes are the fields of :class:`Fact`."""
+        """Return the graph as a ``networkx.MultiDiGraph``, one edge a fact.
+
+        Returns
+        -------
+        networkx.MultiDiGraph
+            Nodes are the names of the objects, with ``kind`` and ``colour`` (IRIs or None) and ``box`` (least and
+            greatest corner in metres as lists, or None). Edges lead from subject to object, with ``relations`` (names,
+            several are a disjunction), ``positive``, ``optional``, ``weight`` and ``source`` (file:line:column or
+            None), as in :class:`Fact`.
+
+        Examples
+        --------
+        >>> import networkx as nx
+        >>> from deixis.grammar.parser import parse_script
+        >>> graph = parse_script("fork left or above plate; cup right of saucer").graph().to_networkx()
+        >>> graph["fork"]["plate"][0]["relations"]
+        ('left', 'top')
+        >>> [sorted(part) for part in nx.weakly_connected_components(graph)]
+        [['fork', 'plate'], ['cup', 'saucer']]
+        """
         import networkx as nx
 
         graph: nx.MultiDiGraph[Any] = nx.MultiDiGraph()

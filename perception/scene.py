@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +17,9 @@ from deixis.ontology.graph import RelationGraph
 from deixis.ontology.relation import Relations
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.errors import CloudError, SceneError
+
+if TYPE_CHECKING:
+    from deixis.reasoning.geometry.rectangle import SceneRelations
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,6 +122,9 @@ class Scene:
     unit: str = "m"
     file: str = field(default="<scene>", compare=False)
     detection: Detected | None = field(default=None, compare=False, repr=False)
+    _relations: dict[tuple[int, float], SceneRelations] = field(
+        default_factory=dict, init=False, repr=False, compare=False
+    )
 
     def __post_init__(self) -> None:
         seen: set[str] = set()
@@ -188,11 +194,22 @@ class Scene:
             shapes.append(box)
         return shapes
 
-    def graph(self, vocabulary: Relations, tolerance: float = 0.0) -> RelationGraph:
-        """The complete relation graph: for every ordered pair its exact name (see reasoning.rectangle)."""
-        from deixis.reasoning.geometry.rectangle import perceived_graph
+    def relations(self, vocabulary: Relations, tolerance: float = 0.0) -> SceneRelations:
+        """Return the exact relation of every ordered pair
+        (:class:`deixis.reasoning.geometry.rectangle.SceneRelations`).
 
-        return perceived_graph(self.ids, self.boxes, vocabulary, tolerance=tolerance)
+        It is computed by the first call for each vocabulary and tolerance (in the scene's unit), and kept.
+        """
+        key = (id(vocabulary), tolerance)
+        if key not in self._relations:
+            from deixis.reasoning.geometry.rectangle import scene_relations
+
+            self._relations[key] = scene_relations(self.ids, self.boxes, vocabulary, tolerance=tolerance)
+        return self._relations[key]
+
+    def graph(self, vocabulary: Relations, tolerance: float = 0.0) -> RelationGraph:
+        """Return :meth:`relations` as a complete relation graph, for export."""
+        return self.relations(vocabulary, tolerance).graph()
 
     def without_labels(self) -> Scene:
         """The same scene with nothing named."""

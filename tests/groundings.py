@@ -6,15 +6,16 @@ from deixis.ontology.graph import RelationGraph
 from deixis.ontology.tbox import default_ontology
 from deixis.perception.scene import Scene
 from deixis.reasoning.grounding.answer import Grounding
-from deixis.reasoning.grounding.engines import Select, engine_named
+from deixis.reasoning.grounding.engines import engine_named
 from deixis.reasoning.grounding.evidence.evidence import Evidence, no_unary_evidence
 from deixis.reasoning.grounding.ground import ground
+from deixis.reasoning.grounding.options import Select
 
 R = default_ontology().relations
 
 
 def evidence(description: RelationGraph, scene: Scene) -> Evidence:
-    return no_unary_evidence(description, scene.graph(R))
+    return no_unary_evidence(description, scene.relations(R))
 
 
 def answer(description: RelationGraph, scene: Scene, engine: str = "exact", select: Select = Select.FACTS) -> Grounding:

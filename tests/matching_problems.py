@@ -25,7 +25,7 @@ def problems(draw: st.DrawFn, most: int = 4) -> Problem:
         tables, unary, absent = rng.normal(0, 2, (k, n2, n2)), rng.normal(0, 1, (n1, n2)), rng.normal(-1, 1, n1)
     ruled_out = rng.random((n1, n2)) < draw(st.sampled_from([0.0, 0.0, 0.3, 1.0]))
     kinds = rng.integers(0, k, m)
-    return Problem(ends, kinds, tables.astype(np.float32), np.where(ruled_out, -np.inf, unary), absent)
+    return Problem(ends, kinds, tables.astype(np.float32), unary, absent, ~ruled_out)
 
 
 def every_map(problem: Problem) -> dict[tuple[int, ...], float]:
@@ -36,12 +36,13 @@ def every_map(problem: Problem) -> dict[tuple[int, ...], float]:
         things = [p for p in choice if p != UNMATCHED]
         if len(set(things)) < len(things):
             continue
+        if not all(problem.allowed[i, p] for i, p in enumerate(choice) if p != UNMATCHED):
+            continue
         value = sum(problem.absent[i] if p == UNMATCHED else problem.unary[i, p] for i, p in enumerate(choice))
         for (s, o), kind in zip(problem.ends, problem.kinds, strict=True):
             if UNMATCHED not in (choice[s], choice[o]):
                 value += float(problem.tables[kind, choice[s], choice[o]])
-        if value > -np.inf:
-            found[choice] = float(value)
+        found[choice] = float(value)
     return found
 
 
@@ -53,4 +54,5 @@ def reordered(problem: Problem, rows: NDArray[np.int64], columns: NDArray[np.int
         problem.tables[:, columns][:, :, columns],
         problem.unary[rows][:, columns],
         problem.absent[rows],
+        problem.allowed[rows][:, columns],
     )

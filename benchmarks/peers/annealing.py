@@ -27,7 +27,7 @@ def solve(
     labels = np.full(n1, n2)
     matched = min(n1, n2)
     labels[rng.permutation(n1)[:matched]] = rng.permutation(n2)[:matched]
-    labels = np.where(np.isneginf(compiled.unary[np.arange(n1), labels]), n2, labels)
+    labels = np.where(compiled.allowed[np.arange(n1), labels], labels, n2)
     scale = mean_range(compiled)
     best = _anneal(labels, compiled, steps or proposals(n1), hot * scale, cold * scale, seed)
     return to_assignment(best, n2)

@@ -38,7 +38,7 @@ def solve(problem: Problem, seconds: float) -> Solved:
     for i in range(n1):
         model.add_at_most_one(x[i])
         for p in range(n2):
-            if np.isneginf(problem.unary[i, p]):
+            if not problem.allowed[i, p]:
                 model.add(x[i][p] == 0)
             else:
                 terms.append(round(SCALE * float(problem.unary[i, p] - problem.absent[i])) * x[i][p])

@@ -23,7 +23,8 @@ def solve(problem: Problem, *, starts: int = STARTS, seed: int = 0) -> NDArray[n
 
     rng = np.random.default_rng(seed)
     n1, n2 = problem.unary.shape
-    unary = np.maximum(problem.unary - problem.absent[:, None], RULED_OUT)
+    unary = np.where(problem.allowed, problem.unary - problem.absent[:, None], RULED_OUT)
+    unary = np.maximum(unary, RULED_OUT)
     unary = np.concatenate([unary, np.full((n1, n1), RULED_OUT)], axis=1)
     unary[np.arange(n1), n2 + np.arange(n1)] = 0.0
     best, best_value = np.full(n1, UNMATCHED), problem.value(np.full(n1, UNMATCHED))

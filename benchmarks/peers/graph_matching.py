@@ -46,7 +46,7 @@ def solve(problem: Problem, settings: Settings) -> NDArray[np.int64]:
     import pygmtools  # type: ignore[import-not-found, unused-ignore]
 
     n1, n2 = problem.unary.shape
-    allowed = ~np.isneginf(problem.unary)
+    allowed = problem.allowed
     affinity = np.zeros((n2, n1, n2, n1))  # pygmtools lists matches by thing, then by object
     lowest = problem.tables.min(axis=(1, 2), keepdims=True, initial=0.0)
     tables = problem.tables - lowest if settings.shifted else np.maximum(problem.tables, 0.0)

@@ -29,7 +29,7 @@ from deixis.ontology.kinds import Kinds, with_article
 from deixis.reasoning.grounding.answer import FactOutcome, Grounding, Outcome
 from deixis.reasoning.grounding.engines import Engine
 from deixis.reasoning.grounding.evidence.colours import other_colours
-from deixis.reasoning.grounding.evidence.evidence import PRESENT, Evidence
+from deixis.reasoning.grounding.evidence.evidence import PRESENT_LOG_ODDS, Evidence
 from deixis.reasoning.grounding.evidence.labels import Label, naming
 from deixis.reasoning.grounding.evidence.unary import OUTLIERS
 from deixis.reasoning.grounding.ground import DEFAULT_TIME_LIMIT, ground
@@ -311,11 +311,11 @@ def _extra(
     return tuple(found)
 
 
-IMPOSTOR = float(np.log(OUTLIERS / SURE))
+MIN_SIZE_LOG_RATIO = float(np.log(OUTLIERS / SURE))
 """Sizes that say less than this for a match say with probability ``SURE`` that the thing's size is not its kind's; of
 what is too high they say less."""
 
-RULED_OUT = 2 * PRESENT
+RULED_OUT_LOG_RATIO = 2 * PRESENT_LOG_ODDS
 """What such a match counts as then: no facts about it outweigh that."""
 
 
@@ -347,6 +347,6 @@ def _without_impostors(evidence: Evidence, sure: Mapping[str, frozenset[str]], t
         if check.perceived is None or check.role in sure[check.perceived]:
             continue
         place = evidence.description.index(check.role), evidence.scene.index(check.perceived)
-        if evidence.labels[place] <= 0 and evidence.sizes[place] < IMPOSTOR:
-            said[place] = RULED_OUT
+        if evidence.labels[place] <= 0 and evidence.sizes[place] < MIN_SIZE_LOG_RATIO:
+            said[place] = RULED_OUT_LOG_RATIO
     return None if np.array_equal(said, evidence.sizes) else replace(evidence, sizes=said)

@@ -45,7 +45,7 @@ from deixis.ontology.models.sizes import SizeModel
 from deixis.ontology.relation import Reading, Relation, Relations
 from deixis.ontology.sizes import Sizes
 from deixis.ontology.tbox import Ontology
-from deixis.reasoning.grounding.evidence.evidence import exact_names
+from deixis.reasoning.geometry.rectangle import SceneRelations
 from deixis.reasoning.grounding.evidence.labels import category_of, classes
 from deixis.reasoning.grounding.evidence.sizes import Look
 from deixis.reasoning.grounding.evidence.unary import log_sizes, looks_in_image
@@ -207,7 +207,7 @@ class Seen:
 
     name: str
     ids: tuple[str, ...]  # (n2,)
-    names: NDArray[np.int16]  # (n2, n2), -1 on the diagonal
+    names: NDArray[np.int8]  # (n2, n2), -1 on the diagonal
     kinds: tuple[str | None, ...]  # (n2,)
     boxes: Array | None  # (n2, 2, d)
     metric: bool = True
@@ -219,10 +219,10 @@ class Seen:
         return np.bincount(named) if len(named) else np.zeros(0, np.int64)
 
 
-def seen(name: str, scene: RelationGraph, metric: bool = True) -> Seen:
-    """Makes a scene ready; ``scene.kinds`` are what labels say. Raises GraphError for one not fully related."""
+def seen(name: str, scene: SceneRelations, metric: bool = True) -> Seen:
+    """Make a scene ready; ``scene.kinds`` are what labels say."""
     kinds = scene.kinds or (None,) * len(scene.nodes)
-    return Seen(name, scene.nodes, exact_names(scene), kinds, scene.boxes, metric)
+    return Seen(name, scene.nodes, scene.names, kinds, scene.boxes, metric)
 
 
 @dataclass(frozen=True, eq=False)
@@ -293,7 +293,9 @@ class Comparison:
         """The matching problem whose value of a map is the similarity by it."""
         shares, n2 = self.shares(layout, scene), len(scene.names)
         graph = layout.graph
-        keys = list(zip(*self._facts(layout), strict=True))
+        edges = layout.edges
+        columns = graph.relation_sets[edges], graph.affirmed[edges], layout.weights
+        keys = list(zip(*(column.tolist() for column in columns), strict=True))
         distinct = list(dict.fromkeys(keys))
         tables = np.zeros((len(distinct), n2, n2), dtype=np.float32)
         for row, (mask, positive, weight) in enumerate(distinct):
@@ -305,10 +307,6 @@ class Comparison:
         kinds = np.array([positions[key] for key in keys], dtype=np.int64)
         unary = self.objects(layout, scene) * (2 * shares.objects / max(shares.things, 1))
         return Problem(ends, kinds, tables, unary, np.zeros(len(graph.nodes)))
-
-    def _facts(self, layout: Described) -> tuple[list[int], list[bool], list[float]]:
-        graph, edges = layout.graph, layout.edges
-        return graph.relation_sets[edges].tolist(), graph.affirmed[edges].tolist(), layout.weights.tolist()
 
     def objects(self, layout: Described, scene: Seen) -> Array:
         """How far each object corresponds to each thing, shape (n1, n2), 0 to 1."""

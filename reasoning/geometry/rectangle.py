@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from deixis.errors import GraphError
 from deixis.ontology.allen import SYMBOLS, Allen
-from deixis.ontology.graph import RelationGraph
+from deixis.ontology.graph import PaperGraph, RelationGraph
 from deixis.ontology.relation import Reading, Relation, Relations
 from deixis.reasoning.geometry.allen import allen_relations
 
@@ -72,35 +72,117 @@ def box_relations(
     return BoxRelations(codes[0], codes[1], z, names)
 
 
-def perceived_graph(
+@dataclass(frozen=True, eq=False)
+class SceneRelations:
+    """The things of a scene and the exact relation of every ordered pair: what grounding compares a description with.
+
+    ``names`` holds codes, the indices of exact relations in ``vocabulary``, with the subject as the row. The complete
+    relation graph of n (n - 1) edges (:meth:`graph`) is a view for export.
+
+    >>> from deixis.ontology.tbox import default_ontology
+    >>> relations = default_ontology().relations
+    >>> scene = scene_relations(["fork", "plate"], np.array([[[0, 0], [1, 1]], [[2, 0], [3, 1]]], float), relations)
+    >>> scene.relation(0, 1).name
+    'exactly_left'
+    >>> [str(fact) for fact in scene.graph().facts()]
+    ['exactly_left(fork, plate)', 'exactly_right(plate, fork)']
+    """
+
+    vocabulary: Relations
+    nodes: tuple[str, ...]  # (n,)
+    names: NDArray[np.int8]  # (n, n): relation indices, -1 on the diagonal
+    boxes: NDArray[np.float64] | None = None  # (n, 2, d): least and greatest corner
+    kinds: tuple[str | None, ...] = ()  # (n,) class IRIs, or empty
+
+    @classmethod
+    def from_graph(cls, graph: RelationGraph) -> SceneRelations:
+        """Read the relations of a complete relation graph.
+
+        Raises GraphError where an ordered pair has no exact relation, or more than one.
+        """
+        n = len(graph.nodes)
+        exact = sum(relation.bit for relation in graph.vocabulary.of_reading(Reading.EXACT))
+        sets = graph.relation_sets
+        single = (np.bitwise_count(sets) == 1) & ((sets & ~np.int64(exact)) == 0) & graph.positive
+        names = np.full((n, n), -1, dtype=np.int8)
+        names[graph.subjects[single], graph.objects[single]] = np.round(np.log2(sets[single])).astype(np.int8)
+        missing = (names < 0) & ~np.eye(n, dtype=bool)
+        if missing.any() or len(graph) != n * (n - 1):
+            where = np.argwhere(missing)
+            pair = f" ({graph.nodes[where[0][0]]}, {graph.nodes[where[0][1]]})" if len(where) else ""
+            raise GraphError(f"a scene's graph needs one exact relation for every ordered pair{pair}")
+        return cls(graph.vocabulary, graph.nodes, names, graph.boxes, graph.kinds)
+
+    def index(self, node: str) -> int:
+        """Return the position of a thing; raises GraphError where there is none of that name."""
+        try:
+            return self.nodes.index(node)
+        except ValueError:
+            raise GraphError(f"the scene has no object '{node}'") from None
+
+    def relation(self, subject: int, object: int) -> Relation:
+        """Return the exact relation of one ordered pair of different things."""
+        return self.vocabulary.members(1 << int(self.names[subject, object]))[0]
+
+    def reordered(self, order: NDArray[np.int64]) -> SceneRelations:
+        """Return the same scene with its things in another order, or some of them."""
+        return SceneRelations(
+            self.vocabulary,
+            tuple(self.nodes[i] for i in order),
+            self.names[np.ix_(order, order)],
+            None if self.boxes is None else self.boxes[order],
+            tuple(self.kinds[i] for i in order) if self.kinds else (),
+        )
+
+    def graph(self) -> RelationGraph:
+        """Return the complete relation graph: one edge an ordered pair, by subject, then by object."""
+        subjects, objects = np.nonzero(~np.eye(len(self.nodes), dtype=bool))
+        m = len(subjects)
+        return RelationGraph(
+            vocabulary=self.vocabulary,
+            nodes=self.nodes,
+            subjects=subjects.astype(np.int32),
+            objects=objects.astype(np.int32),
+            relation_sets=np.int64(1) << self.names[subjects, objects].astype(np.int64),
+            positive=np.ones(m, dtype=bool),
+            optional=np.zeros(m, dtype=bool),
+            weights=np.ones(m),
+            kinds=self.kinds,
+            boxes=self.boxes,
+        )
+
+    def paper_view(self) -> PaperGraph:
+        """Return the graph of Definition 1: the word of every ordered pair as the label of its edge."""
+        labels = tuple(relation.word for relation in self.vocabulary.of_reading(Reading.EXACT))
+        label_of = np.array([labels.index(relation.word) for relation in self.vocabulary.values()], dtype=np.int8)
+        subjects, objects = np.nonzero(self.names >= 0)
+        return PaperGraph(
+            vertices=self.nodes,
+            vertex_labels=self.nodes,
+            edges=np.stack([subjects, objects], axis=1).astype(np.int32),
+            edge_labels=label_of[self.names[subjects, objects]],
+            labels=labels,
+        )
+
+
+def scene_relations(
     ids: Sequence[str],
     boxes: NDArray[np.float64],
     vocabulary: Relations,
     kinds: Sequence[str | None] = (),
     tolerance: float = 0.0,
-) -> RelationGraph:
-    """The complete relation graph of a scene: for every ordered pair one edge with its exact name.
+) -> SceneRelations:
+    """Compute the exact relation of every ordered pair of the things of a scene.
 
-    ``boxes``: as for :func:`box_relations`. The graph has n (n - 1) edges, by subject, then by object. Where the order
-    of listing has to decide, that of the ids does, so that a scene means the same in whatever order it is listed.
+    ``boxes`` and ``tolerance`` are those of :func:`box_relations`. Where the order of listing has to decide, that of
+    the ids does, so that a scene means the same in whatever order it is listed. Raises GraphError for bad boxes, and
+    for ids that are not as many or not different.
     """
-    n = len(ids)
+    if len(ids) != len(boxes) or len(set(ids)) != len(ids):
+        raise GraphError(f"a scene of {len(boxes)} boxes needs as many different ids, got {len(set(ids))}")
     ranks = np.argsort(np.argsort(np.array(ids, dtype=np.str_)))
-    related = box_relations(boxes, vocabulary, tolerance, ranks)
-    subjects, objects = np.nonzero(~np.eye(n, dtype=bool))
-    m = len(subjects)
-    return RelationGraph(
-        vocabulary=vocabulary,
-        nodes=tuple(ids),
-        subjects=subjects.astype(np.int32),
-        objects=objects.astype(np.int32),
-        relation_sets=np.int64(1) << related.names[subjects, objects].astype(np.int64),
-        positive=np.ones(m, dtype=bool),
-        optional=np.zeros(m, dtype=bool),
-        weights=np.ones(m),
-        kinds=tuple(kinds),
-        boxes=boxes,
-    )
+    names = box_relations(boxes, vocabulary, tolerance, ranks).names
+    return SceneRelations(vocabulary, tuple(ids), names, boxes, tuple(kinds))
 
 
 def require_boxes(boxes: NDArray[np.float64]) -> None:

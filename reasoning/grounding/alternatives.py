@@ -12,10 +12,10 @@ from deixis.reasoning.grounding.engines import Alignment
 from deixis.reasoning.grounding.evidence.evidence import Evidence
 from deixis.reasoning.grounding.matching.problem import UNMATCHED
 
-WORTH_NAMING = 0.01
+MIN_LISTED_PROBABILITY = 0.01
 """Probability from which an alternative is named."""
 
-MANY_FELLOWS = 100
+MAX_LISTED_GROUP = 100
 """Interchangeable objects up to which each lists the others' things: of k that would be k * k."""
 
 
@@ -34,7 +34,7 @@ def _probable(evidence: Evidence, alignment: Alignment, i: int) -> list[Alternat
     row, chosen = alignment.posterior.marginals[i], int(alignment.assignment[i])
     own = max(float(row[chosen]), 1e-300)  # of what is left out the last column is its own, as UNMATCHED is
     found = []
-    for p in np.flatnonzero(row >= WORTH_NAMING).tolist():
+    for p in np.flatnonzero(row >= MIN_LISTED_PROBABILITY).tolist():
         if p != chosen % len(row):
             perceived = evidence.scene.nodes[p] if p < len(evidence.scene.nodes) else None
             found.append(Alternative(perceived, max(0.0, round(math.log(own / row[p]), 9)), float(row[p])))
@@ -48,7 +48,7 @@ def _similar(
     name = evidence.description.nodes[i]
     found: dict[str, float] = {}
     for group in groups:
-        if name in group and len(group) <= MANY_FELLOWS:
+        if name in group and len(group) <= MAX_LISTED_GROUP:
             fellows = (evidence.description.index(other) for other in group if other != name)
             matched = (alignment.assignment[j] for j in fellows if alignment.assignment[j] != UNMATCHED)
             found |= {evidence.scene.nodes[p]: 0.0 for p in matched}
@@ -63,7 +63,7 @@ def left_out_objects(evidence: Evidence, alignment: Alignment, names: tuple[str,
     for i in np.flatnonzero(alignment.assignment == UNMATCHED):
         if not len(evidence.scene.nodes):
             reason = "nothing was perceived"
-        elif not evidence.allowed[i].any():
+        elif evidence.identified.all() and not evidence.allowed[i].any():
             reason = "the labels of the scene leave it nothing that it could be"
         elif len(evidence.description.nodes) > len(evidence.scene.nodes) and (alignment.assignment != UNMATCHED).any():
             reason = "the description names more than was perceived, and the rest explains the scene best without it"
@@ -84,7 +84,7 @@ def left_out_things(evidence: Evidence, alignment: Alignment, ids: tuple[str, ..
             continue
         if not len(evidence.description.nodes):
             reason = "the description names nothing"
-        elif not evidence.allowed[:, p].any():
+        elif evidence.identified[p] and not evidence.allowed[:, p].any():
             reason = "the labels of the scene leave it nothing in the description that it could be"
         elif len(evidence.description.nodes) < len(evidence.scene.nodes) and taken:
             reason = "the description names fewer things than were perceived, and fits the others at least as well"

@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from enum import StrEnum
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,13 +15,19 @@ from deixis.ontology.graph import Fact
 from deixis.ontology.lessons.types import Alternative, Match
 from deixis.ontology.relation import Relation
 
+if TYPE_CHECKING:
+    import networkx as nx
+
+    from deixis.reasoning.grounding.questions.inquiry import Exchange
+    from deixis.reasoning.grounding.viewpoint import Viewpoint
+
 DECIDED = 0.99
 """Probability from which a match is called decided: where things are missing, somewhat less is right than was said, for
 an extra thing may fit all that is said of what is absent (docs/scoreboard.md)."""
 
 
-FIRMLY = 0.975
-"""What is decided is as probable even if it is off by the error of its probability."""
+DECIDED_LOWER_BOUND = 0.975
+"""Probability of a decided match less the error of that probability, at least."""
 
 
 def is_decided(probability: NDArray[np.float64], error: float) -> NDArray[np.bool_]:
@@ -29,7 +36,7 @@ def is_decided(probability: NDArray[np.float64], error: float) -> NDArray[np.boo
     >>> is_decided(np.array([0.98, 0.995]), 0.01).tolist(), is_decided(np.array([0.995]), 0.05).tolist()
     ([False, True], [False])
     """
-    decided: NDArray[np.bool_] = (probability >= DECIDED) & (probability - error >= FIRMLY)
+    decided: NDArray[np.bool_] = (probability >= DECIDED) & (probability - error >= DECIDED_LOWER_BOUND)
     return decided
 
 
@@ -92,7 +99,8 @@ class Grounding:
     ``pivotal`` is None where it was not looked for what would change without a fact, as where the description is taken
     to be of another scene. ``finished`` says whether the engine came to its end within the time limit. By ``gap``
     (nats) another answer may be likelier at most: 0 where this one is proved the best, infinite where the engine has no
-    bound.
+    bound. ``exchanges`` are the questions that were asked, with their answers, and ``viewpoints`` those from which the
+    script may speak, most probable first, where they were to be recovered; None where that was not wanted.
     """
 
     engine: str
@@ -111,9 +119,70 @@ class Grounding:
     probability_error: float = 0.0
     finished: bool = True
     gap: float = math.inf
+    exchanges: tuple[Exchange, ...] | None = None
+    viewpoints: tuple[Viewpoint, ...] | None = None
 
     def of(self, outcome: Outcome) -> tuple[FactOutcome, ...]:
         return tuple(entry for entry in self.outcomes if entry.outcome is outcome)
+
+    def to_networkx(self) -> nx.MultiDiGraph[Any]:
+        """Return the answer as a ``networkx.MultiDiGraph`` over objects, things and what relates them.
+
+        Returns
+        -------
+        networkx.MultiDiGraph
+            Nodes are ``("object", name)`` and ``("thing", id)``, with ``matched``, and ``reason`` where they are left
+            out. Edges have the attribute ``kind``: a ``match`` from an object to its thing, with ``probability`` (or
+            None), ``similarity``, ``score`` and ``decided``; an ``alternative`` from an object to another thing that it
+            could be, with ``probability`` (or None) and ``cost``; and a ``fact`` from its subject to its object, with
+            ``relations`` (names), ``positive``, ``weight``, ``outcome``, ``degree`` and ``source``.
+
+        Examples
+        --------
+        >>> import deixis
+        >>> scene = {"objects": [{"id": id, "min": [x, 0.0], "max": [x + 0.1, 0.1]} for id, x in (("p", 0), ("q", 1))]}
+        >>> graph = deixis.ground(deixis.read_script(text="cup left of mug"), scene).to_networkx()
+        >>> [(a[1], b[1], edge) for a, b, edge in graph.edges(data="kind") if edge != "alternative"]
+        [('cup', 'mug', 'fact'), ('cup', 'p', 'match'), ('mug', 'q', 'match')]
+        """
+        import networkx as nx
+
+        graph: nx.MultiDiGraph[Any] = nx.MultiDiGraph(engine=self.engine, graph_similarity=self.graph_similarity)
+        for entry in self.outcomes:
+            fact = entry.fact
+            graph.add_edge(
+                ("object", fact.subject),
+                ("object", fact.object),
+                kind="fact",
+                relations=tuple(relation.name for relation in fact.relations),
+                positive=fact.positive,
+                weight=fact.weight,
+                outcome=entry.outcome.value,
+                degree=entry.degree,
+                source=str(fact.source) if fact.source else None,
+            )
+        could_be = {name: match.alternatives for name, match in self.matches.items()}
+        could_be |= {left.name: left.alternatives for left in self.unmatched_objects}
+        for name, match in self.matches.items():
+            graph.add_node(("object", name), matched=True)
+            graph.add_node(("thing", match.perceived), matched=True)
+            graph.add_edge(
+                ("object", name),
+                ("thing", match.perceived),
+                kind="match",
+                probability=match.probability,
+                similarity=match.similarity,
+                score=match.score,
+                decided=match.decided,
+            )
+        for what, left_out in (("object", self.unmatched_objects), ("thing", self.unmatched_perceived)):
+            graph.add_nodes_from(((what, left.name), {"matched": False, "reason": left.reason}) for left in left_out)
+        for name, others in could_be.items():
+            for other in others:
+                if other.perceived is not None:
+                    given = {"probability": other.probability, "cost": other.cost}
+                    graph.add_edge(("object", name), ("thing", other.perceived), kind="alternative", **given)
+        return graph
 
     @property
     def satisfied(self) -> tuple[FactOutcome, ...]:

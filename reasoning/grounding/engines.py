@@ -12,7 +12,6 @@ from __future__ import annotations
 import math
 import time
 from dataclasses import dataclass, replace
-from enum import StrEnum
 from itertools import combinations, islice
 from typing import TYPE_CHECKING, Protocol
 
@@ -23,7 +22,7 @@ from deixis.errors import UnknownTermError
 from deixis.ontology.graph import PaperGraph, RelationGraph
 from deixis.reasoning.grounding.evidence.evidence import Evidence
 from deixis.reasoning.grounding.matching.problem import UNMATCHED
-from deixis.reasoning.grounding.options import EngineName
+from deixis.reasoning.grounding.options import EngineName, Select
 from deixis.reasoning.grounding.similarity import (
     ITERATIONS,
     NodeSimilarity,
@@ -41,16 +40,9 @@ MAX_SUBGRAPHS = 5000
 
 CUT_SHORT = "the time limit struck before the similarity came to its end"
 
-_BLOCK = 500
-_WORK = 2e10
+_SUBGRAPHS_PER_BLOCK = 500
+_MAX_MULTIPLICATIONS = 2e10
 """Multiplications that the similarity may take; it is equation 5 alone where one step would take more."""
-
-
-class Select(StrEnum):
-    """What decides between sub-graphs."""
-
-    FACTS = "facts"  # the sum of degrees first, the graph similarity second
-    SIMILARITY = "similarity"  # the graph similarity alone, as in the paper
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,31 +99,32 @@ MAX_DESCRIBED = 20_000
 """Facts, stated and implied, that the similarity looks at; of a larger description it sees the stated ones alone."""
 
 
-def described(description: RelationGraph) -> PaperGraph:
+def described(description: RelationGraph, consistent: bool | None = None) -> PaperGraph:
     """The description as the paper's matcher sees it: with the inverses and what single words imply by transitivity."""
-    return with_same_word(description, MAX_DESCRIBED).paper_view()
+    return with_same_word(description, MAX_DESCRIBED, consistent).paper_view()
 
 
 def paper_similarity(
     evidence: Evidence, members: NDArray[np.bool_] | None = None, deadline: float = math.inf
 ) -> NodeSimilarity:
     """Equations 5 to 9 for the evidence: certain labels forbid pairs, uncertain ones multiply equation 5."""
-    first, second = described(evidence.description), evidence.scene.paper_view()
+    first, second = described(evidence.description, evidence.consistent), evidence.scene.paper_view()
     iterations = _iterations(first, second)
     return node_similarity(first, second, members, _prior(evidence), iterations=iterations, deadline=deadline)
 
 
 def _prior(evidence: Evidence) -> NDArray[np.float64]:
     """By what labels multiply the similarity, (n1, n2): 1 for what a label names best, 0 for what it rules out."""
-    most = evidence.labels.max(axis=0, initial=-np.inf)
-    prior: NDArray[np.float64] = np.exp(evidence.labels - np.where(np.isneginf(most), 0.0, most))
-    return prior
+    named = evidence.allowed | ~evidence.identified
+    best = evidence.labels.max(axis=0, where=named, initial=-np.inf)
+    prior: NDArray[np.float64] = np.exp(evidence.labels - np.where(np.isneginf(best), 0.0, best))
+    return prior * named
 
 
 def _iterations(first: PaperGraph, second: PaperGraph) -> int:
     n2 = len(second.vertices)
     work = 2 * len(first.labels) * len(first.vertices) * n2 * n2 + 2000 * len(first.edges)
-    affordable = _WORK / max(work, 1)
+    affordable = _MAX_MULTIPLICATIONS / max(work, 1)
     return 0 if affordable < 1 else int(np.clip(affordable, 5, ITERATIONS))
 
 
@@ -156,7 +149,7 @@ class SimilarityEngine:
         """The best of all sub-graphs of the larger side that have as many objects as the smaller one."""
         flipped = len(evidence.description.nodes) == smaller
         prior = _prior(evidence)
-        first, second = described(evidence.description), evidence.scene.paper_view()
+        first, second = described(evidence.description, evidence.consistent), evidence.scene.paper_view()
         best: tuple[tuple[float, ...], Alignment] | None = None
         for members in _blocks(larger, smaller):
             if best is not None and time.perf_counter() > deadline:
@@ -226,7 +219,7 @@ def _blocks(n: int, k: int) -> list[NDArray[np.bool_]]:
     """All choices of k of n as membership rows, in blocks."""
     chosen = combinations(range(n), k)
     blocks = []
-    while rows := list(islice(chosen, _BLOCK)):
+    while rows := list(islice(chosen, _SUBGRAPHS_PER_BLOCK)):
         members = np.zeros((len(rows), n), dtype=bool)
         members[np.arange(len(rows))[:, None], np.array(rows, dtype=np.int64).reshape(len(rows), k)] = True
         blocks.append(members)

@@ -9,20 +9,24 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.ontology.graph import Fact
 from deixis.ontology.lessons.types import Match
-from deixis.reasoning.grounding.alternatives import WORTH_NAMING, alternatives, left_out_objects, left_out_things
+from deixis.reasoning.grounding.alternatives import (
+    MIN_LISTED_PROBABILITY,
+    alternatives,
+    left_out_objects,
+    left_out_things,
+)
 from deixis.reasoning.grounding.answer import FactOutcome, Grounding, Outcome, Pivotal, Standing, is_decided
 from deixis.reasoning.grounding.engines import Alignment, Engine
 from deixis.reasoning.grounding.evidence.evidence import Evidence
 from deixis.reasoning.grounding.matching.problem import UNMATCHED
-from deixis.reasoning.grounding.sensitivity import MOST as MOST_DROPPED
-from deixis.reasoning.grounding.sensitivity import Dropped, without_each
+from deixis.reasoning.grounding.sensitivity import MAX_OBJECTS as MAX_SENSITIVITY_OBJECTS
+from deixis.reasoning.grounding.sensitivity import WithoutFact, leave_one_out
 from deixis.reasoning.grounding.symmetry import interchangeable
 
 DEFAULT_TIME_LIMIT = 10.0
 
-DROPPING = 0.1
+SENSITIVITY_SHARE = 0.1
 """Share of the time limit for finding out what would change without each fact."""
 
 NO_TIME = "there was no time to find out what rests on which fact"
@@ -43,13 +47,15 @@ def ground(
     rows = np.array(sorted(range(len(evidence.description.nodes)), key=lambda i: evidence.description.nodes[i]), int)
     columns = np.array(sorted(range(len(evidence.scene.nodes)), key=lambda i: evidence.scene.nodes[i]), int)
     in_order, stated = _facts_in_order(evidence.reordered(rows, columns))
-    alignment = engine.align(in_order, started + (1 - DROPPING) * time_limit)
-    groups = _groups(in_order)
+    alignment = engine.align(in_order, started + (1 - SENSITIVITY_SHARE) * time_limit)
+    known = zip(in_order.unary, in_order.allowed, strict=True)
+    alone = [(row.tobytes(), mask.tobytes()) for row, mask in known]
+    groups = tuple(interchangeable(in_order.description, alone))
     outcomes = _outcomes(in_order, alignment, stated)
     matches = _matches(in_order, alignment, outcomes, groups)
     names = evidence.description.nodes
     posterior = alignment.posterior
-    pivotal = _pivotal(in_order, alignment, matches, time.perf_counter() + DROPPING * time_limit)
+    pivotal = _pivotal(in_order, alignment, matches, time.perf_counter() + SENSITIVITY_SHARE * time_limit)
     return Grounding(
         engine=alignment.engine,
         matches=MappingProxyType({name: matches[name] for name in names if name in matches}),
@@ -91,14 +97,9 @@ def _facts_in_order(evidence: Evidence) -> tuple[Evidence, NDArray[np.int64]]:
     return replace(evidence, description=description), order.astype(np.int64)
 
 
-def _groups(evidence: Evidence) -> tuple[tuple[str, ...], ...]:
-    return tuple(interchangeable(evidence.description, [row.tobytes() for row in evidence.unary]))
-
-
 def _outcomes(evidence: Evidence, alignment: Alignment, stated: NDArray[np.int64]) -> tuple[FactOutcome, ...]:
     """What became of the facts that can be compared, in the order in which they were stated."""
     degrees = evidence.degrees(alignment.assignment)
-    vocabulary = evidence.description.vocabulary
     outcomes = []
     for edge, degree in zip(evidence.facts, degrees, strict=True):
         fact = evidence.description.fact(int(edge))
@@ -114,7 +115,7 @@ def _outcomes(evidence: Evidence, alignment: Alignment, stated: NDArray[np.int64
                 Outcome.SATISFIED if degree > 0 else missed,
                 float(degree),
                 (evidence.scene.nodes[p], evidence.scene.nodes[q]),
-                vocabulary.members(1 << int(evidence.names[p, q]))[0],
+                evidence.scene.relation(p, q),
             )
         )
     return tuple(outcomes[place] for place in np.argsort(stated[evidence.facts]).tolist())
@@ -169,29 +170,33 @@ def _pivotal(
     if alignment.posterior is None or not alignment.proved_best or alignment.of_another:
         return None
     found, seen, probable = [], 0, alignment.posterior.exact and alignment.sides == 1
-    for dropped in without_each(evidence.problem, alignment.assignment, probable, deadline):
+    for dropped in leave_one_out(evidence.problem, alignment.assignment, probable, deadline):
         seen += 1
         pivotal = _without(evidence, alignment, matches, dropped)
         if pivotal.changes or pivotal.unsettled or pivotal.settled:
             found.append(pivotal)
     if seen < len(evidence.facts):
         return None
-    return tuple(sorted(found, key=lambda pivotal: _place(pivotal.fact)))
+
+    def place(pivotal: Pivotal) -> tuple[str, int, str]:
+        fact, source = pivotal.fact, pivotal.fact.source
+        return ("", 0, str(fact)) if source is None else (source.file, source.line, str(fact))
+
+    return tuple(sorted(found, key=place))
 
 
 def _why_not_pivotal(evidence: Evidence, alignment: Alignment) -> tuple[str, ...]:
     """What is to be said where a proved answer, with its probabilities, is without the facts that it rests on."""
-    if len(evidence.description.nodes) > MOST_DROPPED or alignment.posterior is None or not alignment.proved_best:
+    if (
+        len(evidence.description.nodes) > MAX_SENSITIVITY_OBJECTS
+        or alignment.posterior is None
+        or not alignment.proved_best
+    ):
         return ()
     return (NOT_ASKED if alignment.of_another else NO_TIME,)
 
 
-def _place(fact: Fact) -> tuple[str, int, str]:
-    """Where a fact stands, for listing."""
-    return ("", 0, str(fact)) if fact.source is None else (fact.source.file, fact.source.line, str(fact))
-
-
-def _without(evidence: Evidence, alignment: Alignment, matches: dict[str, Match], dropped: Dropped) -> Pivotal:
+def _without(evidence: Evidence, alignment: Alignment, matches: dict[str, Match], dropped: WithoutFact) -> Pivotal:
     nodes, things = evidence.description.nodes, evidence.scene.nodes
     other = dropped.assignment != alignment.assignment
     if not dropped.better:
@@ -214,14 +219,6 @@ def _named(nodes: tuple[str, ...], chosen: NDArray[np.bool_]) -> tuple[str, ...]
     return tuple(nodes[i] for i in np.flatnonzero(chosen))
 
 
-def _any_of_many(evidence: Evidence, alignment: Alignment) -> tuple[str, ...]:
-    """The objects that are matched to something, though no thing is probable enough to be worth naming."""
-    if alignment.posterior is None:
-        return ()
-    least = alignment.posterior.marginals.max(axis=1, initial=0.0) < WORTH_NAMING
-    return _named(evidence.description.nodes, least & (alignment.assignment != UNMATCHED))
-
-
 def _notes(evidence: Evidence, alignment: Alignment) -> tuple[str, ...]:
     notes = list(alignment.notes)
     nothing = alignment.matrix.size and not alignment.matrix.any()
@@ -229,9 +226,11 @@ def _notes(evidence: Evidence, alignment: Alignment) -> tuple[str, ...]:
         notes.append("the similarity did not converge; its figures are those of the last iteration")
     if alignment.converged and nothing:
         notes.append("the paper's similarity is zero: no exact name of the description is one of the scene's")
-    vague = _any_of_many(evidence, alignment)
-    if vague:
-        notes.append(f"any of many things is about as likely, and none of them likely, to be: {', '.join(vague)}")
+    if alignment.posterior is not None:
+        unlikely = alignment.posterior.marginals.max(axis=1, initial=0.0) < MIN_LISTED_PROBABILITY
+        vague = _named(evidence.description.nodes, unlikely & (alignment.assignment != UNMATCHED))
+        if vague:
+            notes.append(f"any of many things is about as likely, and none of them likely, to be: {', '.join(vague)}")
     hidden = [str(fact) for fact in evidence.description.facts() if not fact.plain]
     if hidden:
         notes.append("not seen by the similarity, being no single affirmed relation: " + "; ".join(hidden))

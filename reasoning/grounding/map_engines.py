@@ -23,19 +23,19 @@ from deixis.reasoning.grounding.matching.problem import UNMATCHED, Problem
 from deixis.reasoning.grounding.matching.scalable import scalable
 from deixis.reasoning.grounding.similarity import assign
 
-PROOF, SEARCH = 0.5, 0.8
+PROOF_SHARE, SEARCH_SHARE = 0.5, 0.8
 """Shares of the time that a proof, and a search without one, may take; the rest is for the probabilities."""
 
-COMPARISON = 0.3
+SIMILARITY_SHARE = 0.3
 """Share of that rest that the similarity may take."""
 
-CELLS, GRACE = 2e7, 0.1
+SIMILARITY_CELLS_PER_SECOND, MAX_LATENESS = 2e7, 0.1
 """Pairs of things by relation that the similarity looks at in a second before its first step; it may be so late."""
 
-UNRELATED = 0.02
-"""How often a description is of another scene, where all is as chance has it."""
+UNRELATED_PRIOR = 0.02
+"""Prior probability that a description is of another scene."""
 
-OF_ANOTHER = "the description{} fits so little that it is probably of another scene"
+UNRELATED_NOTE = "the description{} fits so little that it is probably of another scene"
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,7 @@ class ExactEngine:
 
     def align(self, evidence: Evidence, deadline: float) -> Alignment:
         problem, now = evidence.problem, time.perf_counter()
-        found = exact(problem, now + PROOF * (deadline - now))
+        found = exact(problem, now + PROOF_SHARE * (deadline - now))
         notes = () if found.proved else ("the time limit struck before the alignment was proved the best",)
         gap = 0.0 if found.proved else found.gap
         return _answer("exact", evidence, found.assignment, deadline, notes, gap=gap, finished=found.proved)
@@ -56,7 +56,7 @@ class ScalableEngine:
 
     def align(self, evidence: Evidence, deadline: float) -> Alignment:
         now = time.perf_counter()
-        found = scalable(evidence.problem, now + SEARCH * (deadline - now))
+        found = scalable(evidence.problem, now + SEARCH_SHARE * (deadline - now))
         notes = () if found.finished else ("the time limit struck before the search came to its end",)
         return _answer("scalable", evidence, found.assignment, deadline, notes, finished=found.finished)
 
@@ -93,14 +93,14 @@ def _answer(
 ) -> Alignment:
     """The map with its probability, where the time sufficed for one, and the paper's similarity for comparison."""
     now = time.perf_counter()
-    matrix, converged, unknown = _similarity(evidence, now + COMPARISON * (deadline - now))
+    matrix, converged, unknown = _similarity(evidence, now + SIMILARITY_SHARE * (deadline - now))
     unrelated = _of_another_scene(evidence, assignment, deadline)
     probable = posterior(evidence.problem, deadline, start=assignment)
     known = math.isfinite(probable.error)
     notes += unknown
     if unrelated > 0.5:
-        assignment, probable = np.full_like(assignment, UNMATCHED), probable.or_nobody(unrelated)
-        notes += (OF_ANOTHER.format(_besides_facts(evidence)),)
+        assignment, probable = np.full_like(assignment, UNMATCHED), probable.mixed_with_absence(unrelated)
+        notes += (UNRELATED_NOTE.format(_besides_facts(evidence)),)
     notes += () if known else ("there was no time to find out how probable the matches are",)
     return Alignment(
         engine=engine,
@@ -130,13 +130,13 @@ def _of_another_scene(evidence: Evidence, assignment: NDArray[np.int64], deadlin
     """
     if evidence.labels.any() or (assignment == UNMATCHED).all() or time.perf_counter() > deadline:
         return 0.0
-    return UNRELATED / (UNRELATED + math.exp(min(log_marginal_likelihood(evidence.problem), 100.0)))
+    return UNRELATED_PRIOR / (UNRELATED_PRIOR + math.exp(min(log_marginal_likelihood(evidence.problem), 100.0)))
 
 
 def _similarity(evidence: Evidence, deadline: float) -> tuple[NDArray[np.float64], bool, tuple[str, ...]]:
     """The paper's similarity (n1, n2) and whether it converged; zeros and a note where there is no time to begin."""
     cells = len(evidence.description.vocabulary) * len(evidence.scene.nodes) ** 2
-    if cells / CELLS > deadline - time.perf_counter() + GRACE:
+    if cells / SIMILARITY_CELLS_PER_SECOND > deadline - time.perf_counter() + MAX_LATENESS:
         return np.zeros(evidence.allowed.shape), False, ("there was no time for the paper's similarity: it says 0",)
     found = paper_similarity(evidence, deadline=deadline)
     return found.matrices[0], bool(found.converged[0]), ()

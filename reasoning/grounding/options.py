@@ -15,6 +15,13 @@ class EngineName(StrEnum):
     HEYMANS_SINGH = "heymans-singh"
 
 
+class Select(StrEnum):
+    """What chooses among sub-graphs under the paper's engine."""
+
+    FACTS = "facts"  # the sum of degrees first, the graph similarity second
+    SIMILARITY = "similarity"  # the graph similarity alone, as in the paper
+
+
 class ViewpointName(StrEnum):
     """Where left and right are said from: as the scene states, or a side to be recovered
     (:mod:`deixis.workflows.viewpoint`)."""

@@ -30,11 +30,11 @@ if TYPE_CHECKING:
     from scipy.sparse import csr_array
 
 
-def with_same_word(graph: RelationGraph, most: int) -> RelationGraph:
+def with_same_word(graph: RelationGraph, most: int, consistent: bool | None = None) -> RelationGraph:
     """The graph with the firm facts that inverses and transitivity of single words add, after the stated ones.
 
     Facts that contradict each other imply everything, so that then nothing is added; nor is it where there would be
-    more than ``most`` facts.
+    more than ``most`` facts. ``consistent`` says whether the firm facts can hold together, where that is known.
 
     >>> from deixis.ontology.graph import Fact
     >>> from deixis.ontology.tbox import default_ontology
@@ -43,7 +43,9 @@ def with_same_word(graph: RelationGraph, most: int) -> RelationGraph:
     >>> [str(fact) for fact in with_same_word(RelationGraph.from_facts(r, "abc", facts), 100).facts()]
     ['left(a, b)', 'top_left(b, c)', 'bottom_right(c, b)', 'right(b, a)']
     """
-    if not Implications(graph, time_limit=1.0).consistent:
+    if consistent is None:
+        consistent = Implications(graph, time_limit=1.0).consistent
+    if not consistent:
         return graph
     added = list(_added(graph))
     count = sum(len(pairs) for _, pairs in added)

@@ -35,14 +35,14 @@ from deixis.reasoning.grounding.matching.problem import Problem
 Array = NDArray[np.float64]
 
 MIRROR_PRIOR = 0.05
-COARSE = 24  # angles that are tried at first: every 15 degrees
-FINE = 5  # by how much the grid is finer where it is worth it
-WORTH = 6.0  # nats below the best, within which an angle is looked at finely
-ROUND = 0.05  # |W - H| / (W + H) below which a box is taken for that of a round thing
-HOPELESS = 12.0  # nats by which its best map lags behind, beyond which a viewpoint's other maps are not listed
-MARGIN = 4.0  # nats below the best, within which maps are listed
-LISTED = 300  # maps at the most
-TIE = 1e-6  # nats within which a description cannot tell
+COARSE_ANGLES = 24  # angles that are tried at first: every 15 degrees
+FINE_PER_COARSE = 5  # by how much the grid is finer where it is worth it
+REFINEMENT_MARGIN = 6.0  # nats below the best, within which an angle is looked at finely
+MAX_ROUND_CONTRAST = 0.05  # |W - H| / (W + H) below which a box is taken for that of a round thing
+VIEWPOINT_MARGIN = 12.0  # nats by which its best map lags behind, beyond which a viewpoint's other maps are not listed
+MAP_MARGIN = 4.0  # nats below the best, within which maps are listed
+MAX_LISTED_MAPS = 300  # maps at the most
+TIE_TOLERANCE = 1e-6  # nats within which a description cannot tell
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,7 +82,7 @@ class Viewpoints:
     @property
     def ties(self) -> tuple[Viewpoint, ...]:
         best = self.best.log_evidence
-        return tuple(view for view in self.viewpoints if abs(view.log_evidence - best) <= TIE)
+        return tuple(view for view in self.viewpoints if abs(view.log_evidence - best) <= TIE_TOLERANCE)
 
 
 def turned(boxes: Array, angle: float, mirrored: bool = False) -> Array:
@@ -121,7 +121,7 @@ def _freely_turned(low: Array, high: Array, angle: float) -> tuple[Array, Array]
     spread, contrast = abs(cos) + abs(sin), abs(cos) - abs(sin)
     sum_, limit = total / spread, total / spread
     apart = np.clip(difference / contrast, -limit, limit) if abs(contrast) > 1e-9 else np.zeros(len(total))
-    oblong = np.abs(difference) > ROUND * total
+    oblong = np.abs(difference) > MAX_ROUND_CONTRAST * total
     extents = np.stack([sum_ + apart, sum_ - apart], axis=1) / 2
     halves = np.where(oblong[:, None], extents, np.stack([width, height], axis=1)) / 2
     return centres - halves, centres + halves
@@ -145,10 +145,10 @@ def recover_viewpoint(
     """
     require_boxes(boxes)
     sides = (False, True) if mirror else (False,)
-    count = COARSE if any_angle else 4
-    tried = [_Tried(step * 2 * math.pi / count, side, 1 / count) for side in sides for step in range(count)]
+    count = COARSE_ANGLES if any_angle else 4
+    tried = [_Angle(step * 2 * math.pi / count, side, 1 / count) for side in sides for step in range(count)]
     tried.sort(key=lambda one: one.angle % (math.pi / 2) > 1e-9)
-    look = _Looker(boxes, problem_of, deadline)
+    look = _AngleSearch(boxes, problem_of, deadline)
     looked = look.at(tried)
     not_looked = tried[len(looked) :]
     everywhere = not not_looked
@@ -166,7 +166,7 @@ def recover_viewpoint(
 
 
 @dataclass(frozen=True)
-class _Tried:
+class _Angle:
     """An angle that stands for a share of the circle."""
 
     angle: float
@@ -175,86 +175,88 @@ class _Tried:
 
 
 @dataclass(frozen=True, eq=False)
-class _Looked:
-    tried: _Tried
+class _AngleEvidence:
+    tried: _Angle
     log_evidence: float
     assignment: NDArray[np.int64]
     complete: bool
 
 
 @dataclass(frozen=True, eq=False)
-class _Looker:
+class _AngleSearch:
     boxes: Array
     problem_of: Callable[[Array], Problem]
     deadline: float
 
-    def at(self, tried: Sequence[_Tried]) -> list[_Looked]:
+    def at(self, tried: Sequence[_Angle]) -> list[_AngleEvidence]:
         """The best map of each until the deadline; where that is not hopeless, the evidence of all maps.
 
         Each has its share of the time that is left, lest the first search takes it all; the first is always looked at.
         """
-        found: list[tuple[_Looked, Problem]] = []
+        found: list[tuple[_AngleEvidence, Problem]] = []
         for one in tried:
             if found and self.left <= 0:
                 break
             problem = self.problem_of(turned(self.boxes, one.angle, one.mirrored))
             found.append((self._best(one, problem, self.left / (len(tried) - len(found))), problem))
         most = max(one.log_evidence for one, _ in found)
-        return [self._listed(one, problem) if one.log_evidence >= most - HOPELESS else one for one, problem in found]
+        return [
+            self._listed(one, problem) if one.log_evidence >= most - VIEWPOINT_MARGIN else one for one, problem in found
+        ]
 
     @property
     def left(self) -> float:
         """Seconds to the deadline."""
         return self.deadline - time.perf_counter()
 
-    def _best(self, one: _Tried, problem: Problem, seconds: float) -> _Looked:
+    def _best(self, one: _Angle, problem: Problem, seconds: float) -> _AngleEvidence:
         from deixis.reasoning.grounding.matching.exact import exact
 
         best = exact(problem, time.perf_counter() + seconds)
-        return _Looked(one, best.value, best.assignment, best.proved)
+        return _AngleEvidence(one, best.value, best.assignment, best.proved)
 
-    def _listed(self, one: _Looked, problem: Problem) -> _Looked:
+    def _listed(self, one: _AngleEvidence, problem: Problem) -> _AngleEvidence:
         from deixis.reasoning.grounding.matching.exact import maps_within
 
         if self.left <= 0:
             return replace(one, complete=False)
-        maps = maps_within(problem, MARGIN, self.deadline, limit=LISTED)
-        return _Looked(one.tried, _log_sum(maps.values.tolist()), maps.assignments[0], maps.complete)
+        maps = maps_within(problem, MAP_MARGIN, self.deadline, limit=MAX_LISTED_MAPS)
+        return _AngleEvidence(one.tried, _log_sum(maps.values.tolist()), maps.assignments[0], maps.complete)
 
-    def closer(self, looked: Sequence[_Looked]) -> tuple[list[_Looked], bool]:
+    def closer(self, looked: Sequence[_AngleEvidence]) -> tuple[list[_AngleEvidence], bool]:
         """Every angle that is worth it replaced by finer ones over the same arc, and whether there was time for all."""
         best = max(one.log_evidence for one in looked)
-        worth = [one.tried for one in looked if one.log_evidence >= best - WORTH]
+        worth = [one.tried for one in looked if one.log_evidence >= best - REFINEMENT_MARGIN]
         if self.left <= 0:
             return list(looked), False
         fine = [finer for one in worth for finer in _finer(one)]
         seen = self.at(fine)
-        done = len(seen) // FINE  # an arc of which not all was seen is left as it was
+        done = len(seen) // FINE_PER_COARSE  # an arc of which not all was seen is left as it was
         replaced = {id(one) for one in worth[:done]}
         kept = [one for one in looked if id(one.tried) not in replaced]
-        return kept + seen[: done * FINE], len(seen) == len(fine)
+        return kept + seen[: done * FINE_PER_COARSE], len(seen) == len(fine)
 
 
-def _finer(one: _Tried) -> list[_Tried]:
+def _finer(one: _Angle) -> list[_Angle]:
     """The angles of a finer grid over the same arc."""
-    share = one.share / FINE
-    angles = [one.angle + (k - (FINE - 1) / 2) * 2 * math.pi * share for k in range(FINE)]
-    return [_Tried(angle % (2 * math.pi), one.mirrored, share) for angle in angles]
+    share = one.share / FINE_PER_COARSE
+    angles = [one.angle + (k - (FINE_PER_COARSE - 1) / 2) * 2 * math.pi * share for k in range(FINE_PER_COARSE)]
+    return [_Angle(angle % (2 * math.pi), one.mirrored, share) for angle in angles]
 
 
-def _modes(looked: Sequence[_Looked]) -> list[list[_Looked]]:
+def _modes(looked: Sequence[_AngleEvidence]) -> list[list[_AngleEvidence]]:
     """Neighbouring angles that are one viewpoint: those on the slopes of one peak, or with one best map."""
-    modes: list[list[_Looked]] = []
+    modes: list[list[_AngleEvidence]] = []
     for side in (False, True):
         ring = sorted((one for one in looked if one.tried.mirrored is side), key=lambda one: one.tried.angle)
-        groups: dict[int, list[_Looked]] = {}
+        groups: dict[int, list[_AngleEvidence]] = {}
         for home, one in zip(_homes(ring), ring, strict=True):
             groups.setdefault(home, []).append(one)
         modes += groups.values()
     return modes
 
 
-def _homes(ring: list[_Looked]) -> list[int]:
+def _homes(ring: list[_AngleEvidence]) -> list[int]:
     """For each angle of a circle the number of its group."""
     n = len(ring)
     homes = list(range(n))
@@ -262,14 +264,14 @@ def _homes(ring: list[_Looked]) -> list[int]:
         after, before = (i + 1) % n, (i - 1) % n
         higher = max((before, after), key=lambda j: round(ring[j].log_evidence, 9))
         joined = [after] if np.array_equal(ring[i].assignment, ring[after].assignment) else []
-        joined += [higher] if ring[higher].log_evidence >= ring[i].log_evidence - TIE else []
+        joined += [higher] if ring[higher].log_evidence >= ring[i].log_evidence - TIE_TOLERANCE else []
         for j in joined:
             old, new = homes[j], homes[i]
             homes = [new if home == old else home for home in homes]
     return homes
 
 
-def _viewpoint(mode: list[_Looked], mirror: bool) -> tuple[Viewpoint, float]:
+def _viewpoint(mode: list[_AngleEvidence], mirror: bool) -> tuple[Viewpoint, float]:
     """A peak as one viewpoint at its mean angle, and the logarithm of its prior times its evidence."""
     prior = _prior(mode[0].tried.mirrored, mirror)
     peak = max(mode, key=lambda one: (round(one.log_evidence, 9), -one.tried.angle))
@@ -285,7 +287,7 @@ def _prior(mirrored: bool, mirror: bool) -> float:
     return (MIRROR_PRIOR if mirrored else 1 - MIRROR_PRIOR) if mirror else 1.0
 
 
-def _mean_angle(mode: list[_Looked]) -> tuple[float, float]:
+def _mean_angle(mode: list[_AngleEvidence]) -> tuple[float, float]:
     """The circular mean by evidence and the mean resultant length; of a single angle just that, and 1."""
     if len(mode) == 1:
         return mode[0].tried.angle, 1.0
@@ -301,7 +303,7 @@ def _log_sum(values: Sequence[float]) -> float:
     return most + math.log(sum(math.exp(value - most) for value in values)) if most > -math.inf else most
 
 
-FIRST = 0.5
+FIRST_VIEWPOINT_SHARE = 0.5
 """Share of the time for the likeliest side, which is all the answer where there is no time for others."""
 
 
@@ -323,7 +325,7 @@ class FromSides:
 
     def align(self, evidence: Evidence, deadline: float) -> Alignment:
         now = time.perf_counter()
-        found = self.engine.align(evidence, now + FIRST * (deadline - now))
+        found = self.engine.align(evidence, now + FIRST_VIEWPOINT_SHARE * (deadline - now))
         if found.posterior is None or not self.others:
             return found
         parts = [(self.probability, found.posterior), *self._others(evidence, deadline)]

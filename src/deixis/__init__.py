@@ -25,9 +25,10 @@ if TYPE_CHECKING:
     from deixis.errors import DeixisError
     from deixis.grammar.format import format_script
     from deixis.perception.formats.scene_json import read_scene
-    from deixis.session import Session, ground
+    from deixis.session import Session
     from deixis.workflows.ask import ask
     from deixis.workflows.check import check
+    from deixis.workflows.ground import ground
     from deixis.workflows.imagine import imagine
     from deixis.workflows.infer import infer
     from deixis.workflows.perceive import perceive, write_scene
@@ -59,7 +60,7 @@ _HOMES = {
     "ask": "deixis.workflows.ask",
     "check": "deixis.workflows.check",
     "format_script": "deixis.grammar.format",
-    "ground": "deixis.session",
+    "ground": "deixis.workflows.ground",
     "imagine": "deixis.workflows.imagine",
     "infer": "deixis.workflows.infer",
     "perceive": "deixis.workflows.perceive",

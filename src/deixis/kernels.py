@@ -2,15 +2,10 @@
 
 from __future__ import annotations
 
-import time
-from functools import cache
-
-MEANWHILE = 0.2
-"""Seconds that the chains of a miniature may take beyond their compilation."""
-
 
 def compile_kernels() -> None:
     """Runs one tiny job of each kind; the compiled code is kept on disk, and so are the reasoners' classes."""
+    from deixis.workflows.ground import ready_to_ground
     from deixis.workflows.imagine import ready_to_imagine
     from deixis.workflows.infer import ready_to_infer
     from deixis.workflows.solve import ready_to_solve
@@ -26,43 +21,6 @@ def compile_kernels() -> None:
     compile_detection()
     compile_features()
     compile_recognition()
-
-
-@cache
-def ready_to_ground(engine: str) -> None:
-    """Compiles, or loads compiled, what grounding with an engine needs, so that no time limit is spent on it.
-
-    A miniature goes the way of any grounding, and the probabilities of another are sampled as those of many things
-    are. Raises UnknownTermError for a name that no engine has.
-    """
-    from deixis.grammar.parser import parse_script
-    from deixis.perception.formats.scene_json import read_scene
-    from deixis.reasoning.entailment.conflict import find_conflict
-    from deixis.reasoning.entailment.implications import Implications
-    from deixis.reasoning.grounding.engines import engine_named
-    from deixis.reasoning.grounding.evidence.evidence import evidence_from
-    from deixis.reasoning.grounding.ground import ground
-
-    chosen = engine_named(engine)
-    boxes = [{"id": f"o{i}", "min": [0.2 * i, 0], "max": [0.2 * i + 0.1, 0.1]} for i in range(3)]
-    script = parse_script("fork left of plate\nknife right of plate\n")
-    find_conflict(Implications(script.graph()))
-    scene = read_scene({"frame": "table", "viewpoint": "chair", "unit": "m", "objects": boxes})
-    known, seen = script.ontology, scene.graph(script.ontology.relations)
-    ground(evidence_from(script.graph(), seen, [None] * len(boxes), known.kinds, known.sizes), chosen, 3600.0)
-    _sample()
-
-
-def _sample() -> None:
-    """Asks for less mass to be missing than a sum over maps can promise, which leaves sampling."""
-    import numpy as np
-
-    from deixis.reasoning.grounding.matching.posterior import posterior
-    from deixis.reasoning.grounding.matching.problem import Problem
-
-    unary, tables = np.array([[0.0, -60.0], [0.0, 0.0]]), np.zeros((1, 2, 2), np.float32)
-    problem = Problem(np.array([[0, 1]]), np.array([0]), tables, unary, np.full(2, -80.0))
-    posterior(problem, time.perf_counter() + MEANWHILE, mass=1e-30)
 
 
 def _tell_time() -> None:

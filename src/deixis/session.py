@@ -7,24 +7,20 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
 from deixis.grammar.script import Script
-from deixis.kernels import ready_to_ground
 from deixis.knowledge_store import KnowledgeStore
-from deixis.learning.scene_evidence import conflict_notes, evidence_of
 from deixis.memory.on_demand import default_memory
 from deixis.memory.owner import Closing
 from deixis.ontology.tbox import Ontology
 from deixis.perception.scene import Scene
-from deixis.reasoning.errors import SettingError, require_time_limit
 from deixis.reasoning.grounding.answer import Grounding
-from deixis.reasoning.grounding.engines import Select, engine_named
-from deixis.reasoning.grounding.evidence.meaning import SHIPPED, Meaning
+from deixis.reasoning.grounding.evidence.meaning import Meaning
 from deixis.reasoning.grounding.ground import DEFAULT_TIME_LIMIT
-from deixis.reasoning.grounding.ground import ground as ground_evidence
-from deixis.reasoning.grounding.options import ViewpointName
+from deixis.reasoning.grounding.options import EngineName, Select, ViewpointName
 from deixis.view_store import ViewStore
 from deixis.workflows.check import Checked, check
+from deixis.workflows.ground import ground
 from deixis.workflows.learn import Learned, learn
-from deixis.workflows.read import as_scene, as_script, viewpoint_notes
+from deixis.workflows.read import as_script
 from deixis.workflows.recognise import recognise
 from deixis.workflows.teach import teach
 
@@ -38,39 +34,7 @@ if TYPE_CHECKING:
     from deixis.memory.semantic.store import SemanticMemory
     from deixis.ontology.lessons.types import LayoutConcept
     from deixis.reasoning.description_logic.object_view import ObjectView
-
-
-def ground(
-    script: Script | str | Path,
-    scene: Scene | str | Path | Mapping[str, Any],
-    engine: str = "exact",
-    time_limit: float = DEFAULT_TIME_LIMIT,
-    select: str = Select.FACTS,
-    meaning: Meaning = SHIPPED,
-    viewpoint: str = ViewpointName.STATED,
-) -> Grounding:
-    """Works out which perceived thing each object of a script is.
-
-    ``engine`` is ``exact``, ``scalable``, ``similarity`` (the paper's), ``blondel`` or ``heymans-singh``; ``select``
-    says what chooses among sub-graphs under the paper's: ``facts``, or ``similarity`` alone as in the paper.
-    ``meaning`` says how words and sizes are taken; ``viewpoint`` is that of the scene as ``stated``, or recovered: by
-    ``quarter`` turns, or ``unknown``, from any side (:mod:`deixis.workflows.viewpoint`). The answer comes within about
-    ``time_limit`` seconds, proved or not, and says which. Raises DeixisError for bad input.
-    """
-    script, scene = as_script(script), as_scene(scene)
-    require_time_limit(time_limit)
-    if select not in list(Select):
-        raise SettingError(f"select is one of {', '.join(Select)}, not '{select}'")
-    if viewpoint not in list(ViewpointName):
-        raise SettingError(f"viewpoint is one of {', '.join(ViewpointName)}, not '{viewpoint}'")
-    ready_to_ground(engine)
-    chosen = engine_named(engine, Select(select))
-    if viewpoint != ViewpointName.STATED:
-        from deixis.workflows.viewpoint import ground_from_anywhere
-
-        return ground_from_anywhere(script, scene, chosen, meaning, viewpoint == ViewpointName.UNKNOWN, time_limit)
-    notes = viewpoint_notes(script.viewpoint, scene) + conflict_notes(script.graph())
-    return ground_evidence(evidence_of(script, scene, meaning), chosen, time_limit, notes)
+    from deixis.workflows.dialogue import Ask
 
 
 class Session(Closing):
@@ -105,12 +69,30 @@ class Session(Closing):
         self,
         script: Script | str | Path,
         scene: Scene | str | Path | Mapping[str, Any],
-        engine: str = "exact",
+        engine: str = EngineName.EXACT,
         time_limit: float = DEFAULT_TIME_LIMIT,
         viewpoint: str = ViewpointName.STATED,
+        *,
+        select: str = Select.FACTS,
+        literal: bool = False,
+        sizes: bool = True,
+        ask: Ask | None = None,
+        max_questions: int | None = None,
     ) -> Grounding:
-        """Grounds as :func:`ground` does, with words and sizes as this memory has learned them."""
-        return ground(script, scene, engine, time_limit, meaning=self.meaning(), viewpoint=viewpoint)
+        """Ground as :func:`deixis.ground` does, with words and sizes as this memory has learned them."""
+        return ground(
+            as_script(script, self.ontology),
+            scene,
+            engine,
+            time_limit,
+            select,
+            self.meaning(),
+            viewpoint,
+            literal=literal,
+            sizes=sizes,
+            ask=ask,
+            max_questions=max_questions,
+        )
 
     def learn(
         self,

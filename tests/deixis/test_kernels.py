@@ -26,7 +26,7 @@ from deixis.workflows.imagine import imagine, ready_to_imagine
 from deixis.workflows.infer import inference_of, ready_to_infer
 from deixis.reasoning.qualitative.calculi.registry import calculus
 from deixis.workflows.solve import Wish, ready_to_solve, solve_text
-from deixis.kernels import ready_to_ground
+from deixis.workflows.ground import ready_to_ground
 
 CHOICES = parse_script("a left of or above b; b left or right of c; c above or below d; e is not left of a")
 

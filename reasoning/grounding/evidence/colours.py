@@ -18,7 +18,7 @@ Array = NDArray[np.float64]
 OUTLIERS = 0.05
 """Share of things seen in any colour, whatever is said of them: by how they are lit, or since they have several."""
 
-OTHER = 0.05
+MAX_OTHER_RATIO = 0.05
 """A thing is of another colour where the described one is so much less likely its name than the likeliest, or less."""
 
 TO_XYZ = np.array([[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]])
@@ -69,7 +69,8 @@ def other_colours(described: Sequence[str | None], seen: NDArray[np.float64], co
     """The colours that n things plainly are instead of those in which they are described (IRIs), None for the others.
 
     ``seen``, shape (n, 3), is as for :func:`colour_evidence`. Between neighbours such as red and orange either word may
-    do: p(seen | described) has to be ``OTHER`` of the greatest density at the most. What others there are says nothing.
+    do: p(seen | described) has to be ``MAX_OTHER_RATIO`` of the greatest density at the most. What others there are
+    says nothing.
     """
     found: list[Colour | None] = [None] * len(described)
     terms = list(colours)
@@ -78,7 +79,7 @@ def other_colours(described: Sequence[str | None], seen: NDArray[np.float64], co
         if iri is not None and not np.isnan(seen[place]).any():
             lab = lab_of_srgb(seen[place])[None]
             densities = np.array([_log_density(lab, term)[0] for term in terms])
-            if densities[column[iri]] - densities.max() <= np.log(OTHER):
+            if densities[column[iri]] - densities.max() <= np.log(MAX_OTHER_RATIO):
                 found[place] = terms[int(densities.argmax())]
     return found
 

@@ -11,18 +11,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.errors import GraphError
 from deixis.ontology.colours import Colours
 from deixis.ontology.graph import RelationGraph
 from deixis.ontology.kinds import Kinds
 from deixis.ontology.relation import Reading
 from deixis.ontology.sizes import Sizes
+from deixis.reasoning.geometry.rectangle import SceneRelations
 from deixis.reasoning.grounding.evidence.colours import colour_evidence
 from deixis.reasoning.grounding.evidence.degrees import log_likelihood_ratio
 from deixis.reasoning.grounding.evidence.facts import fact_tables, hedged
@@ -31,50 +31,71 @@ from deixis.reasoning.grounding.evidence.meaning import OUTLIERS, SHIPPED, Meani
 from deixis.reasoning.grounding.evidence.unary import label_ratios, size_evidence
 from deixis.reasoning.grounding.matching.problem import UNMATCHED, Problem
 
-RARELY = 0.015
-"""The odds at most that an object is absent from a scene that has room for all."""
+MAX_ABSENCE_ODDS = 0.015
+"""Upper bound of the odds that an object is absent from a scene that has room for all."""
 
-PRESENT = -30.0
-"""What leaving an object out costs where a certain label says that it is there."""
+PRESENT_LOG_ODDS = -30.0
+"""Log-odds of absence of an object that a certain label, or an answer, says is there."""
 
 
 @dataclass(frozen=True, eq=False)
 class Evidence:
-    """Two graphs side by side: a description of n1 objects by m facts, and a scene of n2 objects, fully related.
+    """A description of n1 objects by m facts beside a scene of n2 things, with all that speaks for each match.
 
-    ``labels``, ``sizes`` and ``colours`` (n1, n2) are log-likelihood ratios of each object being each perceived thing,
-    -inf in ``labels`` where that is ruled out; no ``colours`` where none are known.
+    ``labels``, ``sizes`` and ``colours`` (n1, n2) are finite log-likelihood ratios of each object being each perceived
+    thing; no ``colours`` where none are known. ``allowed`` (n1, n2) says which object may be which thing: a certain
+    label, or an answer, rules matches out. ``identified`` (n2,) are the things of which a certain label, or an answer,
+    says what they are. Masks that are left out rule nothing out and identify nothing. ``consistent`` says whether the
+    firm facts can hold together, where that is known already.
     """
 
     description: RelationGraph
-    scene: RelationGraph
+    scene: SceneRelations
     labels: NDArray[np.float64]
     sizes: NDArray[np.float64]
     meaning: Meaning = SHIPPED
     colours: NDArray[np.float64] | None = None
+    allowed: NDArray[np.bool_] = field(default_factory=lambda: np.array(True))
+    identified: NDArray[np.bool_] = field(default_factory=lambda: np.array(False))
+    consistent: bool | None = None
 
-    @cached_property
-    def allowed(self) -> NDArray[np.bool_]:
-        """Which object may be which perceived thing, shape (n1, n2)."""
-        result: NDArray[np.bool_] = ~np.isneginf(self.labels)
-        return result
+    def __post_init__(self) -> None:
+        shape = (len(self.description.nodes), len(self.scene.nodes))
+        object.__setattr__(self, "allowed", np.broadcast_to(self.allowed, shape))
+        object.__setattr__(self, "identified", np.broadcast_to(self.identified, shape[1:]))
 
     @property
     def unary(self) -> NDArray[np.float64]:
-        """What speaks for each match besides the facts, shape (n1, n2)."""
+        """What speaks for each match besides the facts, shape (n1, n2); 0 where it is not allowed."""
         total: NDArray[np.float64] = self.labels + self.sizes
-        return total if self.colours is None else total + self.colours
+        if self.colours is not None:
+            total = total + self.colours
+        return np.where(self.allowed, total, 0.0)
+
+    @property
+    def present(self) -> NDArray[np.bool_]:
+        """Which objects are known to be there (n1,): those of which an identified thing bears the label."""
+        present: NDArray[np.bool_] = np.any((self.labels > 0) & self.identified[None, :], axis=1)
+        return present
 
     @cached_property
     def problem(self) -> Problem:
-        """What there is to be searched. A scene without boxes is taken literally, by the names of its pairs."""
-        certain = (self.labels > 0) & np.any(~self.allowed, axis=0)[None, :]
-        absent = np.where(certain.any(axis=1), PRESENT, absence(*self.labels.shape))
+        """The matching problem to be searched. A scene without boxes is taken literally, by the names of its pairs."""
+        absent = np.where(self.present, PRESENT_LOG_ODDS, absence(*self.labels.shape))
         boxes = self.scene.boxes
         if boxes is None or not self.meaning.graded:
-            return Problem(*self._literal_tables(), self.unary, absent)
-        facts = fact_tables(self.description, boxes, self.meaning.models, unary=self.unary, absent=absent)
-        return Problem(facts.ends, facts.kinds, facts.tables, self.unary, absent)
+            return Problem(*self._literal_tables(), self.unary, absent, self.allowed)
+        unary = self.unary
+        facts = fact_tables(
+            self.description,
+            boxes,
+            self.meaning.models,
+            unary=unary,
+            absent=absent,
+            allowed=self.allowed,
+            names=self.scene.names,
+        )
+        return Problem(facts.ends, facts.kinds, facts.tables, unary, absent, self.allowed)
 
     def _literal_tables(self) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float32]]:
         """Ends, kinds and tables of the facts in the crisp reading, chance being one pair for each of the names."""
@@ -84,16 +105,11 @@ class Evidence:
         exact = [relation.index for relation in graph.vocabulary.of_reading(Reading.EXACT)]
         tables = np.zeros((len(rows), len(self.scene.nodes), len(self.scene.nodes)), dtype=np.float32)
         for table, row in zip(tables, rows, strict=True):
-            degrees = row[:-1][self.names]
+            degrees = row[:-1][self.scene.names]
             table[:] = hedged(log_likelihood_ratio(degrees, OUTLIERS, float(row[exact].mean())), float(row[-1]))
             np.fill_diagonal(table, 0.0)
         ends = np.stack([graph.subjects[edges], graph.objects[edges]], axis=1).astype(np.int64)
         return ends, kinds.ravel().astype(np.int64), tables
-
-    @cached_property
-    def names(self) -> NDArray[np.int16]:
-        """The exact name of every ordered perceived pair, shape (n2, n2): relation indices, -1 on the diagonal."""
-        return exact_names(self.scene)
 
     @cached_property
     def facts(self) -> NDArray[np.int64]:
@@ -124,7 +140,7 @@ class Evidence:
         subjects = assignment[..., self.description.subjects[self.facts]]
         objects = assignment[..., self.description.objects[self.facts]]
         matched = (subjects != UNMATCHED) & (objects != UNMATCHED)
-        names = np.where(matched, self.names[subjects, objects], -1) if len(self.names) else subjects
+        names = np.where(matched, self.scene.names[subjects, objects], -1) if len(self.scene.nodes) else subjects
         degrees: NDArray[np.float64] = np.where(matched, self.degree_table[np.arange(len(self.facts)), names], 0.0)
         return degrees
 
@@ -143,13 +159,16 @@ class Evidence:
 
     def reordered(self, rows: NDArray[np.int64], columns: NDArray[np.int64]) -> Evidence:
         """The same evidence with the objects and the perceived things in another order."""
-        return Evidence(
-            self.description.subgraph([self.description.nodes[i] for i in rows]),
-            self.scene.subgraph([self.scene.nodes[i] for i in columns]),
-            self.labels[np.ix_(rows, columns)],
-            self.sizes[np.ix_(rows, columns)],
-            self.meaning,
-            None if self.colours is None else self.colours[np.ix_(rows, columns)],
+        both = np.ix_(rows, columns)
+        return replace(
+            self,
+            description=self.description.subgraph([self.description.nodes[i] for i in rows]),
+            scene=self.scene.reordered(columns),
+            labels=self.labels[both],
+            sizes=self.sizes[both],
+            colours=None if self.colours is None else self.colours[both],
+            allowed=self.allowed[both],
+            identified=self.identified[columns],
         )
 
 
@@ -160,38 +179,19 @@ def absence(objects: int, things: int) -> float:
     either are those of Jeffreys' rule, (k + 1/2) / (n - k + 1/2), for the k that there are at least: all but as many
     as there are on the other side. And of k objects and k things there are k times as many maps that match all as of
     k - 1 and k - 1, so that each of the former is as many times less likely. But a few words about a full table are no
-    sign that what they name is missing: where none has to be absent, its odds are ``RARELY`` at most, and where most
-    things are not described anyway, one more says nothing.
+    sign that what they name is missing: where none has to be absent, its odds are ``MAX_ABSENCE_ODDS`` at most, and
+    where most things are not described anyway, one more says nothing.
 
     >>> round(absence(12, 12), 1), round(absence(15, 12), 1), round(absence(2, 300), 1)
     (-4.9, -2.0, -4.2)
     """
     absent, extra = max(0, objects - things), max(0, things - objects)
-    of_objects = (absent + 0.5) / (objects - absent + 0.5) if absent else min(0.5 / (objects + 0.5), RARELY)
+    of_objects = (absent + 0.5) / (objects - absent + 0.5) if absent else min(0.5 / (objects + 0.5), MAX_ABSENCE_ODDS)
     of_things = (extra + 0.5) / (things - extra + 0.5) * max(1, min(objects, things))
     return math.log(of_objects) + min(0.0, math.log(of_things))
 
 
-def exact_names(scene: RelationGraph) -> NDArray[np.int16]:
-    """The exact name of every ordered pair of a scene's graph, shape (n, n), -1 on the diagonal.
-
-    Raises GraphError where a pair has no exact name, or more than one.
-    """
-    n = len(scene.nodes)
-    exact = sum(relation.bit for relation in scene.vocabulary.of_reading(Reading.EXACT))
-    sets = scene.relation_sets
-    single = (np.bitwise_count(sets) == 1) & ((sets & ~np.int64(exact)) == 0) & scene.positive
-    names = np.full((n, n), -1, dtype=np.int16)
-    names[scene.subjects[single], scene.objects[single]] = np.round(np.log2(sets[single])).astype(np.int16)
-    missing = (names < 0) & ~np.eye(n, dtype=bool)
-    if missing.any() or len(scene) != n * (n - 1):
-        where = np.argwhere(missing)
-        pair = f" ({scene.nodes[where[0][0]]}, {scene.nodes[where[0][1]]})" if len(where) else ""
-        raise GraphError(f"a scene's graph needs one exact relation for every ordered pair{pair}")
-    return names
-
-
-def no_unary_evidence(description: RelationGraph, scene: RelationGraph, meaning: Meaning = SHIPPED) -> Evidence:
+def no_unary_evidence(description: RelationGraph, scene: SceneRelations, meaning: Meaning = SHIPPED) -> Evidence:
     """The evidence of the facts alone: everything is allowed, and nothing else speaks for a match."""
     nothing = np.zeros((len(description.nodes), len(scene.nodes)))
     return Evidence(description, scene, nothing, nothing, meaning)
@@ -199,7 +199,7 @@ def no_unary_evidence(description: RelationGraph, scene: RelationGraph, meaning:
 
 def evidence_from(
     description: RelationGraph,
-    scene: RelationGraph,
+    scene: SceneRelations,
     labels: Sequence[Label | None],
     kinds: Kinds,
     sizes: Sizes,
@@ -214,12 +214,14 @@ def evidence_from(
     ``seen`` are the things' colours in sRGB, shape (n2, 3), NaN where not known; ``colours`` are the known terms.
     """
     weights, shape = meaning.weights, (len(description.nodes), len(scene.nodes))
-    said, measured = np.zeros(shape), np.zeros(shape)
+    said, measured, allowed = np.zeros(shape), np.zeros(shape), np.ones(shape, dtype=bool)
     if weights.labels > 0:
-        said = weights.labels * label_ratios(description, labels, kinds)
+        ratios, allowed = label_ratios(description, labels, kinds)
+        said = weights.labels * ratios
     if weights.sizes > 0 and scene.boxes is not None:
         measured = weights.sizes * size_evidence(classes(description), scene.boxes, sizes, meaning.sizes, metric)
     shades = None
     if weights.colours > 0 and seen is not None and colours is not None and description.colours:
         shades = weights.colours * colour_evidence(description.colours, seen, colours)
-    return Evidence(description, scene, said, measured, meaning, shades)
+    identified = np.any(~allowed, axis=0)
+    return Evidence(description, scene, said, measured, meaning, shades, allowed, identified)

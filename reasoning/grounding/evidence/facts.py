@@ -42,8 +42,8 @@ IMPLIED = 0.1
 LITERAL_CHANCE = 0.1
 """The degree by chance of a word taken literally: it is one of ten names."""
 
-AWAY = -30.0
-"""What leaving an object out is worth to the judgement of how literal words are, where nothing is said of it."""
+ABSENT_LOG_ODDS = -30.0
+"""Log-odds of an object's absence that the judgement of literalness assumes, where none are given."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,49 +69,49 @@ def fact_tables(
     literal: float | None = None,
     unary: Array | None = None,
     absent: Array | None = None,
+    allowed: NDArray[np.bool_] | None = None,
+    names: NDArray[np.integer] | None = None,
 ) -> FactTables:
     """The evidence of every fact for every ordered pair of n2 boxes (n2, 2, d).
 
     ``saying`` takes into account which pairs people speak of; without it only the words count. ``literal`` is the share
     of facts that are meant literally; where it is None, it is judged from the description by the shipped models, with
-    what is known of things by themselves (``unary``, shape (n1, n2)) and of their absence (``absent``, (n1,)), both as
-    in :class:`deixis.reasoning.grounding.matching.problem.Problem`. Raises GraphError for boxes that are none,
-    UnknownTermError for a word that has no model, SettingError for a weight or a share beyond 0 to 1.
+    what is known of things by themselves (``unary``, shape (n1, n2), and the mask ``allowed``) and of their absence
+    (``absent``, (n1,)), as in :class:`deixis.reasoning.grounding.matching.problem.Problem`. ``names`` (n2, n2) are the
+    exact names of the pairs, where they are known already. Raises GraphError for boxes that are none, UnknownTermError
+    for a word that has no model, SettingError for a weight or a share beyond 0 to 1.
     """
     if literal is not None and not 0 <= literal <= 1:
         raise SettingError(f"the share of facts that are meant literally lies between 0 and 1, not at {literal:g}")
     edges = np.flatnonzero(description.subjects != description.objects).astype(np.int64)
-    keys = _statements(description, edges)
+    columns = (description.relation_sets, description.affirmed, description.net_weights)
+    keys = list(zip(*(column[edges].tolist() for column in columns), strict=True))  # relations, sign, weight
     distinct = sorted(set(keys))
     places = {key: place for place, key in enumerate(distinct)}
     kinds = np.array([places[key] for key in keys], dtype=np.int64)
     ends = _ends(description, edges)
-    order = _by_place(boxes)
-    names = box_relations(np.asarray(boxes, dtype=np.float64), description.vocabulary).names[np.ix_(order, order)]
+    order = np.zeros(0, dtype=np.int64)  # of the boxes by their coordinates
+    if len(boxes):
+        order = np.lexsort(np.reshape(boxes, (len(boxes), -1)).T[::-1])
+    if names is None:
+        names = box_relations(np.asarray(boxes, dtype=np.float64), description.vocabulary).names
+    names = names[np.ix_(order, order)]
     pairs = pair_geometry(boxes[order])
-    said = _Said(pairs, names, models or shipped_models(), description.vocabulary, saying, distinct)
+    said = _FactRatios(pairs, names, models or shipped_models(), description.vocabulary, saying, distinct)
     if literal is None:
-        usual = _Said(pairs, names, shipped_models(), description.vocabulary, saying, distinct) if models else said
+        usual = (
+            _FactRatios(pairs, names, shipped_models(), description.vocabulary, saying, distinct) if models else said
+        )
         shape = len(description.nodes), len(boxes)
         alone = np.zeros(shape) if unary is None else np.ascontiguousarray(unary[:, order])
-        away = np.full(shape[0], AWAY) if absent is None else absent
-        graded, exact = (Problem(ends, kinds, usual.tables(share), alone, away) for share in (0.0, LITERAL))
+        away = np.full(shape[0], ABSENT_LOG_ODDS) if absent is None else absent
+        may = np.ones(shape, dtype=bool) if allowed is None else allowed[:, order]
+        graded, exact = (Problem(ends, kinds, usual.tables(share), alone, away, may) for share in (0.0, LITERAL))
         literal = literal_share(graded, exact, np.argsort(np.array(description.nodes, dtype=str)))
     return FactTables(edges, ends, kinds, said.tables(literal, np.argsort(order)))
 
 
-def _statements(description: RelationGraph, edges: NDArray[np.int64]) -> list[tuple[int, bool, float]]:
-    """What each fact says: its relations, whether it is stated or denied, and its weight."""
-    columns = (description.relation_sets, description.affirmed, description.net_weights)
-    return list(zip(*(column[edges].tolist() for column in columns), strict=True))
-
-
-def _by_place(boxes: NDArray[np.float64]) -> NDArray[np.int64]:
-    """The boxes in the order of their coordinates."""
-    return np.lexsort(np.reshape(boxes, (len(boxes), -1)).T[::-1]) if len(boxes) else np.zeros(0, dtype=np.int64)
-
-
-class _Said:
+class _FactRatios:
     """What k different facts (relations, sign, weight) say of the pairs of one scene, to either speaker.
 
     Kept as likelihood ratios, not as their logarithms: speakers mix and hedges weaken by sums of them.
@@ -222,11 +222,11 @@ def hedged(evidence: Array, weight: float) -> Array:
     return result
 
 
-def crisp_tables(description: RelationGraph, names: NDArray[np.int16]) -> FactTables:
+def crisp_tables(description: RelationGraph, names: NDArray[np.integer]) -> FactTables:
     """The crisp reading as the special case: 1, 0.5 or 0 by the pair's exact name, times the weight.
 
     ``names`` (n2, n2): relation indices, -1 on the diagonal, as
-    :attr:`deixis.reasoning.grounding.evidence.evidence.Evidence.names` has.
+    :class:`deixis.reasoning.geometry.rectangle.SceneRelations` has.
     """
     vocabulary = description.vocabulary
     edges = np.flatnonzero(description.subjects != description.objects)

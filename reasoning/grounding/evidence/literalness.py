@@ -21,16 +21,16 @@ Order = NDArray[np.int64]
 LITERAL = 0.9
 """The share of facts that a literal speaker means literally; of all others none is."""
 
-PRIOR = 0.2
+LITERAL_PRIOR = 0.2
 """How many speakers are taken to be literal before they are heard: one in five."""
 
-EFFORT, SIZE = 0.05, 30
+SEARCH_EFFORT, FULL_EFFORT_OBJECTS = 0.05, 30
 """The scalable search's effort for a judgement, up to so many objects; in larger descriptions, the less for each."""
 
-FEW = 8
+MAX_PROVED_OBJECTS = 8
 """Objects up to which proving the best map takes less time than a search."""
 
-MOST_OBJECTS = 60
+MAX_JUDGED_OBJECTS = 60
 """Of larger descriptions a connected part of so many objects is judged."""
 
 
@@ -47,24 +47,31 @@ def literal_share(graded: Problem, literal: Problem, objects: Order) -> float:
     0.58
     """
     worth = [_best_value(_part(problem, objects)) if len(problem.ends) else 0.0 for problem in (graded, literal)]
-    odds = PRIOR / (1 - PRIOR) * np.exp(np.clip(worth[1] - worth[0], -500, 500))
+    odds = LITERAL_PRIOR / (1 - LITERAL_PRIOR) * np.exp(np.clip(worth[1] - worth[0], -500, 500))
     return float(LITERAL * odds / (1 + odds))
 
 
 def _part(problem: Problem, order: Order) -> Problem:
     """The problem with its objects in that order, or a connected part of it, and its facts sorted."""
-    chosen = _connected(problem.ends, order) if len(order) > MOST_OBJECTS else order
+    chosen = _connected(problem.ends, order) if len(order) > MAX_JUDGED_OBJECTS else order
     place = np.full(len(order), -1)
     place[chosen] = np.arange(len(chosen))
     ends = place[problem.ends]
     kept = (ends >= 0).all(axis=1)
     ends, kinds = ends[kept], problem.kinds[kept]
     by = np.lexsort([kinds, ends[:, 1], ends[:, 0]])
-    return replace(problem, ends=ends[by], kinds=kinds[by], unary=problem.unary[chosen], absent=problem.absent[chosen])
+    return replace(
+        problem,
+        ends=ends[by],
+        kinds=kinds[by],
+        unary=problem.unary[chosen],
+        absent=problem.absent[chosen],
+        allowed=problem.allowed[chosen],
+    )
 
 
 def _connected(ends: NDArray[np.int64], order: Order) -> Order:
-    """The first ``MOST_OBJECTS`` objects that facts lead to, breadth first, from the one that has most facts."""
+    """The first ``MAX_JUDGED_OBJECTS`` objects that facts lead to, breadth first, from the one that has most facts."""
     near: dict[int, list[int]] = {i: [] for i in order.tolist()}
     for a, b in ends.tolist():
         near[a].append(b)
@@ -75,7 +82,7 @@ def _connected(ends: NDArray[np.int64], order: Order) -> Order:
     for start in starts:
         waiting = [start]
         for i in waiting:
-            if i not in reached and len(reached) < MOST_OBJECTS:
+            if i not in reached and len(reached) < MAX_JUDGED_OBJECTS:
                 reached[i] = None
                 waiting += sorted(near[i], key=rank.__getitem__)
     return np.array(list(reached), dtype=np.int64)
@@ -86,6 +93,6 @@ def _best_value(problem: Problem) -> float:
     from deixis.reasoning.grounding.matching.exact import exact
     from deixis.reasoning.grounding.matching.scalable import scalable
 
-    if len(problem.absent) <= FEW:
+    if len(problem.absent) <= MAX_PROVED_OBJECTS:
         return exact(problem).value
-    return scalable(problem, effort=EFFORT * min(1.0, SIZE / len(problem.absent))).value
+    return scalable(problem, effort=SEARCH_EFFORT * min(1.0, FULL_EFFORT_OBJECTS / len(problem.absent))).value

@@ -28,7 +28,7 @@ HEADINGS = {
     "bottom_right": (1, -1),
 }
 
-NEARBY = 0.5
+MIN_DIRECTION_OFFSET = 0.5
 """Offset below which a direction counts for less and less: boxes with one centre lie in no direction (90 degrees)."""
 
 
@@ -59,7 +59,7 @@ def _direction(pairs: PairGeometry, heading: tuple[int, int]) -> View:
         return reduce(np.minimum, (feature(pairs, axis, heading[axis]) for axis in axes))
 
     def deviation() -> Array:
-        result: Array = np.arccos(np.clip(forward / np.maximum(pairs.distance, NEARBY), -1.0, 1.0))
+        result: Array = np.arccos(np.clip(forward / np.maximum(pairs.distance, MIN_DIRECTION_OFFSET), -1.0, 1.0))
         return result
 
     def lateral() -> Array:

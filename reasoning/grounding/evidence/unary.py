@@ -1,7 +1,7 @@
 """What is known of the things themselves, as log-likelihood ratios against chance: labels, sizes and proportions.
 
 Each source of evidence weighs as stated in :class:`UnaryWeights`; all are added up. Densities are mixed with
-``OUTLIERS`` of chance, so that a size never rules a thing out; only a certain label does (-inf).
+``OUTLIERS`` of chance, so that a size never rules a thing out; only a certain label does.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ Array = NDArray[np.float64]
 OUTLIERS = 0.05
 """Share of things whose size says nothing of their kind."""
 
-HIGHER, MEASURED = 2.0, 0.02
+MAX_HEIGHT_RATIO, HEIGHT_ERROR = 2.0, 0.02
 """A thing is plainly too high for a kind where it is so many times as high as the highest ones, and so many metres."""
 
 
@@ -106,7 +106,7 @@ def too_high(
         return np.zeros((len(kinds), len(boxes)), dtype=bool)
     usual = [None if kind in (learned or {}) else sizes.of(kind) for kind in kinds]
     most = [
-        np.inf if size is None or size.stated_of == DX.THING else HIGHER * size.height.greatest + MEASURED
+        np.inf if size is None or size.stated_of == DX.THING else MAX_HEIGHT_RATIO * size.height.greatest + HEIGHT_ERROR
         for size in usual
     ]
     result: NDArray[np.bool_] = boxes[None, :, 1, 2] - boxes[None, :, 0, 2] > np.array(most)[:, None]
@@ -174,9 +174,12 @@ def _log_kernel(at: Array, centres: Array, spread: Array) -> Array:
     return result
 
 
-def label_ratios(description: RelationGraph, labels: Sequence[Label | None], kinds: Kinds) -> Array:
-    """What labels say of n1 objects being each of n2 things, shape (n1, n2); -inf where a certain one rules it out.
+def label_ratios(
+    description: RelationGraph, labels: Sequence[Label | None], kinds: Kinds
+) -> tuple[Array, NDArray[np.bool_]]:
+    """What labels say of n1 objects being each of n2 things, and which of these matches they allow, each (n1, n2).
 
+    The log-likelihood ratios are finite: 0 for a match that a certain label rules out.
     A label of confidence c names k of n1 objects: it is right with probability c, else drawn from all objects, so that
     its ratio is c n1 / k + 1 - c for those, and 1 - c for the others.
     """
@@ -184,6 +187,6 @@ def label_ratios(description: RelationGraph, labels: Sequence[Label | None], kin
     named = naming(description, labels, kinds).named
     confidence = np.array([label.confidence if label is not None else 0.0 for label in labels])
     ratios = 1 - confidence + confidence * named * n1 / np.maximum(named.sum(axis=0), 1)
-    with np.errstate(divide="ignore"):
-        logs: Array = np.log(ratios)
-    return logs
+    allowed = ratios > 0
+    logs: Array = np.log(ratios, out=np.zeros_like(ratios), where=allowed)
+    return logs, allowed

@@ -71,11 +71,6 @@ def heymans_singh_similarity(problem: Problem, deadline: float = math.inf) -> No
     return _iterate(lambda s: _normalised(update(s)), problem, deadline)
 
 
-def _allowed(problem: Problem) -> NDArray[np.bool_]:
-    allowed: NDArray[np.bool_] = ~np.isneginf(problem.unary)
-    return allowed
-
-
 def _graphs(problem: Problem) -> Iterator[tuple[Matrix, Matrix]]:
     """Of each kind of facts the adjacency of the description (n1, n1) and of the scene (n2, n2), 0 to 1."""
     n1 = len(problem.absent)
@@ -109,12 +104,11 @@ def _alike(one: Matrix, s: Matrix, two: Matrix) -> Matrix:
 
 def _iterate(step: Callable[[Matrix], Matrix], problem: Problem, deadline: float) -> NodeSimilarity:
     """Repeats a step from a matrix of ones, where nothing is ruled out, until nothing changes, or it is too late."""
-    allowed = _allowed(problem)
-    s = _normalised(allowed.astype(np.float64))
+    s = _normalised(problem.allowed.astype(np.float64))
     for _ in range(ITERATIONS):
         if time.perf_counter() > deadline:
             return NodeSimilarity(s, finished=False)
-        following = _normalised(step(s) * allowed) if s.size else s
+        following = _normalised(step(s) * problem.allowed) if s.size else s
         if np.abs(following - s).max(initial=0.0) <= TOLERANCE:
             return NodeSimilarity(following, finished=True)
         s = following

@@ -22,15 +22,15 @@ from scipy.sparse import csr_matrix
 from deixis.reasoning.grounding.matching.assignment import solve_assignment
 from deixis.reasoning.grounding.matching.problem import Compiled
 
-FIRST, LAST = 4.0, 20.0  # coldness, times the mean range of a table
-LEVELS = 80  # steps of coldness, fewer where all of them would multiply more cells than MOST_CELLS
-MOST_CELLS = 1.2e11
-FEWEST_LEVELS = 12  # with fewer, the map is no better than that of a short annealing
-CELLS_A_SECOND = 3e10  # what a core multiplies, about
+FIRST_COLDNESS, LAST_COLDNESS = 4.0, 20.0  # coldness, times the mean range of a table
+LEVELS = 80  # steps of coldness, fewer where all of them would multiply more cells than MAX_CELLS
+MAX_CELLS = 1.2e11
+MIN_LEVELS = 12  # with fewer, the map is no better than that of a short annealing
+CELLS_PER_SECOND = 3e10  # what a core multiplies, about
 DAMPING = 0.3  # the share of a message that stays as it was
-LEAST = -69.0  # of a message's logarithms; their products stay within single precision
-RULED_OUT = -1e4  # in place of -inf
-TIES = 1e-3  # random numbers that set equal things apart
+MIN_LOG_MESSAGE = -69.0  # of a message's logarithms; their products stay within single precision
+RULED_OUT = -1e4  # log-likelihood of a match that is not allowed, and of one thing for two objects
+TIE_NOISE = 1e-3  # random numbers that set equal things apart
 
 Messages = NDArray[np.float32]
 
@@ -54,23 +54,23 @@ def propagate(
     """
     slots, width, now = len(problem.kind), problem.unary.shape[1], time.perf_counter()
     cells = 1.0 + slots * width**2
-    levels = effort * min(LEVELS, MOST_CELLS / cells)
-    if levels < FEWEST_LEVELS or FEWEST_LEVELS * cells > CELLS_A_SECOND * (deadline - now):
+    levels = effort * min(LEVELS, MAX_CELLS / cells)
+    if levels < MIN_LEVELS or MIN_LEVELS * cells > CELLS_PER_SECOND * (deadline - now):
         return None
     wiring, costs = _wire(problem), _costs(problem)
-    unary = np.maximum(problem.unary, RULED_OUT).astype(np.float32)
-    field = np.random.default_rng(seed).normal(0.0, TIES, unary.shape).astype(np.float32)
+    unary = np.where(problem.allowed, np.maximum(problem.unary, RULED_OUT), RULED_OUT).astype(np.float32)
+    field = np.random.default_rng(seed).normal(0.0, TIE_NOISE, unary.shape).astype(np.float32)
     facts, demand, weights = np.zeros((slots, width), np.float32), np.zeros_like(unary), np.empty_like(costs)
     belief, done = field, 0.0
     while done < 1.0:
-        coldness = FIRST * (LAST / FIRST) ** done / scale
+        coldness = FIRST_COLDNESS * (LAST_COLDNESS / FIRST_COLDNESS) ** done / scale
         np.exp(np.multiply(costs, np.float32(coldness), out=weights), out=weights)
         known = wiring.adder @ facts + np.float32(coldness) * unary + field
         _update_demand(demand, known)
         belief = _normalised(known + demand)
         _update_facts(facts, belief, weights, wiring)
         before, now = now, time.perf_counter()
-        if (deadline - now) < FEWEST_LEVELS * (now - before) * (1.0 - done):
+        if (deadline - now) < MIN_LEVELS * (now - before) * (1.0 - done):
             return None
         done += max(1.0 / levels, (now - before) / (deadline - now))
     return _one_to_one(belief, problem)
@@ -126,8 +126,8 @@ def _update_facts(facts: Messages, belief: Messages, weights: Messages, wiring: 
     for table, first, end in wiring.runs:
         matrix = weights[table].T if table < len(weights) else weights[table - len(weights)]
         np.matmul(said[first:end], matrix, out=told[first:end])
-    np.log(np.maximum(told, math.exp(LEAST), out=told), out=told)
-    told = np.maximum(_normalised(told), LEAST, out=told)
+    np.log(np.maximum(told, math.exp(MIN_LOG_MESSAGE), out=told), out=told)
+    told = np.maximum(_normalised(told), MIN_LOG_MESSAGE, out=told)
     facts *= np.float32(DAMPING)
     told *= np.float32(1.0 - DAMPING)
     facts += told
@@ -141,7 +141,7 @@ def _normalised(messages: Messages) -> Messages:
 
 def _one_to_one(belief: Messages, problem: Compiled) -> NDArray[np.int64]:
     """The map with the largest product of beliefs."""
-    gain = np.where(np.isneginf(problem.unary), -np.inf, belief.astype(np.float64))
+    gain = np.where(problem.allowed, belief.astype(np.float64), -np.inf)
     labels, price, profit = np.empty(len(gain), np.int64), np.empty(gain.shape[1] - 1), np.empty(len(gain))
     solve_assignment(gain, labels, price, profit)
     return labels

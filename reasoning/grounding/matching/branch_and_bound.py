@@ -140,7 +140,7 @@ CLOSED, LEAF, OPEN = 0, 1, 2
 class Node(NamedTuple):
     """What is still possible below a node, and what proves how good it can be."""
 
-    unary: NDArray[np.float64]  # (n1, n2 + 1): with what the facts handed over; -inf where dropped
+    unary: NDArray[np.float64]  # (n1, n2 + 1): with what the facts handed over; -inf for what is no candidate (more)
     messages: NDArray[np.float64]  # (2m, n2 + 1): what each slot handed to its owner
     candidates: NDArray[np.int32]  # (n1, n2 + 1): the first counts[i] of row i
     counts: NDArray[np.int64]  # (n1,)
@@ -194,11 +194,10 @@ def new_stack(problem: Compiled, cells: float) -> Stack:
         np.zeros(depth, dtype=np.int64),
         np.zeros(1, dtype=np.int64),
     )
-    stack.unary[0] = problem.unary
+    stack.unary[0] = np.where(problem.allowed, problem.unary, -np.inf)
     stack.messages[0] = 0.0
-    possible = ~np.isneginf(problem.unary)
-    stack.counts[0] = possible.sum(axis=1)
-    stack.candidates[0] = np.argsort(~possible, axis=1, kind="stable")
+    stack.counts[0] = problem.allowed.sum(axis=1)
+    stack.candidates[0] = np.argsort(~problem.allowed, axis=1, kind="stable")
     return stack
 
 

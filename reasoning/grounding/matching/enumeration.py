@@ -18,7 +18,7 @@ from deixis.reasoning.grounding.matching.branch_and_bound import new_stack, node
 from deixis.reasoning.grounding.matching.problem import Compiled
 
 PASSES = 30  # of messages
-NOTHING = -1e12  # a value that every map has: no match is dropped for being worth less
+LOWEST_VALUE = -1e12  # a value that every map has: no match is dropped for being worth less
 
 
 class Factors(NamedTuple):
@@ -34,7 +34,7 @@ def factors(problem: Compiled) -> Factors:
     """The problem's messages, and what they leave."""
     stack, column_of = new_stack(problem, 1.0), np.empty(len(problem.unary), dtype=np.int64)
     node = node_at(0, stack)
-    tighten(node, problem, NOTHING, np.inf, PASSES, 10**18, column_of)
+    tighten(node, problem, LOWEST_VALUE, np.inf, PASSES, 10**18, column_of)
     left = problem.tables[problem.kind] - node.messages[:, :, None] - node.messages[problem.twin][:, None, :]
     things = np.arange(left.shape[1] - 1)
     left[:, things, things] = -np.inf  # no two objects are one thing

@@ -28,14 +28,15 @@ from deixis.reasoning.grounding.matching.scalable import search_from
 SLACK = 1e-7
 """Values nearer than this count as equal."""
 
-CELLS = 6e7
+MAX_STACK_CELLS = 6e7
 """What the search may hold at once, in numbers of 8 bytes."""
 
-WORK = 1e9
+MAX_PASS_CELLS = 1e9
 """Cells of tables that one pass over the facts may read; beyond, only a loose bound is given."""
 
 ROOT_PASSES, ROOT_PATIENCE = 200, 100
-WARM = 3e-4  # effort of the scalable engine before the search, times objects squared: proofs get that much harder
+START_EFFORT_PER_SQUARE = 3e-4
+"""Effort of the scalable search before the proof, by the square of the objects: proofs get that much harder."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,7 +86,7 @@ def exact(problem: Problem, deadline: float = math.inf, *, seed: int = 0) -> Opt
         nobody = np.full(n1, -1)
         return Optimum(nobody, problem.value(nobody), problem.value(nobody), 0)
     compiled = problem.compiled
-    labels, _ = search_from(np.full(n1, n2), compiled, deadline, seed, min(1.0, WARM * n1**2), 1)
+    labels, _ = search_from(np.full(n1, n2), compiled, deadline, seed, min(1.0, START_EFFORT_PER_SQUARE * n1**2), 1)
     step = max(_grid(problem) - 1e-3, 0.0) or SLACK
     value = evaluate(labels, compiled)
     record = _record(1, n1, value + step, step)
@@ -133,7 +134,7 @@ def warm() -> None:
 
 def loose_bound(problem: Problem) -> float:
     """What no map is worth more than, at sight: the best of every object and of every fact by itself."""
-    alone = np.concatenate([problem.unary, problem.absent[:, None]], axis=1).max(axis=1)
+    alone = np.maximum(problem.unary.max(axis=1, where=problem.allowed, initial=-np.inf), problem.absent)
     facts = np.maximum(problem.tables.max(axis=(1, 2), initial=0.0), 0.0)[problem.kinds]
     return float(alone.sum() + facts.sum(dtype=np.float64))
 
@@ -152,9 +153,9 @@ def _record(limit: int, n1: int, sought: float, step: float) -> Record:
 def _run(compiled: Compiled, record: Record, deadline: float, bound: float) -> tuple[float, int]:
     """Searches until it is over or has to stop; returns an upper bound on what was not found, and how it ended."""
     work = len(compiled.kind) * compiled.unary.shape[1] ** 2
-    if work > WORK or time.perf_counter() > deadline:
+    if work > MAX_PASS_CELLS or time.perf_counter() > deadline:
         return bound, BUDGET
-    stack = new_stack(compiled, CELLS)
+    stack = new_stack(compiled, MAX_STACK_CELLS)
     _tighten_root(compiled, stack, record, deadline)
     state = BUDGET
     while state == BUDGET and time.perf_counter() <= deadline:
@@ -183,7 +184,7 @@ def _open_bound(stack: Stack) -> float:
 
 def _grid(problem: Problem) -> float:
     """The coarsest of a few steps of which all numbers are multiples, or 0: values that differ do so by a step."""
-    numbers = np.concatenate([np.unique(problem.tables), problem.unary[np.isfinite(problem.unary)], problem.absent])
+    numbers = np.concatenate([np.unique(problem.tables), problem.unary[problem.allowed], problem.absent])
     for step in (1.0, 0.5, 0.25, 0.2, 0.1, 0.05):
         if np.abs(numbers / step - np.round(numbers / step)).max(initial=0.0) < 1e-6:
             return step

@@ -33,7 +33,7 @@ class KeptMap(NamedTuple):
 
     labels: NDArray[np.int64]  # (n1,): n2 for what is left out
     holder: NDArray[np.int64]  # (n2 + 1,): who has the thing, -1 where nobody has; -1 for n2
-    gains: NDArray[np.float32]  # (n1, n2 + 1): what object i is worth as thing p, the others as they are
+    gains: NDArray[np.float32]  # (n1, n2 + 1): value of object i as thing p, the others as they are; -inf: not allowed
 
 
 def keep(labels: NDArray[np.int64], problem: Compiled) -> KeptMap:
@@ -51,7 +51,8 @@ def refresh(state, problem):  # type: ignore[no-untyped-def]
     holder[:] = -1
     for i in range(len(labels)):
         holder[labels[i]] = i
-        gains[i] = problem.unary[i]
+        for p in range(gains.shape[1]):
+            gains[i, p] = problem.unary[i, p] if problem.allowed[i, p] else -np.inf
         for slot in range(problem.first[i], problem.first[i + 1]):
             gains[i] += problem.tables[problem.kind[problem.twin[slot]], labels[problem.other[slot]]]
     holder[-1] = -1
@@ -107,8 +108,9 @@ def climb(labels, problem):  # type: ignore[no-untyped-def]
             gains_of(i, labels, problem, gain)
             best, chosen = 1e-9, -1
             for p in range(out + 1):
-                if p != labels[i] and gain[p] > -np.inf:
-                    gained = _exchange_gain(i, p, holder[p], gain, labels, problem)
+                j = holder[p]  # who would get what object i has
+                if p != labels[i] and problem.allowed[i, p] and (j < 0 or problem.allowed[j, labels[i]]):
+                    gained = _exchange_gain(i, p, j, gain, labels, problem)
                     if gained > best:
                         best, chosen = gained, p
             if chosen >= 0:
@@ -155,7 +157,7 @@ def _exchange(i, p, labels, holder, out):  # type: ignore[no-untyped-def]
         holder[old] = j
 
 
-NOISE = 1 << 13  # Gumbel numbers in a table, read from random places on
+NOISE_TABLE_SIZE = 1 << 13  # Gumbel numbers in a table, read from random places on
 MIN_GAIN_SINGLE = 1e-4  # what a map has to be better by: more than the error of gains in single precision
 
 
@@ -163,8 +165,8 @@ MIN_GAIN_SINGLE = 1e-4  # what a map has to be better by: more than the error of
 def anneal(state, best, ahead, problem, sweeps, temperature, noise, seed):  # type: ignore[no-untyped-def]
     """So many sweeps over all objects, from a map that is worth ``ahead`` more than ``best`` (n1,).
 
-    ``best`` takes every map that is better. Returns by how much the last map is. ``noise`` (NOISE + n2 + 1,) holds
-    Gumbel numbers in single precision.
+    ``best`` takes every map that is better. Returns by how much the last map is. ``noise`` holds
+    NOISE_TABLE_SIZE + n2 + 1 Gumbel numbers in single precision.
     """
     np.random.seed(seed)
     refresh(state, problem)
@@ -173,7 +175,7 @@ def anneal(state, best, ahead, problem, sweeps, temperature, noise, seed):  # ty
         for a in range(len(order)):
             b = a + np.random.randint(len(order) - a)
             order[a], order[b] = order[b], order[a]
-            at = np.random.randint(NOISE)
+            at = np.random.randint(NOISE_TABLE_SIZE)
             p, gained = _draw(order[a], state, problem, np.float32(temperature), noise, at, facts)
             if p != state.labels[order[a]]:
                 exchange(order[a], p, state, problem)
@@ -227,7 +229,7 @@ def reassign(labels, problem, patience, seed):  # type: ignore[no-untyped-def]
             gains_of(chosen[a], labels, problem, row)
             before += row[labels[chosen[a]]]
             for b in range(many + 1):
-                gain[a, b] = row[things[b]]
+                gain[a, b] = row[things[b]] if problem.allowed[chosen[a], things[b]] else -np.inf
         columns = column_of[: len(chosen)]
         gained = solve_assignment(gain, columns, price[:many], profit[: len(chosen)]) - before
         failed += 1

@@ -67,7 +67,8 @@ def averaged(marginals: NDArray[np.float64], groups: tuple[tuple[int, ...], ...]
 def _signature(i: int, problem: Problem, facts: Facts) -> tuple[object, ...]:
     """What exchangeable objects have in common, whatever the others are called; few others have it."""
     said = tuple(sorted((kind, first, n) for (kind, first, _), n in facts[i].items()))
-    return float(problem.absent[i]), problem.unary[i].tobytes(), said
+    alone = np.where(problem.allowed[i], problem.unary[i], 0.0).tobytes(), problem.allowed[i].tobytes()
+    return float(problem.absent[i]), alone, said
 
 
 def _twins(i: int, j: int, facts: Facts) -> bool:
@@ -80,20 +81,20 @@ Marginals = NDArray[np.float64]
 Groups = tuple[tuple[int, ...], ...]
 
 THRESHOLDS = (1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12)  # of the best map's weight: less is left out of a sum
-GROWTH, FALL = 5.0, 15.0  # of the nodes, and of the error, from one threshold to the next, about
-SMALL = 100  # a search of so much fewer nodes than there may be is no sign of one that takes too long
+NODE_GROWTH, ERROR_FALL = 5.0, 15.0  # of the nodes, and of the error, from one threshold to the next, about
+SMALL_SEARCH_RATIO = 100  # a search of so much fewer nodes than there may be is no sign of one that takes too long
 SUM_CELLS, FACTOR_CELLS = 6e7, 4e6  # work for sums, and room for facts; beyond, maps are sampled
 
 LADDERS = 4
 PARTS = 8  # of a run, half of which are compared with the other half
-HOTTEST = 0.7  # the least coldness: where facts decide, colder maps are stuck, and hotter ones say little
-RUNGS = (3, 6)  # fewest and most temperatures
+MIN_COLDNESS = 0.7  # the least coldness: where facts decide, colder maps are stuck, and hotter ones say little
+TEMPERATURES = (3, 6)  # fewest and most temperatures
 ROUNDS = 4  # proposals for every object in a sweep
 FIRST_SWEEPS = (8, 32)  # of a part of the first run, fewest and most: a quarter of what there may be
 TOLERANCE = 0.007  # the standard error that is good enough
-PROPOSALS, MOST_PROPOSALS = 6e5, 2.4e7  # for each object, in all ladders and temperatures; and for all objects
-MOST_OBJECTS = 80  # up to which chains begin at maps of their own
-THRESHOLDS_KEPT = 1 << 16
+PROPOSALS, MAX_PROPOSALS = 6e5, 2.4e7  # for each object, in all ladders and temperatures; and for all objects
+MAX_OBJECTS_WITH_OWN_START = 80  # up to which chains begin at maps of their own
+THRESHOLD_TABLE_SIZE = 1 << 16
 START_EFFORT = 0.1
 
 
@@ -117,7 +118,7 @@ class Posterior:
         entropy: Marginals = np.maximum(0.0, -(p * logs).sum(axis=1))
         return entropy
 
-    def or_nobody(self, probability: float) -> Posterior:
+    def mixed_with_absence(self, probability: float) -> Posterior:
         """The same, where with some probability nobody is anything."""
         marginals = (1 - probability) * self.marginals
         marginals[:, -1] += probability
@@ -135,10 +136,10 @@ def posterior(
     """The posterior over maps by its marginals, until ``deadline`` (``time.perf_counter``).
 
     It is exact but for ``mass`` where that can be shown by adding up maps in little time, and sampled otherwise. Chains
-    begin at maps of their own; of more than ``MOST_OBJECTS`` objects at ``start`` (n1,), a map of high value, where it
-    is known: to look for others would take longer than the chains. Past the deadline that map, or nobody's being
-    anything, is all the answer. Raises MatchingError for a mass that is not between
-    0 and 1, and where ``start`` is no map of the problem.
+    begin at maps of their own; of more than ``MAX_OBJECTS_WITH_OWN_START`` objects at ``start`` (n1,), a map of high
+    value, where it is known: to look for others would take longer than the chains. Past the deadline that map, or
+    nobody's being anything, is all the answer. Raises MatchingError for a mass that is not between 0 and 1, and where
+    ``start`` is no map of the problem.
 
     >>> problem = Problem(np.zeros((0, 2), np.int64), np.zeros(0, np.int64), np.zeros((0, 1, 1), np.float32),
     ...                   np.array([[np.log(3.0)]]), np.zeros(1))
@@ -148,18 +149,20 @@ def posterior(
     """
     if start is not None:
         problem.require_map(start)
-    exact = added_up(problem, deadline, mass=mass, seed=seed)
+    exact = exact_posterior(problem, deadline, mass=mass, seed=seed)
     if exact is not None:
         return exact
     n1, n2 = problem.unary.shape
     if time.perf_counter() > deadline:
         labels = np.full(n1, n2) if start is None else to_labels(start, n2)
         return Posterior((labels[:, None] == np.arange(n2 + 1)).astype(np.float64), False, math.inf)
-    begin = None if start is None or n1 <= MOST_OBJECTS else to_labels(start, n2)
+    begin = None if start is None or n1 <= MAX_OBJECTS_WITH_OWN_START else to_labels(start, n2)
     return _sampled(problem, problem.compiled, deadline, seed, begin)
 
 
-def added_up(problem: Problem, deadline: float = math.inf, *, mass: float = 1e-3, seed: int = 0) -> Posterior | None:
+def exact_posterior(
+    problem: Problem, deadline: float = math.inf, *, mass: float = 1e-3, seed: int = 0
+) -> Posterior | None:
     """The exact posterior but for ``mass``, or None where that would take long, or longer than until the deadline.
 
     Raises MatchingError for a mass that is not between 0 and 1.
@@ -185,7 +188,10 @@ def added_up(problem: Problem, deadline: float = math.inf, *, mass: float = 1e-3
         error = missing / (total + missing)
         if error <= mass:
             return Posterior(averaged(marginals / total, exchangeable(problem)), True, error)
-        if looked_at * SMALL > nodes and looked_at * GROWTH ** math.log(error / mass, FALL) > nodes:
+        if (
+            looked_at * SMALL_SEARCH_RATIO > nodes
+            and looked_at * NODE_GROWTH ** math.log(error / mass, ERROR_FALL) > nodes
+        ):
             return None
     return None
 
@@ -199,8 +205,8 @@ def _sampled(
     """
     n1, width = compiled.unary.shape
     groups, rng = exchangeable(problem), np.random.default_rng(seed)
-    coldness = np.geomspace(1.0, HOTTEST, int(np.clip(1 + 0.7 * math.sqrt(n1), *RUNGS)))
-    thresholds = -rng.exponential(size=THRESHOLDS_KEPT)
+    coldness = np.geomspace(1.0, MIN_COLDNESS, int(np.clip(1 + 0.7 * math.sqrt(n1), *TEMPERATURES)))
+    thresholds = -rng.exponential(size=THRESHOLD_TABLE_SIZE)
     ladders = []
     for number in range(LADDERS):
         labels = start
@@ -209,10 +215,10 @@ def _sampled(
         ladders.append(ladder(labels, compiled, coldness))
         if time.perf_counter() > deadline:
             break
-    left = int(min(PROPOSALS * n1, MOST_PROPOSALS) / (LADDERS * PARTS * ROUNDS * n1 * len(coldness)))
+    left = int(min(PROPOSALS * n1, MAX_PROPOSALS) / (LADDERS * PARTS * ROUNDS * n1 * len(coldness)))
     sweeps = int(np.clip(left / 4, *FIRST_SWEEPS))
     marginals, error = averaged(np.eye(width)[ladders[0].labels[0]], groups), math.inf
-    allowed = np.column_stack([np.isfinite(problem.unary), np.ones(n1)])
+    allowed = compiled.allowed
     while True:
         counts = _run(ladders, compiled, sweeps, deadline, thresholds, rng)
         if counts is None:
@@ -246,7 +252,7 @@ def _run(
     return counts / (PARTS // 2)
 
 
-def _agreement(shares: NDArray[np.float64], allowed: NDArray[np.float64], sweeps: int) -> tuple[Marginals, float]:
+def _agreement(shares: NDArray[np.float64], allowed: NDArray[np.bool_], sweeps: int) -> tuple[Marginals, float]:
     """The mean of all halves, and the largest standard error of a marginal, halves taken as independent runs.
 
     What happened in none of the ``sweeps``, or in all, may yet be otherwise in the next: one sweep more is taken to
@@ -258,13 +264,13 @@ def _agreement(shares: NDArray[np.float64], allowed: NDArray[np.float64], sweeps
     return (sweeps * halves.mean(axis=0) + anything) / (sweeps + 1), max(error, 1 / sweeps)
 
 
-LEFT_OUT = (1e-3, 1e-5, 1e-7, 1e-10, 1e-15, 1e-25)
+MARGINAL_SHARES = (1e-3, 1e-5, 1e-7, 1e-10, 1e-15, 1e-25)
 """Shares of the most that all maps can sum up to, below which partial maps are not looked into, one after another."""
 
-NEAR = 0.01
+MAX_MISSING_SHARE = 0.01
 """The share of a sum that may be missing of it for the bound to be near enough."""
 
-NODES = 5_000
+MAX_NODES = 5_000
 """Partial maps that are looked at for each share at the most."""
 
 
@@ -285,12 +291,12 @@ def log_marginal_likelihood(problem: Problem) -> float:
         return math.inf
     parts = factors(problem.compiled)
     most = least = float(np.log(parts.weights.sum(axis=1)).sum())
-    for share in LEFT_OUT:
-        _, (found, missing, _) = add_up(problem.compiled, parts, share * math.exp(min(most, 600.0)), NODES)
+    for share in MARGINAL_SHARES:
+        _, (found, missing, _) = add_up(problem.compiled, parts, share * math.exp(min(most, 600.0)), MAX_NODES)
         if missing == math.inf:
             break
         least = min(least, math.log(max(found + missing, 1e-300)))
-        if missing <= NEAR * found:
+        if missing <= MAX_MISSING_SHARE * found:
             break
     return least + parts.log_scale - _log_prior(problem)
 

@@ -8,7 +8,8 @@ add up to the logarithm of a posterior, up to a constant.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import NamedTuple
 
@@ -34,10 +35,13 @@ class Problem:
     ends: NDArray[np.int64]  # (m, 2): subject and object, different ones
     kinds: NDArray[np.int64]  # (m,): which table a fact reads
     tables: NDArray[np.float32]  # (k, n2, n2): what a fact says of the pair (subject's thing, object's thing); finite
-    unary: NDArray[np.float64]  # (n1, n2): what speaks for a match by itself; -inf where it is ruled out
+    unary: NDArray[np.float64]  # (n1, n2): what speaks for a match by itself, finite; not read where not allowed
     absent: NDArray[np.float64]  # (n1,): what leaving the object out is worth, finite, usually negative
+    allowed: NDArray[np.bool_] = field(default_factory=lambda: np.array(True))  # (n1, n2): which matches a map may make
 
     def __post_init__(self) -> None:
+        if self.allowed.ndim == 0:  # one value for all matches
+            object.__setattr__(self, "allowed", np.full(self.unary.shape, bool(self.allowed)))
         self._check_shapes()
         n1 = len(self.absent)
         if ((self.ends < 0) | (self.ends >= n1)).any() or (self.ends[:, 0] == self.ends[:, 1]).any():
@@ -48,8 +52,8 @@ class Problem:
             raise MatchingError("what a fact says of a pair has to be a finite number")
         if not np.isfinite(self.absent).all():
             raise MatchingError("what leaving an object out is worth has to be a finite number")
-        if np.isnan(self.unary).any() or (self.unary == np.inf).any():
-            raise MatchingError("what speaks for a match has to be a finite number, or -inf where it is ruled out")
+        if not np.isfinite(self.unary).all():
+            raise MatchingError("what speaks for a match has to be a finite number; rule matches out by 'allowed'")
 
     def _check_shapes(self) -> None:
         m, (n1, n2) = len(self.ends), self.unary.shape if self.unary.ndim == 2 else (-1, -1)
@@ -59,6 +63,7 @@ class Problem:
             "tables": (len(self.tables), n2, n2),
             "unary": (n1, n2),
             "absent": (n1,),
+            "allowed": (n1, n2),
         }
         for name, shape in wanted.items():
             if getattr(self, name).shape != shape:
@@ -71,7 +76,7 @@ class Problem:
         return compile_problem(self)
 
     def value(self, assignment: NDArray[np.int64]) -> float:
-        """The value of one map, shape (n1,), ``UNMATCHED`` for what is left out.
+        """The value of one map, shape (n1,), ``UNMATCHED`` for what is left out; -inf for one that is not allowed.
 
         >>> none = np.zeros((0, 2), np.int64)
         >>> problem = Problem(none, none[:, 0], np.zeros((0, 1, 1), np.float32), np.array([[2.0]]), np.array([-1.0]))
@@ -80,6 +85,8 @@ class Problem:
         """
         matched = assignment != UNMATCHED
         objects = np.flatnonzero(matched)
+        if not self.allowed[objects, assignment[objects]].all():
+            return -math.inf
         p, q = assignment[self.ends[:, 0]], assignment[self.ends[:, 1]]
         both = (p != UNMATCHED) & (q != UNMATCHED)
         facts = self.tables[self.kinds[both], p[both], q[both]].sum(dtype=np.float64)
@@ -93,7 +100,7 @@ class Problem:
         objects = np.flatnonzero(assignment != UNMATCHED)
         if len(np.unique(assignment[objects])) != len(objects):
             raise MatchingError("a map gives no thing to two objects")
-        if np.isneginf(self.unary[objects, assignment[objects]]).any():
+        if not self.allowed[objects, assignment[objects]].all():
             raise MatchingError("a map makes no match that is ruled out")
 
 
@@ -101,7 +108,8 @@ class Compiled(NamedTuple):
     """Slots of object i: ``first[i]`` to ``first[i + 1]``. The diagonals of the tables, which no map reads, are 0."""
 
     tables: NDArray[np.float32]  # (2k, n2 + 1, n2 + 1): each table as it is, then each transposed
-    unary: NDArray[np.float64]  # (n1, n2 + 1): the last column is what leaving the object out is worth
+    unary: NDArray[np.float64]  # (n1, n2 + 1): finite; the last column is what leaving the object out is worth
+    allowed: NDArray[np.bool_]  # (n1, n2 + 1): which matches a map may make; the last column is true
     first: NDArray[np.int64]  # (n1 + 1,)
     other: NDArray[np.int64]  # (2m,): the object at the other end
     kind: NDArray[np.int64]  # (2m,): which table, the owner's thing its row
@@ -123,6 +131,7 @@ def compile_problem(problem: Problem) -> Compiled:
     return Compiled(
         tables=tables,
         unary=np.concatenate([problem.unary, problem.absent[:, None]], axis=1).astype(np.float64),
+        allowed=np.concatenate([problem.allowed, np.ones((n1, 1), dtype=bool)], axis=1),
         first=np.concatenate([[0], np.cumsum(np.bincount(owner, minlength=n1))]).astype(np.int64),
         other=problem.ends[:, ::-1].T.ravel()[order].astype(np.int64),
         kind=np.concatenate([problem.kinds, problem.kinds + k])[order].astype(np.int64),

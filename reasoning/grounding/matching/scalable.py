@@ -18,24 +18,34 @@ from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
 from deixis.reasoning.grounding.matching.belief_propagation import propagate
-from deixis.reasoning.grounding.matching.local_search import NOISE, anneal, climb, combine, keep, reassign
+from deixis.reasoning.grounding.matching.local_search import NOISE_TABLE_SIZE, anneal, climb, combine, keep, reassign
 from deixis.reasoning.grounding.matching.problem import Compiled, Problem, to_assignment, to_labels
 
-HOT, WARM, COLD = 0.25, 0.2, 0.06  # temperatures in units of the mean range of a table: first, reheated, and last
-LEVELS, WARM_LEVELS = 15, 10  # temperatures on the way down from the first, and from the second
-ONE_TURN_LEVELS = 40  # where there is one turn only
-QUICK_HOT = 0.35  # the first temperature where sweeps are few: what cools fast freezes sooner
+FIRST_TEMPERATURE, REHEATED_TEMPERATURE, LAST_TEMPERATURE = (
+    0.25,
+    0.2,
+    0.06,
+)  # temperatures in units of the mean range of a table: first, reheated, and last
+LEVELS, REHEATED_LEVELS = 15, 10  # temperatures on the way down from the first, and from the second
+SINGLE_TURN_LEVELS = 40  # where there is one turn only
+QUICK_TEMPERATURE = 0.35  # the first temperature where sweeps are few: what cools fast freezes sooner
 SWEEPS = 3600  # over all objects, in all; small problems and large ones get more, those of many cells get fewer
-SMALL, MOST_SWEEPS, MANY, CELLS = 180_000, 6_000, 100, 8e8
-MOST_TURNS, TURN_CELLS = 13, 11_700  # many short turns for few objects, one long one for many
-FRESH = 0.3  # the share of turns that start anew; the others reheat the best map
+SMALL_PROBLEM_SWEEPS, MAX_SWEEPS, MANY_OBJECTS, MAX_CELLS = 180_000, 6_000, 100, 8e8
+MAX_TURNS, TURN_CELLS = 13, 11_700  # many short turns for few objects, one long one for many
+FRESH_SHARE = 0.3  # the share of turns that start anew; the others reheat the best map
 PATIENCE = 20  # reassignments in a row that do not help, at the end
 LAST_SWEEPS = 3  # without noise, where the deadline struck
-PROPAGATED, ANNEALED = 50, 400  # objects from which on, and up to which, there is the one search, and the other
-BESIDE, AFTERWARDS = 0.8, 0.4  # of the sweeps, where there are both: to anneal from nothing, and what the other finds
-LEAST_EFFORT = 0.2  # below, belief propagation has too few steps
-HURRY = 1.25  # times its equal share of the time left that a temperature may take
-PART = 2e6  # cells of the sweeps between two looks at the clock
+MIN_PROPAGATED_OBJECTS, MAX_ANNEALED_OBJECTS = (
+    50,
+    400,
+)  # objects from which on, and up to which, there is the one search, and the other
+PARALLEL_EFFORT, FOLLOWING_EFFORT = (
+    0.8,
+    0.4,
+)  # of the sweeps, where there are both: to anneal from nothing, and what the other finds
+MIN_PROPAGATION_EFFORT = 0.2  # below, belief propagation has too few steps
+MAX_TIME_SHARE = 1.25  # times its equal share of the time left that a temperature may take
+CELLS_PER_CLOCK_CHECK = 2e6  # cells of the sweeps between two looks at the clock
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,7 +81,7 @@ def scalable(
     best = np.full(n1, n2) if start is None else to_labels(start, n2)
     finished = True
     if n1 and n2:
-        best, finished = search_from(best, problem.compiled, deadline, seed, effort, MOST_TURNS)
+        best, finished = search_from(best, problem.compiled, deadline, seed, effort, MAX_TURNS)
     assignment = to_assignment(best, n2)
     return Found(assignment, problem.value(assignment), finished)
 
@@ -84,12 +94,12 @@ def search_from(
     There are at most ``most`` turns of annealing. Of many objects, it and belief propagation have a thread each; of
     very many it is of little use beside it.
     """
-    if len(labels) < PROPAGATED or effort < LEAST_EFFORT:
+    if len(labels) < MIN_PROPAGATED_OBJECTS or effort < MIN_PROPAGATION_EFFORT:
         return _annealed(labels, compiled, deadline, seed, effort, most)
-    if len(labels) > ANNEALED:
+    if len(labels) > MAX_ANNEALED_OBJECTS:
         return _propagated(labels, compiled, deadline, seed, effort, most)
     with threadpool_limits(1, "blas"), ThreadPoolExecutor(1) as pool:
-        beside = pool.submit(_annealed, labels, compiled, deadline, seed, BESIDE * effort, most)
+        beside = pool.submit(_annealed, labels, compiled, deadline, seed, PARALLEL_EFFORT * effort, most)
         best, finished = _propagated(labels, compiled, deadline, seed, effort, most)
         other, finished_too = beside.result()
     if combine(best, other, compiled) > 0.0:
@@ -103,12 +113,12 @@ def _annealed(
     """At most ``most`` turns, the first from ``labels`` (n1,)."""
     rng = np.random.default_rng(seed)
     n1, width = compiled.unary.shape
-    noise = rng.gumbel(size=NOISE + width).astype(np.float32)
+    noise = rng.gumbel(size=NOISE_TABLE_SIZE + width).astype(np.float32)
     scale, best, nobody = mean_range(compiled), labels.copy(), np.full(n1, width - 1)
     plan, sweeps = turns_and_sweeps(n1, width)
     for turn, (hot, levels) in enumerate(plan[:most]):
-        found = nobody.copy() if turn and hot == HOT else best.copy()
-        schedule = scale * np.append(np.geomspace(hot, COLD, levels), 0.0)
+        found = nobody.copy() if turn and hot == FIRST_TEMPERATURE else best.copy()
+        schedule = scale * np.append(np.geomspace(hot, LAST_TEMPERATURE, levels), 0.0)
         finished = _cool(found, compiled, deadline, schedule, max(1, round(effort * sweeps)), noise, rng)
         if not finished:
             anneal(keep(found, compiled), found, 0.0, compiled, LAST_SWEEPS, 0.0, noise, seed)
@@ -132,18 +142,18 @@ def _propagated(
     climb(found, compiled)
     best = labels.copy()
     combine(best, found, compiled)
-    return _annealed(best, compiled, deadline, seed + 1, AFTERWARDS * effort, most)
+    return _annealed(best, compiled, deadline, seed + 1, FOLLOWING_EFFORT * effort, most)
 
 
 def turns_and_sweeps(objects: int, width: int) -> tuple[list[tuple[float, int]], int]:
     """For each turn its first temperature and how many, and how many sweeps at each, at an effort of 1."""
-    turns = int(np.clip(TURN_CELLS / objects**2, 1, MOST_TURNS))
-    fresh = math.ceil(FRESH * turns)
-    enough = max(SWEEPS, SWEEPS * (objects / MANY) ** 0.2, min(SMALL / objects, MOST_SWEEPS))
-    sweeps = min(enough, CELLS / (objects * width))
-    plan = [(HOT, LEVELS)] * fresh + [(WARM, WARM_LEVELS)] * (turns - fresh)
+    turns = int(np.clip(TURN_CELLS / objects**2, 1, MAX_TURNS))
+    fresh = math.ceil(FRESH_SHARE * turns)
+    enough = max(SWEEPS, SWEEPS * (objects / MANY_OBJECTS) ** 0.2, min(SMALL_PROBLEM_SWEEPS / objects, MAX_SWEEPS))
+    sweeps = min(enough, MAX_CELLS / (objects * width))
+    plan = [(FIRST_TEMPERATURE, LEVELS)] * fresh + [(REHEATED_TEMPERATURE, REHEATED_LEVELS)] * (turns - fresh)
     if turns == 1:
-        plan = [(HOT if sweeps >= SWEEPS else QUICK_HOT, ONE_TURN_LEVELS)]
+        plan = [(FIRST_TEMPERATURE if sweeps >= SWEEPS else QUICK_TEMPERATURE, SINGLE_TURN_LEVELS)]
     return plan, max(1, round(sweeps / sum(levels for _, levels in plan)))
 
 
@@ -158,16 +168,16 @@ def _cool(
 ) -> bool:
     """One annealing from ``best`` (n1,), which takes the best map on the way; false where the deadline cut it short.
 
-    No temperature gets more than ``HURRY`` times its share of the time that is left: a search in a hurry cools faster,
-    and is not stopped while it is hot.
+    No temperature gets more than ``MAX_TIME_SHARE`` times its share of the time that is left: a search in a hurry cools
+    faster, and is not stopped while it is hot.
     """
     state, ahead, finished = keep(best, compiled), 0.0, True
-    part = max(1, int(PART / state.gains.size))
+    part = max(1, int(CELLS_PER_CLOCK_CHECK / state.gains.size))
     for level, temperature in enumerate(schedule):
         now = time.perf_counter()
         if now > deadline:
             return False
-        next_level = now + HURRY * (deadline - now) / (len(schedule) - level)
+        next_level = now + MAX_TIME_SHARE * (deadline - now) / (len(schedule) - level)
         for done in range(0, sweeps, part):
             if time.perf_counter() > next_level:
                 finished = False

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -23,7 +23,7 @@ from deixis.reasoning.grounding.matching.problem import UNMATCHED, Problem
 if TYPE_CHECKING:
     from deixis.reasoning.grounding.matching.exact import Maps
 
-LIMIT = 5_000
+MAX_LISTED_MAPS = 5_000
 """Maps that are listed one by one; beyond, interchangeable objects are held as groups."""
 
 
@@ -149,7 +149,7 @@ class Candidates:
 
 
 def candidates_of(
-    problem: Problem, deadline: float = math.inf, *, margin: float = 0.0, limit: int = LIMIT
+    problem: Problem, deadline: float = math.inf, *, margin: float = 0.0, limit: int = MAX_LISTED_MAPS
 ) -> Candidates:
     """The maps worth at most ``margin`` less than the best, weighted by the exponential of their values.
 
@@ -180,10 +180,7 @@ def _weighted(maps: Maps, groups: tuple[tuple[int, ...], ...], complete: bool) -
 
 def _held(problem: Problem, best: NDArray[np.int64], groups: tuple[tuple[int, ...], ...]) -> Problem:
     """The problem with the members of groups held to their things in one map."""
-    unary = problem.unary.copy()
+    allowed = problem.allowed.copy()
     for i in (i for group in groups for i in group):
-        own = unary[i, best[i]] if best[i] != UNMATCHED else 0.0
-        unary[i] = -np.inf
-        if best[i] != UNMATCHED:
-            unary[i, best[i]] = own
-    return Problem(problem.ends, problem.kinds, problem.tables, unary, problem.absent)
+        allowed[i] = np.arange(allowed.shape[1]) == best[i]
+    return replace(problem, allowed=allowed)

@@ -31,7 +31,7 @@ COMPOUND_EFFORT = 0.25  # more, for a word that says two things at once: bottom 
 APART_EFFORT = 0.5  # more, where the two lie as far apart as things do
 ID_EFFORT = 1.0  # more, where a thing can be told by its id alone
 
-MOST_PAIRS = 2_000
+MAX_PAIRS = 2_000
 """Pairs of objects about which questions are weighed; those least certain first."""
 
 
@@ -161,7 +161,7 @@ def _pairs(
         (i, j) for i in asked for j in candidates.stand_ins if i != j and (j not in uncertain or names[i] < names[j])
     ]
     found.sort(key=lambda pair: (round(certainty[pair[0]] + certainty[pair[1]], 9), names[pair[0]], names[pair[1]]))
-    return found[:MOST_PAIRS]
+    return found[:MAX_PAIRS]
 
 
 def _pointing(i: int, marginal: NDArray[np.float64], situation: Situation) -> Question:

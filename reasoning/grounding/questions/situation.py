@@ -13,7 +13,7 @@ from deixis.ontology.graph import RelationGraph
 from deixis.ontology.relation import Reading, Relation
 from deixis.reasoning.entailment.implications import Implications
 from deixis.reasoning.errors import SettingError
-from deixis.reasoning.grounding.evidence.evidence import exact_names
+from deixis.reasoning.geometry.rectangle import SceneRelations
 
 PLACES = (
     ("at the far left", 0, -1),
@@ -22,7 +22,7 @@ PLACES = (
     ("farthest from the viewer", 1, 1),
 )
 
-PLAINLY = 0.02
+MIN_REACH_SHARE = 0.02
 """The share of all that is seen by which something reaches farther than all else."""
 
 
@@ -51,26 +51,24 @@ class Situation:
         return f"the thing {where} ({self.things[thing]})" if where else f"the thing {self.things[thing]}"
 
 
-def situation_of(description: RelationGraph, scene: RelationGraph) -> Situation:
-    """What a description and a scene give to ask about; ``scene`` has boxes and one exact name a pair.
+def situation_of(description: RelationGraph, scene: SceneRelations, implied: Implications | None = None) -> Situation:
+    """Return what a description and a scene give to ask about; ``implied`` is what the description implies, if known.
 
-    Raises GraphError for a scene of which that is not so.
+    Raises SettingError for a scene without boxes.
     """
     if scene.boxes is None:
-        raise SettingError("questions are about perceived things with boxes, and the scene's graph has none")
+        raise SettingError("questions are about perceived things with boxes, and the scene has none")
     relations = description.vocabulary.of_reading(Reading.WIDE)
-    names = exact_names(scene)
     table = np.concatenate([description.vocabulary.degrees, np.zeros((len(description.vocabulary), 1))], axis=1)
-    degrees = np.stack([table[relation.index][names] for relation in relations])
+    degrees = np.stack([table[relation.index][scene.names] for relation in relations])
     centres = scene.boxes.mean(axis=1)[:, :2]
-    settled = _settled(description, relations)
+    settled = _settled(description, relations, implied or Implications(description))
     return Situation(description.nodes, scene.nodes, relations, degrees, settled, centres, _places(scene.boxes))
 
 
-def _settled(description: RelationGraph, relations: tuple[Relation, ...]) -> NDArray[np.bool_]:
+def _settled(description: RelationGraph, relations: tuple[Relation, ...], implied: Implications) -> NDArray[np.bool_]:
     """What is known of every ordered pair of objects: what holds in all pictures, and what that excludes."""
     n = len(description.nodes)
-    implied = Implications(description)
     holds = np.zeros((len(relations), n, n), dtype=bool)
     for row, relation in enumerate(relations):
         pairs = implied.pairs(relation)
@@ -106,7 +104,10 @@ def _places(boxes: NDArray[np.float64]) -> tuple[str | None, ...]:
         reach = side * boxes[:, (1 + side) // 2, axis]
         if len(reach) > 1:
             order = np.argsort(-reach, kind="stable")
-            if reach[order[0]] - reach[order[1]] > PLAINLY * np.ptp(boxes[:, :, axis]) and found[order[0]] is None:
+            if (
+                reach[order[0]] - reach[order[1]] > MIN_REACH_SHARE * np.ptp(boxes[:, :, axis])
+                and found[order[0]] is None
+            ):
                 found[order[0]] = words
     return tuple(found)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +13,9 @@ from numpy.typing import NDArray
 from deixis.ontology.graph import Source
 from deixis.reasoning.errors import NetworkError
 from deixis.reasoning.qualitative.calculi.calculus import Calculus
+
+if TYPE_CHECKING:
+    import networkx as nx
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,6 +86,43 @@ class Network:
     def name(self, thing: int) -> str:
         """What a thing is called: its name, else its number."""
         return str(thing) if self.names is None else self.names[thing]
+
+    def to_networkx(self) -> nx.MultiDiGraph[Any]:
+        """Return the network as a ``networkx.MultiDiGraph``, one edge a constraint.
+
+        Returns
+        -------
+        networkx.MultiDiGraph
+            Nodes are the numbers of the things, with their ``name`` (:meth:`name`). Edges lead from the first thing to
+            the second, with ``relation`` (the names of the atoms of which one holds) and ``source`` (file:line:column
+            or None). The graph's attribute ``calculus`` is the name of the calculus.
+
+        Examples
+        --------
+        >>> import networkx as nx
+        >>> from deixis.reasoning.qualitative.calculi.registry import calculus
+        >>> allen = calculus("allen")
+        >>> before, meets = (1 << allen.atoms.index(atom) for atom in ("<", "m"))
+        >>> stated = (Constraint(0, 1, before | meets), Constraint(1, 2, before))
+        >>> graph = Network(allen, 4, stated, ("soup", "fish", "cake", "tea")).to_networkx()
+        >>> graph.edges[0, 1, 0]["relation"], graph.graph["calculus"]
+        (('<', 'm'), 'allen')
+        >>> [graph.nodes[thing]["name"] for thing in nx.isolates(graph)]
+        ['tea']
+        """
+        import networkx as nx
+
+        graph: nx.MultiDiGraph[Any] = nx.MultiDiGraph(calculus=self.calculus.name)
+        graph.add_nodes_from((thing, {"name": self.name(thing)}) for thing in range(self.size))
+        atoms = self.calculus.atoms
+        for constraint in self.constraints:
+            graph.add_edge(
+                constraint.first,
+                constraint.second,
+                relation=tuple(atom for code, atom in enumerate(atoms) if constraint.relation >> code & 1),
+                source=str(constraint.source) if constraint.source else None,
+            )
+        return graph
 
     def only(self, constraints: Iterable[Constraint]) -> Network:
         """The same things with other constraints."""

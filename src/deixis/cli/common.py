@@ -146,7 +146,7 @@ def working(what: str, after: float = 0.0) -> Iterator[None]:
 
 def ready_to_ground(engine: str = "exact") -> None:
     """Has the engine compiled before any time limit begins."""
-    from deixis.kernels import ready_to_ground as ready
+    from deixis.workflows.ground import ready_to_ground as ready
 
     compiled(lambda: ready(engine))
 

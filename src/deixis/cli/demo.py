@@ -19,7 +19,8 @@ from deixis.reasoning.grounding.evidence.meaning import Meaning
 from deixis.reasoning.grounding.evidence.unary import UnaryWeights
 from deixis.report.ground import grounding_lines
 from deixis.report.script import check_lines, inference_lines, learned_lines, script_lines
-from deixis.session import Session, ground
+from deixis.session import Session
+from deixis.workflows.ground import ground
 from deixis.workflows.infer import infer
 from deixis.workflows.read import read_script
 

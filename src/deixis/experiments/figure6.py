@@ -208,7 +208,7 @@ class _Trial:
         return members
 
     def _evidence(self, scene: Scene) -> Evidence:
-        return no_unary_evidence(self._description, scene.without_labels().graph(default_ontology().relations))
+        return no_unary_evidence(self._description, scene.without_labels().relations(default_ontology().relations))
 
     def _matrices(self, evidence: Evidence) -> NDArray[np.float64]:
         """Rounded, so that entries which are equal but for rounding do not settle what node order settles."""

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from deixis.ontology.graph import Fact, RelationGraph
 from deixis.ontology.relation import Reading, Relations
 from deixis.ontology.tbox import default_ontology
-from deixis.reasoning.geometry.rectangle import box_relations, perceived_graph
+from deixis.reasoning.geometry.rectangle import SceneRelations, box_relations, scene_relations
 from deixis.reasoning.grounding.matching.problem import UNMATCHED, Problem
 
 # A formal setting: centre (x, y) from the middle of the dinner plate, then width and depth, metres. The napkin lies on
@@ -68,10 +68,10 @@ class GeneratedTable:
         told = [ontology.kinds.words[piece].iri for piece in SETTING] if kinds else []
         return RelationGraph.from_facts(relations, names, facts, [told[i] for i in self.pieces] if kinds else ())
 
-    def scene(self) -> RelationGraph:
+    def scene(self) -> SceneRelations:
         """What was perceived: the exact name of every ordered pair."""
         names = [f"o{p:04}" for p in range(len(self.boxes))]
-        return perceived_graph(names, self.boxes, default_ontology().relations)
+        return scene_relations(names, self.boxes, default_ontology().relations)
 
     def crisp(self, *, centred: bool = False) -> Problem:
         """The problem under degrees: 1 where the exact name is the word, 0.5 where it only implies it, else 0.

@@ -25,7 +25,6 @@ from deixis.perception.scene import Scene
 from deixis.reasoning.description_logic.reasoners import Classification, classify
 from deixis.reasoning.errors import InconsistencyError
 from deixis.reasoning.grounding.answer import Grounding
-from deixis.reasoning.grounding.evidence.evidence import exact_names
 
 MAX_PAIRS = 2000
 """Ordered pairs of a scene whose relations are all kept; of a larger scene only those that the script compares."""
@@ -89,7 +88,7 @@ def lesson_of(script: Script, scene: Scene, found: Grounding, id: str, occasion:
 
 
 def _seen_relations(scene: Scene, relations: Relations, found: Grounding) -> Iterator[SeenRelation]:
-    names, ids = exact_names(scene.graph(relations)), scene.ids
+    names, ids = scene.relations(relations).names, scene.ids
     compared = {entry.perceived for entry in found.outcomes if entry.perceived is not None}
     few = len(ids) * (len(ids) - 1) <= MAX_PAIRS
     for i, subject in enumerate(ids):

@@ -6,8 +6,7 @@ from deixis.grammar.script import Script
 from deixis.ontology.graph import RelationGraph
 from deixis.ontology.tbox import Ontology
 from deixis.perception.scene import Scene
-from deixis.reasoning.entailment.conflict import find_conflict
-from deixis.reasoning.entailment.implications import Implications
+from deixis.reasoning.entailment.conflict import Conflict
 from deixis.reasoning.grounding.evidence.evidence import Evidence, evidence_from
 from deixis.reasoning.grounding.evidence.labels import Label
 from deixis.reasoning.grounding.evidence.meaning import SHIPPED, Meaning
@@ -21,10 +20,9 @@ def evidence_of(script: Script, scene: Scene, meaning: Meaning = SHIPPED) -> Evi
 def graph_evidence(description: RelationGraph, scene: Scene, ontology: Ontology, meaning: Meaning) -> Evidence:
     """The same of a description that is a graph already."""
     labels = list(scene_labels(scene).values())
-    seen = scene.graph(ontology.relations)
     return evidence_from(
         description,
-        seen,
+        scene.relations(ontology.relations),
         labels,
         ontology.kinds,
         ontology.sizes,
@@ -40,9 +38,18 @@ def scene_labels(scene: Scene) -> dict[str, Label | None]:
     return {thing.id: Label(thing.label, thing.confidence) if thing.label else None for thing in scene.objects}
 
 
-def conflict_notes(graph: RelationGraph) -> tuple[str, ...]:
-    """What is to be said with an answer where a script contradicts itself."""
-    conflict = find_conflict(Implications(graph))
+def viewpoint_notes(viewpoint: str | None, scene: Scene) -> tuple[str, ...]:
+    """Return what is to be said where a script speaks from another viewpoint than that of the scene."""
+    if viewpoint is None or viewpoint == scene.viewpoint:
+        return ()
+    return (
+        f"the script speaks as seen from '{viewpoint}' and the scene is seen from '{scene.viewpoint}': "
+        "left and right were compared as they stand",
+    )
+
+
+def conflict_notes(conflict: Conflict | None) -> tuple[str, ...]:
+    """Return what is to be said with an answer where a script contradicts itself."""
     if conflict is None:
         return ()
     return (f"the script contradicts itself, so that not all of it can hold: {conflict.reason}",)

@@ -13,7 +13,7 @@ from deixis.plots.arrows import Arrow, Ends, along, draw_arrows, from_below
 from deixis.plots.figure import INK, PAPER, QUIET, WRONG, dress_table, new_figure, save
 from deixis.plots.names import write_names
 from deixis.reasoning.grounding.answer import FactOutcome, Grounding
-from deixis.report.ground import MANY, at_most_many
+from deixis.report.ground import MAX_LISTED, at_most_many
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -150,11 +150,11 @@ def _keys(found: Grounding, groups: Sequence[Sequence[str]], marks: Marks) -> li
         keys.append(Patch(facecolor=PAPER, edgecolor=WRONG, linewidth=0, hatch=HATCH, label="of another colour"))
     if marks.unsure:
         keys.append(Patch(facecolor=PAPER, edgecolor=INK, linestyle=":", label="named by its place alone"))
-    for number, group in enumerate(groups[:MANY]):
+    for number, group in enumerate(groups[:MAX_LISTED]):
         colour = GROUP_COLOURS[number % len(GROUP_COLOURS)]
         keys.append(Patch(facecolor=colour, alpha=0.45, label=_told(group)))
-    if len(groups) > MANY:
-        keys.append(Patch(alpha=0.0, label=f"and {len(groups) - MANY} more groups that cannot be told apart"))
+    if len(groups) > MAX_LISTED:
+        keys.append(Patch(alpha=0.0, label=f"and {len(groups) - MAX_LISTED} more groups that cannot be told apart"))
     return keys
 
 

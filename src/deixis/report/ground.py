@@ -10,10 +10,10 @@ if TYPE_CHECKING:
     from deixis.ontology.lessons.types import Alternative, Match
     from deixis.reasoning.grounding.answer import FactOutcome, Grounding, LeftOut, Pivotal
 
-MANY = 12
+MAX_LISTED = 12
 """Names, and facts that matter, that are listed one by one."""
 
-MORE = 0.02
+MIN_PROBABILITY_LEAD = 0.02
 """By how much likelier another thing is where it is told: more than what sampling makes of equal ones."""
 
 
@@ -32,9 +32,9 @@ def grounding_lines(found: Grounding) -> list[str]:
     lines += [f"    violated: {violation_text(entry)}" for entry in found.violated]
     lines += _left_out_lines((*found.unmatched_objects, *found.unmatched_perceived))
     pivotal = [line for entry in found.pivotal or () if (line := _pivotal_line(entry, found))]
-    lines += pivotal[:MANY]
-    if len(pivotal) > MANY:
-        lines.append(f"and {len(pivotal) - MANY} more facts that matter (--json has them)")
+    lines += pivotal[:MAX_LISTED]
+    if len(pivotal) > MAX_LISTED:
+        lines.append(f"and {len(pivotal) - MAX_LISTED} more facts that matter (--json has them)")
     lines.append(f"Graph similarity {found.graph_similarity:.3f}; engine {found.engine}, {_standing(found)}.")
     return lines + [f"Note: {note}." for note in found.notes]
 
@@ -43,14 +43,14 @@ def _left_out_lines(left_out: Sequence[LeftOut]) -> Iterator[str]:
     """A line for each, or one for many that are left out for the same reason."""
     for reason in dict.fromkeys(left.reason for left in left_out):
         names = [left.name for left in left_out if left.reason == reason]
-        if len(names) > MANY:
+        if len(names) > MAX_LISTED:
             names = [", ".join(at_most_many(names)) + " (--json has them)"]
         yield from (f"Left out: {name}: {reason}." for name in names)
 
 
 def at_most_many(told: list[str]) -> list[str]:
     """The first ones, and how many more there are."""
-    return [*told[:MANY], f"{len(told) - MANY} more"] if len(told) > MANY else told
+    return [*told[:MAX_LISTED], f"{len(told) - MAX_LISTED} more"] if len(told) > MAX_LISTED else told
 
 
 def _match_line(match: Match) -> str:
@@ -86,7 +86,9 @@ def _probability(value: float) -> str:
 def _likelier_elsewhere(match: Match) -> bool:
     """Whether a thing by itself is more probably another one than what it is in the best map."""
     own = match.probability
-    return own is not None and any((other.probability or 0.0) > own + MORE for other in match.alternatives)
+    return own is not None and any(
+        (other.probability or 0.0) > own + MIN_PROBABILITY_LEAD for other in match.alternatives
+    )
 
 
 def _pivotal_line(pivotal: Pivotal, found: Grounding) -> str:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
@@ -15,8 +14,6 @@ if TYPE_CHECKING:
     from deixis.reasoning.entailment.derivation import Claim, Derivation
     from deixis.reasoning.entailment.why_not import WhyNot
     from deixis.reasoning.grounding.answer import FactOutcome, Grounding, Pivotal
-    from deixis.reasoning.grounding.questions.inquiry import Exchange
-    from deixis.reasoning.grounding.viewpoint import Viewpoints
     from deixis.workflows.check import Checked
     from deixis.workflows.infer import Inference, Inferred
     from deixis.workflows.learn import Learned
@@ -147,37 +144,33 @@ def grounding_to_dict(found: Grounding) -> dict[str, Any]:
         "converged": found.converged,
         "notes": list(found.notes),
         "seconds": round(found.seconds, 6),
+        **_dialogue_and_viewpoints(found),
     }
 
 
-def viewpoints_to_dict(found: Viewpoints | None) -> dict[str, Any]:
-    """From which sides a script may speak, most probable first; none where nothing tells."""
-    sides = found.viewpoints if found else ()
-    return {
-        "viewpoints": [
+def _dialogue_and_viewpoints(found: Grounding) -> dict[str, Any]:
+    """From which viewpoints a script may speak, and what was asked and answered, each where it was wanted."""
+    answer: dict[str, Any] = {}
+    if found.viewpoints is not None:
+        answer["viewpoints"] = [
             {
-                "turned": round(math.degrees(side.angle), 1) % 360,
-                "mirrored": side.mirrored,
-                "probability": _rounded(side.probability),
+                "turned": round(math.degrees(view.angle), 1) % 360,
+                "mirrored": view.mirrored,
+                "probability": _rounded(view.probability),
             }
-            for side in sides
+            for view in found.viewpoints
         ]
-    }
-
-
-def exchanges_to_dict(exchanges: Sequence[Exchange]) -> dict[str, Any]:
-    """What was asked and answered, in order, with what was expected of it and what came of it."""
-    return {
-        "questions": [
+    if found.exchanges is not None:
+        answer["questions"] = [
             {
                 "question": one.question.text,
                 "bits": round(one.question.bits, 6),
                 "answer": one.answer,
                 "outcome": one.outcome.value,
             }
-            for one in exchanges
+            for one in found.exchanges
         ]
-    }
+    return answer
 
 
 def outcome_to_dict(entry: FactOutcome) -> dict[str, Any]:

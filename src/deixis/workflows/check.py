@@ -8,16 +8,18 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from deixis.grammar.script import Script
-from deixis.kernels import ready_to_ground
 from deixis.knowledge_store import KnowledgeStore
-from deixis.learning.scene_evidence import conflict_notes, graph_evidence, scene_labels
+from deixis.learning.scene_evidence import conflict_notes, graph_evidence, scene_labels, viewpoint_notes
 from deixis.ontology.tbox import default_ontology
 from deixis.perception.scene import Scene
+from deixis.reasoning.entailment.conflict import find_conflict
+from deixis.reasoning.entailment.implications import Implications
 from deixis.reasoning.errors import SettingError
 from deixis.reasoning.grounding.engines import engine_named
 from deixis.reasoning.grounding.evidence.meaning import SHIPPED
 from deixis.reasoning.grounding.ground import DEFAULT_TIME_LIMIT
-from deixis.workflows.read import as_scene, as_script, is_script_file, viewpoint_notes
+from deixis.workflows.ground import ready_to_ground
+from deixis.workflows.read import as_scene, as_script, is_script_file
 
 if TYPE_CHECKING:
     from deixis.ontology.lessons.types import LayoutConcept
@@ -60,8 +62,9 @@ def check(
     scene, relations = as_scene(scene), known.relations
     graph = concept.graph(relations)
     meaning = SHIPPED if knowledge is None else knowledge.meaning()
-    evidence = graph_evidence(graph, scene, known, meaning)
-    notes = viewpoint_notes(concept.viewpoint, scene) + conflict_notes(graph)
+    implied = Implications(graph)
+    evidence = replace(graph_evidence(graph, scene, known, meaning), consistent=implied.consistent)
+    notes = viewpoint_notes(concept.viewpoint, scene) + conflict_notes(find_conflict(implied))
     ready_to_ground("exact")
     labels, engine = scene_labels(scene), engine_named("exact")
     table = checked_table(evidence, labels, known.kinds, engine, time_limit, scene.colours, known.colours)

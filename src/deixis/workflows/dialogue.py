@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import io
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Protocol, TextIO
@@ -46,6 +47,46 @@ class AnswerSource(Protocol):
     def answer(self, question: Question, situation: Situation) -> str | None:
         """One of the words of ``questions.py`` or a thing's id; None where there will be no further answer."""
         ...
+
+
+@dataclass(frozen=True)
+class Dialogue:
+    """Who answers, made for what there is to be seen, and where the dialogue is written."""
+
+    source: Callable[[Situation], AnswerSource]
+    out: TextIO
+
+
+@dataclass(frozen=True)
+class Answers:
+    """Answers of a function of the question and the situation; None ends the dialogue."""
+
+    answers: Callable[[Question, Situation], str | None]
+
+    def answer(self, question: Question, situation: Situation) -> str | None:
+        """Return the function's answer; raises OracleError for one that the question does not have."""
+        text = self.answers(question, situation)
+        if text is None:
+            return None
+        found = parse_answer(text, _allowed(question, situation))
+        if found is None:
+            raise OracleError(f"the answer to '{question.text}' must be one of its answers, got '{text}'")
+        return found
+
+
+def dialogue_with(answers: Ask) -> Dialogue:
+    """Return the dialogue with who answers: a dialogue as it is; a function or the truth, and nothing is written."""
+    if isinstance(answers, Dialogue):
+        return answers
+    silence = io.StringIO()
+    if isinstance(answers, Mapping):
+        truth = dict(answers)
+        return Dialogue(lambda situation: Oracle(checked_truth(truth, "ask", situation), silence), silence)
+    return Dialogue(lambda _: Answers(answers), silence)
+
+
+Ask = Dialogue | Mapping[str, str | None] | Callable[[Question, Situation], str | None]
+"""Who answers questions: a dialogue, the truth from names to ids (None: absent), or a function of each question."""
 
 
 def run(inquiry: Inquiry, source: AnswerSource, out: TextIO, most: float = math.inf) -> Inquiry:
@@ -198,21 +239,22 @@ def read_oracle(file: str | Path, situation: Situation, out: TextIO) -> Oracle:
         raise OracleError(f"{path}: the file is not UTF-8 (byte {error.start})") from error
     except (ValueError, RecursionError) as error:
         raise OracleError(f"{path}: this is no JSON: {error}") from error
-    return Oracle(_checked(data, path, situation), out)
+    return Oracle(checked_truth(data, str(path), situation), out)
 
 
-def _checked(data: Any, path: Path, situation: Situation) -> dict[str, str | None]:
+def checked_truth(data: Any, where: str, situation: Situation) -> dict[str, str | None]:
+    """Return the truth from names to ids; raises OracleError, with ``where`` it stands, for what is none."""
     if not isinstance(data, dict) or not all(isinstance(id, str | None) for id in data.values()):
-        raise OracleError(f"{path}: a truth file is a JSON object from names to ids, null for what is not there")
+        raise OracleError(f"{where}: a truth file is a JSON object from names to ids, null for what is not there")
     for name, id in data.items():
         if id is not None and id not in situation.things:
             near = nearest(id, situation.things)
             raise OracleError(
-                f"{path}: '{name}' is said to be '{id}', which is no thing of the scene"
+                f"{where}: '{name}' is said to be '{id}', which is no thing of the scene"
                 + (f"; did you mean '{near}'?" if near else "")
             )
     ids = [id for id in data.values() if id is not None]
     twice = next((id for id in ids if ids.count(id) > 1), None)
     if twice is not None:
-        raise OracleError(f"{path}: two objects are said to be '{twice}'")
+        raise OracleError(f"{where}: two objects are said to be '{twice}'")
     return data

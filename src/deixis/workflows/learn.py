@@ -11,13 +11,12 @@ from typing import TYPE_CHECKING, Any
 from deixis.grammar.script import Script
 from deixis.knowledge_store import KnowledgeStore
 from deixis.perception.scene import Scene
-from deixis.reasoning.entailment.conflict import find_conflict
-from deixis.reasoning.entailment.implications import Implications
 from deixis.reasoning.errors import InconsistencyError, NothingFoundError
 from deixis.reasoning.grounding.answer import Grounding
 from deixis.reasoning.grounding.ground import DEFAULT_TIME_LIMIT
 from deixis.version import VERSION
 from deixis.view_store import ViewStore, views_of_matches
+from deixis.workflows.ground import GroundingRequest, answer
 from deixis.workflows.read import as_scene, as_script
 
 if TYPE_CHECKING:
@@ -61,15 +60,15 @@ def learn(
     """
     from deixis.learning.lesson import Occasion, layout_name, lesson_of
     from deixis.ontology.lessons.types import next_lesson_id
-    from deixis.session import ground
 
     script, scene = as_script(script, knowledge.ontology), as_scene(scene)
-    conflict = find_conflict(Implications(script.graph()))
+    request = GroundingRequest(script, scene, engine, time_limit=time_limit, meaning=knowledge.meaning())
+    conflict = request.conflict
     if conflict is not None:
         lines = ", ".join(str(fact.source) for fact in conflict.facts)
         raise InconsistencyError(f"the script contradicts itself, nothing was learned: {conflict.reason} ({lines})")
     started = datetime.now(UTC)
-    found = ground(script, scene, engine, time_limit, meaning=knowledge.meaning())
+    found = answer(request)
     if not found.matches:
         raise NothingFoundError("nothing that the script names was found in the scene, so nothing was learned")
     id = next_lesson_id(layout_name(script), knowledge.memory(create=True).lessons())

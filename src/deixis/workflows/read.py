@@ -45,13 +45,3 @@ def as_scene(scene: Scene | str | Path | Mapping[str, Any]) -> Scene:
 def is_script_file(layout: str | Path) -> bool:
     """Whether a layout is given as a file rather than by its name."""
     return isinstance(layout, Path) or layout.endswith(".layout") or os.sep in layout
-
-
-def viewpoint_notes(viewpoint: str | None, scene: Scene) -> tuple[str, ...]:
-    """What is to be said with an answer where a script, or a layout, speaks as seen from another place than a scene."""
-    if viewpoint is None or viewpoint == scene.viewpoint:
-        return ()
-    return (
-        f"the script speaks as seen from '{viewpoint}' and the scene is seen from '{scene.viewpoint}': "
-        "left and right were compared as they stand",
-    )

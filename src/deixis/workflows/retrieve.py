@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 from deixis.errors import DeixisError
 from deixis.grammar.parser import read_script
 from deixis.grammar.script import Script
-from deixis.kernels import ready_to_ground
 from deixis.ontology.tbox import default_ontology
 from deixis.perception.formats.scene_json import read_scene
 from deixis.perception.scene import Scene
@@ -20,12 +19,13 @@ from deixis.reasoning.comparison.likeness import Comparison, Described, Likeness
 from deixis.reasoning.comparison.retrieval import rank_layouts, rank_scenes
 from deixis.reasoning.grounding.evidence.labels import category_of
 from deixis.reasoning.grounding.evidence.meaning import Meaning
+from deixis.workflows.ground import ready_to_ground
 
 if TYPE_CHECKING:
     from deixis.learning.recollection import Recollection
     from deixis.ontology.lessons.types import LayoutConcept
 
-SURE = 0.5
+MIN_LABEL_CONFIDENCE = 0.5
 """A label of less confidence does not tell a thing's kind."""
 
 TIME_LIMIT = 60.0
@@ -120,10 +120,10 @@ def _seen(name: str, scene: Scene) -> Seen:
     ontology = default_ontology()
     kinds: list[str | None] = []
     for thing in scene.objects:
-        label = thing.label if thing.confidence >= SURE else None
+        label = thing.label if thing.confidence >= MIN_LABEL_CONFIDENCE else None
         kind = ontology.of_name(label)[0] if label else None
         kinds.append(kind.iri if kind else category_of(label) if label else None)
-    return seen(name, replace(scene.graph(ontology.relations), kinds=tuple(kinds)), metric=scene.unit == "m")
+    return seen(name, replace(scene.relations(ontology.relations), kinds=tuple(kinds)), metric=scene.unit == "m")
 
 
 def _known_layouts(memory: Knowledge | None, among: Path | None) -> dict[str, Described]:

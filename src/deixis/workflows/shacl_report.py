@@ -12,7 +12,6 @@ from deixis.ontology.relation import Relation, Relations
 from deixis.ontology.triples import with_blank_nodes
 from deixis.perception.scene import Scene
 from deixis.reasoning.comparison.checking import TableCheck
-from deixis.reasoning.grounding.evidence.evidence import exact_names
 
 
 def shacl_report(layout: LayoutConcept, scene: Scene, check: TableCheck, relations: Relations) -> tuple[bool, str]:
@@ -41,7 +40,7 @@ def satisfied_relations(
 ) -> Iterator[tuple[str, Relation, str]]:
     """Every relation that a fact of the layout names and that holds of what fills its roles."""
     thing = {role: id for id, role in fills.items()}
-    names, position = exact_names(scene.graph(relations)), {id: i for i, id in enumerate(scene.ids)}
+    names, position = scene.relations(relations).names, {id: i for i, id in enumerate(scene.ids)}
     for fact in layout.facts:
         subject, object = thing.get(fact.subject), thing.get(fact.object)
         if subject is None or object is None:

@@ -20,7 +20,8 @@ from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.clouds.cloud_file import read_cloud, write_cloud
 from deixis.perception.formats.scene_json import read_scene
 from deixis.perception.scene import Scene
-from deixis.session import Session, ground
+from deixis.session import Session
+from deixis.workflows.ground import ground
 from deixis.workflows.perceive import perceive, write_scene
 
 FULL = example("formal_dinner.layout")

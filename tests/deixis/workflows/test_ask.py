@@ -25,13 +25,13 @@ from deixis.reasoning.grounding.ground import ground
 from deixis.reasoning.grounding.map_engines import ExactEngine
 from deixis.reasoning.grounding.questions.candidates import Candidates
 from deixis.reasoning.grounding.questions.inquiry import begin
+from deixis.reasoning.grounding.questions.refinement import narrowed
 from deixis.reasoning.grounding.questions.selection import questions
 from deixis.reasoning.grounding.questions.situation import situation_of
 from deixis.reasoning.grounding.viewpoint import Viewpoint, Viewpoints, turned
-from deixis.workflows.ask import _narrowed
 from deixis.workflows.dialogue import Oracle
 from deixis.workflows.read import read_script
-from deixis.workflows.viewpoint import SeenFrom
+from deixis.workflows.viewpoint import ViewpointScene
 
 SCENE = example("place_setting.scene.json")
 TRUTH = {thing.label: thing.id for thing in read_scene(example("place_setting.labelled.scene.json")).objects}
@@ -163,7 +163,7 @@ def test_both_searches_together_keep_to_the_time_limit_where_nothing_was_answere
         limits.append(time_limit)
         return ground(evidence, engine, time_limit, notes)
 
-    monkeypatch.setattr("deixis.workflows.ask.ground_evidence", recorded)
+    monkeypatch.setattr("deixis.workflows.ground.ground_evidence", recorded)
     monkeypatch.setattr("sys.stdin", io.StringIO(""))
     deixis("ground", script, scene, "--ask", "--time-limit", 0.4, "--json")
     assert limits[0] < 0.3  # what to ask took half of it
@@ -229,7 +229,9 @@ def test_with_a_dialogue_probabilities_hold_as_seen_from_one_side(tmp_path: Path
     def doubt(probability: float) -> str:
         sides = [Viewpoint(0.0, False, probability, 0.0, np.zeros(1, np.int64))]
         sides += [Viewpoint(math.pi, False, 1 - probability, -1.0, np.zeros(1, np.int64))]
-        return "; ".join(SeenFrom(read_scene(SCENE), Viewpoints(tuple(sides), exact=True), share=probability).doubt)
+        return "; ".join(
+            ViewpointScene(read_scene(SCENE), Viewpoints(tuple(sides), exact=True), share=probability).doubt
+        )
 
     assert "probabilities hold as seen from this one" in doubt(0.6)
     assert not doubt(0.99)
@@ -258,9 +260,9 @@ def test_what_an_answer_rules_out_does_not_make_an_uncertain_label_certain(tmp_p
     is_it = next(
         q for q in questions(start.situation, start.start) if (q.kind, q.subject, q.thing) == ("identity", 1, 0)
     )
-    narrowed = _narrowed(evidence, start.answered(is_it, "no"))
-    assert np.isneginf(narrowed.unary[1, 0])
-    assert narrowed.problem.absent.tolist() == evidence.problem.absent.tolist()
+    told = narrowed(evidence, start.answered(is_it, "no"))
+    assert np.argwhere(~told.allowed).tolist() == [[1, 0]]
+    assert told.problem.absent.tolist() == evidence.problem.absent.tolist()
 
 
 def test_an_answer_about_forks_says_nothing_of_the_knives(monkeypatch: pytest.MonkeyPatch) -> None:

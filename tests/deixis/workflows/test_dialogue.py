@@ -11,7 +11,7 @@ import pytest
 
 from deixis.ontology.graph import RelationGraph
 from deixis.ontology.tbox import default_ontology
-from deixis.reasoning.geometry.rectangle import perceived_graph
+from deixis.reasoning.geometry.rectangle import scene_relations
 from deixis.reasoning.grounding.questions.candidates import Candidates
 from deixis.reasoning.grounding.questions.inquiry import Inquiry, begin
 from deixis.reasoning.grounding.questions.selection import QuestionKind
@@ -25,7 +25,7 @@ def three_cups(*kinds: QuestionKind) -> Inquiry:
     """Three cups in a row of which only the third is settled by the first question or so."""
     boxes = np.array([[[2.0 * i, 0.0], [2.0 * i + 1, 1.0]] for i in range(3)])
     description = RelationGraph.from_facts(RELATIONS, ["big_cup", "cup", "mug"], [])
-    situation = situation_of(description, perceived_graph(["o1", "o2", "o3"], boxes, RELATIONS))
+    situation = situation_of(description, scene_relations(["o1", "o2", "o3"], boxes, RELATIONS))
     maps = np.array([[0, 1, 2], [1, 0, 2], [0, 2, 1], [2, 1, 0]])
     return begin(situation, Candidates(maps, np.ones(4)), kinds or tuple(QuestionKind))
 
@@ -86,7 +86,7 @@ def test_who_does_not_know_is_asked_something_else() -> None:
 def test_a_thing_that_is_called_none_can_still_be_pointed_at() -> None:
     boxes = np.array([[[0.0, 0.0], [1.0, 1.0]], [[2.0, 0.0], [3.0, 1.0]]])
     description = RelationGraph.from_facts(RELATIONS, ["cup", "mug"], [])
-    situation = situation_of(description, perceived_graph(["none", "y"], boxes, RELATIONS))
+    situation = situation_of(description, scene_relations(["none", "y"], boxes, RELATIONS))
     both = begin(situation, Candidates(np.array([[0, 1], [1, 0]]), np.ones(2)), (QuestionKind.POINTING,))
     done, _ = typed(both, "none")
     assert done.candidates.assignments.tolist() == [[0, 1]]

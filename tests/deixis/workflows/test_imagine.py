@@ -17,7 +17,8 @@ from deixis.grammar.script import Script
 from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.errors import SettingError
 from deixis.reasoning.grounding.answer import Outcome
-from deixis.session import Session, ground
+from deixis.session import Session
+from deixis.workflows.ground import ground
 from deixis.workflows.imagine import Table, imagine, kind_by_words
 
 EXAMPLES = Path(__file__).parents[3] / "examples"

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from deixis.errors import GraphError
 from deixis.ontology.relation import Reading, Relations
-from deixis.reasoning.geometry.rectangle import box_relations, perceived_graph
+from deixis.reasoning.geometry.rectangle import box_relations, scene_relations
 
 Boxes = NDArray[np.float64]
 MakeBoxes = Callable[..., Boxes]
@@ -282,7 +282,7 @@ def test_a_thousand_objects_give_a_million_names(relations: Relations) -> None:
 @pytest.mark.parametrize("axes", [2, 3])
 def test_no_object_and_one_object_have_no_relations(n: int, axes: int, relations: Relations) -> None:
     assert box_relations(np.zeros((n, 2, axes)), relations).names.tolist() == [[-1]] * n
-    assert len(perceived_graph(["a"][:n], np.zeros((n, 2, axes)), relations)) == 0
+    assert len(scene_relations(["a"][:n], np.zeros((n, 2, axes)), relations).graph()) == 0
 
 
 @pytest.mark.parametrize(
@@ -305,7 +305,7 @@ def test_the_graph_of_a_scene_has_one_exact_edge_for_every_ordered_pair(
     boxes_of: MakeBoxes, relations: Relations
 ) -> None:
     boxes = boxes_of(MAT, PLATE, [(12, 13), (0, 9)])
-    graph = perceived_graph(["mat", "plate", "knife"], boxes, relations)
+    graph = scene_relations(["mat", "plate", "knife"], boxes, relations).graph()
     assert sorted(map(str, graph.facts())) == [
         "exactly_left(mat, knife)",
         "exactly_left(plate, knife)",

@@ -12,7 +12,7 @@ import pytest
 from deixis.experiments.generated_tables import generate
 from deixis.ontology.graph import RelationGraph
 from deixis.ontology.tbox import default_ontology
-from deixis.reasoning.geometry.rectangle import perceived_graph
+from deixis.reasoning.geometry.rectangle import scene_relations
 from deixis.reasoning.grounding.engines import Alignment, engine_named
 from deixis.reasoning.grounding.evidence.evidence import Evidence, no_unary_evidence
 from deixis.reasoning.grounding.ground import ground
@@ -28,7 +28,7 @@ def seen(turns: int = 0) -> Evidence:
     table = generate(6, 1.5, seed=2)
     names = [f"o{i}" for i in range(6)]
     boxes = turned(table.boxes, turns * math.pi / 2)
-    return no_unary_evidence(table.description(), perceived_graph(names, boxes, default_ontology().relations))
+    return no_unary_evidence(table.description(), scene_relations(names, boxes, default_ontology().relations))
 
 
 def align(engine: FromSides, evidence: Evidence, seconds: float = 10.0) -> Alignment:

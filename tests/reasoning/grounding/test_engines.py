@@ -15,10 +15,11 @@ import deixis.reasoning.grounding.engines as engines
 from deixis.errors import UnknownTermError
 from deixis.experiments.place_settings import formal_setting
 from deixis.ontology.graph import RelationGraph
-from deixis.reasoning.geometry.rectangle import perceived_graph
-from deixis.reasoning.grounding.engines import CUT_SHORT, Select, engine_named
+from deixis.reasoning.geometry.rectangle import scene_relations
+from deixis.reasoning.grounding.engines import CUT_SHORT, engine_named
 from deixis.reasoning.grounding.evidence.evidence import no_unary_evidence
 from deixis.reasoning.grounding.ground import ground
+from deixis.reasoning.grounding.options import Select
 
 MakeGraph = Callable[..., RelationGraph]
 MakeBoxes = Callable[..., NDArray[np.float64]]
@@ -27,7 +28,7 @@ ENGINES = ["exact", "similarity"]
 
 @pytest.mark.parametrize("engine", ENGINES)
 def test_no_relation_in_common_is_noted_and_gives_no_nan(engine: str, graph_of: MakeGraph, boxes_of: MakeBoxes) -> None:
-    scene = perceived_graph(["p", "q"], boxes_of([(0, 1), (0, 1)], [(2, 3), (0, 1)]), R)
+    scene = scene_relations(["p", "q"], boxes_of([(0, 1), (0, 1)], [(2, 3), (0, 1)]), R)
     found = ground(no_unary_evidence(graph_of("on(a, b)"), scene), engine_named(engine))
     assert any("similarity is zero" in note for note in found.notes)
     assert found.graph_similarity == 0.0
@@ -45,7 +46,7 @@ def test_facts_that_the_similarity_cannot_see_are_listed(graph_of: MakeGraph, fu
 
 
 def test_what_is_rarely_so_is_not_what_the_similarity_looks_for(graph_of: MakeGraph, boxes_of: MakeBoxes) -> None:
-    scene = perceived_graph(["p", "q"], boxes_of([(0, 1), (0, 1)], [(2, 3), (0, 1)]), R)
+    scene = scene_relations(["p", "q"], boxes_of([(0, 1), (0, 1)], [(2, 3), (0, 1)]), R)
     found = ground(no_unary_evidence(graph_of("0.2 left(a, b)"), scene), engine_named("similarity"))
     assert found.graph_similarity == 0.0
     assert "not seen by the similarity, being no single affirmed relation: rarely left(a, b)" in found.notes
@@ -54,7 +55,7 @@ def test_what_is_rarely_so_is_not_what_the_similarity_looks_for(graph_of: MakeGr
 def test_where_one_step_of_the_similarity_is_too_much_the_exact_engine_goes_without(
     monkeypatch: pytest.MonkeyPatch, graph_of: MakeGraph, full_script: list[str]
 ) -> None:
-    monkeypatch.setattr(engines, "_WORK", 1.0)
+    monkeypatch.setattr(engines, "_MAX_MULTIPLICATIONS", 1.0)
     found = answer(graph_of(*full_script), formal_setting())
     assert found.proved_best
     assert not found.converged
@@ -114,7 +115,7 @@ def test_the_similarity_answers_at_its_deadline_and_says_that_it_was_cut_short(
     absent_glasses: list[str],
 ) -> None:
     monkeypatch.setattr(engines, "MAX_SUBGRAPHS", most)
-    monkeypatch.setattr(engines, "_BLOCK", 10)
+    monkeypatch.setattr(engines, "_SUBGRAPHS_PER_BLOCK", 10)
     question = evidence(graph_of(*full_script, *(absent_glasses if absent else [])), formal_setting())
     found = engine_named("similarity").align(question, time.perf_counter())
     assert np.count_nonzero(found.assignment >= 0) == 12

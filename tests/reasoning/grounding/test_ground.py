@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from deixis.experiments.place_settings import formal_setting
 from deixis.ontology.graph import RelationGraph
 from deixis.perception.scene import Scene
-from deixis.reasoning.geometry.rectangle import perceived_graph
+from deixis.reasoning.geometry.rectangle import scene_relations
 from deixis.reasoning.grounding.answer import DECIDED, Grounding, Outcome
 from deixis.reasoning.grounding.engines import engine_named
 from deixis.reasoning.grounding.evidence.evidence import no_unary_evidence
@@ -146,12 +146,12 @@ def test_no_order_changes_the_answer_to_random_questions(
     drawn = data.draw(st.lists(triples, min_size=1, max_size=6, unique_by=lambda t: t[1:]))
     sentences = [f"{word}({s}, {o})" for word, s, o in drawn]
     rng = random.Random(seed)
-    plain = ground(no_unary_evidence(graph_of(*sentences), perceived_graph(ids, boxes, R)), engine_named("exact"))
+    plain = ground(no_unary_evidence(graph_of(*sentences), scene_relations(ids, boxes, R)), engine_named("exact"))
     centres = boxes.sum(axis=1)
     if len(np.unique(centres, axis=0)) < len(boxes):
         return  # which of two concentric boxes lies on the other is a matter of listing
     order = rng.sample(range(len(ids)), len(ids))
-    scene = perceived_graph([ids[i] for i in order], boxes[order], R)
+    scene = scene_relations([ids[i] for i in order], boxes[order], R)
     found = ground(no_unary_evidence(shuffled(rng, sentences, graph_of), scene), engine_named("exact"))
     assert pairs(found) == pairs(plain)
 
@@ -187,7 +187,7 @@ def test_an_optional_fact_that_holds_is_satisfied(graph_of: MakeGraph, full_scri
 
 def test_the_score_is_the_share_of_what_is_said_by_degree_and_weight(graph_of: MakeGraph, boxes_of: MakeBoxes) -> None:
     """a lies top left of b: left holds to 0.5 and weighs 1, top left wholly and weighs 0.5; on, as rarely, does not."""
-    scene = perceived_graph(["p", "q"], boxes_of([(0, 1), (4, 5)], [(2, 3), (0, 1)]), R)
+    scene = scene_relations(["p", "q"], boxes_of([(0, 1), (4, 5)], [(2, 3), (0, 1)]), R)
     description = graph_of("left(a, b)", "0.5 top_left(a, b)", "0.2 on(a, b)")
     found = ground(no_unary_evidence(description, scene), engine_named("exact"))
     assert found.matches["a"].score == pytest.approx((0.5 + 0.5 + 0.8) / 2.3)
@@ -196,7 +196,7 @@ def test_the_score_is_the_share_of_what_is_said_by_degree_and_weight(graph_of: M
 
 
 def test_an_object_of_which_nothing_is_said_scores_1(graph_of: MakeGraph, boxes_of: MakeBoxes) -> None:
-    scene = perceived_graph(["p"], boxes_of([(0, 1), (0, 1)]), R)
+    scene = scene_relations(["p"], boxes_of([(0, 1), (0, 1)]), R)
     found = ground(no_unary_evidence(graph_of(nodes="a"), scene), engine_named("exact"))
     assert found.matches["a"].score == 1.0
 
@@ -210,7 +210,7 @@ def test_more_things_than_objects_leave_some_out_with_a_reason(graph_of: MakeGra
 
 
 def test_the_cost_of_an_alternative_is_what_it_loses(graph_of: MakeGraph, boxes_of: MakeBoxes) -> None:
-    scene = perceived_graph(["p", "q"], boxes_of([(0, 1), (0, 1)], [(2, 3), (0, 1)]), R)
+    scene = scene_relations(["p", "q"], boxes_of([(0, 1), (0, 1)], [(2, 3), (0, 1)]), R)
     found = ground(no_unary_evidence(graph_of("left(a, b)"), scene), engine_named("exact"))
     a = found.matches["a"]
     costs = {other.perceived: other.cost for other in a.alternatives}
@@ -226,7 +226,7 @@ def test_nothing_said_or_nothing_seen_is_answered(
     engine: str, objects: int, things: int, graph_of: MakeGraph, boxes_of: MakeBoxes
 ) -> None:
     boxes = boxes_of([(0, 1), (0, 1)], [(2, 3), (0, 1)])[:things] if things else np.zeros((0, 2, 2))
-    scene = perceived_graph(["p", "q"][:things], boxes, R)
+    scene = scene_relations(["p", "q"][:things], boxes, R)
     description = graph_of("left(a, b)") if objects else graph_of()
     found = ground(no_unary_evidence(description, scene), engine_named(engine))
     assert dict(found.matches) == {}
@@ -254,17 +254,21 @@ def test_matches_and_outcomes_are_in_the_order_of_the_script(graph_of: MakeGraph
 def test_the_names_of_the_pairs_are_worked_out_once(
     graph_of: MakeGraph, full_script: list[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    import deixis.reasoning.grounding.evidence.evidence as module
+    import deixis.reasoning.geometry.rectangle as rectangle
+    import deixis.reasoning.grounding.evidence.facts as facts
 
-    names, scenes = module.exact_names, []
+    related, counts = rectangle.box_relations, []
 
-    def counted(scene: RelationGraph) -> NDArray[np.int16]:
-        scenes.append(scene)
-        return names(scene)
+    def counted(boxes: NDArray[np.float64], *others: object) -> rectangle.BoxRelations:
+        counts.append(len(boxes))
+        return related(boxes, *others)  # type: ignore[arg-type]
 
-    monkeypatch.setattr(module, "exact_names", counted)
-    answer(graph_of(*full_script), formal_setting())
-    assert len(scenes) == 1
+    for module in (rectangle, facts):
+        monkeypatch.setattr(module, "box_relations", counted)
+    scene = formal_setting()
+    answer(graph_of(*full_script), scene)
+    answer(graph_of(*full_script), scene, "similarity")
+    assert counts == [len(scene.objects)]
 
 
 def test_the_notes_of_the_caller_come_first_and_the_time_is_told(graph_of: MakeGraph, full_script: list[str]) -> None:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from deixis.experiments.place_settings import formal_setting
 from deixis.ontology.graph import RelationGraph
 from deixis.ontology.tbox import default_ontology
-from deixis.reasoning.geometry.rectangle import perceived_graph
+from deixis.reasoning.geometry.rectangle import SceneRelations, scene_relations
 from deixis.reasoning.grounding.answer import Grounding
 from deixis.reasoning.grounding.engines import engine_named
 from deixis.reasoning.grounding.evidence.evidence import Evidence
@@ -27,12 +27,14 @@ FORK_AND_PLATE = [KINDS.words[word].iri for word in ("fork", "plate")]
 
 def labelled(description: RelationGraph, labels: dict[str, Label]) -> Grounding:
     scene = formal_setting()
-    return labelled_scene(description, scene.graph(R), [labels.get(thing.id) for thing in scene.objects])
+    return labelled_scene(description, scene.relations(R), [labels.get(thing.id) for thing in scene.objects])
 
 
-def labelled_scene(description: RelationGraph, scene: RelationGraph, labels: list[Label | None]) -> Grounding:
-    said = label_ratios(description, labels, KINDS)
-    return ground(Evidence(description, scene, said, np.zeros_like(said)), engine_named("exact"))
+def labelled_scene(description: RelationGraph, scene: SceneRelations, labels: list[Label | None]) -> Grounding:
+    said, allowed = label_ratios(description, labels, KINDS)
+    identified = np.any(~allowed, axis=0)
+    evidence = Evidence(description, scene, said, np.zeros_like(said), allowed=allowed, identified=identified)
+    return ground(evidence, engine_named("exact"))
 
 
 def test_a_certain_label_fixes_its_thing_against_all_facts(graph_of: MakeGraph, full_script: list[str]) -> None:
@@ -59,7 +61,7 @@ def test_a_certain_label_that_names_nothing_leaves_its_thing_out(graph_of: MakeG
 def test_an_object_that_labels_leave_nothing_is_left_out_with_that_reason(
     graph_of: MakeGraph, boxes_of: MakeBoxes
 ) -> None:
-    scene = perceived_graph(["p", "q"], boxes_of([(0, 1), (0, 1)], [(2, 3), (0, 1)]), R)
+    scene = scene_relations(["p", "q"], boxes_of([(0, 1), (0, 1)], [(2, 3), (0, 1)]), R)
     description = graph_of("left(a, b)")
     found = labelled_scene(description, scene, [Label("a"), Label("a")])
     assert pairs(found) == {"a": "p"} or pairs(found) == {"a": "q"}
@@ -71,7 +73,7 @@ def test_an_object_that_labels_leave_nothing_is_left_out_with_that_reason(
 
 def test_an_uncertain_label_weighs_against_facts_and_loses_or_wins(graph_of: MakeGraph, boxes_of: MakeBoxes) -> None:
     """One fact speaks for a on the left; a label has to be surer than it is to speak louder."""
-    scene = perceived_graph(["p", "q"], boxes_of([(0, 1), (0, 1)], [(2, 3), (0, 1)]), R)
+    scene = scene_relations(["p", "q"], boxes_of([(0, 1), (0, 1)], [(2, 3), (0, 1)]), R)
     description = graph_of("left(a, b)")
     answers = {}
     for confidence in (0.2, 0.5, 0.99, 0.999):
@@ -81,7 +83,7 @@ def test_an_uncertain_label_weighs_against_facts_and_loses_or_wins(graph_of: Mak
 
 def test_a_narrower_label_says_where_the_broader_object_is(graph_of: MakeGraph, boxes_of: MakeBoxes) -> None:
     """The facts have it the other way round, and a certain label is stronger."""
-    scene = perceived_graph(["p", "q"], boxes_of([(0, 1), (0, 1)], [(2, 3), (0, 1)]), R)
+    scene = scene_relations(["p", "q"], boxes_of([(0, 1), (0, 1)], [(2, 3), (0, 1)]), R)
     description = graph_of("left(fork, plate)", kinds=FORK_AND_PLATE)
     found = labelled_scene(description, scene, [Label("dinner plate"), Label("dinner fork")])
     assert pairs(found) == {"fork": "q", "plate": "p"}
@@ -93,7 +95,7 @@ def test_beside_a_thing_of_its_very_name_an_object_is_none_of_a_narrower_one(
 ) -> None:
     boxes = boxes_of([(0, 1), (0, 1)], [(2, 3), (0, 1)], [(4, 5), (0, 1)])
     description = graph_of("left(fork, plate)", kinds=FORK_AND_PLATE)
-    scene = perceived_graph(["p", "q", "r"], boxes, R)
+    scene = scene_relations(["p", "q", "r"], boxes, R)
     found = labelled_scene(description, scene, [Label("dinner fork"), Label("plate"), Label("fork")])
     assert pairs(found) == {"fork": "r", "plate": "q"}
     assert found.matches["fork"].decided

@@ -18,7 +18,7 @@ from deixis.experiments.place_settings import formal_setting
 from deixis.ontology.graph import Fact, RelationGraph
 from deixis.ontology.relation import Relations
 from deixis.ontology.tbox import default_ontology
-from deixis.reasoning.geometry.rectangle import perceived_graph
+from deixis.reasoning.geometry.rectangle import SceneRelations, scene_relations
 from deixis.reasoning.grounding.answer import Standing
 from deixis.reasoning.grounding.engines import Alignment, engine_named
 from deixis.reasoning.grounding.evidence.evidence import Evidence, no_unary_evidence
@@ -32,14 +32,14 @@ R = default_ontology().relations
 EXACT = engine_named("exact")
 
 
-def setting(relations: Relations, seed: int | None = None) -> RelationGraph:
+def setting(relations: Relations, seed: int | None = None) -> SceneRelations:
     seen = formal_setting(seed)
     boxes = np.array([[thing.minimum, thing.maximum] for thing in seen.objects])
-    return perceived_graph([thing.id for thing in seen.objects], boxes, relations)
+    return scene_relations([thing.id for thing in seen.objects], boxes, relations)
 
 
-def scene(boxes: NDArray[np.float64]) -> RelationGraph:
-    return perceived_graph([f"o{i}" for i in range(len(boxes))], boxes, R)
+def scene(boxes: NDArray[np.float64]) -> SceneRelations:
+    return scene_relations([f"o{i}" for i in range(len(boxes))], boxes, R)
 
 
 @pytest.mark.parametrize("seed", [None, 1, 2])
@@ -77,8 +77,8 @@ def test_interchangeable_things_are_as_probable_and_not_decided(
 
 def test_a_scene_without_boxes_is_taken_literally(graph_of: MakeGraph, boxes_of: MakeBoxes) -> None:
     seen = scene(boxes_of([(0, 1), (0, 1)], [(2, 3), (0, 1)]))
-    bare = RelationGraph.from_facts(R, seen.nodes, seen.facts())
-    found = ground(no_unary_evidence(graph_of("left(a, b)"), bare), EXACT)
+    bare = RelationGraph.from_facts(R, seen.nodes, seen.graph().facts())
+    found = ground(no_unary_evidence(graph_of("left(a, b)"), SceneRelations.from_graph(bare)), EXACT)
     assert {name: match.perceived for name, match in found.matches.items()} == {"a": "o0", "b": "o1"}
 
 
@@ -154,11 +154,20 @@ def evidences(draw: st.DrawFn) -> Evidence:
     n1, n2 = len(description.nodes), draw(st.integers(0, 4))
     extent = st.tuples(st.integers(0, 6), st.integers(1, 4)).map(lambda e: (e[0], e[0] + e[1]))
     corners = draw(st.lists(st.tuples(extent, extent), min_size=n2, max_size=n2))
-    amounts = st.sampled_from([0.0, 0.0, 0.7, 1.6, -2.0, -np.inf])
-    labels = np.array(draw(st.lists(amounts, min_size=n1 * n2, max_size=n1 * n2)), dtype=np.float64)
+    amounts = st.sampled_from([0.0, 0.0, 0.7, 1.6, -2.0, None])  # None: ruled out, as by a certain label
+    labels = np.array(draw(st.lists(amounts, min_size=n1 * n2, max_size=n1 * n2)), dtype=np.float64).reshape(n1, n2)
+    allowed = ~np.isnan(labels)
     boxes = np.array(corners, dtype=np.float64).reshape(-1, 2, 2).transpose(0, 2, 1)
     meaning = draw(st.sampled_from([SHIPPED, LITERAL]))
-    return Evidence(description, scene(boxes), labels.reshape(n1, n2), np.zeros((n1, n2)), meaning)
+    return Evidence(
+        description,
+        scene(boxes),
+        np.nan_to_num(labels),
+        np.zeros((n1, n2)),
+        meaning,
+        allowed=allowed,
+        identified=np.any(~allowed, axis=0),
+    )
 
 
 def maps(allowed: NDArray[np.bool_]) -> Iterator[NDArray[np.int64]]:
@@ -194,18 +203,17 @@ def test_without_a_pivotal_fact_the_answer_is_the_one_foretold(evidence: Evidenc
     found = ground(evidence, EXACT)
     assert found.pivotal is not None
     facts = [evidence.description.fact(int(edge)) for edge in evidence.facts]
+    names, whole = evidence.description.nodes, evidence.problem
     for pivotal in found.pivotal:
-        kept = list(facts)
-        kept.remove(pivotal.fact)
-        rest = RelationGraph.from_facts(R, evidence.description.nodes, kept)
-        then = Evidence(rest, evidence.scene, evidence.labels, evidence.sizes, evidence.meaning)
-        foretold = {name: found.matches[name].perceived if name in found.matches else None for name in rest.nodes}
+        kept = np.arange(len(facts)) != facts.index(pivotal.fact)
+        then = replace(whole, ends=whole.ends[kept], kinds=whole.kinds[kept])  # words as literal as in the whole
+        foretold = {name: found.matches[name].perceived if name in found.matches else None for name in names}
         foretold |= pivotal.changes
         assignment = np.array(
             [UNMATCHED if p is None else evidence.scene.index(p) for p in foretold.values()], dtype=np.int64
         )
-        best = max(then.problem.value(option) for option in maps(evidence.allowed))
-        assert then.problem.value(assignment) == pytest.approx(best, abs=1e-5)
+        best = max(then.value(option) for option in maps(evidence.allowed))
+        assert then.value(assignment) == pytest.approx(best, abs=1e-5)
 
 
 def elsewhere(graph_of: MakeGraph, boxes_of: MakeBoxes) -> Evidence:
@@ -246,9 +254,9 @@ def test_a_description_of_another_scene_is_told_with_what_was_known_besides(
 @given(evidences())
 def test_literal_meaning_weighs_facts_as_their_crisp_degrees_rank_them(evidence: Evidence) -> None:
     """What holds exactly weighs most, then what holds widely, then what does not hold."""
-    literal = Evidence(evidence.description, evidence.scene, evidence.labels, evidence.sizes, LITERAL).problem
+    literal = replace(evidence, meaning=LITERAL).problem
     for row, fact in enumerate(evidence.facts.tolist()):
-        degrees = evidence.degree_table[row][evidence.names]
+        degrees = evidence.degree_table[row][evidence.scene.names]
         table = literal.tables[literal.kinds[row]]
         apart = ~np.eye(len(table), dtype=bool)
         order = np.argsort(table[apart], kind="stable")
@@ -295,11 +303,11 @@ def test_many_objects_are_answered_soon_after_a_short_time_limit() -> None:
 
 
 def test_a_thousand_alike_do_not_list_each_other() -> None:
-    from deixis.reasoning.grounding.alternatives import MANY_FELLOWS
+    from deixis.reasoning.grounding.alternatives import MAX_LISTED_GROUP
 
-    boxes = np.tile(np.array([[0.0, 0.0], [0.1, 0.1]]), (MANY_FELLOWS + 2, 1, 1))
-    names = [f"a{i}" for i in range(MANY_FELLOWS + 2)]
+    boxes = np.tile(np.array([[0.0, 0.0], [0.1, 0.1]]), (MAX_LISTED_GROUP + 2, 1, 1))
+    names = [f"a{i}" for i in range(MAX_LISTED_GROUP + 2)]
     evidence = no_unary_evidence(RelationGraph.from_facts(R, names, []), scene(boxes))
     found = ground(evidence, engine_named("similarity"))
-    assert len(found.interchangeable[0]) == MANY_FELLOWS + 2
+    assert len(found.interchangeable[0]) == MAX_LISTED_GROUP + 2
     assert all(len(match.alternatives) <= 1 for match in found.matches.values())

@@ -20,7 +20,7 @@ from deixis.ontology.graph import RelationGraph
 from deixis.reasoning.grounding.evidence.facts import fact_tables
 from deixis.reasoning.grounding.matching.exact import exact
 from deixis.reasoning.grounding.matching.problem import Problem
-from deixis.reasoning.grounding.viewpoint import COARSE, Viewpoints, recover_viewpoint, turned
+from deixis.reasoning.grounding.viewpoint import COARSE_ANGLES, Viewpoints, recover_viewpoint, turned
 
 Boxes = NDArray[np.float64]
 FORMAL = read_script(str(Path(__file__).parents[3] / "examples" / "formal_dinner.layout")).graph()
@@ -209,8 +209,8 @@ def test_the_scene_as_it_stands_is_looked_at_where_there_is_no_time_at_all() -> 
 
 
 def test_an_arc_that_there_was_no_time_to_look_at_finely_stays_as_it_was(monkeypatch: pytest.MonkeyPatch) -> None:
-    found, built = looked_until(monkeypatch, 2 * COARSE + 7)
-    assert len(built) == 2 * COARSE + 7
+    found, built = looked_until(monkeypatch, 2 * COARSE_ANGLES + 7)
+    assert len(built) == 2 * COARSE_ANGLES + 7
     assert not found.everywhere
     assert sum(view.probability for view in found.viewpoints) == pytest.approx(1.0)
     assert min(found.best.angle, 2 * math.pi - found.best.angle) < math.radians(10)

@@ -15,7 +15,7 @@ from deixis.experiments.generated_tables import GeneratedTable, generate
 from deixis.experiments.photographs import photographs
 from deixis.ontology.graph import RelationGraph
 from deixis.ontology.tbox import default_ontology
-from deixis.reasoning.geometry.rectangle import perceived_graph
+from deixis.reasoning.geometry.rectangle import SceneRelations, scene_relations
 from deixis.reasoning.grounding.evidence.evidence import Evidence, evidence_from
 from deixis.reasoning.grounding.evidence.meaning import Meaning
 
@@ -71,9 +71,9 @@ class Case:
     learned: Meaning | None = None  # from other cases
 
     @cached_property
-    def scene(self) -> RelationGraph:
+    def scene(self) -> SceneRelations:
         """What was perceived: the exact name of every ordered pair."""
-        return perceived_graph(self.things, self.boxes, self.description.vocabulary)
+        return scene_relations(self.things, self.boxes, self.description.vocabulary)
 
     def evidence(self, meaning: Meaning, learned: bool = False) -> Evidence:
         """What an engine gets to see: facts, and sizes where the description tells kinds; nothing is labelled.

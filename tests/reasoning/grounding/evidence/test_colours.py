@@ -15,7 +15,7 @@ from deixis.ontology.colours import rgb_of_hex
 from deixis.ontology.graph import RelationGraph
 from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.errors import SettingError
-from deixis.reasoning.geometry.rectangle import perceived_graph
+from deixis.reasoning.geometry.rectangle import scene_relations
 from deixis.reasoning.grounding.evidence.colours import OUTLIERS, colour_evidence, lab_of_srgb, other_colours
 from deixis.reasoning.grounding.evidence.evidence import evidence_from
 from deixis.reasoning.grounding.evidence.meaning import Meaning
@@ -128,7 +128,7 @@ def test_evidence_is_the_ratio_of_densities_as_scipy_gives_them() -> None:
 def test_colours_weigh_as_stated_and_move_with_their_things() -> None:
     graph = RelationGraph.from_facts(ONTOLOGY.relations, ["a", "b"], [], colours=[iri("red"), None])
     boxes = np.array([[[i, 0.0], [i + 0.5, 0.5]] for i in range(5)])
-    scene = perceived_graph(tuple("vwxyz"), boxes, ONTOLOGY.relations)
+    scene = scene_relations(tuple("vwxyz"), boxes, ONTOLOGY.relations)
 
     def unary(weight: float) -> NDArray[np.float64]:
         meaning = Meaning(weights=UnaryWeights(colours=weight))

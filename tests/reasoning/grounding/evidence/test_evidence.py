@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from deixis.errors import GraphError
 from deixis.ontology.graph import RelationGraph
 from deixis.ontology.relation import Relations
-from deixis.reasoning.geometry.rectangle import perceived_graph
-from deixis.reasoning.grounding.evidence.evidence import Evidence, absence, exact_names, no_unary_evidence
+from deixis.reasoning.geometry.rectangle import SceneRelations, scene_relations
+from deixis.reasoning.grounding.evidence.evidence import Evidence, absence, no_unary_evidence
 from deixis.reasoning.grounding.matching.problem import UNMATCHED
 
 MakeGraph = Callable[..., RelationGraph]
@@ -22,9 +22,9 @@ MakeBoxes = Callable[..., NDArray[np.float64]]
 
 
 @pytest.fixture
-def top_left_pair(boxes_of: MakeBoxes, relations: Relations) -> RelationGraph:
+def top_left_pair(boxes_of: MakeBoxes, relations: Relations) -> SceneRelations:
     """p lies exactly top left of q."""
-    return perceived_graph(["p", "q"], boxes_of([(0, 1), (4, 5)], [(2, 3), (0, 1)]), relations)
+    return scene_relations(["p", "q"], boxes_of([(0, 1), (4, 5)], [(2, 3), (0, 1)]), relations)
 
 
 @pytest.mark.parametrize(
@@ -49,12 +49,12 @@ def top_left_pair(boxes_of: MakeBoxes, relations: Relations) -> RelationGraph:
         ("optional left(a, b)", 0.5),
     ],
 )
-def test_degrees_by_hand(sentence: str, degree: float, top_left_pair: RelationGraph, graph_of: MakeGraph) -> None:
+def test_degrees_by_hand(sentence: str, degree: float, top_left_pair: SceneRelations, graph_of: MakeGraph) -> None:
     evidence = no_unary_evidence(graph_of(sentence, nodes="a b"), top_left_pair)
     assert evidence.degrees(np.array([0, 1])).tolist() == [degree]
 
 
-def test_the_total_weighs_degrees_and_adds_what_labels_say(top_left_pair: RelationGraph, graph_of: MakeGraph) -> None:
+def test_the_total_weighs_degrees_and_adds_what_labels_say(top_left_pair: SceneRelations, graph_of: MakeGraph) -> None:
     description = graph_of("top_left(a, b)", "0.8 left(a, b)", "0.5 right(a, b)", nodes="a b")
     bonus = np.array([[0.25, 4.0], [8.0, 2.0]])
     evidence = Evidence(description, top_left_pair, bonus, np.zeros((2, 2)))
@@ -64,16 +64,16 @@ def test_the_total_weighs_degrees_and_adds_what_labels_say(top_left_pair: Relati
     assert evidence.total(np.array([UNMATCHED, UNMATCHED])) == 0.0
 
 
-def test_a_fact_about_an_object_and_itself_is_not_compared(top_left_pair: RelationGraph, graph_of: MakeGraph) -> None:
+def test_a_fact_about_an_object_and_itself_is_not_compared(top_left_pair: SceneRelations, graph_of: MakeGraph) -> None:
     evidence = no_unary_evidence(graph_of("left(a, a)", "left(a, b)", nodes="a b"), top_left_pair)
     assert evidence.facts.tolist() == [1]
     assert evidence.degrees(np.array([0, 1])).tolist() == [0.5]
 
 
-def test_reordered_evidence_says_the_same(top_left_pair: RelationGraph, graph_of: MakeGraph) -> None:
+def test_reordered_evidence_says_the_same(top_left_pair: SceneRelations, graph_of: MakeGraph) -> None:
     bonus = np.array([[0.25, 4.0], [8.0, 2.0]])
-    bonus[0, 1] = -np.inf
-    evidence = Evidence(graph_of("left(a, b)", nodes="a b"), top_left_pair, bonus, np.array([[0.5, 1.0], [1.5, 2.0]]))
+    sizes, allowed = np.array([[0.5, 1.0], [1.5, 2.0]]), np.array([[True, False], [True, True]])
+    evidence = Evidence(graph_of("left(a, b)", nodes="a b"), top_left_pair, bonus, sizes, allowed=allowed)
     turned = evidence.reordered(np.array([1, 0]), np.array([1, 0]))
     assert turned.description.nodes == ("b", "a")
     assert turned.scene.nodes == ("q", "p")
@@ -96,7 +96,7 @@ def test_a_scene_in_which_a_pair_has_no_one_exact_name_is_an_error(
     sentences: list[str], message: str, graph_of: MakeGraph
 ) -> None:
     with pytest.raises(GraphError, match=message):
-        exact_names(graph_of(*sentences, nodes="a b"))
+        SceneRelations.from_graph(graph_of(*sentences, nodes="a b"))
 
 
 @given(st.integers(1, 60), st.integers(1, 400))

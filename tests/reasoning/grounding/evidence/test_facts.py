@@ -15,9 +15,9 @@ from deixis.ontology.graph import Fact, RelationGraph
 from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.errors import SettingError
 from deixis.reasoning.geometry.pairs import pair_geometry
-from deixis.reasoning.geometry.rectangle import perceived_graph
+from deixis.reasoning.geometry.rectangle import scene_relations
 from deixis.reasoning.grounding.evidence.degrees import relation_evidence
-from deixis.reasoning.grounding.evidence.evidence import exact_names, no_unary_evidence
+from deixis.reasoning.grounding.evidence.evidence import no_unary_evidence
 from deixis.reasoning.grounding.evidence.facts import crisp_tables, fact_tables, hedged
 from deixis.reasoning.grounding.evidence.meaning import shipped_models
 from deixis.reasoning.grounding.matching.problem import Problem
@@ -135,8 +135,8 @@ def test_the_crisp_reading_is_the_special_case() -> None:
         Fact("a", (R["on"],), "c", False),
     ]
     graph = RelationGraph.from_facts(R, ["a", "b", "c"], facts)
-    evidence = no_unary_evidence(graph, perceived_graph([f"o{i}" for i in range(4)], BOXES, R))
-    found = crisp_tables(graph, exact_names(evidence.scene))
+    evidence = no_unary_evidence(graph, scene_relations([f"o{i}" for i in range(4)], BOXES, R))
+    found = crisp_tables(graph, evidence.scene.names)
     problem = Problem(found.ends, found.kinds, found.tables, np.zeros((3, 4)), np.zeros(3))
     for assignment in ([0, 1, 2], [3, 2, 1], [2, 3, 0]):
         chosen = np.array(assignment)

@@ -12,7 +12,7 @@ from deixis.experiments.generated_tables import GeneratedTable, generate
 from deixis.ontology.graph import Fact, RelationGraph
 from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.grounding.evidence.facts import fact_tables
-from deixis.reasoning.grounding.evidence.literalness import LITERAL, MOST_OBJECTS, literal_share
+from deixis.reasoning.grounding.evidence.literalness import LITERAL, MAX_JUDGED_OBJECTS, literal_share
 from deixis.reasoning.grounding.matching.problem import Problem
 
 R = default_ontology().relations
@@ -69,15 +69,15 @@ def test_what_labels_say_counts_in_the_judgement() -> None:
     """Told who is who, a description that could be literal the other way round is seen not to be."""
     boxes = np.array([[[0.0, 0.0], [1.0, 8.0]], [[3.0, 10.0], [4.0, 18.0]], [[0.5, 20.0], [1.5, 28.0]]])
     said = RelationGraph.from_facts(R, ["a", "b", "c"], [Fact("a", (R["top"],), "b"), Fact("b", (R["top"],), "c")])
-    known = np.where(np.eye(3)[::-1] > 0, 0.0, -np.inf)
+    known = np.eye(3)[::-1] > 0
     graded, literal = (problem(said, boxes, share) for share in (0.0, LITERAL))
     order = np.arange(3)
     free = literal_share(graded, literal, order)
-    told = literal_share(replace(graded, unary=known), replace(literal, unary=known), order)
+    told = literal_share(replace(graded, allowed=known), replace(literal, allowed=known), order)
     assert told <= free
-    mixed = fact_tables(said, boxes, unary=known, absent=np.full(3, -30.0))
+    mixed = fact_tables(said, boxes, allowed=known, absent=np.full(3, -30.0))
     assert mixed.tables == pytest.approx(fact_tables(said, boxes, literal=told).tables, abs=1e-4)
 
 
 def test_of_a_large_description_a_connected_part_is_judged() -> None:
-    assert share_of(generate(2 * MOST_OBJECTS, 2.5, 0.1, seed=1)) > 0.85
+    assert share_of(generate(2 * MAX_JUDGED_OBJECTS, 2.5, 0.1, seed=1)) > 0.85

@@ -10,7 +10,7 @@ from deixis.ontology.models.sizes import SizeModel
 from deixis.ontology.tbox import default_ontology
 from deixis.ontology.vocabulary import DX
 from deixis.reasoning.errors import SettingError
-from deixis.reasoning.geometry.rectangle import perceived_graph
+from deixis.reasoning.geometry.rectangle import scene_relations
 from deixis.reasoning.grounding.evidence.evidence import evidence_from
 from deixis.reasoning.grounding.evidence.labels import Label
 from deixis.reasoning.grounding.evidence.meaning import Meaning
@@ -141,22 +141,24 @@ def test_a_learned_range_replaces_the_shipped_one() -> None:
 
 def test_labels_weigh_by_confidence_and_a_certain_one_decides() -> None:
     labels = [Label("soup spoon", 0.8), None, Label("dinner plate", 1.0)]
-    found = label_ratios(TWO, labels, KINDS)
+    found, allowed = label_ratios(TWO, labels, KINDS)
     assert np.exp(found[:, 0]) == pytest.approx([0.8 * 2 + 0.2, 0.2])
     assert found[:, 1].tolist() == [0.0, 0.0]
-    assert found[0, 2] == -np.inf and found[1, 2] == pytest.approx(np.log(2))
+    assert found[1, 2] == pytest.approx(np.log(2))
+    assert allowed.tolist() == [[True, True, False], [True, True, True]]
 
 
 def test_a_label_of_no_confidence_says_nothing() -> None:
-    assert (label_ratios(TWO, [Label("soup spoon", 0.0)], KINDS) == 0).all()
+    found, allowed = label_ratios(TWO, [Label("soup spoon", 0.0)], KINDS)
+    assert (found == 0).all() and allowed.all()
 
 
 def test_all_evidence_adds_up_with_its_weights() -> None:
     labels = [Label("soup spoon", 0.8), None, None]
-    seen = perceived_graph(["a", "b", "c"], TABLE, R)
+    seen = scene_relations(["a", "b", "c"], TABLE, R)
     both = evidence_from(TWO, seen, labels, KINDS, SIZES).unary
     sizes = size_evidence([SPOON, PLATE], TABLE, SIZES)
-    assert both == pytest.approx(label_ratios(TWO, labels, KINDS) + sizes)
+    assert both == pytest.approx(label_ratios(TWO, labels, KINDS)[0] + sizes)
     half = UnaryWeights(labels=0.0, sizes=0.5)
     certain = [Label("dinner plate", 1.0), None, None]
     assert evidence_from(TWO, seen, certain, KINDS, SIZES, meaning=Meaning(weights=half)).unary == pytest.approx(

@@ -14,11 +14,11 @@ from deixis.reasoning.grounding.similarity import assign
 
 
 def blondel(problem: Problem) -> NDArray[np.int64]:
-    return assign(blondel_similarity(problem).matrix, ~np.isneginf(problem.unary))
+    return assign(blondel_similarity(problem).matrix, problem.allowed)
 
 
 def heymans_singh(problem: Problem) -> NDArray[np.int64]:
-    return assign(heymans_singh_similarity(problem).matrix, ~np.isneginf(problem.unary))
+    return assign(heymans_singh_similarity(problem).matrix, problem.allowed)
 
 
 def path(n1: int, n2: int) -> Problem:

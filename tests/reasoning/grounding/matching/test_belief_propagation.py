@@ -11,7 +11,7 @@ from matching_problems import problems
 
 from deixis.experiments.generated_tables import generate
 from deixis.reasoning.grounding.matching import scalable as module
-from deixis.reasoning.grounding.matching.belief_propagation import FEWEST_LEVELS, LEVELS, propagate
+from deixis.reasoning.grounding.matching.belief_propagation import LEVELS, MIN_LEVELS, propagate
 from deixis.reasoning.grounding.matching.problem import Problem, to_assignment
 from deixis.reasoning.grounding.matching.scalable import mean_range, scalable
 
@@ -34,9 +34,10 @@ def test_a_chain_of_facts_leads_to_its_one_best_map() -> None:
 
 
 def test_without_facts_it_is_the_best_assignment() -> None:
-    gain = np.array([[3.0, 2.9, 0.0], [3.0, 0.5, 0.0], [0.2, 0.1, -np.inf]])
+    gain = np.array([[3.0, 2.9, 0.0], [3.0, 0.5, 0.0], [0.2, 0.1, 9.9]])
+    allowed = gain < 9
     none = np.zeros((0, 2), np.int64)
-    problem = Problem(none, none[:, 0], np.zeros((0, 3, 3), np.float32), gain, np.full(3, -1.0))
+    problem = Problem(none, none[:, 0], np.zeros((0, 3, 3), np.float32), gain, np.full(3, -1.0), allowed)
     assert propagated(problem).tolist() == [1, 0, -1]
 
 
@@ -51,7 +52,7 @@ def test_an_object_that_nothing_suits_is_left_out() -> None:
 def test_on_a_large_table_it_comes_near_the_best_that_annealing_finds(monkeypatch: pytest.MonkeyPatch) -> None:
     table = generate(100, 2.5, 0.1, missing=10, extra=10, seed=4)
     problem = table.crisp(centred=True)
-    monkeypatch.setattr(module, "PROPAGATED", 101)
+    monkeypatch.setattr(module, "MIN_PROPAGATED_OBJECTS", 101)
     annealed = scalable(problem).value
     assert problem.value(propagated(problem)) > 0.9 * annealed
     monkeypatch.undo()
@@ -63,7 +64,7 @@ def test_the_same_seed_gives_the_same_map() -> None:
     assert propagated(problem).tolist() == propagated(problem).tolist()
 
 
-@pytest.mark.parametrize(("seconds", "effort"), [(-1.0, 1.0), (1e-7, 1.0), (np.inf, (FEWEST_LEVELS - 1) / LEVELS)])
+@pytest.mark.parametrize(("seconds", "effort"), [(-1.0, 1.0), (1e-7, 1.0), (np.inf, (MIN_LEVELS - 1) / LEVELS)])
 def test_with_too_few_steps_there_is_no_map(seconds: float, effort: float) -> None:
     problem = generate(60, seed=1).crisp()
     deadline = time.perf_counter() + seconds

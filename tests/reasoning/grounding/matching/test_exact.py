@@ -99,7 +99,7 @@ def test_few_or_no_objects_on_either_side(n1: int, n2: int) -> None:
 
 def test_where_everything_is_ruled_out_everything_is_left_out() -> None:
     problem = Problem(np.zeros((0, 2), np.int64), np.zeros(0, np.int64), np.zeros((0, 3, 3), np.float32),
-                      np.full((2, 3), -np.inf), np.full(2, -4.0))  # fmt: skip
+                      np.zeros((2, 3)), np.full(2, -4.0), np.zeros((2, 3), bool))  # fmt: skip
     assert exact(problem).assignment.tolist() == [UNMATCHED, UNMATCHED]
     assert exact(problem).proved
 

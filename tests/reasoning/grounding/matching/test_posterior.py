@@ -148,7 +148,7 @@ def test_chains_that_all_begin_at_one_map_come_to_the_same_marginals(monkeypatch
     problem = large(8)
     monkeypatch.setattr(module, "FACTOR_CELLS", -1)
     apart = posterior(problem)
-    monkeypatch.setattr(module, "MOST_OBJECTS", 4)
+    monkeypatch.setattr(module, "MAX_OBJECTS_WITH_OWN_START", 4)
     together = posterior(problem, start=np.full(8, -1))
     assert together.marginals.tolist() != apart.marginals.tolist()
     np.testing.assert_allclose(together.marginals, apart.marginals, atol=0.05)

@@ -79,13 +79,13 @@ def test_in_a_hurry_it_still_cools_all_the_way(monkeypatch: pytest.MonkeyPatch) 
         return 0.0
 
     monkeypatch.setattr(module, "anneal", record)
-    monkeypatch.setattr(module, "PART", 1e5)  # so that there are many looks at the clock
+    monkeypatch.setattr(module, "CELLS_PER_CLOCK_CHECK", 1e5)  # so that there are many looks at the clock
     monkeypatch.setattr(time, "perf_counter", lambda: float(next(clock)))
     found = scalable(random_problem(300), 20.0)
     assert not found.finished
     assert seen[-1] == 0.0
     assert sorted(set(seen), reverse=True) == list(dict.fromkeys(seen))
-    assert len(set(seen)) == module.ONE_TURN_LEVELS + 1
+    assert len(set(seen)) == module.SINGLE_TURN_LEVELS + 1
 
 
 @pytest.mark.parametrize("start", [[0, 0], [0], [5, 1], [-2, 0]])

@@ -10,7 +10,6 @@ import pytest
 
 from deixis.grammar.parser import read_script
 from deixis.perception.formats.scene_json import read_scene
-from deixis.reasoning.grounding.evidence.evidence import exact_names
 from deixis.reasoning.grounding.evidence.facts import crisp_tables, fact_tables
 from deixis.reasoning.grounding.matching.problem import Problem
 from deixis.reasoning.grounding.questions.candidates import candidates_of
@@ -30,8 +29,8 @@ def inquiry_of() -> Callable[..., Inquiry]:
     ) -> Inquiry:
         scene = read_scene(EXAMPLES / "place_setting.scene.json")
         read = read_script(str(EXAMPLES / f"{script}.layout"))
-        description, seen = read.graph(), scene.graph(read.ontology.relations)
-        said = crisp_tables(description, exact_names(seen)) if crisp else fact_tables(description, scene.boxes)
+        description, seen = read.graph(), scene.relations(read.ontology.relations)
+        said = crisp_tables(description, seen.names) if crisp else fact_tables(description, scene.boxes)
         n1 = len(description.nodes)
         nothing = np.zeros((n1, len(scene.objects)))
         problem = Problem(said.ends, said.kinds, said.tables, nothing, np.zeros(n1))

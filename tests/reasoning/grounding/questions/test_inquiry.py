@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from deixis.ontology.graph import Fact, RelationGraph
 from deixis.ontology.tbox import default_ontology
-from deixis.reasoning.geometry.rectangle import perceived_graph
+from deixis.reasoning.geometry.rectangle import scene_relations
 from deixis.reasoning.grounding.matching.problem import UNMATCHED
 from deixis.reasoning.grounding.questions.candidates import Candidates
 from deixis.reasoning.grounding.questions.inquiry import PATIENCE, ContradictionError, Inquiry, Outcome, begin, update
@@ -37,7 +37,7 @@ def row_of(n: int, *facts: Fact) -> Situation:
     boxes = np.array([[[2.0 * i, 0.0], [2.0 * i + 1, 1.0]] for i in range(n)])
     return situation_of(
         RelationGraph.from_facts(RELATIONS, names, facts),
-        perceived_graph([f"o{i}" for i in range(n)], boxes, RELATIONS),
+        scene_relations([f"o{i}" for i in range(n)], boxes, RELATIONS),
     )
 
 
@@ -100,7 +100,7 @@ def test_the_order_of_candidates_objects_and_things_changes_no_question(seed: in
 
     def first(objects: NDArray[np.int64], things: NDArray[np.int64], listed: NDArray[np.int64]) -> str | None:
         description = RelationGraph.from_facts(RELATIONS, [names[i] for i in objects], [])
-        scene = perceived_graph([f"o{p}" for p in things], boxes[things], RELATIONS)
+        scene = scene_relations([f"o{p}" for p in things], boxes[things], RELATIONS)
         found = Candidates(np.argsort(things)[maps[listed][:, objects]], weights[listed])
         question = best_question(situation_of(description, scene), found)
         return None if question is None else question.text

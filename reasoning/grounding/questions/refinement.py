@@ -1,0 +1,160 @@
+"""Evidence refined by questions: which groundings are asked about, and which matches the answers rule out."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.reasoning.entailment.implications import Implications
+from deixis.reasoning.grounding.answer import DECIDED
+from deixis.reasoning.grounding.evidence.evidence import PRESENT_LOG_ODDS, Evidence
+from deixis.reasoning.grounding.matching.problem import UNMATCHED
+from deixis.reasoning.grounding.questions.candidates import Candidates, candidates_of
+from deixis.reasoning.grounding.questions.inquiry import ContradictionError, Inquiry, Outcome, begin, update
+from deixis.reasoning.grounding.questions.selection import ABSENT, NO, YES, QuestionKind
+from deixis.reasoning.grounding.questions.situation import Situation, situation_of
+
+MARGINS = (6.0, 2.0)
+"""Largest difference in nats between the best grounding and one that is still asked about.
+
+A grounding beyond the first margin, 400 times less likely, hardly ever keeps a match from being decided. The second
+one, seven times, is for where not all groundings within the first can be listed.
+"""
+
+MAX_JOINT_ANSWERS = 100
+"""Maximum number of joint assignments of the questioned objects to enumerate."""
+
+Hold = Callable[[Inquiry, float], Inquiry]
+"""Holds a dialogue from an inquiry on, up to so many questions in all, and returns the inquiry after it."""
+
+
+@dataclass(frozen=True, eq=False)
+class Refinement:
+    """The evidence with the answers, the dialogue at its end, and the seconds that are left for grounding."""
+
+    evidence: Evidence
+    inquiry: Inquiry
+    seconds_left: float
+
+
+def refine(
+    evidence: Evidence, implied: Implications, start: Callable[[Situation], Hold], time_limit: float
+) -> Refinement:
+    """Ask what would tell the likeliest groundings apart, and return the evidence with the answers.
+
+    What the answers make likely is listed and asked about in turn, as long as that takes no more than one question
+    above log2 of the number of groundings that were considered at first. ``start`` begins the dialogue about a
+    situation. The time limit is not for the person: half of it is for what to ask, each time, and the whole for
+    grounding after the last answer; together they keep to it where nothing was answered.
+    """
+    started = time.perf_counter()
+    situation = situation_of(evidence.description, evidence.scene, implied)
+    inquiry = begin(situation, considered(evidence, time_limit / 2))
+    left = max(0.0, time_limit - (time.perf_counter() - started))
+    hold = start(situation)
+    done, most = hold(inquiry, math.inf), question_limit(inquiry)
+    replied = time.perf_counter()
+    while len(done.exchanges) > len(inquiry.exchanges):
+        evidence = narrowed(evidence, done)
+        if done.exchanges[-1].outcome is not Outcome.SURPRISING and done.next_question() is not None:
+            break  # the person ended the dialogue
+        inquiry = _relisted(evidence, done, time_limit / 2)
+        most = question_limit(inquiry) if done.exchanges[-1].outcome is Outcome.SURPRISING else most
+        done = hold(inquiry, most)
+        replied = time.perf_counter()
+    if done.exchanges:
+        left = max(0.0, time_limit - (time.perf_counter() - replied))
+    return Refinement(evidence, done, left)
+
+
+def question_limit(inquiry: Inquiry) -> int:
+    """One question more than yes and no take to tell the groundings apart, with those asked before."""
+    return len(inquiry.exchanges) + math.ceil(math.log2(inquiry.candidates.count)) + 1
+
+
+def _relisted(evidence: Evidence, done: Inquiry, time_limit: float) -> Inquiry:
+    """The dialogue over what the answers have made likely; over one grounding where that leaves nothing in doubt."""
+    candidates = considered(evidence, time_limit)
+    for exchange in done.exchanges:
+        if exchange.believed:
+            with suppress(ContradictionError):  # what is likeliest now need not agree with every answer
+                candidates = update(done.situation, candidates, exchange.question, exchange.answer)
+    if (candidates.likeliest_shares >= DECIDED).all():
+        candidates = candidates.kept((candidates.assignments == candidates.best).all(axis=1))
+    return replace(done, start=candidates, candidates=candidates)
+
+
+def considered(evidence: Evidence, time_limit: float) -> Candidates:
+    """The groundings within the widest margin of which all can be listed; half of the time is for each."""
+    started = time.perf_counter()
+    wide = candidates_of(evidence.problem, started + time_limit / 2, margin=MARGINS[0])
+    return wide if wide.complete else candidates_of(evidence.problem, started + time_limit, margin=MARGINS[1])
+
+
+def narrowed(evidence: Evidence, done: Inquiry) -> Evidence:
+    """The evidence and what was answered; what was never considered stays as likely as it was.
+
+    Ruled out is what an object was in some candidate before the dialogue and is in none after it, nor in one of before
+    in which those asked about are what they are now. A list that was cut off at any place says nothing about the maps
+    that are not in it: there only what was said of a single object counts.
+    """
+    labels, allowed = evidence.labels.copy(), evidence.allowed.copy()
+    identified, out = evidence.identified.copy(), np.zeros(evidence.labels.shape, dtype=bool)
+    if done.start.complete or done.start.groups:
+        left = _possible(done.candidates, labels.shape) | _possible_jointly(done, labels.shape)
+        out = _possible(done.start, labels.shape) & ~left
+    for exchange in done.exchanges:
+        question, answer = exchange.question, exchange.answer
+        if not exchange.believed or question.kind is QuestionKind.RELATION:
+            continue
+        if answer == NO:
+            out[question.subject, question.thing] = True
+            continue
+        out[question.subject] = True
+        if answer != ABSENT:  # as a certain label: the object is this thing, and no other is
+            p = question.thing if answer == YES else done.situation.things.index(answer)
+            others = np.arange(len(labels)) != question.subject
+            allowed[others, p], allowed[question.subject, p] = False, True
+            labels[others, p], labels[question.subject, p] = 0.0, -PRESENT_LOG_ODDS
+            identified[p], out[question.subject, p] = True, False
+    return replace(evidence, labels=labels, allowed=allowed & ~out, identified=identified)
+
+
+def _possible(candidates: Candidates, shape: tuple[int, ...]) -> NDArray[np.bool_]:
+    """Which object is which thing in some candidate, shape (n1, n2); the members of a group share their things."""
+    found = _matched(candidates.assignments, shape)
+    for group in candidates.groups:
+        found[list(group)] = found[list(group)].any(axis=0)
+    return found
+
+
+def _matched(assignments: NDArray[np.int64], shape: tuple[int, ...]) -> NDArray[np.bool_]:
+    """Which object is which thing in some of k maps (k, n1), shape (n1, n2)."""
+    found = np.zeros(shape, dtype=bool)
+    rows, objects = np.nonzero(assignments != UNMATCHED)
+    found[objects, assignments[rows, objects]] = True
+    return found
+
+
+def _possible_jointly(done: Inquiry, shape: tuple[int, ...]) -> NDArray[np.bool_]:
+    """The same in the candidates of before, with those asked about being what they are in some candidate of now.
+
+    Such a map agrees with the answers, though it may be too unlikely to have been listed: which fork is which says
+    nothing of the knives.
+    """
+    resolved = [exchange.question.about for exchange in done.exchanges if exchange.outcome is Outcome.RESOLVED]
+    asked = sorted({i for about in resolved for i in about})
+    found = np.zeros(shape, dtype=bool)
+    for now in np.unique(done.candidates.assignments[:, asked], axis=0)[:MAX_JOINT_ANSWERS]:
+        rows = done.start.assignments.copy()
+        rows[:, asked] = now
+        ordered = np.sort(rows, axis=1)
+        twice = (ordered[:, 1:] == ordered[:, :-1]) & (ordered[:, 1:] != UNMATCHED)
+        found |= _matched(rows[~twice.any(axis=1)], shape)
+    return found

@@ -1,0 +1,255 @@
+"""Ground a script in a scene: one request with every option, and the one function that answers it.
+
+Python (:func:`deixis.ground`, ``Session.ground``) and the command line (``deixis ground``) build the same
+:class:`GroundingRequest`, so that both can do the same and give the same answer.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Mapping
+from contextlib import AbstractContextManager, nullcontext
+from dataclasses import dataclass, replace
+from functools import cache, cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from deixis.grammar.script import Script
+from deixis.learning.scene_evidence import conflict_notes, graph_evidence, viewpoint_notes
+from deixis.ontology.graph import RelationGraph
+from deixis.perception.scene import Scene
+from deixis.reasoning.entailment.conflict import Conflict, find_conflict
+from deixis.reasoning.entailment.implications import Implications
+from deixis.reasoning.errors import SettingError, require_time_limit
+from deixis.reasoning.grounding.answer import Grounding
+from deixis.reasoning.grounding.engines import engine_named
+from deixis.reasoning.grounding.evidence.evidence import Evidence
+from deixis.reasoning.grounding.evidence.meaning import SHIPPED, Meaning
+from deixis.reasoning.grounding.ground import DEFAULT_TIME_LIMIT
+from deixis.reasoning.grounding.ground import ground as ground_evidence
+from deixis.reasoning.grounding.options import EngineName, Select, ViewpointName
+from deixis.workflows.read import as_scene, as_script
+
+if TYPE_CHECKING:
+    from deixis.workflows.dialogue import Ask
+
+MEANWHILE = 0.2
+"""Seconds that the chains of a miniature may take beyond their compilation."""
+
+Stage = Callable[[str], AbstractContextManager[None]]
+"""Accompanies one stage of the work, which it is told in words."""
+
+
+@dataclass(frozen=True, eq=False)
+class GroundingRequest:
+    """A script, a scene, and how the one is to be grounded in the other.
+
+    The relation graph of the script, what it implies and whether it contradicts itself are computed once, when they
+    are first needed.
+
+    Parameters
+    ----------
+    script, scene
+        What was said, and what was seen.
+    engine
+        ``exact``, ``scalable``, ``similarity`` (the paper's), ``blondel`` or ``heymans-singh``.
+    select
+        What chooses among sub-graphs under the paper's engine: ``facts``, or ``similarity`` alone as in the paper.
+    literal
+        Take words literally, not by degrees.
+    sizes
+        Take into account how large things usually are.
+    viewpoint
+        ``stated``: that of the scene; or recovered, by ``quarter`` turns, or ``unknown``, from any angle.
+    ask
+        Who answers questions that tell the likeliest groundings apart: the truth as a mapping from names to ids (None
+        for what is absent), a function of the question and the situation that returns the answer (None to end), or a
+        :class:`deixis.workflows.dialogue.Dialogue`. None asks nothing. Only the engine ``exact`` asks.
+    max_questions
+        Ask at most so many.
+    time_limit
+        Seconds until the answer, proved or not; a person who answers is given the time that it takes.
+    meaning
+        How words and sizes are taken: as shipped, or as a memory has learned them (``Session.meaning()``).
+
+    Raises
+    ------
+    DeixisError
+        For a setting that is none of these.
+    """
+
+    script: Script
+    scene: Scene
+    engine: str = EngineName.EXACT
+    select: str = Select.FACTS
+    literal: bool = False
+    sizes: bool = True
+    viewpoint: str = ViewpointName.STATED
+    ask: Ask | None = None
+    max_questions: int | None = None
+    time_limit: float = DEFAULT_TIME_LIMIT
+    meaning: Meaning = SHIPPED
+
+    def __post_init__(self) -> None:
+        require_time_limit(self.time_limit)
+        for what, value, choices in (
+            ("select", self.select, Select),
+            ("viewpoint", self.viewpoint, ViewpointName),
+        ):
+            if value not in list(choices):
+                raise SettingError(f"{what} is one of {', '.join(choices)}, not '{value}'")
+        if self.ask is not None and self.engine != EngineName.EXACT:
+            raise SettingError(f"only the engine 'exact' asks, not '{self.engine}': leave out --engine (engine=)")
+        if self.max_questions is not None and self.max_questions < 1:
+            raise SettingError(f"`max_questions` must be at least 1, got {self.max_questions}")
+
+    @cached_property
+    def graph(self) -> RelationGraph:
+        """The description: the script's facts as a relation graph."""
+        return self.script.graph()
+
+    @cached_property
+    def implied(self) -> Implications:
+        """What the description implies."""
+        return Implications(self.graph)
+
+    @cached_property
+    def conflict(self) -> Conflict | None:
+        """The facts that cannot hold together, as few as there are, where the script contradicts itself."""
+        return find_conflict(self.implied)
+
+    @cached_property
+    def effective_meaning(self) -> Meaning:
+        """The meaning, less what the request leaves out."""
+        weights = self.meaning.weights if self.sizes else replace(self.meaning.weights, sizes=0.0)
+        return replace(self.meaning, graded=self.meaning.graded and not self.literal, weights=weights)
+
+    def evidence(self, scene: Scene) -> Evidence:
+        """Return all that speaks for who is who in the scene as seen from one side."""
+        known = graph_evidence(self.graph, scene, self.script.ontology, self.effective_meaning)
+        return replace(known, consistent=self.implied.consistent)
+
+
+def ground(
+    script: Script | str | Path,
+    scene: Scene | str | Path | Mapping[str, Any],
+    engine: str = EngineName.EXACT,
+    time_limit: float = DEFAULT_TIME_LIMIT,
+    select: str = Select.FACTS,
+    meaning: Meaning = SHIPPED,
+    viewpoint: str = ViewpointName.STATED,
+    *,
+    literal: bool = False,
+    sizes: bool = True,
+    ask: Ask | None = None,
+    max_questions: int | None = None,
+) -> Grounding:
+    """Work out which perceived thing each object of a script is.
+
+    ``script`` and ``scene`` may be files; the options are those of :class:`GroundingRequest`. The answer comes within
+    about ``time_limit`` seconds, proved or not, and says which. Raises DeixisError for bad input.
+
+    >>> import deixis
+    >>> boxes = {"o1": [0.0, 0.0], "o2": [0.4, 0.0], "o3": [0.8, 0.0]}
+    >>> things = [{"id": id, "min": [x, y], "max": [x + 0.1, y + 0.1]} for id, (x, y) in boxes.items()]
+    >>> script = deixis.read_script(text="cup left of jug; mug left of jug")
+    >>> found = deixis.ground(script, {"objects": things}, ask={"cup": "o2", "mug": "o1", "jug": "o3"})
+    >>> [match.perceived for match in found.matches.values()], len(found.exchanges)
+    (['o2', 'o3', 'o1'], 2)
+    """
+    request = GroundingRequest(
+        script=as_script(script),
+        scene=as_scene(scene),
+        engine=engine,
+        select=select,
+        literal=literal,
+        sizes=sizes,
+        viewpoint=viewpoint,
+        ask=ask,
+        max_questions=max_questions,
+        time_limit=time_limit,
+        meaning=meaning,
+    )
+    return answer(request)
+
+
+def answer(request: GroundingRequest, stage: Stage = lambda _: nullcontext()) -> Grounding:
+    """Answer a request; ``stage`` accompanies its stages, other than the dialogue."""
+    from deixis.workflows.viewpoint import ground_from_sides, recover_scene
+
+    ready_to_ground(request.engine)
+    contradiction = conflict_notes(request.conflict)
+    started = time.perf_counter()
+    side, notes = None, viewpoint_notes(request.script.viewpoint, request.scene)
+    if request.viewpoint != ViewpointName.STATED:
+        any_angle = request.viewpoint == ViewpointName.UNKNOWN
+        with stage("looking from other sides"):
+            side = recover_scene(request.evidence, request.scene, any_angle, request.time_limit / 2)
+    left = request.time_limit if side is None else max(0.0, request.time_limit - (time.perf_counter() - started))
+    if request.ask is not None:
+        found = _answer_with_questions(request, request.ask, request.scene if side is None else side.scene, left)
+        before = notes if side is None else side.notes + side.doubt
+    else:
+        engine = engine_named(request.engine, Select(request.select))
+        with stage("grounding"):
+            if side is None:
+                found, before = ground_evidence(request.evidence(request.scene), engine, left, contradiction), notes
+            else:
+                found = ground_from_sides(request.evidence, side, engine, left, contradiction)
+                before = side.notes
+    viewpoints = None if side is None else side.viewpoints.viewpoints if side.viewpoints else ()
+    return replace(found.noting(before), viewpoints=viewpoints)
+
+
+def _answer_with_questions(request: GroundingRequest, ask: Ask, scene: Scene, time_limit: float) -> Grounding:
+    """Ground a script in a scene, by asking what would tell the likeliest groundings apart."""
+    from deixis.reasoning.grounding.questions.inquiry import Inquiry
+    from deixis.reasoning.grounding.questions.refinement import Hold, refine
+    from deixis.reasoning.grounding.questions.situation import Situation
+    from deixis.workflows.dialogue import closing_lines, dialogue_with, run
+
+    dialogue = dialogue_with(ask)
+    limit = math.inf if request.max_questions is None else request.max_questions
+
+    def start(situation: Situation) -> Hold:
+        source = dialogue.source(situation)
+
+        def hold(inquiry: Inquiry, most: float) -> Inquiry:
+            return run(inquiry, source, dialogue.out, min(most, limit))
+
+        return hold
+
+    refined = refine(request.evidence(scene), request.implied, start, time_limit)
+    print(*closing_lines(refined.inquiry), sep="\n", file=dialogue.out)
+    notes = conflict_notes(request.conflict)
+    found = ground_evidence(refined.evidence, engine_named(request.engine), refined.seconds_left, notes)
+    return replace(found, exchanges=refined.inquiry.exchanges)
+
+
+@cache
+def ready_to_ground(engine: str) -> None:
+    """Compiles, or loads compiled, what grounding with an engine needs, so that no time limit is spent on it.
+
+    A miniature goes the way of any grounding, and the probabilities of another are sampled as those of many things
+    are. Raises UnknownTermError for a name that no engine has.
+    """
+    from deixis.grammar.parser import parse_script
+    from deixis.reasoning.grounding.evidence.evidence import evidence_from
+
+    chosen = engine_named(engine)
+    boxes = [{"id": f"o{i}", "min": [0.2 * i, 0], "max": [0.2 * i + 0.1, 0.1]} for i in range(3)]
+    script = parse_script("fork left of plate\nknife right of plate\n")
+    find_conflict(Implications(script.graph()))
+    scene = as_scene({"frame": "table", "viewpoint": "chair", "unit": "m", "objects": boxes})
+    known, seen = script.ontology, scene.relations(script.ontology.relations)
+    ground_evidence(evidence_from(script.graph(), seen, [None] * len(boxes), known.kinds, known.sizes), chosen, 3600.0)
+    # Asks for less mass to be missing than a sum over maps can promise, which leaves sampling.
+    import numpy as np
+
+    from deixis.reasoning.grounding.matching.posterior import posterior
+    from deixis.reasoning.grounding.matching.problem import Problem
+
+    unary, tables = np.array([[0.0, -60.0], [0.0, 0.0]]), np.zeros((1, 2, 2), np.float32)
+    problem = Problem(np.array([[0, 1]]), np.array([0]), tables, unary, np.full(2, -80.0))
+    posterior(problem, time.perf_counter() + MEANWHILE, mass=1e-30)

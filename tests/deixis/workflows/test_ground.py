@@ -1,0 +1,173 @@
+"""One request for Python and the command: the same options, the same answers, and everything computed once."""
+
+from __future__ import annotations
+
+import io
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+from commands import deixis
+
+import deixis as package
+from deixis.examples_data import example
+from deixis.perception.formats.scene_json import read_scene
+from deixis.perception.scene import Scene
+from deixis.reasoning.entailment.implications import Implications
+from deixis.reasoning.errors import SettingError
+from deixis.reasoning.grounding.questions.selection import Question
+from deixis.reasoning.grounding.questions.situation import Situation
+from deixis.report.json_answers import grounding_to_dict
+from deixis.workflows.dialogue import Ask, Dialogue, Oracle, OracleError
+from deixis.workflows.ground import GroundingRequest, answer
+
+SCRIPT1, FULL = example("script1.layout"), example("formal_dinner.layout")
+SCENE, LABELLED = example("place_setting.scene.json"), example("place_setting.labelled.scene.json")
+TRUTH = {thing.label or "": thing.id for thing in read_scene(LABELLED).objects}
+PLAIN = {"time_limit": 60.0}
+
+
+def written(data: dict[str, Any]) -> dict[str, Any]:
+    """What JSON makes of an answer, without the time it took."""
+    data = json.loads(json.dumps(data))
+    assert data.pop("seconds") > 0
+    return data
+
+
+@pytest.fixture
+def truth_file(tmp_path: Path) -> Path:
+    file = tmp_path / "truth.json"
+    file.write_text(json.dumps(TRUTH), encoding="utf-8")
+    return file
+
+
+@pytest.mark.parametrize(
+    ("script", "options", "arguments"),
+    [
+        (FULL, {}, []),
+        (SCRIPT1, {"sizes": False}, ["--no-sizes"]),
+        (SCRIPT1, {"literal": True}, ["--literal"]),
+        (SCRIPT1, {"literal": True, "sizes": False}, ["--literal", "--no-sizes"]),
+        (SCRIPT1, {"engine": "scalable"}, ["--engine", "scalable"]),
+        (FULL, {"engine": "blondel", "literal": True}, ["--engine", "blondel", "--literal"]),
+        (SCRIPT1, {"engine": "similarity"}, ["--engine", "similarity", "--select", "facts"]),
+        (
+            SCRIPT1,
+            {"engine": "similarity", "select": "similarity"},
+            ["--engine", "similarity", "--select", "similarity"],
+        ),
+        (FULL, {"viewpoint": "quarter"}, ["--viewpoint", "quarter"]),
+        (
+            FULL,
+            {"viewpoint": "quarter", "engine": "similarity", "select": "similarity"},
+            ["--viewpoint", "quarter", "--engine", "similarity", "--select", "similarity"],
+        ),
+        (SCRIPT1, {"ask": TRUTH, "sizes": False}, ["--oracle", "TRUTH", "--no-sizes"]),
+        (
+            SCRIPT1,
+            {"ask": TRUTH, "sizes": False, "max_questions": 1},
+            ["--oracle", "TRUTH", "--no-sizes", "--max-questions", "1"],
+        ),
+        (
+            SCRIPT1,
+            {"ask": TRUTH, "literal": True, "viewpoint": "quarter"},
+            ["--oracle", "TRUTH", "--literal", "--viewpoint", "quarter"],
+        ),
+    ],
+)
+def test_python_and_the_command_give_the_same_answer(
+    script: str, options: dict[str, Any], arguments: list[str], truth_file: Path
+) -> None:
+    given = [str(truth_file) if argument == "TRUTH" else argument for argument in arguments]
+    _, out, _ = deixis("ground", script, SCENE, "--json", "--time-limit", "60", *given)
+    found = package.ground(script, SCENE, **(PLAIN | options))
+    assert written(json.loads(out)) == written(grounding_to_dict(found))
+
+
+def test_a_session_and_the_command_give_the_same_answer(tmp_path: Path) -> None:
+    with package.Session(tmp_path / "memory") as session:
+        session.learn(FULL, LABELLED)
+        found = session.ground(SCRIPT1, SCENE, literal=True, sizes=False, time_limit=60.0)
+        asked = session.ground(SCRIPT1, SCENE, ask=TRUTH, time_limit=60.0)
+    arguments = ["--json", "--time-limit", "60", "--memory", tmp_path / "memory"]
+    _, out, _ = deixis("ground", SCRIPT1, SCENE, *arguments, "--literal", "--no-sizes")
+    assert written(json.loads(out)) == written(grounding_to_dict(found))
+    assert {name: match.perceived for name, match in asked.matches.items()} == TRUTH
+
+
+def test_all_kinds_of_who_answers_give_the_same_answer() -> None:
+    def told(question: Question, situation: Situation) -> str | None:
+        return Oracle(TRUTH, io.StringIO()).answer(question, situation)
+
+    out = io.StringIO()
+    sources: list[Ask] = [TRUTH, told, Dialogue(lambda _: Oracle(TRUTH, out), out)]
+    first, *others = (package.ground(SCRIPT1, SCENE, ask=source, sizes=False, time_limit=60.0) for source in sources)
+    assert first.exchanges
+    assert all(match.decided for match in first.matches.values())
+    for other in others:
+        assert written(grounding_to_dict(other)) == written(grounding_to_dict(first))
+    assert out.getvalue().startswith("1. ")
+
+
+def test_who_does_not_answer_is_asked_once() -> None:
+    asked: list[str] = []
+
+    def silent(question: Question, situation: Situation) -> None:
+        asked.append(question.text)
+
+    found = package.ground(SCRIPT1, SCENE, ask=silent, sizes=False)
+    assert (len(asked), found.exchanges) == (1, ())
+    assert package.ground(SCRIPT1, SCENE, sizes=False).exchanges is None
+
+
+@pytest.mark.parametrize(
+    ("options", "error", "message"),
+    [
+        ({"select": "best"}, SettingError, "select is one of facts, similarity, not 'best'"),
+        ({"viewpoint": "above"}, SettingError, "viewpoint is one of stated, quarter, unknown, not 'above'"),
+        ({"ask": {}, "engine": "scalable"}, SettingError, "only the engine 'exact' asks"),
+        ({"ask": {}, "max_questions": 0}, SettingError, "`max_questions` must be at least 1, got 0"),
+        ({"time_limit": -1.0}, SettingError, "time limit"),
+        ({"engine": "exakt"}, package.DeixisError, "there is no engine 'exakt'"),
+        ({"ask": {"fork": "o99"}}, OracleError, "'fork' is said to be 'o99', which is no thing of the scene"),
+        ({"ask": lambda question, situation: "perhaps"}, OracleError, "must be one of its answers, got 'perhaps'"),
+    ],
+)
+def test_bad_options_are_refused(options: dict[str, Any], error: type[Exception], message: str) -> None:
+    with pytest.raises(error, match=message):
+        package.ground(SCRIPT1, SCENE, **({"sizes": False} | options))
+
+
+def test_the_command_refuses_questions_under_another_engine(truth_file: Path) -> None:
+    code, _, err = deixis("ground", SCRIPT1, SCENE, "--oracle", truth_file, "--engine", "scalable")
+    assert (code, "leave out --engine" in err) == (2, True)
+
+
+def test_graph_closure_and_relations_are_computed_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    import deixis.reasoning.geometry.rectangle as rectangle
+    import deixis.workflows.ground as module
+
+    closures, scenes, related = [], [], rectangle.box_relations
+
+    class Counted(Implications):
+        def __init__(self, *arguments: Any) -> None:
+            closures.append(arguments)
+            super().__init__(*arguments)
+
+    def counted(*arguments: Any) -> rectangle.BoxRelations:
+        scenes.append(arguments)
+        return related(*arguments)
+
+    package.ground(SCRIPT1, SCENE)  # whatever is compiled first
+    monkeypatch.setattr(module, "Implications", Counted)
+    monkeypatch.setattr("deixis.reasoning.grounding.similarity.Implications", Counted)
+    monkeypatch.setattr("deixis.reasoning.grounding.questions.situation.Implications", Counted)
+    monkeypatch.setattr(rectangle, "box_relations", counted)
+    script, scene = package.read_script(SCRIPT1), read_scene(SCENE)
+    answer(GroundingRequest(script, scene, ask=TRUTH))
+    of_the_whole = [arguments for arguments in closures if arguments[0].nodes == script.objects]
+    assert [arguments[0] is script.graph() for arguments in of_the_whole].count(True) == 1
+    assert len(scenes) == 1
+    answer(GroundingRequest(script, Scene(scene.objects[:5])))
+    assert len(scenes) == 2
