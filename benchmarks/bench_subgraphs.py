@@ -15,8 +15,8 @@ from common import medians
 
 from deixis.examples_data import example
 from deixis.perception.formats.scene_json import read_scene
-from deixis.reasoning.grounding.engines import described
 from deixis.reasoning.grounding.similarity import node_similarity
+from deixis.reasoning.grounding.similarity_engine import described
 from deixis.workflows.read import read_script
 
 

@@ -27,7 +27,7 @@ from deixis.ontology.colours import Colour, Colours
 from deixis.ontology.graph import RelationGraph, dispensable
 from deixis.ontology.kinds import Kinds, with_article
 from deixis.reasoning.grounding.answer import FactOutcome, Grounding, Outcome
-from deixis.reasoning.grounding.engines import Engine
+from deixis.reasoning.grounding.engine import Engine
 from deixis.reasoning.grounding.evidence.colours import other_colours
 from deixis.reasoning.grounding.evidence.evidence import PRESENT_LOG_ODDS, Evidence
 from deixis.reasoning.grounding.evidence.labels import Label, naming

@@ -8,9 +8,6 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from deixis.ontology.graph import Fact
 from deixis.ontology.lessons.types import Alternative, Match
 from deixis.ontology.relation import Relation
@@ -20,24 +17,6 @@ if TYPE_CHECKING:
 
     from deixis.reasoning.grounding.questions.inquiry import Exchange
     from deixis.reasoning.grounding.viewpoint import Viewpoint
-
-DECIDED = 0.99
-"""Probability from which a match is called decided: where things are missing, somewhat less is right than was said, for
-an extra thing may fit all that is said of what is absent (docs/scoreboard.md)."""
-
-
-DECIDED_LOWER_BOUND = 0.975
-"""Probability of a decided match less the error of that probability, at least."""
-
-
-def is_decided(probability: NDArray[np.float64], error: float) -> NDArray[np.bool_]:
-    """Which of these probabilities (…,) are high enough, and known well enough, to call a match decided.
-
-    >>> is_decided(np.array([0.98, 0.995]), 0.01).tolist(), is_decided(np.array([0.995]), 0.05).tolist()
-    ([False, True], [False])
-    """
-    decided: NDArray[np.bool_] = (probability >= DECIDED) & (probability - error >= DECIDED_LOWER_BOUND)
-    return decided
 
 
 class Standing(StrEnum):

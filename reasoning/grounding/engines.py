@@ -1,4 +1,4 @@
-"""The engines that align a description with a scene, behind one small protocol.
+"""The engines that align a description with a scene, by name.
 
 ``exact`` finds the likeliest map by branch and bound and proves it so; ``scalable`` looks for it by annealing, at any
 size. ``similarity`` is the paper's: equations 5 to 9, the Hungarian method, and a choice among sub-graphs where one
@@ -9,69 +9,9 @@ through :func:`deixis.reasoning.grounding.ground.ground`.
 
 from __future__ import annotations
 
-import math
-import time
-from dataclasses import dataclass, replace
-from itertools import combinations, islice
-from typing import TYPE_CHECKING, Protocol
-
-import numpy as np
-from numpy.typing import NDArray
-
 from deixis.errors import UnknownTermError
-from deixis.ontology.graph import PaperGraph, RelationGraph
-from deixis.reasoning.grounding.evidence.evidence import Evidence
-from deixis.reasoning.grounding.matching.problem import UNMATCHED
+from deixis.reasoning.grounding.engine import Engine
 from deixis.reasoning.grounding.options import EngineName, Select
-from deixis.reasoning.grounding.similarity import (
-    ITERATIONS,
-    NodeSimilarity,
-    assign,
-    graph_similarity,
-    node_similarity,
-    with_same_word,
-)
-
-if TYPE_CHECKING:
-    from deixis.reasoning.grounding.matching.posterior import Posterior
-
-MAX_SUBGRAPHS = 5000
-"""Sub-graphs that are all tried; where there are more, a heuristic chooses, and the result says so."""
-
-CUT_SHORT = "the time limit struck before the similarity came to its end"
-
-_SUBGRAPHS_PER_BLOCK = 500
-_MAX_MULTIPLICATIONS = 2e10
-"""Multiplications that the similarity may take; it is equation 5 alone where one step would take more."""
-
-
-@dataclass(frozen=True, eq=False)
-class Alignment:
-    """What an engine found: ``assignment`` (n1,) into the scene or ``UNMATCHED``, and how it came about."""
-
-    engine: str
-    assignment: NDArray[np.int64]
-    matrix: NDArray[np.float64]  # (n1, n2) node similarities, Frobenius norm 1, or 0
-    converged: bool
-    proved_best: bool
-    notes: tuple[str, ...] = ()
-    finished: bool = True  # whether the time limit left the search its course
-    gap: float = math.inf  # by how much another map may be more likely (log) at most; infinite where nobody knows
-    posterior: Posterior | None = None  # of engines that work with likelihoods
-    sides: int = 1  # from so many sides, each by its probability
-    of_another: bool = False  # whether nothing is matched because the description is probably of another scene
-    margins: NDArray[np.float64] | None = None  # (n1,) what the next best choice for each would lose; nan: not known
-    runners_up: NDArray[np.int64] | None = None  # (n1,) that choice, or UNMATCHED
-
-    @property
-    def graph_similarity(self) -> float:
-        return graph_similarity(self.matrix, self.assignment)
-
-
-class Engine(Protocol):
-    """Aligns the description with the scene until ``deadline`` (``time.perf_counter``)."""
-
-    def align(self, evidence: Evidence, deadline: float) -> Alignment: ...
 
 
 def engine_named(name: str, select: Select = Select.FACTS) -> Engine:
@@ -80,6 +20,8 @@ def engine_named(name: str, select: Select = Select.FACTS) -> Engine:
     from deixis.reasoning.grounding.matching.baselines import blondel_similarity, heymans_singh_similarity
 
     if name == EngineName.SIMILARITY:
+        from deixis.reasoning.grounding.similarity_engine import SimilarityEngine
+
         return SimilarityEngine(select)
     if name == EngineName.EXACT:
         from deixis.reasoning.grounding.matching.exact import warm
@@ -93,149 +35,3 @@ def engine_named(name: str, select: Select = Select.FACTS) -> Engine:
     if name == EngineName.HEYMANS_SINGH:
         return BaselineEngine("heymans-singh", heymans_singh_similarity)
     raise UnknownTermError(f"there is no engine '{name}'; the engines are: {', '.join(EngineName)}")
-
-
-MAX_DESCRIBED = 20_000
-"""Facts, stated and implied, that the similarity looks at; of a larger description it sees the stated ones alone."""
-
-
-def described(description: RelationGraph, consistent: bool | None = None) -> PaperGraph:
-    """The description as the paper's matcher sees it: with the inverses and what single words imply by transitivity."""
-    return with_same_word(description, MAX_DESCRIBED, consistent).paper_view()
-
-
-def paper_similarity(
-    evidence: Evidence, members: NDArray[np.bool_] | None = None, deadline: float = math.inf
-) -> NodeSimilarity:
-    """Equations 5 to 9 for the evidence: certain labels forbid pairs, uncertain ones multiply equation 5."""
-    first, second = described(evidence.description, evidence.consistent), evidence.scene.paper_view()
-    iterations = _iterations(first, second)
-    return node_similarity(first, second, members, _prior(evidence), iterations=iterations, deadline=deadline)
-
-
-def _prior(evidence: Evidence) -> NDArray[np.float64]:
-    """By what labels multiply the similarity, (n1, n2): 1 for what a label names best, 0 for what it rules out."""
-    named = evidence.allowed | ~evidence.identified
-    best = evidence.labels.max(axis=0, where=named, initial=-np.inf)
-    prior: NDArray[np.float64] = np.exp(evidence.labels - np.where(np.isneginf(best), 0.0, best))
-    return prior * named
-
-
-def _iterations(first: PaperGraph, second: PaperGraph) -> int:
-    n2 = len(second.vertices)
-    work = 2 * len(first.labels) * len(first.vertices) * n2 * n2 + 2000 * len(first.edges)
-    affordable = _MAX_MULTIPLICATIONS / max(work, 1)
-    return 0 if affordable < 1 else int(np.clip(affordable, 5, ITERATIONS))
-
-
-@dataclass(frozen=True)
-class SimilarityEngine:
-    """The paper's matcher."""
-
-    select: Select = Select.FACTS
-
-    def align(self, evidence: Evidence, deadline: float) -> Alignment:
-        n1, n2 = evidence.allowed.shape
-        if n1 == n2 or not n1 or not n2:
-            found = paper_similarity(evidence, deadline=deadline)
-            return _in_time(self._alignment(evidence, found, assign(found.matrices[0], evidence.allowed)), deadline)
-        larger, smaller = max(n1, n2), min(n1, n2)
-        count = math.comb(larger, smaller)
-        if count > MAX_SUBGRAPHS:
-            return self._narrowed(evidence, count, deadline)
-        return self._all_subgraphs(evidence, larger, smaller, deadline)
-
-    def _all_subgraphs(self, evidence: Evidence, larger: int, smaller: int, deadline: float) -> Alignment:
-        """The best of all sub-graphs of the larger side that have as many objects as the smaller one."""
-        flipped = len(evidence.description.nodes) == smaller
-        prior = _prior(evidence)
-        first, second = described(evidence.description, evidence.consistent), evidence.scene.paper_view()
-        best: tuple[tuple[float, ...], Alignment] | None = None
-        for members in _blocks(larger, smaller):
-            if best is not None and time.perf_counter() > deadline:
-                return _cut_short(best[1])
-            if flipped:
-                found = node_similarity(second, first, members, prior.T, deadline=deadline).transposed()
-            else:
-                found = node_similarity(first, second, members, prior, deadline=deadline)
-            for number, kept in enumerate(members):
-                inside = kept[None, :] if flipped else kept[:, None]
-                assignment = assign(found.matrices[number], evidence.allowed & inside)
-                key = self._key(evidence, found.matrices[number], assignment)
-                if best is None or key > best[0]:
-                    best = key, self._alignment(evidence, found, assignment, number=number)
-        assert best is not None
-        return _in_time(best[1], deadline)
-
-    def _narrowed(self, evidence: Evidence, count: int, deadline: float) -> Alignment:
-        """Too many sub-graphs: the assignment on the whole chooses one, and is repeated on it until it stays."""
-        found = paper_similarity(evidence, deadline=deadline)
-        assignment = assign(found.matrices[0], evidence.allowed)
-        note = f"{count} sub-graphs are too many to try all: the assignment on the whole graphs chose one (heuristic)"
-        if len(evidence.description.nodes) > len(evidence.scene.nodes):
-            kept = assignment != UNMATCHED
-            found = paper_similarity(evidence, kept[None, :], deadline)
-            assignment = assign(found.matrices[0], evidence.allowed & kept[:, None])
-        return _in_time(self._alignment(evidence, found, assignment, (note,)), deadline)
-
-    def _key(
-        self, evidence: Evidence, matrix: NDArray[np.float64], assignment: NDArray[np.int64]
-    ) -> tuple[float, float]:
-        similarity = round(graph_similarity(matrix, assignment), 9)
-        return (
-            (similarity, 0.0)
-            if self.select is Select.SIMILARITY
-            else (
-                round(evidence.total(assignment), 9),
-                similarity,
-            )
-        )
-
-    def _alignment(
-        self,
-        evidence: Evidence,
-        found: NodeSimilarity,
-        assignment: NDArray[np.int64],
-        notes: tuple[str, ...] = (),
-        number: int = 0,
-    ) -> Alignment:
-        matrix, converged = found.matrices[number], bool(found.converged[number])
-        margins, runners_up = _similarity_margins(matrix, assignment, evidence.allowed)
-        return Alignment(
-            "similarity", assignment, matrix, converged, False, notes, margins=margins, runners_up=runners_up
-        )
-
-
-def _in_time(aligned: Alignment, deadline: float) -> Alignment:
-    """The same, said to be cut short where the iteration was still under way at the deadline."""
-    return aligned if aligned.converged or time.perf_counter() <= deadline else _cut_short(aligned)
-
-
-def _cut_short(aligned: Alignment) -> Alignment:
-    return replace(aligned, notes=(*aligned.notes, CUT_SHORT), finished=False)
-
-
-def _blocks(n: int, k: int) -> list[NDArray[np.bool_]]:
-    """All choices of k of n as membership rows, in blocks."""
-    chosen = combinations(range(n), k)
-    blocks = []
-    while rows := list(islice(chosen, _SUBGRAPHS_PER_BLOCK)):
-        members = np.zeros((len(rows), n), dtype=bool)
-        members[np.arange(len(rows))[:, None], np.array(rows, dtype=np.int64).reshape(len(rows), k)] = True
-        blocks.append(members)
-    return blocks
-
-
-def _similarity_margins(
-    matrix: NDArray[np.float64], assignment: NDArray[np.int64], allowed: NDArray[np.bool_]
-) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """By how much each match's similarity leads over the next best entry of its row."""
-    margins = np.full(len(assignment), np.nan)
-    runners_up = np.full(len(assignment), UNMATCHED, dtype=np.int64)
-    for i in np.flatnonzero(assignment != UNMATCHED):
-        others = np.where(allowed[i], matrix[i], -np.inf)
-        others[assignment[i]] = -np.inf
-        if np.isfinite(others).any():
-            runners_up[i] = int(others.argmax())
-            margins[i] = matrix[i, assignment[i]] - others.max()
-    return margins, runners_up

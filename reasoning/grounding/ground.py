@@ -16,10 +16,11 @@ from deixis.reasoning.grounding.alternatives import (
     left_out_objects,
     left_out_things,
 )
-from deixis.reasoning.grounding.answer import FactOutcome, Grounding, Outcome, Pivotal, Standing, is_decided
-from deixis.reasoning.grounding.engines import Alignment, Engine
+from deixis.reasoning.grounding.answer import FactOutcome, Grounding, Outcome, Pivotal, Standing
+from deixis.reasoning.grounding.engine import Alignment, Engine
 from deixis.reasoning.grounding.evidence.evidence import Evidence
 from deixis.reasoning.grounding.matching.problem import UNMATCHED
+from deixis.reasoning.grounding.options import is_decided
 from deixis.reasoning.grounding.sensitivity import MAX_OBJECTS as MAX_SENSITIVITY_OBJECTS
 from deixis.reasoning.grounding.sensitivity import WithoutFact, leave_one_out
 from deixis.reasoning.grounding.symmetry import interchangeable

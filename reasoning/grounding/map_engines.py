@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.reasoning.grounding.engines import CUT_SHORT, Alignment, paper_similarity
+from deixis.reasoning.grounding.engine import Alignment
 from deixis.reasoning.grounding.evidence.evidence import Evidence
 from deixis.reasoning.grounding.matching.baselines import NodeSimilarity
 from deixis.reasoning.grounding.matching.exact import exact
@@ -22,6 +22,7 @@ from deixis.reasoning.grounding.matching.posterior import log_marginal_likelihoo
 from deixis.reasoning.grounding.matching.problem import UNMATCHED, Problem
 from deixis.reasoning.grounding.matching.scalable import scalable
 from deixis.reasoning.grounding.similarity import assign
+from deixis.reasoning.grounding.similarity_engine import CUT_SHORT, paper_similarity
 
 PROOF_SHARE, SEARCH_SHARE = 0.5, 0.8
 """Shares of the time that a proof, and a search without one, may take; the rest is for the probabilities."""

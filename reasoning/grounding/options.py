@@ -1,8 +1,13 @@
-"""Names of engines and viewpoints, importable without loading any engine."""
+"""Options of grounding: names of engines and viewpoints, and what *decided* means; loads no engine."""
 
 from __future__ import annotations
 
 from enum import StrEnum
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
 
 
 class EngineName(StrEnum):
@@ -29,3 +34,22 @@ class ViewpointName(StrEnum):
     STATED = "stated"
     QUARTER = "quarter"  # turned by quarters of a circle
     UNKNOWN = "unknown"  # turned by any angle
+
+
+DECIDED = 0.99
+"""Probability from which a match is called decided: where things are missing, somewhat less is right than was said, for
+an extra thing may fit all that is said of what is absent (docs/scoreboard.md)."""
+
+
+DECIDED_LOWER_BOUND = 0.975
+"""Probability of a decided match less the error of that probability, at least."""
+
+
+def is_decided(probability: NDArray[np.float64], error: float) -> NDArray[np.bool_]:
+    """Which of these probabilities (…,) are high enough, and known well enough, to call a match decided.
+
+    >>> is_decided(np.array([0.98, 0.995]), 0.01).tolist(), is_decided(np.array([0.995]), 0.05).tolist()
+    ([False, True], [False])
+    """
+    decided: NDArray[np.bool_] = (probability >= DECIDED) & (probability - error >= DECIDED_LOWER_BOUND)
+    return decided

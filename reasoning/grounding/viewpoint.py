@@ -27,7 +27,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.reasoning.geometry.rectangle import require_boxes
-from deixis.reasoning.grounding.engines import Alignment, Engine
+from deixis.reasoning.grounding.engine import Alignment, Engine
 from deixis.reasoning.grounding.evidence.evidence import Evidence
 from deixis.reasoning.grounding.matching.posterior import Posterior, posterior
 from deixis.reasoning.grounding.matching.problem import Problem

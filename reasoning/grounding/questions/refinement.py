@@ -12,9 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.reasoning.entailment.implications import Implications
-from deixis.reasoning.grounding.answer import DECIDED
 from deixis.reasoning.grounding.evidence.evidence import PRESENT_LOG_ODDS, Evidence
 from deixis.reasoning.grounding.matching.problem import UNMATCHED
+from deixis.reasoning.grounding.options import DECIDED
 from deixis.reasoning.grounding.questions.candidates import Candidates, candidates_of
 from deixis.reasoning.grounding.questions.inquiry import ContradictionError, Inquiry, Outcome, begin, update
 from deixis.reasoning.grounding.questions.selection import ABSENT, NO, YES, QuestionKind

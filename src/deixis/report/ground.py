@@ -76,7 +76,7 @@ def _thing(other: Alternative) -> str:
 
 def _probability(value: float) -> str:
     """Two digits, never 1 for what is not certain, and what is not called decided looks so."""
-    from deixis.reasoning.grounding.answer import DECIDED
+    from deixis.reasoning.grounding.options import DECIDED
 
     if value < DECIDED:
         return f"{min(value, DECIDED - 0.01):.2f}"

@@ -11,11 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.perception.scene import Scene
-from deixis.reasoning.grounding.answer import DECIDED, Grounding
-from deixis.reasoning.grounding.engines import Engine
+from deixis.reasoning.grounding.answer import Grounding
+from deixis.reasoning.grounding.engine import Engine
 from deixis.reasoning.grounding.evidence.evidence import Evidence
 from deixis.reasoning.grounding.ground import ground as ground_evidence
 from deixis.reasoning.grounding.matching.problem import UNMATCHED, Problem
+from deixis.reasoning.grounding.options import DECIDED
 from deixis.reasoning.grounding.viewpoint import FromSides, OtherSide, Viewpoint, Viewpoints, recover_viewpoint, turned
 
 MIN_VIEWPOINT_PROBABILITY, MAX_VIEWPOINTS = 0.005, 8

@@ -13,7 +13,8 @@ from deixis.experiments.generated_tables import generate
 from deixis.ontology.graph import RelationGraph
 from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.geometry.rectangle import scene_relations
-from deixis.reasoning.grounding.engines import Alignment, engine_named
+from deixis.reasoning.grounding.engine import Alignment
+from deixis.reasoning.grounding.engines import engine_named
 from deixis.reasoning.grounding.evidence.evidence import Evidence, no_unary_evidence
 from deixis.reasoning.grounding.ground import ground
 from deixis.reasoning.grounding.matching.problem import UNMATCHED

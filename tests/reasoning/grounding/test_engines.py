@@ -11,15 +11,16 @@ import pytest
 from groundings import R, answer, evidence
 from numpy.typing import NDArray
 
-import deixis.reasoning.grounding.engines as engines
+import deixis.reasoning.grounding.similarity_engine as similarity_engine
 from deixis.errors import UnknownTermError
 from deixis.experiments.place_settings import formal_setting
 from deixis.ontology.graph import RelationGraph
 from deixis.reasoning.geometry.rectangle import scene_relations
-from deixis.reasoning.grounding.engines import CUT_SHORT, engine_named
+from deixis.reasoning.grounding.engines import engine_named
 from deixis.reasoning.grounding.evidence.evidence import no_unary_evidence
 from deixis.reasoning.grounding.ground import ground
 from deixis.reasoning.grounding.options import Select
+from deixis.reasoning.grounding.similarity_engine import CUT_SHORT
 
 MakeGraph = Callable[..., RelationGraph]
 MakeBoxes = Callable[..., NDArray[np.float64]]
@@ -55,7 +56,7 @@ def test_what_is_rarely_so_is_not_what_the_similarity_looks_for(graph_of: MakeGr
 def test_where_one_step_of_the_similarity_is_too_much_the_exact_engine_goes_without(
     monkeypatch: pytest.MonkeyPatch, graph_of: MakeGraph, full_script: list[str]
 ) -> None:
-    monkeypatch.setattr(engines, "_MAX_MULTIPLICATIONS", 1.0)
+    monkeypatch.setattr(similarity_engine, "_MAX_MULTIPLICATIONS", 1.0)
     found = answer(graph_of(*full_script), formal_setting())
     assert found.proved_best
     assert not found.converged
@@ -70,7 +71,7 @@ def test_an_unknown_engine_is_an_error_that_names_the_known_ones() -> None:
 def test_more_subgraphs_than_are_tried_is_noted(
     monkeypatch: pytest.MonkeyPatch, graph_of: MakeGraph, full_script: list[str], absent_glasses: list[str]
 ) -> None:
-    monkeypatch.setattr(engines, "MAX_SUBGRAPHS", 100)
+    monkeypatch.setattr(similarity_engine, "MAX_SUBGRAPHS", 100)
     found = answer(graph_of(*full_script, *absent_glasses), formal_setting(), "similarity")
     assert any("455 sub-graphs are too many" in note and "heuristic" in note for note in found.notes)
     assert len(found.matches) == 12
@@ -79,7 +80,7 @@ def test_more_subgraphs_than_are_tried_is_noted(
 def test_fewer_objects_than_things_beyond_the_subgraphs_that_are_tried(
     monkeypatch: pytest.MonkeyPatch, graph_of: MakeGraph, full_script: list[str]
 ) -> None:
-    monkeypatch.setattr(engines, "MAX_SUBGRAPHS", 1)
+    monkeypatch.setattr(similarity_engine, "MAX_SUBGRAPHS", 1)
     found = answer(graph_of(*full_script[:6]), formal_setting(), "similarity")
     assert any("sub-graphs are too many" in note for note in found.notes)
     assert len(found.matches) == len(graph_of(*full_script[:6]).nodes)
@@ -104,7 +105,7 @@ def test_the_exact_value_is_never_below_that_of_the_similarity(graph_of: MakeGra
         assert question.problem.value(exact.assignment) >= question.problem.value(similar.assignment) - 1e-6
 
 
-@pytest.mark.parametrize("most", [engines.MAX_SUBGRAPHS, 100])
+@pytest.mark.parametrize("most", [similarity_engine.MAX_SUBGRAPHS, 100])
 @pytest.mark.parametrize("absent", [True, False])
 def test_the_similarity_answers_at_its_deadline_and_says_that_it_was_cut_short(
     most: int,
@@ -114,8 +115,8 @@ def test_the_similarity_answers_at_its_deadline_and_says_that_it_was_cut_short(
     full_script: list[str],
     absent_glasses: list[str],
 ) -> None:
-    monkeypatch.setattr(engines, "MAX_SUBGRAPHS", most)
-    monkeypatch.setattr(engines, "_SUBGRAPHS_PER_BLOCK", 10)
+    monkeypatch.setattr(similarity_engine, "MAX_SUBGRAPHS", most)
+    monkeypatch.setattr(similarity_engine, "_SUBGRAPHS_PER_BLOCK", 10)
     question = evidence(graph_of(*full_script, *(absent_glasses if absent else [])), formal_setting())
     found = engine_named("similarity").align(question, time.perf_counter())
     assert np.count_nonzero(found.assignment >= 0) == 12

@@ -18,10 +18,11 @@ from deixis.experiments.place_settings import formal_setting
 from deixis.ontology.graph import RelationGraph
 from deixis.perception.scene import Scene
 from deixis.reasoning.geometry.rectangle import scene_relations
-from deixis.reasoning.grounding.answer import DECIDED, Grounding, Outcome
+from deixis.reasoning.grounding.answer import Grounding, Outcome
 from deixis.reasoning.grounding.engines import engine_named
 from deixis.reasoning.grounding.evidence.evidence import no_unary_evidence
 from deixis.reasoning.grounding.ground import ground
+from deixis.reasoning.grounding.options import DECIDED
 
 MakeGraph = Callable[..., RelationGraph]
 MakeBoxes = Callable[..., NDArray[np.float64]]

@@ -20,7 +20,8 @@ from deixis.ontology.relation import Relations
 from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.geometry.rectangle import SceneRelations, scene_relations
 from deixis.reasoning.grounding.answer import Standing
-from deixis.reasoning.grounding.engines import Alignment, engine_named
+from deixis.reasoning.grounding.engine import Alignment
+from deixis.reasoning.grounding.engines import engine_named
 from deixis.reasoning.grounding.evidence.evidence import Evidence, no_unary_evidence
 from deixis.reasoning.grounding.evidence.meaning import LITERAL, SHIPPED
 from deixis.reasoning.grounding.ground import NOT_ASKED, ground

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from deixis.experiments.scoreboard.cases import Case, Group
 from deixis.experiments.scoreboard.contestants import Answer
-from deixis.reasoning.grounding.answer import is_decided
 from deixis.reasoning.grounding.matching.problem import UNMATCHED
+from deixis.reasoning.grounding.options import is_decided
 
 BINS = 10
 
