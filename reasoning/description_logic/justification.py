@@ -12,8 +12,7 @@ that share names with the statement, and names with those, until HermiT finds th
 no axiom can be spared, several ontologies in one process.
 
 Sources: Kalyanpur, Parsia, Horridge, Sirin, *Finding all justifications of OWL DL entailments*, ISWC 2007 (black box:
-expand, then contract); Marques-Silva, Janota, Belov, *Minimal sets over monotone predicates in Boolean formulae*, CAV
-2013 (progression).
+expand, then contract).
 """
 
 from __future__ import annotations
@@ -23,6 +22,7 @@ from collections import defaultdict
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
+from deixis.reasoning.constraints.minimal import FEW, minimal_by
 from deixis.reasoning.description_logic.axioms import Axiom, Axioms, split_axioms
 from deixis.reasoning.description_logic.materialisation import Contradiction, Materialisation
 from deixis.reasoning.description_logic.reasoners import first_inconsistent
@@ -95,8 +95,8 @@ def _not_related(subject: str, predicate: str, object: str) -> tuple[Triple, ...
     )
 
 
-FEW, BATCH, MOST_RINGS, MOST_CONTRADICTIONS = 8, 24, 10, 100
-"""Axioms that are spared one by one; ontologies, rings of names, and contradictions that are looked at at once."""
+BATCH, MOST_RINGS, MOST_CONTRADICTIONS = 24, 10, 100
+"""Ontologies, rings of names, and contradictions that are looked at at once."""
 
 Oracle = Callable[[Sequence[Sequence[Axiom]]], int | None]
 """Which of several sets of axioms is the first that contradicts itself and the denial."""
@@ -198,42 +198,22 @@ def _rings(axioms: Sequence[Axiom], entailed: Triple | None) -> tuple[list[Axiom
     return [*ordered, *left], [*ends, len(ordered) + len(left)]
 
 
-def _minimal(axioms: list[Axiom], oracle: Oracle) -> list[Axiom] | None:
-    """The axioms without those that can be spared; None where a few contradict nothing."""
-    return _spared(axioms, oracle) if len(axioms) <= FEW else _progression(axioms, oracle)
+def _minimal(axioms: list[Axiom], oracle: Oracle) -> tuple[Axiom, ...] | None:
+    """The axioms without those that can be spared; None where a few contradict nothing.
 
-
-def _spared(axioms: Sequence[Axiom], oracle: Oracle) -> list[Axiom] | None:
-    """The same for few, which are left out one by one; mostly none can be, and all is asked in one run."""
-    kept, start = list(axioms), 0
-    while True:
-        place = oracle([*([*kept[:i], *kept[i + 1 :]] for i in range(start, len(kept))), kept])
+    Of few mostly none can be spared, so that they are asked about themselves in the run that leaves each out in turn.
+    """
+    if len(axioms) <= FEW:
+        place = oracle([*(axioms[:k] + axioms[k + 1 :] for k in reversed(range(len(axioms)))), axioms])
         if place is None:
             return None
-        start += place
-        if start == len(kept):
-            return kept
-        del kept[start]
+        if place == len(axioms):
+            return tuple(axioms)
+        del axioms[len(axioms) - 1 - place]
 
+    def first_of(candidates: Iterable[list[Axiom]]) -> tuple[int, list[Axiom]] | None:
+        asked = list(candidates)
+        place = oracle(asked)
+        return None if place is None else (place, asked[place])
 
-def _progression(axioms: Sequence[Axiom], oracle: Oracle) -> list[Axiom]:
-    """The same for many, which do contradict: the last axiom of the shortest beginning that does cannot be spared."""
-    needed: list[Axiom] = []
-    rest = list(axioms)
-    while length := _shortest(rest, needed, oracle):
-        needed.append(rest[length - 1])
-        rest = rest[: length - 1]
-    return needed
-
-
-def _shortest(rest: list[Axiom], needed: list[Axiom], oracle: Oracle) -> int:
-    """How many of the axioms, from the first on, it takes to contradict what is needed; all of them do."""
-    low, high = 0, len(rest)
-    while low < high:
-        lengths = list(range(low, high, max(1, -(-(high - low) // BATCH))))
-        place = oracle([[*needed, *rest[:length]] for length in lengths])
-        if place is None:
-            low = lengths[-1] + 1
-        else:
-            low, high = (lengths[place - 1] + 1 if place else low), lengths[place]
-    return high
+    return minimal_by(axioms, first_of, width=BATCH).items

@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 from deixis.ontology.allen import ALL_ALLEN
 from deixis.ontology.graph import Fact
 from deixis.ontology.relation import Relation
+from deixis.reasoning.constraints.difference import STRICT, ZERO, Difference
 from deixis.reasoning.geometry.allen import EndOrder, admitted, convex_hull, convex_pieces
 
 AXES = 3
@@ -56,6 +57,12 @@ class Bound:
             (2 * self.axis + self.tail_side) * n + ends[self.tail],
             (2 * self.axis + self.head_side) * n + ends[self.head],
         )
+
+    def difference(self, subject: int, object: int, n: int) -> Difference:
+        """The same as a difference constraint; on each axis object k of n has the points k (low) and n + k (high)."""
+        ends = (subject, object)
+        code = STRICT if self.strict else ZERO
+        return Difference(self.axis, self.head_side * n + ends[self.head], self.tail_side * n + ends[self.tail], code)
 
 
 Conjunction = tuple[Bound, ...]
@@ -114,6 +121,14 @@ def bounds_of(rows: list[tuple[int, int, bool, int]]) -> Bounds:
     return Bounds(
         np.array(tail, np.int64), np.array(head, np.int64), np.array(strict, np.bool_), np.array(premise, np.int64)
     )
+
+
+def order_differences(
+    tail: NDArray[np.int64], head: NDArray[np.int64], strict: NDArray[np.bool_], n: int
+) -> NDArray[np.int64]:
+    """Bounds between points of n objects as difference constraints, shape (k, 4), as :meth:`Bound.difference` says."""
+    codes = np.where(strict, STRICT, ZERO)
+    return np.stack([tail // (2 * n), head % (2 * n), tail % (2 * n), codes], axis=1).astype(np.int64)
 
 
 @lru_cache(maxsize=256)

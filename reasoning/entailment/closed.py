@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.ontology.relation import Relation
+from deixis.reasoning.constraints.paths import OrderGraph
 from deixis.reasoning.entailment.bounds import AXES, Bound, Bounds, meaning
 from deixis.reasoning.errors import LimitError
 
@@ -153,47 +154,16 @@ class Orders:
         return int(count_bits(self.relation_bits(relation)))
 
 
-@dataclass(frozen=True, eq=False)
-class PointGraph:
-    """Points and the bounds between them as rows of edges; every object's low edge is before its high edge."""
-
-    size: int
-    first: NDArray[np.int64]  # (points + 1,)
-    heads: NDArray[np.int64]
-    strict: NDArray[np.bool_]
-    premise: NDArray[np.int64]  # -1: an object's own edges
-
-
-def point_graph(bounds: Bounds, n: int) -> PointGraph:
-    """The graph of bounds between the 6 n points of n objects."""
-    from deixis.reasoning.entailment.kernels import rows_of
-
+def order_graph(bounds: Bounds, n: int) -> OrderGraph:
+    """The graph of bounds between the 6 n points of n objects; every object's low edge is before its high edge."""
     low = (np.arange(AXES)[:, None] * 2 * n + np.arange(n)).ravel()
-    tails = np.concatenate([bounds.tail, low])
-    first, order = rows_of(tails, 2 * AXES * n)
-    heads = np.concatenate([bounds.head, low + n])[order]
-    strict = np.concatenate([bounds.strict, np.ones(len(low), np.bool_)])[order]
-    premise = np.concatenate([bounds.premise, np.full(len(low), -1)])[order]
-    return PointGraph(n, first, heads, strict, premise)
-
-
-def contradictory(graph: PointGraph) -> bool:
-    """Whether some bounds go round in a circle with a strict one among them, so that no picture satisfies them."""
-    from deixis.reasoning.entailment.kernels import strict_within, strong_parts
-
-    part, _ = strong_parts(graph.first, graph.heads)
-    return bool(strict_within(graph.first, graph.heads, graph.strict, part) >= 0)
-
-
-def is_bare_circle(graph: PointGraph) -> bool:
-    """Whether the edges between points that are forced to be equal are one circle, which any one edge opens."""
-    from deixis.reasoning.entailment.kernels import strong_parts
-
-    part, _ = strong_parts(graph.first, graph.heads)
-    tails = np.repeat(part, np.diff(graph.first))
-    inside = tails == part[graph.heads]
-    large = np.flatnonzero(np.bincount(part) > 1)
-    return len(large) == 1 and int(inside.sum()) == int((part == large[0]).sum())
+    return OrderGraph.of(
+        2 * AXES * n,
+        np.concatenate([bounds.tail, low]),
+        np.concatenate([bounds.head, low + n]),
+        np.concatenate([bounds.strict, np.ones(len(low), np.bool_)]),
+        np.concatenate([bounds.premise, np.full(len(low), -1)]),
+    )
 
 
 def orders_of(bounds: Bounds, groups: Groups) -> Orders | None:
@@ -212,16 +182,18 @@ def orders_of(bounds: Bounds, groups: Groups) -> Orders | None:
 
 def _axis_rows(bounds: Bounds, chosen: NDArray[np.bool_], axis: int, groups: Groups) -> AxisRows | None:
     """The closed rows of an axis; None where its bounds contradict each other."""
-    from deixis.reasoning.entailment.kernels import close, rows_of, strict_within, strong_parts
+    from deixis.reasoning.entailment.kernels import close
 
     n = len(groups.label)
     base, low = 2 * axis * n, np.arange(n)
-    tails = np.concatenate([bounds.tail[chosen] - base, low])
-    first, order = rows_of(tails, 2 * n)
-    heads = np.concatenate([bounds.head[chosen] - base, low + n])[order]
-    strict = np.concatenate([bounds.strict[chosen], np.ones(n, np.bool_)])[order]
-    part, members = strong_parts(first, heads)
-    if strict_within(first, heads, strict, part) >= 0:
+    graph = OrderGraph.of(
+        2 * n,
+        np.concatenate([bounds.tail[chosen] - base, low]),
+        np.concatenate([bounds.head[chosen] - base, low + n]),
+        np.concatenate([bounds.strict[chosen], np.ones(n, np.bool_)]),
+        np.concatenate([bounds.premise[chosen], np.full(n, -1)]),
+    )
+    if graph.contradictory:
         return None
     start = np.concatenate([[0], np.cumsum(4 * groups.sizes * groups.words)])
     words, sizes = groups.words[groups.label], groups.sizes[groups.label]
@@ -229,5 +201,5 @@ def _axis_rows(bounds: Bounds, chosen: NDArray[np.bool_], axis: int, groups: Gro
     row = start[groups.label] + 2 * words * groups.place
     rows = np.concatenate([row, row + 2 * words * sizes])
     weak, strong = np.zeros(start[-1], np.uint64), np.zeros(start[-1], np.uint64)
-    close(first, heads, strict, part, members, bit, rows, np.tile(2 * words, 2), weak, strong)
+    close(graph.first, graph.heads, graph.strict, *graph.parts, bit, rows, np.tile(2 * words, 2), weak, strong)
     return AxisRows(weak, strong, start)

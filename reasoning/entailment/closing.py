@@ -1,17 +1,24 @@
-"""Closing what facts demand: orders by bit sets, and in the groups where there are choices, what all pictures share."""
+"""Closing what facts demand: orders by bit sets, and in the groups where there are choices, what all pictures share.
+
+A disjunction such as *left or above*, or the denial of *top left*, is no conjunction of bounds but a choice between
+several, which :mod:`deixis.reasoning.constraints.disjunctive` decides. What every picture shares is found by
+refutation: a bound holds in all of them where its denial has no picture, and every picture found on the way strikes out
+the bounds that fail in it.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.reasoning.entailment.bounds import AXES, bounds_of
-from deixis.reasoning.entailment.choices import Choice, OutOfTimeError, Row, Search, State, base_state, shared
-from deixis.reasoning.entailment.closed import AxisRows, Groups, Orders, groups_of, orders_of
-from deixis.reasoning.entailment.demands import Demands
+from deixis.reasoning.constraints.difference import ORDERS, STRICT, ZERO, Difference, DifferenceNetwork
+from deixis.reasoning.constraints.disjunctive import Clauses, Outcome, OutOfTimeError, Search, solution
+from deixis.reasoning.entailment.bounds import AXES, bounds_of, order_differences
+from deixis.reasoning.entailment.closed import AxisRows, Groups, Orders, groups_of, order_graph, orders_of
+from deixis.reasoning.entailment.demands import Choice, Demands
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,36 +51,82 @@ def close(demands: Demands, deadline: float) -> Closed:
     for group, choices in by_group.items():
         problem = local_problem(demands, groups.members(group), choices)
         try:
-            state, whole = problem.shared(deadline)
+            known, whole = problem.shared(deadline)
         except OutOfTimeError:
             complete = decided = False
             continue
-        if state is None:
+        if known is None:
             return Closed(groups, None, contradictory=group)
         complete &= whole
-        _write(state, axes, groups, group)
+        _write(known, axes, groups, group)
     return Closed(groups, Orders(groups, axes), complete, decided)
+
+
+Codes = NDArray[np.int8]
+"""Closed orders of the points of n objects, shape (3, 2 n, 2 n): STRICT where the column's point is before the row's,
+ZERO where it is not after it."""
 
 
 @dataclass(frozen=True, eq=False)
 class LocalProblem:
-    """The demands among some objects, which are numbered by their place in ``nodes``."""
+    """The demands among n objects, which are numbered by their place in ``nodes``."""
 
     nodes: NDArray[np.int64]
-    rows: tuple[Row, ...]
-    choices: tuple[Choice, ...]
+    differences: NDArray[np.int64]  # (k, 4)
+    clauses: Clauses
 
-    def shared(self, deadline: float) -> tuple[State | None, bool]:
-        """What all pictures share, and whether that is all; None where there is none. Raises OutOfTimeError."""
+    def network(self) -> DifferenceNetwork | None:
+        """What is demanded without the choices; None where that contradicts itself."""
         n = len(self.nodes)
-        base = base_state(self.rows, n)
-        return (None, True) if base is None else shared(Search(self.choices, n, deadline), base)
+        network = DifferenceNetwork(2 * n, AXES, ORDERS)
+        axis, low = np.divmod(np.arange(AXES * n), max(n, 1))
+        own = np.stack([axis, low + n, low, np.full_like(low, STRICT)], axis=1)
+        return network if network.add_all(np.concatenate([own, self.differences])) else None
 
-    def consistent(self, deadline: float, further: Sequence[Row] = ()) -> bool:
-        """Whether there is a picture, with these bounds too. Raises OutOfTimeError."""
-        n = len(self.nodes)
-        base = base_state([*self.rows, *further], n)
-        return base is not None and Search(self.choices, n, deadline).picture(base) is not None
+    def picture(self, deadline: float) -> Codes | None:
+        """The orders of some picture; None where there is none. Raises OutOfTimeError."""
+        network = self.network()
+        return None if network is None else solution(network, self.clauses, self._nothing_taken(), deadline)
+
+    def _nothing_taken(self) -> NDArray[np.int64]:
+        return np.full(len(self.clauses), -1, np.int64)
+
+    def shared(self, deadline: float) -> tuple[Codes | None, bool]:
+        """What all pictures share, and whether that is all of it; None where there is no picture.
+
+        At the deadline what has been proved so far is given, which is right, and False. Raises OutOfTimeError where not
+        even one picture was found.
+        """
+        known, last = self.network(), self._nothing_taken()
+        common = None if known is None else solution(known, self.clauses, last, deadline)
+        if known is None or common is None:
+            return None, True
+        if Search(known, self.clauses, deadline).propagate() is not Outcome.SOLVED:
+            return known.distances, False
+        try:
+            while (shared := _candidate(known.distances, common)) is not None:
+                length = len(known)
+                other = solution(known, self.clauses, last, deadline) if known.add(shared.denied()) else None
+                known.back(length)
+                if other is None:
+                    known.add(shared)
+                else:
+                    common = np.maximum(common, other)
+        except OutOfTimeError:
+            known.back(length)
+            return known.distances, False
+        return known.distances, True
+
+
+def _candidate(known: Codes, common: Codes) -> Difference | None:
+    """A bound that holds in all pictures found and is not known to follow; strict ones first, they say more."""
+    for code in (STRICT, ZERO):
+        seen = ((common <= code) & (known > code)).transpose(0, 2, 1)
+        place = int(seen.argmax())
+        if seen.size and seen.flat[place]:
+            axis, head, tail = np.unravel_index(place, seen.shape)
+            return Difference(int(axis), int(tail), int(head), code)
+    return None
 
 
 def local_problem(demands: Demands, nodes: NDArray[np.int64], choices: Sequence[Choice]) -> LocalProblem:
@@ -85,9 +138,9 @@ def local_problem(demands: Demands, nodes: NDArray[np.int64], choices: Sequence[
     inside = place[bounds.tail % n] >= 0
     tails = bounds.tail[inside] // n * m + place[bounds.tail[inside] % n]
     heads = bounds.head[inside] // n * m + place[bounds.head[inside] % n]
-    rows = tuple(zip(tails.tolist(), heads.tolist(), bounds.strict[inside].tolist(), strict=True))
-    local = tuple(Choice(c.alternatives, int(place[c.subject]), int(place[c.object]), c.premise) for c in choices)
-    return LocalProblem(nodes, rows, local)
+    local = (replace(c, subject=int(place[c.subject]), object=int(place[c.object])) for c in choices)
+    differences = order_differences(tails, heads, bounds.strict[inside], m)
+    return LocalProblem(nodes, differences, Clauses(choice.clause(m) for choice in local))
 
 
 def _empty_rows(axis: int, groups: Groups) -> AxisRows:
@@ -101,28 +154,52 @@ def _empty_rows(axis: int, groups: Groups) -> AxisRows:
     return rows
 
 
-def _write(state: State, axes: Sequence[AxisRows], groups: Groups, group: int) -> None:
-    """Puts a group's closed bounds into the rows of every axis."""
+def _write(known: Codes, axes: Sequence[AxisRows], groups: Groups, group: int) -> None:
+    """Puts a group's closed orders into the rows of every axis."""
     size, words = int(groups.sizes[group]), int(groups.words[group])
     for axis in range(AXES):
         rows = axes[axis]
         begin, end = int(rows.start[group]), int(rows.start[group + 1])
-        for bits, flat in ((state.weak, rows.weak), (state.strong, rows.strong)):
-            points = np.unpackbits(bits.view(np.uint8), axis=1, bitorder="little")
-            block = points[2 * axis * size : 2 * (axis + 1) * size, 2 * axis * size : 2 * (axis + 1) * size]
-            padded = np.zeros((2 * size, 2, 64 * words), np.uint8)
-            padded[:, :, :size] = block.reshape(2 * size, 2, size)
+        for code, flat in ((ZERO, rows.weak), (STRICT, rows.strong)):
+            padded = np.zeros((2 * size, 2, 64 * words), np.bool_)
+            padded[:, :, :size] = (code >= known[axis].T).reshape(2 * size, 2, size)
             packed = np.packbits(padded.reshape(2 * size, -1), axis=1, bitorder="little")
             flat[begin:end] = np.ascontiguousarray(packed).view(np.uint64).ravel()
 
 
 def consistent(demands: Demands, deadline: float) -> bool:
     """Whether there is a picture of what is demanded. Raises OutOfTimeError."""
-    from deixis.reasoning.entailment.closed import contradictory, point_graph
-
     n = len(demands.graph.nodes)
-    if contradictory(point_graph(demands.bounds, n)):
+    if order_graph(demands.bounds, n).contradictory:
         return False
-    if not demands.choices:
-        return True
-    return local_problem(demands, np.arange(n), demands.choices).consistent(deadline)
+    return not demands.choices or local_problem(demands, np.arange(n), demands.choices).picture(deadline) is not None
+
+
+# ---- pictures of consistent orders: boxes of small whole numbers that bear out every bound, and nothing about sizes
+
+
+def picture_of(known: Codes) -> NDArray[np.float64]:
+    """Boxes of n objects that satisfy closed, consistent orders: shape (n, 2, 3), least and greatest corner."""
+    after = (known == STRICT).sum(axis=1)
+    return _boxes(after.reshape(AXES, 2, -1))
+
+
+def picture_of_group(orders: Orders, group: int) -> NDArray[np.float64]:
+    """The same for the objects of a connected group, in its order, by closed orders in which no choice is left."""
+    n, words = int(orders.groups.sizes[group]), int(orders.groups.words[group])
+    after = np.tile(np.array([[1], [0]], np.int64), (AXES, 1, n))
+    for axis, rows in enumerate(orders.axes):
+        if rows is not None:
+            strong = rows.strong[rows.start[group] : rows.start[group + 1]].reshape(2 * n, 2 * words)
+            after[axis] = np.bitwise_count(strong).sum(axis=1, dtype=np.int64).reshape(2, n)
+    return _boxes(after)
+
+
+def _boxes(after: NDArray[np.int64]) -> NDArray[np.float64]:
+    """Boxes from how many edges must be after each, shape (axes, 2, n).
+
+    Every edge lies at minus that number, the levels counted from 0: where u must not be after v, all that is after v is
+    after u, so that u lies no farther; and where u must be before v, v itself is one more.
+    """
+    levels = [np.unique(-part, return_inverse=True)[1].reshape(part.shape) for part in after]
+    return np.stack(levels).transpose(2, 1, 0).astype(np.float64)

@@ -13,11 +13,10 @@ from dataclasses import dataclass
 from deixis.ontology.graph import Fact, RelationGraph
 from deixis.ontology.relation import Relation, Relations
 from deixis.reasoning.constraints.minimal import minimal_subset
-from deixis.reasoning.entailment.closed import is_bare_circle, point_graph
+from deixis.reasoning.entailment.closed import order_graph
 from deixis.reasoning.entailment.closing import consistent
 from deixis.reasoning.entailment.demands import Demands, demands_of_facts
 from deixis.reasoning.entailment.implications import Implications
-from deixis.reasoning.entailment.paths import OrderPaths
 
 
 @dataclass(frozen=True)
@@ -58,11 +57,11 @@ def find_conflict(implied: Implications, deadline: float | None = None) -> Confl
     until = time.monotonic() + implied.time_limit if deadline is None else deadline
     demands = implied.demands
     graph = implied.graph
-    circle = OrderPaths(demands.bounds, len(graph.nodes)).circle()
+    circle = order_graph(demands.bounds, len(graph.nodes)).shortest_cycle()
     edges = _group_edges(implied) if circle is None else sorted(circle)
     facts = [graph.fact(edge) for edge in edges]
     if circle is None or not _minimal_circle(demands, edges):
-        facts = minimal_subset(facts, lambda chosen: not _consistent(chosen, graph.vocabulary, until))
+        facts = list(minimal_subset(facts, lambda chosen: _inconsistent(chosen, graph.vocabulary, until)).items)
     if graph.sources:
         facts.sort(key=lambda fact: (fact.source is None, fact.source))
     return Conflict(tuple(facts), _reason(facts, graph.vocabulary))
@@ -79,11 +78,11 @@ def _group_edges(implied: Implications) -> list[int]:
 def _minimal_circle(demands: Demands, edges: Sequence[int]) -> bool:
     """Whether nothing but one circle is in the facts' bounds, so that every fact is needed to close it."""
     few = demands.restricted(edges)
-    return not few.choices and is_bare_circle(point_graph(few.bounds, len(demands.graph.nodes)))
+    return not few.choices and order_graph(few.bounds, len(demands.graph.nodes)).is_single_cycle
 
 
-def _consistent(facts: Sequence[Fact], vocabulary: Relations, deadline: float) -> bool:
-    return consistent(demands_of_facts(vocabulary, facts), deadline)
+def _inconsistent(facts: list[Fact], vocabulary: Relations, deadline: float) -> list[Fact] | None:
+    return None if consistent(demands_of_facts(vocabulary, facts), deadline) else facts
 
 
 def _reason(facts: Sequence[Fact], vocabulary: Relations) -> str:

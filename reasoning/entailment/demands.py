@@ -14,8 +14,31 @@ from numpy.typing import NDArray
 
 from deixis.ontology.graph import Fact, RelationGraph
 from deixis.ontology.relation import Relations
-from deixis.reasoning.entailment.bounds import Bounds, bounds_of, claims, common, meaning
-from deixis.reasoning.entailment.choices import Choice
+from deixis.reasoning.constraints.disjunctive import Clause
+from deixis.reasoning.entailment.bounds import Alternatives, Bounds, bounds_of, claims, common, meaning
+
+
+@dataclass(frozen=True)
+class Choice:
+    """One of the alternatives must hold between two objects; ``premise`` is the fact that says so.
+
+    Each alternative is a product of convex relations, the tractable pieces into which a rectangle-algebra relation is
+    split (Balbiani, Condotta and Fariñas del Cerro 1999), so that alternatives that agree have a picture.
+    """
+
+    alternatives: Alternatives
+    subject: int
+    object: int
+    premise: int
+
+    def clause(self, n: int) -> Clause:
+        """The alternatives as difference constraints between the points of n objects."""
+        return Clause(
+            tuple(
+                tuple(bound.difference(self.subject, self.object, n) for bound in conjunction)
+                for conjunction in self.alternatives
+            )
+        )
 
 
 @dataclass(frozen=True, eq=False)

@@ -21,12 +21,11 @@ from deixis.errors import GraphError
 from deixis.ontology.export import node_iris, pairs_to_ntriples
 from deixis.ontology.graph import Fact, RelationGraph
 from deixis.ontology.relation import Relation, Relations
+from deixis.reasoning.constraints.proof import Rule
 from deixis.reasoning.entailment.bounds import meaning
-from deixis.reasoning.entailment.cases import derive_by_cases, needed_facts
 from deixis.reasoning.entailment.closing import Closed, close
 from deixis.reasoning.entailment.demands import Demands, EdgeFacts, demands_of
-from deixis.reasoning.entailment.derivation import Derivation, Rule
-from deixis.reasoning.entailment.derivations import OrderDerivations
+from deixis.reasoning.entailment.derivations import Derivation, OrderDerivations, derive_by_cases, needed_facts
 
 TIME_LIMIT = 10.0
 """Seconds for weighing the choices in the facts; facts that leave no choice need no search."""
@@ -115,7 +114,7 @@ class Implications:
 
     def prepare_explanations(self) -> None:
         """Builds the graph in which derivations are searched; the first derivation does it otherwise."""
-        self._derivations.paths.prepare()
+        self._derivations.prepare()
 
     def pairs(self, relation: Relation) -> NDArray[np.int64]:
         """The pairs of nodes of which the relation holds in every picture, shape (k, 2), by subject, then by object."""
@@ -175,8 +174,9 @@ class Implications:
                     yield Fact(nodes[subject], (relation,), nodes[object]), count
 
     def _steps(self, relation: Relation, subject: int, objects: NDArray[np.int64]) -> NDArray[np.int64]:
-        paths = self._derivations.paths
-        costs = np.stack([paths.costs(bound, subject, objects) for bound in meaning(relation)[0]]).max(axis=0)
+        costs = np.stack([self._derivations.costs(bound, subject, objects) for bound in meaning(relation)[0]]).max(
+            axis=0
+        )
         return np.where(costs > len(self.graph), 0, costs)
 
     def support(self, fact: Fact, deadline: float | None = None) -> Support:

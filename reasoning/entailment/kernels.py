@@ -1,30 +1,13 @@
 """The compiled loops under :mod:`deixis.reasoning.entailment.closed`, on plain arrays.
 
-A graph of points is in rows: the edges out of point u are ``first[u]:first[u + 1]`` of ``heads`` and ``strict``. A row
-of bits holds points of one group: bit b of word w is point 64 w + b.
+A graph of points is in rows, as in :mod:`deixis.reasoning.constraints.kernels`. A row of bits holds points of one
+group: bit b of word w is point 64 w + b.
 """
 
 from __future__ import annotations
 
 import numpy as np
 from numba import njit
-
-
-@njit(cache=True)
-def rows_of(tails, n):  # type: ignore[no-untyped-def]
-    """Where each point's edges begin, shape (n + 1,), and the edges in the order of their tails."""
-    first = np.zeros(n + 1, np.int64)
-    for u in tails:
-        first[u + 1] += 1
-    for u in range(n):
-        first[u + 1] += first[u]
-    place = first[:-1].copy()
-    order = np.empty(len(tails), np.int64)
-    for edge in range(len(tails)):
-        u = tails[edge]
-        order[place[u]] = edge
-        place[u] += 1
-    return first, order
 
 
 @njit(cache=True)
@@ -55,71 +38,6 @@ def connected(first_ends, second_ends, n):  # type: ignore[no-untyped-def]
                 root = parent[root]
             label[node] = label[root]
     return label, count
-
-
-@njit(cache=True)
-def strong_parts(first, heads):  # type: ignore[no-untyped-def]
-    """Strongly connected parts (Tarjan 1972, without recursion), numbered so that edges lead to lower numbers.
-
-    Returns the part of each point, and the points in the order of their parts.
-    """
-    n = len(first) - 1
-    index = np.full(n, -1, np.int64)
-    low = np.zeros(n, np.int64)
-    part = np.full(n, -1, np.int64)
-    members = np.empty(n, np.int64)
-    stack = np.empty(n, np.int64)
-    calls = np.empty(n, np.int64)
-    place = first[:-1].copy()
-    height, listed, parts, counter = 0, 0, 0, 0
-    for root in range(n):
-        if index[root] >= 0:
-            continue
-        depth = 0
-        calls[0] = root
-        index[root] = low[root] = counter
-        counter += 1
-        stack[height] = root
-        height += 1
-        while depth >= 0:
-            u = calls[depth]
-            if place[u] < first[u + 1]:
-                v = heads[place[u]]
-                place[u] += 1
-                if index[v] < 0:
-                    index[v] = low[v] = counter
-                    counter += 1
-                    stack[height] = v
-                    height += 1
-                    depth += 1
-                    calls[depth] = v
-                elif part[v] < 0 and index[v] < low[u]:
-                    low[u] = index[v]
-                continue
-            if low[u] == index[u]:
-                while True:
-                    height -= 1
-                    v = stack[height]
-                    part[v] = parts
-                    members[listed] = v
-                    listed += 1
-                    if v == u:
-                        break
-                parts += 1
-            depth -= 1
-            if depth >= 0 and low[u] < low[calls[depth]]:
-                low[calls[depth]] = low[u]
-    return part, members
-
-
-@njit(cache=True)
-def strict_within(first, heads, strict, part):  # type: ignore[no-untyped-def]
-    """A strict edge whose ends are forced to be equal: its tail, or -1 where there is none."""
-    for u in range(len(first) - 1):
-        for edge in range(first[u], first[u + 1]):
-            if strict[edge] and part[heads[edge]] == part[u]:
-                return u
-    return -1
 
 
 @njit(cache=True)

@@ -11,14 +11,12 @@ from numpy.typing import NDArray
 from deixis.errors import GraphError
 from deixis.ontology.graph import Fact, RelationGraph
 from deixis.reasoning.entailment.bounds import Order, meaning
-from deixis.reasoning.entailment.choices import Search, base_state
 from deixis.reasoning.entailment.closed import groups_of, orders_of
-from deixis.reasoning.entailment.closing import local_problem
+from deixis.reasoning.entailment.closing import local_problem, picture_of, picture_of_group
 from deixis.reasoning.entailment.conflict import Conflict, compatible, find_conflict
 from deixis.reasoning.entailment.demands import demands_of
-from deixis.reasoning.entailment.derivation import Derivation
+from deixis.reasoning.entailment.derivations import Derivation
 from deixis.reasoning.entailment.implications import Implications
-from deixis.reasoning.entailment.pictures import picture_of, picture_of_group
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,9 +97,6 @@ def _counter_example(implied: Implications, fact: Fact) -> CounterExample:
         orders = orders_of(demands.bounds, groups)
         assert orders is not None, "a fact that does not follow has a picture without it"
         return CounterExample(names, picture_of_group(orders, group))
-    problem = local_problem(demands, nodes, choices)
-    base = base_state(problem.rows, len(nodes))
-    deadline = time.monotonic() + implied.time_limit
-    state = None if base is None else Search(problem.choices, len(nodes), deadline).picture(base)
-    assert state is not None, "a fact that does not follow has a picture without it"
-    return CounterExample(names, picture_of(state, len(nodes)))
+    picture = local_problem(demands, nodes, choices).picture(time.monotonic() + implied.time_limit)
+    assert picture is not None, "a fact that does not follow has a picture without it"
+    return CounterExample(names, picture_of(picture))

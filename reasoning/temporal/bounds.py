@@ -1,9 +1,7 @@
 """Bounds on times and on differences of times, exact: whole microseconds, each with a flag for *strictly less*.
 
-An upper bound *x <= b* or *x < b* is one integer, ``2 * b + 1`` or ``2 * b`` with b in microseconds, so that the
-smaller integer is the tighter bound, and the sum of two bounds is strict where either is. That is how difference
-bound matrices are kept for timed automata (Bengtsson & Yi 2004), and it does without an epsilon: *before*
-is really *less than*. Integers add up without rounding, so a chain of 0.1 s never contradicts its sum.
+An upper bound is a code of :mod:`deixis.reasoning.constraints.difference` in microseconds: *before* is really *less
+than*, without an epsilon. Integers add up without rounding, so a chain of 0.1 s never contradicts its sum.
 """
 
 from __future__ import annotations
@@ -12,9 +10,7 @@ import math
 from dataclasses import dataclass
 from fractions import Fraction
 
-import numpy as np
-from numpy.typing import NDArray
-
+from deixis.reasoning.constraints.difference import UNBOUNDED, ZERO, add
 from deixis.reasoning.errors import SettingError
 
 TICKS = 1_000_000
@@ -22,12 +18,6 @@ TICKS = 1_000_000
 
 FARTHEST = 4e9
 """Seconds from the origin that a bound may lie at the most (some 126 years), so that all sums stay exact."""
-
-UNBOUNDED = 1 << 62
-"""The code of no bound at all."""
-
-ZERO = 1
-"""The code of *x <= 0*."""
 
 
 def to_ticks(seconds: float) -> int:
@@ -51,20 +41,6 @@ def encode(seconds: float, strict: bool = False) -> int:
     if seconds == math.inf:
         return UNBOUNDED
     return 2 * to_ticks(seconds) + (not strict)
-
-
-def add(a: int, b: int) -> int:
-    """The sum of two bounds: of *x <= a* and *y < b* the bound *x + y < a + b*."""
-    if a >= UNBOUNDED or b >= UNBOUNDED:
-        return UNBOUNDED
-    return (a & ~1) + (b & ~1) | (a & b & 1)
-
-
-def add_arrays(a: NDArray[np.int64], b: NDArray[np.int64] | int) -> NDArray[np.int64]:
-    """The same elementwise; the two broadcast."""
-    b = np.asarray(b, dtype=np.int64)
-    total = (a & ~1) + (b & ~1) | (a & b & 1)
-    return np.where((a >= UNBOUNDED) | (b >= UNBOUNDED), UNBOUNDED, total)
 
 
 def text_of_ticks(ticks: int) -> str:

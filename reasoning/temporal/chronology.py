@@ -15,8 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.ontology.allen import Allen, members
+from deixis.reasoning.constraints.difference import ZERO, add_arrays
 from deixis.reasoning.errors import SettingError
-from deixis.reasoning.temporal.bounds import ZERO, Bounds, add_arrays, encode, to_ticks
+from deixis.reasoning.temporal.bounds import Bounds, encode, to_ticks
 from deixis.reasoning.temporal.errors import UnknownFluentError
 from deixis.reasoning.temporal.fluent import ANYTHING, Fluent, Pattern
 
@@ -62,9 +63,9 @@ class Chronology:
     """What follows of n fluents.
 
     ``spans`` (k, n, 3, 3), int64: for each of k cases that disjunctions leave, and each fluent, the minimal distances
-    among origin, start and finish, as codes of :mod:`deixis.reasoning.temporal.bounds`. ``masks`` (n, n), uint16: the
-    Allen relations that the row's fluent may bear to the column's. Where ``exact``, both are as tight as can be; else
-    disjunctions were left out of account, and what is certain is still certain, but what may be may not.
+    among origin, start and finish, as codes of :mod:`deixis.reasoning.constraints.difference`. ``masks`` (n, n),
+    uint16: the Allen relations that the row's fluent may bear to the column's. Where ``exact``, both are as tight as
+    can be; else disjunctions were left out of account, and what is certain is still certain, but what may be may not.
     """
 
     fluents: tuple[Fluent, ...]

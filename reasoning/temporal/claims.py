@@ -6,10 +6,11 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from deixis.ontology.allen import ALL_ALLEN
+from deixis.reasoning.constraints.difference import STRICT
+from deixis.reasoning.constraints.proof import Proof, Rule
 from deixis.reasoning.geometry.allen import convex_pieces
-from deixis.reasoning.temporal.bounds import ZERO, Bounds, bound_text
+from deixis.reasoning.temporal.bounds import Bounds, bound_text
 from deixis.reasoning.temporal.endpoints import necessary_orders
-from deixis.reasoning.temporal.explanation import Explanation, Rule
 from deixis.reasoning.temporal.fluent import ORIGIN, AllenStatement, Difference, Fluent
 from deixis.reasoning.temporal.network import DifferenceConstraint, SimpleTemporalNetwork, difference
 
@@ -21,7 +22,7 @@ class Disjunction:
     a: str
     relations: int
     b: str
-    why: Explanation
+    why: Proof[str]
 
     @property
     def points(self) -> tuple[str, str, str, str]:
@@ -41,14 +42,14 @@ class Claim:
     ``why`` is the statement as a whole; explanations rest on the part of it that they need, one of ``leaves``.
     """
 
-    why: Explanation
+    why: Proof[str]
     constraints: tuple[DifferenceConstraint, ...] = ()
     disjunction: Disjunction | None = None
 
     @property
-    def leaves(self) -> frozenset[Explanation]:
+    def leaves(self) -> frozenset[Proof[str]]:
         """The stated leaves of explanations that rest on it."""
-        return frozenset(leaf for constraint in self.constraints for leaf in constraint.why.stated()) | {self.why}
+        return frozenset(leaf for constraint in self.constraints for leaf in constraint.why.leaves()) | {self.why}
 
     @property
     def fluents(self) -> tuple[str, ...]:
@@ -67,16 +68,16 @@ def ends(fluent: str) -> tuple[str, str]:
 def proper_interval(fluent: str) -> DifferenceConstraint:
     """That a fluent starts before it finishes."""
     start, finish = ends(fluent)
-    return DifferenceConstraint(finish, start, ZERO - 1, Explanation(f"{start} < {finish}", Rule.PROPER_INTERVAL))
+    return DifferenceConstraint(finish, start, STRICT, Proof(f"{start} < {finish}", Rule.PROPER_INTERVAL))
 
 
-def allen_constraints(a: str, relations: int, b: str, why: Explanation) -> tuple[DifferenceConstraint, ...]:
+def allen_constraints(a: str, relations: int, b: str, why: Proof[str]) -> tuple[DifferenceConstraint, ...]:
     """The difference constraints that a convex set of Allen relations is, by definition of it."""
     names = ends(a) + ends(b)
     found = []
     for tail, head, code in necessary_orders(relations):
         text = bound_text(names[tail], names[head], code, ORIGIN)
-        found.append(DifferenceConstraint(names[tail], names[head], code, Explanation(text, Rule.DEFINITION, (why,))))
+        found.append(DifferenceConstraint(names[tail], names[head], code, Proof(text, Rule.DEFINITION, (why,))))
     return tuple(found)
 
 
@@ -99,11 +100,11 @@ def _bounds_claim(tail: str, head: str, bounds: Bounds, text: str, source: str |
     constraints = difference(tail, head, bounds, source)
     if len(constraints) < 2:
         return tuple(Claim(constraint.why, (constraint,)) for constraint in constraints)
-    return (Claim(Explanation(text, Rule.STATED, source=source), constraints),)
+    return (Claim(Proof(text, Rule.STATED, source=source), constraints),)
 
 
 def _allen_claim(item: AllenStatement) -> Claim:
-    why = Explanation(str(item), Rule.STATED, source=item.source)
+    why = Proof(str(item), Rule.STATED, source=item.source)
     if len(convex_pieces(item.relations)) == 1:
         return Claim(why, allen_constraints(item.a, item.relations, item.b, why))
     return Claim(why, disjunction=Disjunction(item.a, item.relations, item.b, why))

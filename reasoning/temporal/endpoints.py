@@ -12,13 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.ontology.allen import Allen
+from deixis.reasoning.constraints.difference import STRICT, UNBOUNDED, ZERO, add_arrays
 from deixis.reasoning.geometry.allen import HIGH_A, HIGH_B, LOW_A, LOW_B, convex_hull
-from deixis.reasoning.temporal.bounds import UNBOUNDED, ZERO, Bounds, add_arrays
+from deixis.reasoning.temporal.bounds import Bounds
 
 START_A, FINISH_A, START_B, FINISH_B = LOW_A, HIGH_A, LOW_B, HIGH_B
 """The four points of two fluents, in the order of all arrays here."""
-
-_STRICT = ZERO - 1
 
 Constraint = tuple[int, int, int]
 """Tail, head, code: head minus tail is bounded."""
@@ -31,7 +30,7 @@ def necessary_orders(mask: int) -> tuple[Constraint, ...]:
     >>> necessary_orders(1 << Allen.BEFORE) == ((START_B, FINISH_A, 0),)  # a.finish - b.start < 0
     True
     """
-    return tuple((order.greater, order.lesser, _STRICT if order.strict else ZERO) for order in convex_hull(mask).orders)
+    return tuple((order.greater, order.lesser, STRICT if order.strict else ZERO) for order in convex_hull(mask).orders)
 
 
 @cache
@@ -101,10 +100,10 @@ def distances_from_bounds(starts: list[Bounds], finishes: list[Bounds]) -> NDArr
     upper = np.array([ZERO, *(b.at_most for b in (*starts, *finishes))], dtype=np.int64)
     lower = np.array([ZERO, *(b.at_least for b in (*starts, *finishes))], dtype=np.int64)
     s, f = slice(1, n + 1), slice(n + 1, 2 * n + 1)
-    upper[s] = np.minimum(upper[s], add_arrays(upper[f], _STRICT))
-    lower[f] = np.minimum(lower[f], add_arrays(lower[s], _STRICT))
+    upper[s] = np.minimum(upper[s], add_arrays(upper[f], STRICT))
+    lower[f] = np.minimum(lower[f], add_arrays(lower[s], STRICT))
     distances = add_arrays(lower[:, None], upper[None, :])
     own = np.arange(1, n + 1)
-    distances[own + n, own] = np.minimum(distances[own + n, own], _STRICT)
+    distances[own + n, own] = np.minimum(distances[own + n, own], STRICT)
     np.fill_diagonal(distances, ZERO)
     return distances

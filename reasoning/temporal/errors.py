@@ -6,8 +6,8 @@ from collections.abc import Iterable
 from difflib import get_close_matches
 
 from deixis.errors import DeixisError, UnknownTermError
+from deixis.reasoning.constraints.proof import Proof
 from deixis.reasoning.errors import InconsistencyError
-from deixis.reasoning.temporal.explanation import Explanation
 
 
 class FluentError(DeixisError, ValueError):
@@ -31,14 +31,13 @@ class TemporalConflictError(InconsistencyError):
     sure, and the proof alone stands.
     """
 
-    def __init__(self, explanation: Explanation, minimal: bool, statements: tuple[Explanation, ...] = ()) -> None:
+    def __init__(self, explanation: Proof[str], minimal: bool, statements: tuple[Proof[str], ...] = ()) -> None:
         super().__init__(explanation)
         self.explanation = explanation
         self.minimal = minimal
-        self.statements = statements or explanation.stated()
+        self.statements = statements or explanation.leaves()
 
     def __str__(self) -> str:
         return "these cannot all hold: " + "; ".join(
-            f"{stated.conclusion} [{stated.source}]" if stated.source else stated.conclusion
-            for stated in self.statements
+            f"{stated.claim} [{stated.source}]" if stated.source else stated.claim for stated in self.statements
         )

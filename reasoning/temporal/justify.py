@@ -9,14 +9,15 @@ from typing import Protocol
 import numpy as np
 
 from deixis.ontology.allen import ALL_ALLEN, Allen, members
+from deixis.reasoning.constraints.disjunctive import Outcome
+from deixis.reasoning.constraints.proof import Proof, Rule
 from deixis.reasoning.geometry.allen import convex_hull
 from deixis.reasoning.temporal.bounds import bound_text
 from deixis.reasoning.temporal.claims import Disjunction, allen_constraints, ends
 from deixis.reasoning.temporal.endpoints import converse_masks, masks_of_pairs, necessary_orders
-from deixis.reasoning.temporal.explanation import Explanation, Rule
 from deixis.reasoning.temporal.fluent import ORIGIN, allen_text
 from deixis.reasoning.temporal.network import SimpleTemporalNetwork
-from deixis.reasoning.temporal.search import propagate, search
+from deixis.reasoning.temporal.search import ScenarioSearch
 
 
 class Question(Protocol):
@@ -31,12 +32,12 @@ class Question(Protocol):
     def text(self, answer: int) -> str:
         """An answer in words."""
 
-    def explain(self, network: SimpleTemporalNetwork) -> Explanation | None:
+    def explain(self, network: SimpleTemporalNetwork) -> Proof[str] | None:
         """Why the network says so; None where it says nothing."""
 
     def restricted(
-        self, why: Explanation | None, network: SimpleTemporalNetwork, open: Sequence[Disjunction]
-    ) -> Explanation | None:
+        self, why: Proof[str] | None, network: SimpleTemporalNetwork, open: Sequence[Disjunction]
+    ) -> Proof[str] | None:
         """The explanation by the network, and by open disjunctions taken each by itself."""
 
 
@@ -56,12 +57,12 @@ class BoundQuestion:
     def text(self, answer: int) -> str:
         return bound_text(self.tail, self.head, answer, ORIGIN)
 
-    def explain(self, network: SimpleTemporalNetwork) -> Explanation | None:
+    def explain(self, network: SimpleTemporalNetwork) -> Proof[str] | None:
         return network.explain(self.tail, self.head)
 
     def restricted(
-        self, why: Explanation | None, network: SimpleTemporalNetwork, open: Sequence[Disjunction]
-    ) -> Explanation | None:
+        self, why: Proof[str] | None, network: SimpleTemporalNetwork, open: Sequence[Disjunction]
+    ) -> Proof[str] | None:
         """An open choice by itself bounds no time."""
         return why
 
@@ -83,11 +84,11 @@ class RelationQuestion:
     def text(self, answer: int) -> str:
         return allen_text(self.a, answer, self.b)
 
-    def explain(self, network: SimpleTemporalNetwork) -> Explanation | None:
+    def explain(self, network: SimpleTemporalNetwork) -> Proof[str] | None:
         """The orders of end points that say it; a relation that only several orders exclude together is refuted."""
         mask = self.answer(network)
         if self.a == self.b:
-            return Explanation(self.text(mask), Rule.DEFINITION)
+            return Proof(self.text(mask), Rule.DEFINITION)
         if mask == ALL_ALLEN:
             return None
         names = ends(self.a) + ends(self.b)
@@ -97,13 +98,13 @@ class RelationQuestion:
             assert premise is not None
             premises.append(premise)
         for relation in members(convex_hull(mask).mask & ~mask):
-            assumed = Explanation(allen_text(self.a, 1 << relation, self.b), Rule.CASE)
+            assumed = Proof(allen_text(self.a, 1 << relation, self.b), Rule.CASE)
             premises.append(network.refutation(allen_constraints(self.a, 1 << relation, self.b, assumed)))
-        return Explanation(self.text(mask), Rule.DEFINITION, tuple(premises))
+        return Proof(self.text(mask), Rule.DEFINITION, tuple(premises))
 
     def restricted(
-        self, why: Explanation | None, network: SimpleTemporalNetwork, open: Sequence[Disjunction]
-    ) -> Explanation | None:
+        self, why: Proof[str] | None, network: SimpleTemporalNetwork, open: Sequence[Disjunction]
+    ) -> Proof[str] | None:
         """What is stated of the two fluents counts too."""
         left = before = self.answer(network)
         premises = [] if why is None else [why]
@@ -115,7 +116,7 @@ class RelationQuestion:
             if narrower != left:
                 left = narrower
                 premises.append(disjunction.why)
-        return why if left == before else Explanation(self.text(left), Rule.INTERSECTION, tuple(premises))
+        return why if left == before else Proof(self.text(left), Rule.INTERSECTION, tuple(premises))
 
 
 def justify(
@@ -124,18 +125,18 @@ def justify(
     disjunctions: Sequence[Disjunction],
     deadline: float,
     most: int,
-) -> Explanation | None:
+) -> Proof[str] | None:
     """Why the answer to a question is what it is; None where there is nothing to say, or the disjunctions conflict.
 
     Disjunctions that stay open are gone through case by case, up to ``most`` cases and until the deadline, and where
     the cases agree on more than the network alone says, they are the explanation. The network is changed.
     """
-    propagation = propagate(network, disjunctions, deadline, explain=True)
-    if propagation.impossible is not None:
+    forced = ScenarioSearch(network, disjunctions, deadline, explain=True)
+    if forced.propagate() is Outcome.REFUTED:
         return None
-    open = [entry.disjunction for entry in propagation.open]
+    open = forced.still_open()
     answers: list[int] = []
-    cases: list[Explanation] = []
+    cases: list[Proof[str]] = []
 
     def look() -> None:
         case = question.explain(network)
@@ -143,10 +144,10 @@ def justify(
         if case is not None:
             cases.append(case)
 
-    found = search(network, open, look, deadline, most, explain=True) if open else None
-    if found is not None and found.complete and len(cases) == found.found > 0:
+    found, complete = ScenarioSearch(network, open, deadline, explain=True).visit(look, most) if open else (0, False)
+    if complete and len(cases) == found > 0:
         joined = question.joined(answers)
         if joined != question.answer(network):
             premises = (*(disjunction.why for disjunction in open), *cases)
-            return Explanation(question.text(joined), Rule.CASES, premises)
+            return Proof(question.text(joined), Rule.CASES, premises)
     return question.restricted(question.explain(network), network, open)

@@ -2,22 +2,22 @@
 
 Minimal distances between all points are kept. A constraint that is added updates them in O(m^2) for m points; one that
 closes a negative cycle is refused, with the cycle, and nothing is changed. To take constraints away all is worked out
-again. Bounds are exact, and strict ones are strict: see :mod:`deixis.reasoning.temporal.bounds`.
+again. Bounds are exact, and strict ones are strict (:mod:`deixis.reasoning.constraints.difference`).
 """
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.reasoning.constraints.difference import UNBOUNDED, Difference, DifferenceNetwork, add
+from deixis.reasoning.constraints.proof import Proof, Rule
 from deixis.reasoning.errors import LimitError
-from deixis.reasoning.temporal.bounds import FARTHEST, TICKS, UNBOUNDED, ZERO, Bounds, add, bound_text
+from deixis.reasoning.temporal.bounds import FARTHEST, TICKS, Bounds, bound_text
 from deixis.reasoning.temporal.errors import TemporalConflictError, UnknownFluentError
-from deixis.reasoning.temporal.explanation import Explanation, Rule
 from deixis.reasoning.temporal.fluent import ORIGIN
 
 MAX_POINTS = 8191
@@ -34,15 +34,7 @@ class DifferenceConstraint:
     tail: str
     head: str
     code: int
-    why: Explanation
-
-
-@dataclass
-class Trail:
-    """What additions changed, so that they can be undone, the last first."""
-
-    cells: list[tuple[NDArray[np.int64], NDArray[np.int64]]] = field(default_factory=list)
-    constraints: int = 0
+    why: Proof[str]
 
 
 class SimpleTemporalNetwork:
@@ -58,9 +50,8 @@ class SimpleTemporalNetwork:
     """
 
     def __init__(self, points: Iterable[str] = ()) -> None:
+        self.differences = DifferenceNetwork(1)
         self._index = {ORIGIN: 0}
-        self._distances = np.full((8, 8), UNBOUNDED, dtype=np.int64)
-        self._distances[0, 0] = ZERO
         self._constraints: list[DifferenceConstraint] = []
         self._between = 0  # what the constraints between points other than the origin add up to
         for point in points:
@@ -79,7 +70,8 @@ class SimpleTemporalNetwork:
     @property
     def distances(self) -> NDArray[np.int64]:
         """The tightest bounds on column minus row as codes, shape (m, m); a view, not to be written to."""
-        return self._distances[: len(self._index), : len(self._index)]
+        distances: NDArray[np.int64] = self.differences.distances[0]
+        return distances
 
     def index(self, point: str) -> int:
         """The row of a point; raises UnknownFluentError where there is none."""
@@ -90,21 +82,16 @@ class SimpleTemporalNetwork:
 
     def add_point(self, point: str) -> None:
         """Adds a point, if it is not there yet; raises LimitError beyond ``MAX_POINTS``."""
-        count = len(self._index)
         if point in self._index:
             return
-        if count == MAX_POINTS:
+        if len(self._index) == MAX_POINTS:
             raise LimitError(f"a temporal network has at most {MAX_POINTS} points; tell of the time in parts")
-        if count == len(self._distances):
-            larger = np.full((2 * count, 2 * count), UNBOUNDED, dtype=np.int64)
-            larger[:count, :count] = self._distances
-            self._distances = larger
-        self._index[point] = count
-        self._distances[count, count] = ZERO
+        self._index[point] = len(self._index)
+        self.differences.add_point()
 
     def code(self, tail: str, head: str) -> int:
         """The tightest upper bound on ``head - tail``, as a code."""
-        return int(self._distances[self.index(tail), self.index(head)])
+        return int(self.distances[self.index(tail), self.index(head)])
 
     def bounds(self, tail: str, head: str) -> Bounds:
         """The tightest bounds on ``head - tail``, in seconds."""
@@ -116,31 +103,27 @@ class SimpleTemporalNetwork:
         Raises TemporalConflictError, with the negative cycle, where they contradict what is there; LimitError where
         differences add up to more than can be told exactly. Nothing is changed then.
         """
-        if self.try_add(constraints) is None:
+        if not self.try_add(constraints):
             raise TemporalConflictError(self.refutation(constraints), minimal=False)
 
-    def try_add(self, constraints: Sequence[DifferenceConstraint]) -> Trail | None:
-        """The same, and how to undo it; None, and nothing changed, where a negative cycle would close."""
+    def try_add(self, constraints: Sequence[DifferenceConstraint]) -> bool:
+        """The same; False, and nothing changed, where a negative cycle would close."""
         self._require_summable(constraints)
-        trail = Trail()
-        for constraint in constraints:
-            if not self._take_in(constraint, trail):
-                self.undo(trail)
-                return None
-        return trail
+        length = len(self._constraints)
+        if all(self._take_in(constraint) for constraint in constraints):
+            return True
+        self.back(length)
+        return False
 
-    def _take_in(self, constraint: DifferenceConstraint, trail: Trail) -> bool:
-        from deixis.reasoning.temporal.kernels import tighten
-
-        tail, head = self.index(constraint.tail), self.index(constraint.head)
-        if add(int(self._distances[head, tail]), constraint.code) < ZERO:
+    def _take_in(self, constraint: DifferenceConstraint) -> bool:
+        if not self.differences.add(self._difference(constraint)):
             return False
-        if constraint.code < self._distances[tail, head]:
-            trail.cells.append(tighten(self._distances, len(self._index), tail, head, constraint.code))
         self._between += _size(constraint)
         self._constraints.append(constraint)
-        trail.constraints += 1
         return True
+
+    def _difference(self, constraint: DifferenceConstraint) -> Difference:
+        return Difference(0, self.index(constraint.tail), self.index(constraint.head), constraint.code)
 
     def _require_summable(self, constraints: Sequence[DifferenceConstraint]) -> None:
         """A simple path passes every constraint once at the most, so their sum bounds its length."""
@@ -150,100 +133,62 @@ class SimpleTemporalNetwork:
         if total > MAX_TOTAL or any(abs(c.code >> 1) > FARTHEST * TICKS for c in constraints):
             raise LimitError("the stated times are too long to be added up exactly; is the unit right?")
 
-    def undo(self, trail: Trail) -> None:
-        """Takes back the last additions; trails are undone in the reverse of their order."""
-        flat = self._distances.reshape(-1)
-        for cells, before in reversed(trail.cells):
-            flat[cells] = before
-        if trail.constraints:
-            self._between -= sum(map(_size, self._constraints[-trail.constraints :]))
-            del self._constraints[-trail.constraints :]
+    def back(self, length: int) -> None:
+        """Takes back the constraints added last, until ``length`` are left, as far as :meth:`keep` allows."""
+        self.differences.back(length)
+        self._between -= sum(map(_size, self._constraints[length:]))
+        del self._constraints[length:]
+
+    def keep(self) -> None:
+        """Forgets how to take back what was added so far, and the memory that it takes."""
+        self.differences.keep()
 
     def retract(self, constraints: Iterable[DifferenceConstraint]) -> None:
-        """Takes constraints away, each once, and works everything out again, in O(m^3)."""
-        from deixis.reasoning.temporal.kernels import close
-
+        """Takes constraints away, each once, and works everything out again."""
         for constraint in constraints:
             self._constraints.remove(constraint)
         self._between = sum(map(_size, self._constraints))
-        self._distances.fill(UNBOUNDED)
-        np.fill_diagonal(self._distances, ZERO)
-        for constraint in self._constraints:
-            tail, head = self.index(constraint.tail), self.index(constraint.head)
-            self._distances[tail, head] = min(self._distances[tail, head], constraint.code)
-        close(self._distances, len(self._index))
+        self.differences.replace([self._difference(constraint) for constraint in self._constraints])
 
     def copy(self) -> SimpleTemporalNetwork:
         """A network with the same points and constraints, that changes by itself."""
         other = SimpleTemporalNetwork()
+        other.differences = self.differences.copy()
         other._index = dict(self._index)
-        other._distances = self._distances.copy()
         other._constraints = list(self._constraints)
         other._between = self._between
         return other
 
-    def explain(self, tail: str, head: str) -> Explanation | None:
+    def explain(self, tail: str, head: str) -> Proof[str] | None:
         """Why ``head - tail`` is bounded as it is: the fewest constraints that add up to it; None where it is not."""
         code = self.code(tail, head)
         if code >= UNBOUNDED or tail == head:
             return None
-        path = self._path(self.index(tail), self.index(head))
+        path = [self._constraints[k].why for k in self.differences.path(0, self.index(tail), self.index(head))]
         text = bound_text(tail, head, code, ORIGIN)
-        if len(path) == 1 and path[0].why.conclusion == text:
-            return path[0].why
-        return Explanation(text, Rule.SHORTEST_PATH, tuple(constraint.why for constraint in path))
+        return path[0] if len(path) == 1 and path[0].claim == text else Proof(text, Rule.SHORTEST_PATH, tuple(path))
 
-    def refutation(self, constraints: Sequence[DifferenceConstraint]) -> Explanation:
+    def refutation(self, constraints: Sequence[DifferenceConstraint]) -> Proof[str]:
         """The negative cycle that constraints would close, which :meth:`try_add` refuses; changes nothing.
 
         The cycle is simple: it passes each of its points once.
         """
-        trail = Trail()
-        for constraint in constraints:
-            if not self._take_in(constraint, trail):
-                cycle = [constraint, *self._path(self.index(constraint.head), self.index(constraint.tail))]
-                code = add(self.code(constraint.head, constraint.tail), constraint.code)
-                self.undo(trail)
-                point = next((c.tail for c in cycle if c.tail != ORIGIN), ORIGIN)
-                text = bound_text(point, point, code, ORIGIN)
-                return Explanation(text, Rule.NEGATIVE_CYCLE, tuple(c.why for c in cycle))
-        raise AssertionError("the constraints close no negative cycle")
+        length = len(self._constraints)
+        refused = next(constraint for constraint in constraints if not self._take_in(constraint))
+        proof = self.cycle(refused)
+        self.back(length)
+        return proof
 
-    def _path(self, start: int, end: int) -> list[DifferenceConstraint]:
-        """The fewest constraints that add up to the distance from one point to another.
+    def cycle(self, refused: DifferenceConstraint) -> Proof[str]:
+        """The negative cycle that a constraint closes with those that are there."""
+        cycle = [refused, *(self._constraints[k] for k in self.differences.cycle(self._difference(refused)))]
+        code = add(self.code(refused.head, refused.tail), refused.code)
+        point = next((c.tail for c in cycle if c.tail != ORIGIN), ORIGIN)
+        return Proof(bound_text(point, point, code, ORIGIN), Rule.NEGATIVE_CYCLE, tuple(c.why for c in cycle))
 
-        A breadth-first search over the constraints that lie on some shortest way, twice over: with and without a strict
-        one passed so far, since a strict distance needs one.
-        """
-        useful = self._on_shortest_ways(start, end)
-        goal = (end, not self._distances[start, end] & 1)
-        came: dict[tuple[int, bool], tuple[tuple[int, bool], DifferenceConstraint]] = {}
-        waiting = deque([(start, False)])
-        while waiting and goal not in came:
-            here = waiting.popleft()
-            for head, constraint in useful.get(here[0], ()):
-                there = (head, here[1] or not constraint.code & 1)
-                if there not in came and there != (start, False):
-                    came[there] = (here, constraint)
-                    waiting.append(there)
-        path = []
-        place = goal
-        while place != (start, False):
-            place, constraint = came[place]
-            path.append(constraint)
-        return path[::-1]
-
-    def _on_shortest_ways(self, start: int, end: int) -> dict[int, list[tuple[int, DifferenceConstraint]]]:
-        """By tail, the constraints on some shortest way, strictness left aside."""
-        ends = [(self._index[c.tail], self._index[c.head], c.code) for c in self._constraints]
-        tails, heads, codes = np.array(ends, dtype=np.int64).reshape(-1, 3).T
-        first, last = self._distances[start, tails], self._distances[heads, end]
-        known = (first < UNBOUNDED) & (last < UNBOUNDED)
-        tight = known & ((first >> 1) + (codes >> 1) + (last >> 1) == self._distances[start, end] >> 1)
-        useful: dict[int, list[tuple[int, DifferenceConstraint]]] = {}
-        for position in np.flatnonzero(tight):
-            useful.setdefault(int(tails[position]), []).append((int(heads[position]), self._constraints[position]))
-        return useful
+    def record(self, length: int, constraints: Sequence[DifferenceConstraint]) -> None:
+        """Says what the differences are, from the one of that number on, that a search has added by itself."""
+        self._constraints[length:] = constraints
 
 
 def _size(constraint: DifferenceConstraint) -> int:
@@ -257,5 +202,5 @@ def difference(tail: str, head: str, bounds: Bounds, source: str | None = None) 
     for start, end, code in ((tail, head, bounds.at_most), (head, tail, bounds.at_least)):
         if code < UNBOUNDED:
             text = bound_text(start, end, code, ORIGIN)
-            found.append(DifferenceConstraint(start, end, code, Explanation(text, Rule.STATED, source=source)))
+            found.append(DifferenceConstraint(start, end, code, Proof(text, Rule.STATED, source=source)))
     return tuple(found)

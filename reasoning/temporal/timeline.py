@@ -11,16 +11,16 @@ from collections.abc import Iterable
 
 import numpy as np
 
+from deixis.reasoning.constraints.disjunctive import Outcome
+from deixis.reasoning.constraints.proof import Proof, Rule
 from deixis.reasoning.temporal.chronology import Chronology, Status
 from deixis.reasoning.temporal.claims import Claim, Disjunction, add_fluent, claims_of, disjunctions, ends, network_of
-from deixis.reasoning.temporal.conflict import minimal_conflict, refuted
 from deixis.reasoning.temporal.endpoints import allen_masks, converse_masks
 from deixis.reasoning.temporal.errors import FluentError, TemporalConflictError, UnknownFluentError
-from deixis.reasoning.temporal.explanation import Explanation, Rule
 from deixis.reasoning.temporal.fluent import Fluent, TemporalRelation
 from deixis.reasoning.temporal.justify import BoundQuestion, Question, RelationQuestion, justify
 from deixis.reasoning.temporal.network import SimpleTemporalNetwork
-from deixis.reasoning.temporal.search import propagate, search
+from deixis.reasoning.temporal.search import ScenarioSearch, minimal_conflict, refuted
 
 MAX_SCENARIOS = 64
 """Scenarios of undecided disjunctions over which what is certain is worked out exactly."""
@@ -75,9 +75,10 @@ class Timeline:
                 self.fluent(fluent)
         claims = claims_of(item)
         constraints = [constraint for claim in claims for constraint in claim.constraints]
-        if self._network.try_add(constraints) is None:
+        if not self._network.try_add(constraints):
             proof = self._network.refutation(constraints)
             raise minimal_conflict([*self._all_claims(), *claims], proof, time.monotonic() + time_limit)
+        self._network.keep()
         self._claims[item] = claims
         if isinstance(item, Fluent):
             self._fluents[item.id] = item
@@ -122,22 +123,22 @@ class Timeline:
         deadline = time.monotonic() + time_limit
         claims = self._all_claims()
         network = self._network.copy()
-        propagation = propagate(network, list(disjunctions(claims)), deadline)
-        if propagation.impossible is not None:
+        forced = ScenarioSearch(network, list(disjunctions(claims)), deadline)
+        if forced.propagate() is Outcome.REFUTED:
             raise self._conflict(claims, time_limit)
-        open = [entry.disjunction for entry in propagation.open]
+        open = forced.still_open()
         views = _Views(self.fluents, network)
         if not open:
             views.look()
             return views.chronology(Status.CONSISTENT, exact=True)
-        found = search(network, open, views.look, deadline, MAX_SCENARIOS)
-        if found.complete and not found.found:
+        found, complete = ScenarioSearch(network, open, deadline).visit(views.look, MAX_SCENARIOS)
+        if complete and not found:
             raise self._conflict(claims, time_limit)
-        if not found.complete:
+        if not complete:
             views.forget()
             views.look()
             views.restrict(open)
-        return views.chronology(Status.CONSISTENT if found.found else Status.UNDECIDED, found.complete)
+        return views.chronology(Status.CONSISTENT if found else Status.UNDECIDED, complete)
 
     def _conflict(self, claims: list[Claim], time_limit: float) -> TemporalConflictError:
         """The conflict between disjunctions: proved again with its reasons, then made minimal, as time allows."""
@@ -145,15 +146,15 @@ class Timeline:
         proof = refuted(claims, deadline)
         if proof is None:
             statements = tuple(claim.why for claim in claims)
-            everything = Explanation("no alternative is left", Rule.CASES, statements)
+            everything = Proof("no alternative is left", Rule.CASES, statements)
             return TemporalConflictError(everything, minimal=False, statements=statements)
         return minimal_conflict(claims, proof, deadline)
 
-    def explain_relation(self, a: str, b: str, time_limit: float = 10.0) -> Explanation | None:
+    def explain_relation(self, a: str, b: str, time_limit: float = 10.0) -> Proof[str] | None:
         """Why fluent a bears to fluent b one of the relations that are left to them; None where all are."""
         return self._justify(RelationQuestion(self.fluent(a).id, self.fluent(b).id), time_limit)
 
-    def explain_bound(self, tail: str, head: str, time_limit: float = 10.0) -> Explanation | None:
+    def explain_bound(self, tail: str, head: str, time_limit: float = 10.0) -> Proof[str] | None:
         """Why ``head - tail`` is at most what it is, for two points; None where nothing bounds it.
 
         A point is ``ID.start`` or ``ID.finish``, or ``origin``: the upper bound of a fluent's start is
@@ -162,7 +163,7 @@ class Timeline:
         self._network.index(tail), self._network.index(head)
         return self._justify(BoundQuestion(tail, head), time_limit)
 
-    def _justify(self, question: Question, time_limit: float) -> Explanation | None:
+    def _justify(self, question: Question, time_limit: float) -> Proof[str] | None:
         deadline = time.monotonic() + time_limit
         return justify(question, self._network.copy(), list(disjunctions(self._all_claims())), deadline, MAX_SCENARIOS)
 

@@ -34,6 +34,7 @@ def _tell_time() -> None:
     for item in (*content.fluents, *content.relations):
         timeline.add(item)
     timeline.chronology()
+    timeline.explain_bound("a.start", "a.finish")
 
 
 def _reason() -> None:

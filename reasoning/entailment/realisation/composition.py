@@ -13,8 +13,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.reasoning.entailment.realisation.demands import high, low
-from deixis.reasoning.entailment.realisation.differences import Difference, Differences
+from deixis.reasoning.constraints.difference import ZERO, DifferenceNetwork
+from deixis.reasoning.entailment.realisation.demands import at_most, high, low
 from deixis.reasoning.entailment.realisation.things import Things
 
 SIZE, ROUND, GAP, NEAR, MIDDLE, INSIDE, IN_LINE, TABLE = 8.0, 30.0, 20.0, 1.0, 3.0, 5.0, 0.7, 0.8
@@ -74,21 +74,21 @@ class _Program:
         return None if found.x is None else np.asarray(found.x, dtype=np.float64)
 
 
-def compose(differences: Differences, wishes: Wishes, deadline: float) -> NDArray[np.int64]:
+def compose(network: DifferenceNetwork, wishes: Wishes, deadline: float) -> NDArray[np.int64]:
     """Places of all edges in millimetres, shape (2, 2 n), which satisfy every constraint exactly.
 
     What the program finds is rounded, and then moved to the nearest solution of the constraints, so that nothing
     rests on its arithmetic. Where it finds nothing before the deadline, of ``time.monotonic()``, the things stand where
     they can.
-    Round things are made as long as wide where that can be; ``differences`` has these constraints afterwards.
+    Round things are made as long as wide where that can be; ``network`` has these constraints afterwards.
     """
     points = 2 * len(wishes.things)
     if not points:
         return np.zeros((2, 0), dtype=np.int64)
-    found = _program(differences, wishes, points).solution(deadline) if time.monotonic() < deadline else None
+    found = _program(network, wishes, points).solution(deadline) if time.monotonic() < deadline else None
     if found is None:
-        return differences.nearest(np.zeros((2, points), dtype=np.int64))
-    return _made_round(differences, wishes.things, _whole(found[: 2 * points].reshape(2, points)))
+        return network.nearest(np.zeros((2, points), dtype=np.int64))
+    return _made_round(network, wishes.things, _whole(found[: 2 * points].reshape(2, points)))
 
 
 def _whole(edges: NDArray[np.float64]) -> NDArray[np.int64]:
@@ -98,45 +98,45 @@ def _whole(edges: NDArray[np.float64]) -> NDArray[np.int64]:
     return whole.astype(np.int64)
 
 
-def _made_round(differences: Differences, things: Things, wanted: NDArray[np.int64]) -> NDArray[np.int64]:
+def _made_round(network: DifferenceNetwork, things: Things, wanted: NDArray[np.int64]) -> NDArray[np.int64]:
     for thing in np.flatnonzero(things.round).tolist():
         side = int(np.min(wanted[:, high(thing)] - wanted[:, low(thing)]))
-        length = len(differences)
+        length = len(network)
         fixed = [
-            Difference(axis, tail, head, bound)
+            at_most(axis, tail, head, bound)
             for axis in (0, 1)
             for tail, head, bound in ((low(thing), high(thing), side), (high(thing), low(thing), -side))
         ]
-        if any(differences.add(difference, -1) is not None for difference in fixed):
-            differences.back(length)
+        if not all(network.add(difference) for difference in fixed):
+            network.back(length)
         else:
             wanted[:, high(thing)] = wanted[:, low(thing)] + side
-    return differences.nearest(wanted)
+    return network.nearest(wanted)
 
 
-def _program(differences: Differences, wishes: Wishes, points: int) -> _Program:
+def _program(network: DifferenceNetwork, wishes: Wishes, points: int) -> _Program:
     program = _Program([0.0] * (2 * points) + [TABLE, TABLE])
-    for axis, tail, head, bound in differences.constraints():
-        program.rows.append(({axis * points + head: 1.0, axis * points + tail: -1.0}, bound))
+    for axis, tail, head, code in network.constraints.tolist():
+        program.rows.append(({axis * points + head: 1.0, axis * points + tail: -1.0}, code >> 1))
     for axis in (0, 1):
         for thing in range(points // 2):
             program.rows.append(({axis * points + high(thing): 1.0, 2 * points + axis: -1.0}, 0.0))
     _wish_sizes(program, wishes, points)
     for a, b in wishes.apart:
-        _wish_gap(program, differences, a, b, wishes.gap)
+        _wish_gap(program, network, a, b, wishes.gap)
     partners = np.bincount(np.array(wishes.related, dtype=np.int64).reshape(-1), minlength=points // 2)
     pulls = np.minimum(1.0, PULLS / np.maximum(partners, 1))
     for axis in (0, 1):
-        apart = _between(differences, axis)
+        apart = _between(network, axis)
         for a, b in wishes.related:
             if not apart[a, b]:
-                _wish_near(program, differences, wishes, axis, a, b, float(min(pulls[a], pulls[b])))
+                _wish_near(program, network, wishes, axis, a, b, float(min(pulls[a], pulls[b])))
     return program
 
 
-def _between(differences: Differences, axis: int) -> NDArray[np.bool_]:
+def _between(network: DifferenceNetwork, axis: int) -> NDArray[np.bool_]:
     """The pairs (n, n) of things between which a third lies: it is near to both, and they need not be."""
-    before = differences.distances[axis, 0::2, 1::2].T <= 0  # [first, second]: see _before
+    before = network.distances[axis, 0::2, 1::2].T <= ZERO  # [first, second]: see _before
     chains = before.astype(np.float32) @ before.astype(np.float32)
     found: NDArray[np.bool_] = (chains > 0) | (chains.T > 0)
     return found
@@ -153,35 +153,35 @@ def _wish_sizes(program: _Program, wishes: Wishes, points: int) -> None:
             program.equal({**sides[0], **{v: -c for v, c in sides[1].items()}}, 0.0, ROUND)
 
 
-def _before(differences: Differences, axis: int, first: int, second: int) -> bool:
+def _before(network: DifferenceNetwork, axis: int, first: int, second: int) -> bool:
     """Whether ``first`` ends where ``second`` begins, or before."""
-    return bool(differences.distances[axis, low(second), high(first)] <= 0)
+    return bool(network.distances[axis, low(second), high(first)] <= ZERO)
 
 
-def _wish_gap(program: _Program, differences: Differences, a: int, b: int, gap: float) -> None:
-    points = differences.distances.shape[1]
+def _wish_gap(program: _Program, network: DifferenceNetwork, a: int, b: int, gap: float) -> None:
+    points = network.points
     for axis in (0, 1):
         for first, second in ((a, b), (b, a)):
-            if _before(differences, axis, first, second):
+            if _before(network, axis, first, second):
                 program.at_least({axis * points + low(second): 1.0, axis * points + high(first): -1.0}, gap, GAP)
                 return
 
 
 def _wish_near(
-    program: _Program, differences: Differences, wishes: Wishes, axis: int, a: int, b: int, pull: float
+    program: _Program, network: DifferenceNetwork, wishes: Wishes, axis: int, a: int, b: int, pull: float
 ) -> None:
     """Two things that a fact relates: near where they are apart, else in line, or one in the middle of the other."""
-    points = differences.distances.shape[1]
+    points = network.points
     start = axis * points
     for first, second in ((a, b), (b, a)):
-        if _before(differences, axis, first, second):
+        if _before(network, axis, first, second):
             between = {start + low(second): 1.0, start + high(first): -1.0}
             program.at_least(between, wishes.gap, GAP)
             program.equal(between, wishes.gap, NEAR * pull)
             return
     centres = {start + low(a): 0.5, start + high(a): 0.5, start + low(b): -0.5, start + high(b): -0.5}
     for inner, outer in ((a, b), (b, a)):
-        if within(differences, axis, inner, outer):
+        if within(network, axis, inner, outer):
             program.equal(centres, 0.0, MIDDLE * pull)
             program.at_least({start + low(inner): 1.0, start + low(outer): -1.0}, RIM, INSIDE)
             program.at_least({start + high(outer): 1.0, start + high(inner): -1.0}, RIM, INSIDE)
@@ -193,10 +193,10 @@ def _wish_near(
         program.equal(centres, 0.0, IN_LINE * pull)
 
 
-def within(differences: Differences, axis: int, inner: int, outer: int) -> bool:
+def within(network: DifferenceNetwork, axis: int, inner: int, outer: int) -> bool:
     """Whether the constraints say that one projection lies within another."""
-    begins = differences.distances[axis, low(inner), low(outer)] <= 0
-    return bool(begins and differences.distances[axis, high(outer), high(inner)] <= 0)
+    begins = network.distances[axis, low(inner), low(outer)] <= ZERO
+    return bool(begins and network.distances[axis, high(outer), high(inner)] <= ZERO)
 
 
 def in_line(pairs: Iterable[tuple[int, int]]) -> tuple[tuple[int, int], ...]:

@@ -15,9 +15,9 @@ from numpy.typing import NDArray
 from deixis.ontology.allen import Allen
 from deixis.ontology.graph import Fact, RelationGraph
 from deixis.ontology.relation import Reading, Relations
-from deixis.reasoning.entailment.realisation.differences import Difference
+from deixis.reasoning.constraints.difference import Difference
+from deixis.reasoning.constraints.disjunctive import Clause
 from deixis.reasoning.entailment.realisation.pieces import Piece, choice, region
-from deixis.reasoning.entailment.realisation.search import Clause
 from deixis.reasoning.entailment.realisation.things import Things
 
 MARGIN = 1
@@ -56,9 +56,14 @@ def high(thing: int) -> int:
     return 2 * thing + 1
 
 
+def at_most(axis: int, tail: int, head: int, bound: int) -> Difference:
+    """``x[head] - x[tail] <= bound`` on an axis, in whole millimetres."""
+    return Difference(axis, tail, head, 2 * bound + 1)
+
+
 def proper_boxes(things: int) -> tuple[Clause, ...]:
     """Every box has sides of a millimetre at least."""
-    return tuple(Clause(((Difference(axis, high(i), low(i), -MARGIN),),)) for i in range(things) for axis in (0, 1))
+    return tuple(Clause(((at_most(axis, high(i), low(i), -MARGIN),),)) for i in range(things) for axis in (0, 1))
 
 
 def fact_demands(graph: RelationGraph) -> tuple[Demand, ...]:
@@ -101,7 +106,7 @@ def _clauses(graph: RelationGraph, edge: int, wanted: NDArray[np.bool_]) -> tupl
 
 def _differences(piece: Piece, subject: int, thing: int) -> tuple[Difference, ...]:
     points = (low(subject), high(subject), low(thing), high(thing))
-    return tuple(Difference(i.axis, points[i.greater], points[i.lesser], -MARGIN if i.strict else 0) for i in piece)
+    return tuple(at_most(i.axis, points[i.greater], points[i.lesser], -MARGIN if i.strict else 0) for i in piece)
 
 
 def size_demands(things: Things) -> tuple[Demand, ...]:
@@ -123,8 +128,8 @@ def _sides(thing: int, least: NDArray[np.int64], greatest: NDArray[np.int64]) ->
         difference
         for axis in (0, 1)
         for difference in (
-            Difference(axis, low(thing), high(thing), int(greatest[axis])),
-            Difference(axis, high(thing), low(thing), -int(least[axis])),
+            at_most(axis, low(thing), high(thing), int(greatest[axis])),
+            at_most(axis, high(thing), low(thing), -int(least[axis])),
         )
     )
 
@@ -137,7 +142,7 @@ def apart_demand(a: int, b: int, edges: NDArray[np.int64], noise: NDArray[np.flo
     ways = [(axis, first, second) for axis in (0, 1) for first, second in ((a, b), (b, a))]
     moved = [int(edges[axis, high(first)] - edges[axis, low(second)]) for axis, first, second in ways]
     order = np.argsort(np.array(moved) + noise, kind="stable")
-    pieces = tuple((Difference(ways[k][0], low(ways[k][2]), high(ways[k][1]), 0),) for k in order.tolist())
+    pieces = tuple((at_most(ways[k][0], low(ways[k][2]), high(ways[k][1]), 0),) for k in order.tolist())
     return Demand(About.APART, (a, b), (Clause(pieces),), 0.0)
 
 

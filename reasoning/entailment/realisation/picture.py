@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 
 from deixis.ontology.graph import RelationGraph
 from deixis.ontology.sizes import SizeRange
+from deixis.reasoning.constraints.difference import DifferenceNetwork
+from deixis.reasoning.constraints.minimal import Minimal
 from deixis.reasoning.entailment.realisation.composition import Wishes, compose, in_line, within
 from deixis.reasoning.entailment.realisation.demands import (
     About,
@@ -24,16 +26,7 @@ from deixis.reasoning.entailment.realisation.demands import (
     proper_boxes,
     size_demands,
 )
-from deixis.reasoning.entailment.realisation.differences import Differences
-from deixis.reasoning.entailment.realisation.relaxation import (
-    Contradiction,
-    Dropped,
-    Relaxed,
-    minimised,
-    relaxed,
-    satisfy,
-)
-from deixis.reasoning.entailment.realisation.search import Solved, TimedOut
+from deixis.reasoning.entailment.realisation.relaxation import Dropped, Relaxed, minimised, relaxed, satisfy
 from deixis.reasoning.entailment.realisation.things import Things, things_of
 from deixis.reasoning.entailment.realisation.verification import (
     facts_that_are_named,
@@ -134,9 +127,9 @@ class _Task:
     def impossible(self, deadline: float) -> Impossible | Undecided | None:
         """The proof that there is no picture: with whatever sizes if it can be, else with those that are usual."""
         found = satisfy(self.points, self.base, [*self.firm, *self.sizes], deadline)
-        if isinstance(found, TimedOut):
+        if found is None:
             return Undecided()
-        if isinstance(found, Solved):
+        if isinstance(found, DifferenceNetwork):
             self.solved = found
             return None
         if any(demand.about is About.SIZE for demand in found):
@@ -152,13 +145,13 @@ class _Task:
         edges, finished = self._composed(best, apart, deadline), best.finished
         dropped = list(best.dropped)
         for _ in range(ROUNDS):
-            new = self._overlaps(edges, best.solved.differences, {d.key for d in apart})
+            new = self._overlaps(edges, best.network, {d.key for d in apart})
             if not new or not finished:
                 break
             apart += new
             given_up = {d.demand.key for d in dropped}
             closer = self._relaxed([*soft, *(d for d in apart if d.key not in given_up)], deadline)
-            if isinstance(closer, TimedOut):
+            if closer is None:
                 finished = False
                 break
             best = closer
@@ -169,16 +162,16 @@ class _Task:
     def _liked(self, soft: Sequence[Demand], deadline: float) -> Relaxed:
         """What of all that is liked holds; what is known to be possible where there is nothing more or no time."""
         found = self._relaxed(soft, deadline) if soft else Relaxed(self.solved, (), ())
-        return Relaxed(self.solved, (), (), finished=False) if isinstance(found, TimedOut) else found
+        return Relaxed(self.solved, (), (), finished=False) if found is None else found
 
-    def _relaxed(self, soft: Sequence[Demand], deadline: float) -> Relaxed | TimedOut:
+    def _relaxed(self, soft: Sequence[Demand], deadline: float) -> Relaxed | None:
         found = relaxed(self.points, self.base, [*self.firm, *self.sizes], soft, deadline)
         if isinstance(found, tuple):
             raise AssertionError("firm demands that were seen to be possible are not any more")
         return found
 
     def _composed(self, best: Relaxed, apart: Sequence[Demand], deadline: float) -> NDArray[np.int64]:
-        differences = best.solved.differences
+        network = best.network
         kept = {demand.key[0] for demand in (*self.firm, *best.kept) if demand.about is About.FACT}
         related = [
             (int(self.graph.subjects[edge]), int(self.graph.objects[edge]))
@@ -187,18 +180,18 @@ class _Task:
         ]
         wishes = Wishes(
             things=self.things,
-            lengthwise=self._lengthwise(differences),
+            lengthwise=self._lengthwise(network),
             related=in_line(related),
             apart=tuple((d.key[0], d.key[1]) for d in apart),
             gap=self.gap,
         )
-        return compose(differences, wishes, deadline)
+        return compose(network, wishes, deadline)
 
-    def _lengthwise(self, differences: Differences) -> NDArray[np.bool_]:
+    def _lengthwise(self, network: DifferenceNetwork) -> NDArray[np.bool_]:
         """Which things have their length along y: as was chosen, or as is preferred where it was not."""
         found = np.ones(len(self.things), dtype=np.bool_)
         for thing in range(len(self.things)):
-            tall = -differences.distances[:, high(thing), low(thing)]  # the least sides that follow
+            tall = -(network.distances[:, high(thing), low(thing)] >> 1)  # the least sides that follow
             least = self.things.least[thing]
             rather = not self.things.lying[thing]
             if not self.sizes or least[0] == least[1]:
@@ -208,7 +201,7 @@ class _Task:
         return found
 
     def _overlaps(
-        self, edges: NDArray[np.int64], differences: Differences, known: set[tuple[int, ...]]
+        self, edges: NDArray[np.int64], network: DifferenceNetwork, known: set[tuple[int, ...]]
     ) -> list[Demand]:
         """Demands to tell apart what overlaps, but for what is said to lie on one another and what was tried."""
         boxes = _boxes(edges)
@@ -216,7 +209,7 @@ class _Task:
         share = ((low_corner[:, None] < high_corner[None]) & (low_corner[None] < high_corner[:, None])).all(axis=2)
         found = []
         for a, b in np.argwhere(np.triu(share, 1)).tolist():
-            nested = any(all(within(differences, k, i, o) for k in (0, 1)) for i, o in ((a, b), (b, a)))
+            nested = any(all(within(network, k, i, o) for k in (0, 1)) for i, o in ((a, b), (b, a)))
             if not nested and (a, b) not in known:
                 noise = np.zeros(4) if self.rng is None else self.rng.uniform(0, 60, 4)
                 found.append(apart_demand(a, b, edges, noise))
@@ -253,6 +246,6 @@ def _keys(demands: Sequence[Demand]) -> tuple[tuple[int, ...], tuple[int, ...]]:
     return tuple(edges), tuple(sorted(d.key[0] for d in demands if d.about is About.SIZE))
 
 
-def _impossible(found: Contradiction) -> Impossible:
-    edges, sizes = _keys(found.demands)
-    return Impossible(edges, sizes, found.minimal)
+def _impossible(found: Minimal[Demand]) -> Impossible:
+    edges, sizes = _keys(found.items)
+    return Impossible(edges, sizes, found.proved)

@@ -14,9 +14,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.reasoning.constraints.minimal import minimal_subset
 from deixis.reasoning.errors import NetworkError
 from deixis.reasoning.qualitative.calculi.bridges import Link
-from deixis.reasoning.qualitative.networks.conflict import deletion_minimal
 from deixis.reasoning.qualitative.networks.network import Constraint, Network, compacted
 from deixis.reasoning.qualitative.networks.search import Verdict, solve
 from deixis.reasoning.qualitative.networks.state import Progress, State
@@ -198,15 +198,16 @@ def joint_conflict(
 ) -> JointConflict | None:
     """A deletion-minimal set of constraints that joint closure refutes; None where it refutes none in time."""
     deadline = time.monotonic() + time_limit
-    stated = tuple((n.calculus.name, c) for n in networks for c in n.constraints)
+    stated = [(n.calculus.name, c) for n in networks for c in n.constraints]
 
-    def narrow(kept: tuple[tuple[str, Constraint], ...]) -> tuple[tuple[str, Constraint], ...] | None:
+    def refuted(kept: list[tuple[str, Constraint]]) -> list[tuple[str, Constraint]] | None:
         chosen, _ = compacted([n.only(c for name, c in kept if name == n.calculus.name) for n in networks])
         return kept if close_jointly(chosen, bridges, deadline).emptied is not None else None
 
-    if narrow(stated) is None:
+    if refuted(stated) is None:
         return None
-    return JointConflict(*deletion_minimal(stated, narrow, deadline))
+    found = minimal_subset(stated, refuted, deadline, keep_last=True)
+    return JointConflict(found.items, found.proved)
 
 
 def _require_alike(networks: Sequence[Network]) -> None:

@@ -1,19 +1,18 @@
 """Why a network is inconsistent: constraints that cannot all hold, none of them dispensable.
 
-What a failed closure rests on is read off its trail; then constraints are left out, first many at once and then fewer,
-as long as the rest is inconsistent (the deletion filter of Chinneck and Dravnieks 1991, in chunks as Junker 2004).
+What a failed closure rests on is read off its trail; then constraints are left out as long as the rest is inconsistent.
 Closure does this fast, and where it does not decide, search goes on with what it left.
 """
 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TypeVar
 
 import numpy as np
 
+from deixis.reasoning.constraints.minimal import minimal_subset
 from deixis.reasoning.errors import LimitError
 from deixis.reasoning.qualitative.networks.closure import close, closed_states
 from deixis.reasoning.qualitative.networks.network import Constraint, Network
@@ -21,7 +20,6 @@ from deixis.reasoning.qualitative.networks.search import Verdict, decider, solve
 from deixis.reasoning.qualitative.networks.state import State
 
 Core = tuple[Constraint, ...]
-Item = TypeVar("Item")
 
 
 @dataclass(frozen=True)
@@ -51,23 +49,25 @@ def minimal_conflict(network: Network, time_limit: float = 10.0, inconsistent: b
     """
     deadline = time.monotonic() + time_limit
 
-    def by_closure(stated: Core) -> Core | None:
+    def by_closure(stated: Sequence[Constraint]) -> Core | None:
         return refuting(network.only(stated), deadline)
 
-    def by_search(stated: Core) -> Core | None:
+    def by_search(stated: Sequence[Constraint]) -> Core | None:
         return _searched(network.only(stated), deadline)
 
     core = by_closure(network.constraints)
     if core is not None:
-        core, minimal = deletion_minimal(core, by_closure, deadline)
+        found = minimal_subset(core, by_closure, deadline, keep_last=True)
+        core = found.items
         if closure_decides(network.only(core)):
-            return Conflict(core, minimal)
+            return Conflict(core, found.proved)
     else:
         core = network.constraints if inconsistent else by_search(network.constraints)
     if core is None:
         return None
     try:
-        return Conflict(*deletion_minimal(core, by_search, deadline))
+        found = minimal_subset(core, by_search, deadline, keep_last=True)
+        return Conflict(found.items, found.proved)
     except LimitError:  # too long a search
         return Conflict(core, False)
 
@@ -78,28 +78,6 @@ def closure_decides(network: Network) -> bool:
     if decider(chosen) is not None or not chosen.decided_by_closure:
         return False
     return all(len(chosen.pieces(relation)) <= 1 for relation in network.arrays.relations)
-
-
-def deletion_minimal(
-    core: tuple[Item, ...], narrow: Callable[[tuple[Item, ...]], tuple[Item, ...] | None], deadline: float
-) -> tuple[tuple[Item, ...], bool]:
-    """Leaves out what is not needed; the flag says that all that is left is, False where time ran out before that.
-
-    What was once needed stays needed in every subset, so that one walk through the constraints is enough.
-    """
-    needed, step = 0, max(1, len(core) // 2)
-    while needed < len(core):
-        if time.monotonic() > deadline:
-            return core, False
-        smaller = narrow(core[:needed] + core[needed + step :])
-        if smaller is not None:
-            core = smaller
-            step = max(1, min(step, (len(core) - needed) // 2))
-        elif step > 1:
-            step //= 2
-        else:
-            needed += 1
-    return core, time.monotonic() <= deadline
 
 
 def refuting(network: Network, deadline: float) -> Core | None:

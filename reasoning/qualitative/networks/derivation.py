@@ -7,15 +7,17 @@ so that each relation is derived by as few compositions on top of one another as
 from __future__ import annotations
 
 import time
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
+from deixis.reasoning.constraints.minimal import minimal_subset
 from deixis.reasoning.errors import NetworkError
 from deixis.reasoning.qualitative.networks.closure import close, closed_states, whole_relation
-from deixis.reasoning.qualitative.networks.conflict import Core, deletion_minimal, refuting, resting
-from deixis.reasoning.qualitative.networks.network import Network
-from deixis.reasoning.qualitative.networks.rounds import Rounds, Step
+from deixis.reasoning.qualitative.networks.conflict import Core, refuting, resting
+from deixis.reasoning.qualitative.networks.network import Constraint, Network
+from deixis.reasoning.qualitative.networks.rounds import PairRelation, Rounds, Step
 
 FEW = 40  # things among which the shortest way is looked for right away
 
@@ -40,10 +42,11 @@ def derive(network: Network, first: int, second: int, goal: int, time_limit: flo
 
     >>> from deixis.reasoning.qualitative.calculi.registry import calculus
     >>> from deixis.reasoning.qualitative.networks.network import Constraint
+    >>> from deixis.reasoning.qualitative.networks.rounds import step_lines
     >>> point = calculus("point")
     >>> before = point.relation(["<"])
     >>> network = Network(point, 3, (Constraint(0, 1, before), Constraint(1, 2, before)), ("a", "b", "c"))
-    >>> print("\\n".join(derive(network, 0, 2, before).lines(network)))
+    >>> print("\\n".join(step_lines(derive(network, 0, 2, before), network)))
     a ( < ) c   composed
         a ( < ) b   stated
         b ( < ) c   stated
@@ -53,7 +56,7 @@ def derive(network: Network, first: int, second: int, goal: int, time_limit: flo
         return None
     deadline = time.monotonic() + time_limit
 
-    def narrow(stated: Core) -> Core | None:
+    def narrow(stated: Sequence[Constraint]) -> Core | None:
         return _supporting(network.only(stated), first, second, goal, deadline)
 
     core = narrow(network.constraints)
@@ -61,10 +64,10 @@ def derive(network: Network, first: int, second: int, goal: int, time_limit: flo
         return None
     nearest = _in_rounds(network, first, second, goal, deadline) if network.size <= FEW else None
     if nearest is not None:
-        pairs = {frozenset((leaf.first, leaf.second)) for leaf in nearest.stated()}
+        pairs = {frozenset((claim.first, claim.second)) for claim in nearest.stated()}
         core = tuple(c for c in network.constraints if frozenset((c.first, c.second)) in pairs)
-    core, _ = deletion_minimal(core, narrow, deadline)
-    return _in_rounds(network.only(core), first, second, goal, deadline)
+    needed = minimal_subset(core, narrow, deadline, keep_last=True).items
+    return _in_rounds(network.only(needed), first, second, goal, deadline)
 
 
 def _in_rounds(network: Network, first: int, second: int, goal: int, deadline: float) -> Step | None:
@@ -111,5 +114,5 @@ def _supporting(network: Network, first: int, second: int, goal: int, deadline: 
 
 
 def _renumbered(step: Step, things: list[int]) -> Step:
-    premises = tuple(_renumbered(premise, things) for premise in step.premises)
-    return replace(step, first=things[step.first], second=things[step.second], premises=premises)
+    claim = PairRelation(things[step.claim.first], things[step.claim.second], step.claim.relation)
+    return replace(step, claim=claim, premises=tuple(_renumbered(premise, things) for premise in step.premises))

@@ -6,45 +6,34 @@ import time
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from deixis.ontology.graph import Source
+from deixis.reasoning.constraints.proof import Proof, Rule
 from deixis.reasoning.qualitative.calculi.calculus import Calculus, ProductCalculus
 from deixis.reasoning.qualitative.networks.network import Network
 
+_WORDS = {Rule.STATED: "stated", Rule.COMPOSITION: "composed", Rule.CONJUNCTION: "together"}
 
-@dataclass(frozen=True)
-class Step:
-    """``first`` bears ``relation`` to ``second``, as ``source`` states, or because of ``premises``.
 
-    Two premises about (first, k) and (k, second) are composed. Premises about the pair itself hold together. A step
-    without premises is stated.
-    """
+@dataclass(frozen=True, slots=True)
+class PairRelation:
+    """``first`` bears ``relation`` to ``second``."""
 
     first: int
     second: int
     relation: int
-    premises: tuple[Step, ...] = ()
-    source: Source | None = None
 
-    @property
-    def composed(self) -> bool:
-        """Whether this is a composition of two premises."""
-        return bool(self.premises) and (self.premises[0].first, self.premises[0].second) != (self.first, self.second)
 
-    def stated(self) -> Iterator[Step]:
-        """The stated steps that this one rests on, from left to right."""
-        if not self.premises:
-            yield self
-        for premise in self.premises:
-            yield from premise.stated()
+Step = Proof[PairRelation]
+"""Premises about (first, k) and (k, second) are composed, premises about the pair itself hold together."""
 
-    def lines(self, network: Network, depth: int = 0) -> Iterator[str]:
-        """The tree in words, what follows first and what it rests on indented below."""
-        how = "stated" if not self.premises else "composed" if self.composed else "together"
-        where = f" {self.source}" if self.source is not None else ""
-        what = f"{network.name(self.first)} {worded(network.calculus, self.relation)} {network.name(self.second)}"
-        yield f"{'    ' * depth}{what}   {how}{where}"
-        for premise in self.premises:
-            yield from premise.lines(network, depth + 1)
+
+def step_lines(step: Step, network: Network, depth: int = 0) -> Iterator[str]:
+    """A proof in words, what follows first and what it rests on indented below."""
+    claim, calculus = step.claim, network.calculus
+    where = f" {step.source}" if step.source is not None else ""
+    what = f"{network.name(claim.first)} {worded(calculus, claim.relation)} {network.name(claim.second)}"
+    yield f"{'    ' * depth}{what}   {_WORDS[step.rule]}{where}"
+    for premise in step.premises:
+        yield from step_lines(premise, network, depth + 1)
 
 
 def worded(calculus: Calculus, relation: int) -> str:
@@ -154,7 +143,7 @@ class Rounds:
         options = self._between(i, j, before)
         enough = [k for k, relation in options.items() if not relation & ~goal]
         if enough:
-            return min((self._composition(i, k, j, before) for k in enough), key=lambda s: sum(1 for _ in s.stated()))
+            return min((self._composition(i, k, j, before) for k in enough), key=lambda step: step.size())
         return self._together(i, j, before, goal, options)
 
     def _exact(self, i: int, j: int, position: int) -> Step:
@@ -165,7 +154,8 @@ class Rounds:
 
     def _composition(self, i: int, k: int, j: int, before: int) -> Step:
         relation = self._compose(self._at(i, k, before), self._at(k, j, before))
-        return Step(i, j, relation, (self._exact(i, k, before), self._exact(k, j, before)))
+        premises = (self._exact(i, k, before), self._exact(k, j, before))
+        return Step(PairRelation(i, j, relation), Rule.COMPOSITION, premises)
 
     def _together(self, i: int, j: int, before: int, goal: int, options: dict[int, int]) -> Step:
         """The relation of before and what third things leave, as few of them as greed finds."""
@@ -177,7 +167,7 @@ class Rounds:
             chosen.append(k)
         premises = [self._exact(i, j, before)] if own else []
         premises += [self._composition(i, k, j, before) for k in chosen]
-        return Step(i, j, left, tuple(premises))
+        return Step(PairRelation(i, j, left), Rule.CONJUNCTION, tuple(premises))
 
     def _leaf(self, i: int, j: int, goal: int) -> Step:
         """What is stated of the pair, the least that is enough."""
@@ -187,9 +177,9 @@ class Rounds:
         for c in self._network.constraints:
             if {c.first, c.second} == {i, j}:
                 stated = c.relation if (c.first, c.second) == (i, j) else self._calculus.converse(c.relation)
-                steps.append(Step(i, j, stated, (), c.source))
+                steps.append(Step(PairRelation(i, j, stated), Rule.STATED, source=c.source))
                 relation &= stated
-        alone = [step for step in steps if not step.relation & ~goal]
+        alone = [step for step in steps if not step.claim.relation & ~goal]
         if alone:
             return alone[0]
-        return Step(i, j, relation, tuple(steps))
+        return Step(PairRelation(i, j, relation), Rule.CONJUNCTION if steps else Rule.STATED, tuple(steps))

@@ -9,9 +9,9 @@ import typer
 from deixis.cli.common import NO, UNDECIDED, AsJson, TimeLimit, print_json, print_lines
 
 if TYPE_CHECKING:
+    from deixis.reasoning.constraints.proof import Proof
     from deixis.reasoning.temporal.chronology import Chronology
     from deixis.reasoning.temporal.errors import TemporalConflictError
-    from deixis.reasoning.temporal.explanation import Explanation
     from deixis.reasoning.temporal.fluent import Pattern
     from deixis.reasoning.temporal.timeline import Timeline
 
@@ -93,7 +93,7 @@ def _print_explanation(timeline: Timeline, a: str, b: str, time_limit: float, as
         _print(explanation_lines(explanations, a, b))
 
 
-def _explanations(timeline: Timeline, a: str, b: str, time_limit: float) -> list[Explanation]:
+def _explanations(timeline: Timeline, a: str, b: str, time_limit: float) -> list[Proof[str]]:
     """Of two points the lower and the upper bound, else of two fluents the relation."""
     if {a, b} <= set(timeline.network.points):
         found = [timeline.explain_bound(b, a, time_limit), timeline.explain_bound(a, b, time_limit)]

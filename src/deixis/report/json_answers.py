@@ -11,7 +11,7 @@ from deixis.ontology.export import fact_to_dict, graph_to_dict
 if TYPE_CHECKING:
     from deixis.grammar.script import Script
     from deixis.ontology.lessons.types import Alternative
-    from deixis.reasoning.entailment.derivation import Claim, Derivation
+    from deixis.reasoning.entailment.derivations import Claim, Derivation
     from deixis.reasoning.entailment.why_not import WhyNot
     from deixis.reasoning.grounding.answer import FactOutcome, Grounding, Pivotal
     from deixis.workflows.check import Checked
@@ -51,7 +51,7 @@ def _inferred_to_dict(entry: Inferred) -> dict[str, Any]:
 def derivation_to_dict(derivation: Derivation) -> dict[str, Any]:
     """A derivation, down to stated facts."""
     premises = [derivation_to_dict(premise) for premise in derivation.premises]
-    return {"fact": _claim_to_dict(derivation.fact), "rule": derivation.rule.value, "premises": premises}
+    return {"fact": _claim_to_dict(derivation.claim), "rule": derivation.rule.value, "premises": premises}
 
 
 def _claim_to_dict(claim: Claim) -> dict[str, Any]:

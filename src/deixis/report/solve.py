@@ -54,7 +54,9 @@ def _step_lines(solved: Solved, first: int, second: int) -> Iterator[str]:
     elif solved.step is None:
         yield f"Nothing follows about {first} and {second}."
     else:
-        yield from solved.step.lines(solved.text.network)
+        from deixis.reasoning.qualitative.networks.rounds import step_lines
+
+        yield from step_lines(solved.step, solved.text.network)
 
 
 def solved_to_dict(solved: Solved) -> dict[str, Any]:
@@ -85,11 +87,13 @@ def _constraint(network: Network, c: Constraint) -> dict[str, Any]:
 
 
 def _step(step: Step, networks: Sequence[Network]) -> dict[str, Any]:
+    from deixis.ontology.graph import Source
+
     return {
-        "first": step.first,
-        "second": step.second,
-        "relation": list(networks[0].calculus.members(step.relation)),
-        "line": None if step.source is None else step.source.line,
+        "first": step.claim.first,
+        "second": step.claim.second,
+        "relation": list(networks[0].calculus.members(step.claim.relation)),
+        "line": step.source.line if isinstance(step.source, Source) else None,
         "premises": [_step(premise, networks) for premise in step.premises],
     }
 

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from deixis.reasoning.constraints.proof import Proof
     from deixis.reasoning.temporal.bounds import Bounds
     from deixis.reasoning.temporal.chronology import Chronology
     from deixis.reasoning.temporal.errors import TemporalConflictError
-    from deixis.reasoning.temporal.explanation import Explanation
     from deixis.reasoning.temporal.fluent import Fluent
 
 
@@ -59,7 +59,7 @@ def relation_lines(a: str, b: str, chronology: Chronology) -> list[str]:
     return [*lines, *([f"certain order: {a} {order} {b}"] if order else []), *_caveat(chronology)]
 
 
-def explanation_lines(explanations: Sequence[Explanation], a: str, b: str) -> list[str]:
+def explanation_lines(explanations: Sequence[Proof[str]], a: str, b: str) -> list[str]:
     """Why what is certain of two fluents or points is certain."""
     if not explanations:
         return [f"Nothing is certain of '{a}' and '{b}'."]
@@ -69,9 +69,7 @@ def explanation_lines(explanations: Sequence[Explanation], a: str, b: str) -> li
 def conflict_lines(conflict: TemporalConflictError) -> list[str]:
     """The statements that contradict one another, and the proof."""
     lines = ["These cannot all hold:"]
-    lines += [
-        f"    {f'{stated.source}: ' if stated.source else ''}{stated.conclusion}" for stated in conflict.statements
-    ]
+    lines += [f"    {f'{stated.source}: ' if stated.source else ''}{stated.claim}" for stated in conflict.statements]
     minimal, unsure = "Leave out or change any one of these.", "Time was up before it was known whether all are needed."
     return [*lines, minimal if conflict.minimal else unsure, "The proof:", *conflict.explanation.lines("    ")]
 
@@ -122,10 +120,10 @@ def relation_to_dict(a: str, b: str, chronology: Chronology) -> dict[str, Any]:
     }
 
 
-def explanation_to_dict(explanation: Explanation) -> dict[str, Any]:
+def explanation_to_dict(explanation: Proof[str]) -> dict[str, Any]:
     """An explanation, down to what was stated."""
     return {
-        "conclusion": explanation.conclusion,
+        "conclusion": explanation.claim,
         "rule": explanation.rule.value,
         "source": explanation.source,
         "premises": [explanation_to_dict(premise) for premise in explanation.premises],
@@ -134,6 +132,6 @@ def explanation_to_dict(explanation: Explanation) -> dict[str, Any]:
 
 def conflict_to_dict(conflict: TemporalConflictError) -> dict[str, Any]:
     """The statements that contradict one another, and the proof."""
-    statements = [{"statement": stated.conclusion, "source": stated.source} for stated in conflict.statements]
+    statements = [{"statement": stated.claim, "source": stated.source} for stated in conflict.statements]
     proof = explanation_to_dict(conflict.explanation)
     return {"status": "inconsistent", "minimal": conflict.minimal, "statements": statements, "explanation": proof}

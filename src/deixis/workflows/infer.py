@@ -10,9 +10,9 @@ from pathlib import Path
 
 from deixis.grammar.script import Script
 from deixis.ontology.graph import Fact
-from deixis.reasoning.entailment.choices import OutOfTimeError
+from deixis.reasoning.constraints.disjunctive import OutOfTimeError
+from deixis.reasoning.constraints.proof import Rule
 from deixis.reasoning.entailment.conflict import Conflict, find_conflict
-from deixis.reasoning.entailment.derivation import Rule
 from deixis.reasoning.entailment.implications import TIME_LIMIT, Implications
 from deixis.workflows.read import as_script
 
@@ -95,6 +95,7 @@ def inference_of(script: Script, time_limit: float = TIME_LIMIT) -> Inference:
 def ready_to_infer() -> None:
     """Compile, or load compiled, the search over facts that leave a choice."""
     from deixis.grammar.parser import parse_script
+    from deixis.reasoning.constraints.difference import ORDERS, ZERO, Difference, DifferenceNetwork
     from deixis.reasoning.entailment.why_not import why_not
 
     inference = inference_of(parse_script("a left of b\nb left or above c\nc is not right of d\n"))
@@ -104,6 +105,9 @@ def ready_to_infer() -> None:
     relations = inference.implications.vocabulary
     why_not(inference.implications, parse_script("a left of c").facts[0])
     inference.implications.derive(relations["left"], "a", "b")
+    orders = DifferenceNetwork(points=2, dtype=ORDERS)
+    orders.add(Difference(0, 0, 1, ZERO))
+    orders.path(0, 0, 1)  # what a search that goes back asks for
     inference_of(parse_script("a left of b\nb left of a\n"))
 
 

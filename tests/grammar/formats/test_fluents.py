@@ -23,7 +23,8 @@ from deixis.grammar.formats.fluents import (
     read_fluents,
 )
 from deixis.ontology.allen import ALL_ALLEN
-from deixis.reasoning.temporal.bounds import Bounds, add
+from deixis.reasoning.constraints.difference import add
+from deixis.reasoning.temporal.bounds import Bounds
 from deixis.reasoning.temporal.fluent import AllenStatement, Difference, Fluent, Statement, TemporalRelation
 
 TEXTS = st.text(st.characters(categories=["L", "N", "P", "S"]), min_size=1, max_size=8)

@@ -16,8 +16,8 @@ from stated_facts import BA, FLAT, NODES, MakeGraph, R, Triple, atoms, axioms, f
 import deixis.reasoning.entailment.closed as module
 from deixis.ontology.graph import Fact, RelationGraph
 from deixis.ontology.relation import Relation, Relations
+from deixis.reasoning.constraints.proof import Rule
 from deixis.reasoning.entailment.conflict import find_conflict
-from deixis.reasoning.entailment.derivation import Rule
 from deixis.reasoning.entailment.implications import Implications
 from deixis.reasoning.errors import LimitError
 from deixis.reasoning.geometry.rectangle import box_relations
@@ -137,7 +137,7 @@ def test_what_is_exactly_left_need_not_be_so_of_the_next(graph_of: MakeGraph) ->
 
 def test_what_is_inferred_is_implied_and_not_stated(graph_of: MakeGraph) -> None:
     implied = Implications(graph_of("left(a, b)", "left(b, c)"))
-    inferred = sorted(str(derivation.fact) for derivation in implied.inferred())
+    inferred = sorted(str(derivation.claim) for derivation in implied.inferred())
     assert inferred == ["left(a, c)", "right(b, a)", "right(c, a)", "right(c, b)"]
 
 
@@ -234,7 +234,7 @@ def test_what_is_listed_with_steps_is_what_is_derived(stated: list[Triple]) -> N
     graph = implied.graph
     listed = list(implied.implied_with_steps())
     derived = list(implied.inferred())
-    assert [str(fact) for fact, _ in listed] == [str(derivation.fact) for derivation in derived]
+    assert [str(fact) for fact, _ in listed] == [str(derivation.claim) for derivation in derived]
     for (fact, steps), derivation in zip(listed, derived, strict=True):
         support = implied.support(fact)
         assert support.rule == derivation.rule

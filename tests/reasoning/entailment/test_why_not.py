@@ -56,7 +56,7 @@ def test_the_reason_is_right(stated: list[Fact], ends: tuple[str, str], relation
     assert sum(reason is not None for reason in reasons) == 1
     assert (found.follows is not None) == implied.holds(relation, *ends)
     if found.against is not None:
-        claim = found.against.fact
+        claim = found.against.claim
         assert isinstance(claim, Fact) and not compatible(claim.relations[0], relation)
         assert implied.holds(claim.relations[0], *ends)
     if found.conflict is not None:

@@ -9,8 +9,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from deixis.reasoning.constraints.difference import UNBOUNDED, add, add_arrays
 from deixis.reasoning.errors import SettingError
-from deixis.reasoning.temporal.bounds import UNBOUNDED, Bounds, add, add_arrays, encode, text_of_ticks
+from deixis.reasoning.temporal.bounds import Bounds, encode, text_of_ticks
 
 MICROSECONDS = st.integers(-4_000_000_000_000_000, 4_000_000_000_000_000)
 CODES = st.one_of(st.just(UNBOUNDED), st.builds(lambda t, s: 2 * t + s, MICROSECONDS, st.integers(0, 1)))

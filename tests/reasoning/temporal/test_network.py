@@ -12,10 +12,11 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import NegativeCycleError, floyd_warshall
 
+from deixis.reasoning.constraints.difference import UNBOUNDED, add
+from deixis.reasoning.constraints.proof import Proof, Rule
 from deixis.reasoning.errors import LimitError
-from deixis.reasoning.temporal.bounds import UNBOUNDED, Bounds, add, bound_text, encode
+from deixis.reasoning.temporal.bounds import Bounds, bound_text, encode
 from deixis.reasoning.temporal.errors import TemporalConflictError, UnknownFluentError
-from deixis.reasoning.temporal.explanation import Explanation, Rule
 from deixis.reasoning.temporal.network import DifferenceConstraint, SimpleTemporalNetwork, difference
 
 N = 6
@@ -26,7 +27,7 @@ POINTS = ("origin", *"abcde")
 def constraint(tail: int, head: int, seconds: int, strict: bool) -> DifferenceConstraint:
     code = encode(seconds, strict)
     text = bound_text(POINTS[tail], POINTS[head], code, "origin")
-    return DifferenceConstraint(POINTS[tail], POINTS[head], code, Explanation(text, Rule.STATED))
+    return DifferenceConstraint(POINTS[tail], POINTS[head], code, Proof(text, Rule.STATED))
 
 
 CONSTRAINTS = st.lists(
@@ -60,7 +61,7 @@ def taken_in(constraints: list[DifferenceConstraint]) -> tuple[SimpleTemporalNet
     network = SimpleTemporalNetwork(POINTS[1:])
     kept: list[DifferenceConstraint] = []
     for c in constraints:
-        if network.try_add([c]) is not None:
+        if network.try_add([c]):
             kept.append(c)
     return network, kept
 
@@ -90,9 +91,9 @@ def test_a_refusal_names_a_simple_negative_cycle(constraints: list[DifferenceCon
     network = SimpleTemporalNetwork(POINTS[1:])
     kept: list[DifferenceConstraint] = []
     for c in constraints:
-        if network.try_add([c]) is None:
-            named = [premise.conclusion for premise in network.refutation([c]).premises]
-            cycle = [next(other for other in [*kept, c] if other.why.conclusion == text) for text in named]
+        if not network.try_add([c]):
+            named = [premise.claim for premise in network.refutation([c]).premises]
+            cycle = [next(other for other in [*kept, c] if other.why.claim == text) for text in named]
             heads = [other.head for other in cycle]
             assert [other.tail for other in cycle] == [heads[-1], *heads[:-1]]
             assert len(set(heads)) == len(heads)
@@ -107,7 +108,7 @@ def test_a_refusal_names_a_simple_negative_cycle(constraints: list[DifferenceCon
 @given(CONSTRAINTS)
 def test_every_bound_is_the_sum_of_its_explanation(constraints: list[DifferenceConstraint]) -> None:
     network, kept = taken_in(constraints)
-    codes = {c.why.conclusion: c.code for c in kept}
+    codes = {c.why.claim: c.code for c in kept}
     for tail in POINTS:
         for head in POINTS:
             why = network.explain(tail, head)
@@ -118,9 +119,9 @@ def test_every_bound_is_the_sum_of_its_explanation(constraints: list[DifferenceC
             steps = why.premises or (why,)
             total = encode(0)
             for step in steps:
-                total = add(total, codes[step.conclusion])
+                total = add(total, codes[step.claim])
             assert total == network.code(tail, head)
-            assert why.conclusion == bound_text(tail, head, total, "origin")
+            assert why.claim == bound_text(tail, head, total, "origin")
 
 
 @settings(deadline=None)
@@ -128,9 +129,8 @@ def test_every_bound_is_the_sum_of_its_explanation(constraints: list[DifferenceC
 def test_what_is_taken_back_leaves_no_trace(constraints: list[DifferenceConstraint], data: st.DataObject) -> None:
     network, kept = taken_in(constraints)
     before = network.distances.copy()
-    trail = network.try_add([constraint(0, 1, 0, True)])
-    if trail is not None:
-        network.undo(trail)
+    if network.try_add([constraint(0, 1, 0, True)]):
+        network.back(len(kept))
     assert np.array_equal(network.distances, before)
     gone = data.draw(st.lists(st.sampled_from(kept), unique_by=id)) if kept else []
     network.retract(gone)
@@ -146,7 +146,7 @@ def test_the_fewest_constraints_explain() -> None:
     for tail, head, seconds in (("a", "b", 1), ("b", "c", 1), ("a", "c", 2)):
         network.add(difference(tail, head, Bounds(upper=seconds)))
     why = network.explain("a", "c")
-    assert why == Explanation("c <= a + 2", Rule.STATED)
+    assert why == Proof("c <= a + 2", Rule.STATED)
 
 
 def test_points_may_be_added_at_any_time() -> None:

@@ -11,14 +11,14 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from deixis.ontology.allen import ALL_ALLEN, Allen, allen_mask
+from deixis.reasoning.constraints.proof import Rule
 from deixis.reasoning.geometry.allen import allen_relations
 from deixis.reasoning.temporal.bounds import Bounds
 from deixis.reasoning.temporal.chronology import Status
 from deixis.reasoning.temporal.claims import claims_of
-from deixis.reasoning.temporal.conflict import refuted
 from deixis.reasoning.temporal.errors import FluentError, TemporalConflictError, UnknownFluentError
-from deixis.reasoning.temporal.explanation import Rule
 from deixis.reasoning.temporal.fluent import AllenStatement, Difference, Fluent, Statement, TemporalRelation
+from deixis.reasoning.temporal.search import refuted
 from deixis.reasoning.temporal.timeline import MAX_SCENARIOS, Timeline
 
 IDS = ("a", "b", "c")
@@ -100,7 +100,7 @@ def test_a_conflict_names_each_place_once_and_needs_all_of_it() -> None:
     relations = [AllenStatement("a", 1 << Allen.BEFORE | 1 << Allen.CONTAINS, "b")]
     with pytest.raises(TemporalConflictError) as caught:
         Timeline(fluents, relations).chronology(FOREVER)
-    texts = {stated.conclusion for stated in caught.value.statements}
+    texts = {stated.claim for stated in caught.value.statements}
     assert texts == {"a.finish in [14, 14]", "b.finish in [14, 14]", "before or contains(a, b)"}
     assert len(caught.value.statements) == 3
     for left_out in "ab":
@@ -174,7 +174,7 @@ def test_what_every_choice_gives_is_explained_by_cases() -> None:
     assert Allen.CONTAINS not in chronology.relations("a", "b")
     why = timeline.explain_relation("a", "b")
     assert why is not None and why.rule is Rule.CASES
-    assert {premise.conclusion for premise in why.premises} >= {"before(a, b)", "after(a, b)"}
+    assert {premise.claim for premise in why.premises} >= {"before(a, b)", "after(a, b)"}
 
 
 def test_disjunctions_that_leave_nothing_are_refuted_case_by_case() -> None:
@@ -188,7 +188,7 @@ def test_disjunctions_that_leave_nothing_are_refuted_case_by_case() -> None:
         timeline.chronology()
     assert caught.value.minimal
     assert caught.value.explanation.rule is Rule.CASES
-    texts = {stated.conclusion for stated in caught.value.statements}
+    texts = {stated.claim for stated in caught.value.statements}
     assert {f"before or after({a}, {b})" for a, b in ("ab", "bc", "ac")} <= texts
     assert {f"{id}.start <= {id}.finish - 10" for id in IDS} <= texts
 

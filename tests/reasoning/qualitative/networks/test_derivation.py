@@ -8,33 +8,36 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from deixis.ontology.graph import Source
+from deixis.reasoning.constraints.proof import Rule
 from deixis.reasoning.qualitative.calculi.calculus import ProductCalculus
 from deixis.reasoning.qualitative.calculi.registry import calculus
 from deixis.reasoning.qualitative.networks.closure import close
 from deixis.reasoning.qualitative.networks.conflict import minimal_conflict
 from deixis.reasoning.qualitative.networks.derivation import contradiction, derive, explain
 from deixis.reasoning.qualitative.networks.network import Constraint, Network
-from deixis.reasoning.qualitative.networks.rounds import Rounds, Step
+from deixis.reasoning.qualitative.networks.rounds import PairRelation, Rounds, Step, step_lines
 
 POINT, ALLEN, RA = calculus("point"), calculus("allen"), calculus("ra")
 
 
 def assert_sound(step: Step, network: Network) -> None:
     chosen = network.calculus
-    if not step.premises:
+    claim = step.claim
+    if step.rule is Rule.STATED:
         ways = [(c.first, c.second, c.relation) for c in network.constraints]
         ways += [(c.second, c.first, chosen.converse(c.relation)) for c in network.constraints]
-        assert (step.first, step.second, step.relation) in ways
-    elif step.composed:
-        left, right = step.premises
-        assert (left.first, left.second, right.second) == (step.first, right.first, step.second)
-        assert not chosen.compose(left.relation, right.relation) & ~step.relation
+        assert (claim.first, claim.second, claim.relation) in ways
+    elif step.rule is Rule.COMPOSITION:
+        left, right = (premise.claim for premise in step.premises)
+        assert (left.first, left.second, right.second) == (claim.first, right.first, claim.second)
+        assert not chosen.compose(left.relation, right.relation) & ~claim.relation
     else:
+        assert step.rule is Rule.CONJUNCTION
         together = chosen.universal
         for premise in step.premises:
-            assert (premise.first, premise.second) == (step.first, step.second)
-            together &= premise.relation
-        assert not together & ~step.relation
+            assert (premise.claim.first, premise.claim.second) == (claim.first, claim.second)
+            together &= premise.claim.relation
+        assert not together & ~claim.relation
     for premise in step.premises:
         assert_sound(premise, network)
 
@@ -56,7 +59,7 @@ def test_what_closure_leaves_of_a_pair_is_derived_soundly(network: Network, i: i
         assert step is None
         return
     assert step is not None
-    assert (step.first, step.second, step.relation) == (i, j, closed.relation(i, j))
+    assert step.claim == PairRelation(i, j, closed.relation(i, j))
     assert_sound(step, network)
 
 
@@ -71,7 +74,7 @@ def test_every_minimal_conflict_that_closure_finds_is_derived_to_nothing(network
         if close(thinned).consistent:  # search left out what closure needs
             assert step is None
             return
-        assert step is not None and step.relation == 0
+        assert step is not None and step.claim.relation == 0
         assert_sound(step, network)
 
 
@@ -81,7 +84,7 @@ def test_the_shorter_of_two_ways_is_taken() -> None:
     stated = tuple(Constraint(i, j, before, Source("f", k, 1, k, 9)) for k, (i, j) in enumerate(ends, start=1))
     step = derive(Network(POINT, 6, stated), 0, 4, before)
     assert step is not None
-    assert [leaf.source.line for leaf in step.stated() if leaf.source] == [5, 6]
+    assert [leaf.source.line for leaf in step.leaves() if isinstance(leaf.source, Source)] == [5, 6]
     assert_sound(step, Network(POINT, 6, stated))
 
 
@@ -93,7 +96,7 @@ def test_a_wide_goal_needs_no_more_than_what_gives_it() -> None:
     network = Network(RA, 3, (Constraint(0, 1, left), Constraint(1, 2, exact)), ("fork", "plate", "spoon"))
     step = derive(network, 0, 2, left)
     assert step is not None
-    assert next(iter(step.lines(network))) == "fork ( <; any ) spoon   composed"
+    assert next(step_lines(step, network)) == "fork ( <; any ) spoon   composed"
     assert derive(network, 0, 2, exact) is None
     assert derive(network, 0, 2, RA.universal) is None
 
@@ -111,4 +114,4 @@ def test_a_long_chain_is_derived_in_time() -> None:
     network = Network(ALLEN, 60, tuple(Constraint(i, i + 1, before) for i in range(59)))
     step = derive(network, 0, 59, before)
     assert step is not None
-    assert len(list(step.stated())) == 59
+    assert len(step.leaves()) == 59

@@ -1,0 +1,247 @@
+"""Choosing a piece of every clause so that all difference constraints agree, or proving that none can be chosen.
+
+The problem is a disjunctive temporal one (Stergiou and Koubarakis 2000). The search looks ahead (a piece that what was
+chosen excludes is no choice; a clause with the fewest choices left comes next; a clause of which a piece holds anyway
+is passed over) and jumps back to the latest choice that had a part in a failure (conflict-directed backjumping, Prosser
+1993). It is complete: where it ends without a solution there is none, and the clauses that it names have none beside
+what the network says without them.
+"""
+
+from __future__ import annotations
+
+import time
+from bisect import bisect_right
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from enum import Enum
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.reasoning.constraints.difference import Difference, DifferenceNetwork
+from deixis.reasoning.errors import LimitError
+
+Piece = tuple[Difference, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Clause:
+    """Of these pieces one must hold, all its constraints together; an empty piece holds, and no piece cannot."""
+
+    pieces: tuple[Piece, ...]
+
+
+class Clauses(Sequence[Clause]):
+    """Clauses, and all their constraints as flat arrays for the compiled loops."""
+
+    def __init__(self, clauses: Iterable[Clause]) -> None:
+        self._clauses = tuple(clauses)
+        pieces = [piece for clause in self._clauses for piece in clause.pieces]
+        self._first_piece = np.cumsum([0, *(len(clause.pieces) for clause in self._clauses)], dtype=np.int64)
+        first_bound = np.cumsum([0, *map(len, pieces)], dtype=np.int64)
+        bounds = np.array([difference for piece in pieces for difference in piece], np.int64).reshape(-1, 4)
+        self._arrays = self._first_piece, first_bound, bounds
+
+    def __len__(self) -> int:
+        return len(self._clauses)
+
+    def __getitem__(self, position: Any) -> Any:
+        return self._clauses[position]
+
+    def next(self, network: DifferenceNetwork, taken: NDArray[np.int64]) -> tuple[int, int]:
+        """Return the open clause with the fewest pieces that the network admits, and how many; -1 where all hold."""
+        from deixis.reasoning.constraints.kernels import next_clause
+
+        clause, left = next_clause(network.matrices, *self._arrays, taken, network.free)
+        return int(clause), int(left)
+
+    def admitted(self, network: DifferenceNetwork, clause: int) -> list[bool]:
+        """Return which pieces of a clause can be added to a network."""
+        from deixis.reasoning.constraints.kernels import standing
+
+        _, first_bound, bounds = self._arrays
+        pieces = range(self._first_piece[clause], self._first_piece[clause + 1])
+        ends = ((first_bound[piece], first_bound[piece + 1]) for piece in pieces)
+        return [standing(network.matrices, bounds, *end, network.free) >= 0 for end in ends]
+
+    def dive(self, network: DifferenceNetwork, last: NDArray[np.int64]) -> tuple[int, NDArray[Any]]:
+        """Decide all clauses without going back; 1, -1 or 0 for a solution, a refutation or neither; the distances."""
+        from deixis.reasoning.constraints.kernels import dive
+
+        distances = np.ascontiguousarray(network.distances).copy()
+        return int(dive(distances, *self._arrays, last, network.free)), distances
+
+
+class OutOfTimeError(LimitError, TimeoutError):
+    """The time limit struck before a search was done; nothing was decided."""
+
+
+class Outcome(Enum):
+    """How a search ended."""
+
+    SOLVED = "solved"  # the network holds a solution
+    REFUTED = "refuted"  # there is no solution, or no further one
+    TIMED_OUT = "timed out"
+
+
+@dataclass(slots=True, eq=False)
+class Level:
+    """A clause that is being decided."""
+
+    clause: int
+    length: int  # of the network before it
+    order: Sequence[int]  # its pieces
+    forced: bool  # only the last one in this order could be added
+    tried: int = 0
+    reasons: set[int] = field(default_factory=set)  # the clauses for which the pieces tried before failed
+    solved: bool = False  # a solution was found under one of them
+
+
+class Search:
+    """Goes through the solutions of clauses over a network, which it changes: ``network.back(search.base)`` ends it.
+
+    Searches end at ``deadline`` (``time.monotonic``). After REFUTED without a solution, ``core`` has the positions of
+    clauses that have none over the network. With ``keep`` the clauses of one piece that are taken first stay in the
+    network for good, which saves the memory to take them back.
+    """
+
+    def __init__(self, network: DifferenceNetwork, clauses: Clauses, deadline: float, keep: bool = False) -> None:
+        self.network, self.clauses, self.deadline = network, clauses, deadline
+        self.base, self._keep, self._kept = len(network), keep, 0
+        self.outcome = Outcome.TIMED_OUT
+        self.levels: list[Level] = []
+        self.taken = np.full(len(clauses), -1, np.int64)  # the piece of each decided clause
+        self.core: frozenset[int] = frozenset()
+        self._solved = False
+
+    def propagate(self) -> Outcome:
+        """Take the pieces that are the only ones left, until a choice is; SOLVED says that nothing contradicts them."""
+        return self._run(only_forced=True)
+
+    def advance(self) -> Outcome:
+        """Go to the first solution, or from one to the next; earlier pieces of a clause are preferred."""
+        if self._solved:
+            self._solved = False
+            for level in self.levels:
+                level.solved = True
+            if self.levels:
+                self.levels[-1].reasons |= {level.clause for level in self.levels[:-1]}
+                self._release(self.levels[-1])
+            if not self.levels or not self._decide():
+                self.outcome = Outcome.REFUTED
+                return self.outcome
+        self.outcome = self._run(only_forced=False)
+        self._solved = self.outcome is Outcome.SOLVED
+        return self.outcome
+
+    def open(self) -> list[int]:
+        """Return the clauses that are neither decided nor hold anyway."""
+        taken, found = self.taken.copy(), list[int]()
+        while (clause := self.clauses.next(self.network, taken)[0]) >= 0:
+            found.append(clause)
+            taken[clause] = 0
+        return sorted(found)
+
+    def _run(self, only_forced: bool) -> Outcome:
+        while True:
+            if time.monotonic() > self.deadline:
+                return Outcome.TIMED_OUT
+            clause, left = self.clauses.next(self.network, self.taken)
+            if clause < 0 or (only_forced and left > 1):
+                return Outcome.SOLVED
+            self.levels.append(self._level(clause, left))
+            if not self._decide():
+                return Outcome.REFUTED
+            if self._keep and self._kept == len(self.levels) - 1 and len(self.clauses[clause].pieces) == 1:
+                self._kept += 1
+                self.network.keep()
+
+    def _level(self, clause: int, left: int) -> Level:
+        return Level(clause, len(self.network), range(len(self.clauses[clause].pieces)), left == 1)
+
+    def _decide(self) -> bool:
+        """Give the latest level a piece, going back as far as needed; False where no level has one left."""
+        while True:
+            level = self.levels[-1]
+            if self._take_next_piece(level):
+                return True
+            conflict = level.reasons | {level.clause}
+            failed = level
+            while True:
+                self._release(self.levels.pop())
+                if not self.levels:
+                    self.core = frozenset(conflict)
+                    self._note_failed(failed, None)
+                    return False
+                level = self.levels[-1]
+                if level.clause in conflict:
+                    break
+            self._release(level)
+            level.reasons |= conflict - {level.clause}
+            self._note_failed(failed, level)
+
+    def _release(self, level: Level) -> None:
+        self.network.back(level.length)
+        self.taken[level.clause] = -1
+
+    def _take_next_piece(self, level: Level) -> bool:
+        """Take the first piece not tried that agrees with all that is chosen; keep why the others do not."""
+        pieces = self.clauses[level.clause].pieces
+        while level.tried < len(level.order):
+            number = level.order[level.tried]
+            level.tried += 1
+            refused = next((d for d in pieces[number] if not self.network.add(d)), None)
+            if refused is None:
+                self.taken[level.clause] = number
+                self._note_taken(level, number)
+                return True
+            begins = [above.length for above in self.levels]
+            cycle = self.network.cycle(refused)
+            for constraint in cycle:
+                place = bisect_right(begins, constraint) - 1
+                if 0 <= place < len(self.levels) - 1:
+                    level.reasons.add(self.levels[place].clause)
+            self._note_refused(level, number, refused, cycle)
+            self.network.back(level.length)
+        return False
+
+    # ---- for searches that prove what they find
+
+    def _note_taken(self, level: Level, number: int) -> None:
+        """Called when a level's piece of this number has been added to the network."""
+
+    def _note_refused(self, level: Level, number: int, difference: Difference, cycle: Sequence[int]) -> None:
+        """Called when a constraint of a piece closes a negative cycle; earlier ones of the piece are added."""
+
+    def _note_failed(self, failed: Level, into: Level | None) -> None:
+        """Called when a level has no piece left, with the level whose latest piece that refutes; None for all."""
+
+
+def solve(points: int, axes: int, clauses: Iterable[Clause], deadline: float) -> Search:
+    """Return a search that has solved clauses over points on some axes, refuted them, or run out of time."""
+    search = Search(DifferenceNetwork(points, axes), Clauses(clauses), deadline, keep=True)
+    search.advance()
+    return search
+
+
+def solution(
+    network: DifferenceNetwork, clauses: Clauses, last: NDArray[np.int64], deadline: float
+) -> NDArray[Any] | None:
+    """Return the distances in a solution of clauses over a network, which is left as it is; None where there is none.
+
+    A single dive comes first, since most solutions are found so. It takes the pieces in ``last`` (clauses,), all -1 to
+    begin with, and keeps there what it took. Raises OutOfTimeError at the deadline.
+    """
+    if time.monotonic() > deadline:
+        raise OutOfTimeError("the time limit struck before every choice in the facts was weighed")
+    found, distances = clauses.dive(network, last)
+    if found != 0:
+        return distances if found > 0 else None
+    search = Search(network, clauses, deadline)
+    search.advance()
+    distances = network.distances.copy()
+    network.back(search.base)
+    if search.outcome is Outcome.TIMED_OUT:
+        raise OutOfTimeError("the time limit struck before every choice in the facts was weighed")
+    return distances if search.outcome is Outcome.SOLVED else None

@@ -1,0 +1,433 @@
+"""The compiled loops of this folder, on plain arrays.
+
+Throughout, ``distances`` (m, m), of which the first ``count`` rows and columns are in use, holds the tightest bound on
+*column point minus row point* as a code of :mod:`deixis.reasoning.constraints.difference`, ``free`` and more for none.
+A graph is in rows: the edges out of point u are ``first[u]:first[u + 1]`` of ``heads``, ``strict`` and ``premise``.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+FAR = np.int64(1 << 40)
+
+
+# ---- distances
+
+
+@njit(cache=True)
+def added(a, b, free):  # type: ignore[no-untyped-def]
+    """Return the sum of two codes."""
+    if a >= free or b >= free:
+        return np.int64(free)
+    return ((np.int64(a) & ~1) + (np.int64(b) & ~1)) | (np.int64(a) & np.int64(b) & 1)
+
+
+@njit(cache=True)
+def tighten(distances, count, tail, head, code, free):  # type: ignore[no-untyped-def]
+    """Take in one constraint that closes no negative cycle, in O(count ** 2), in place.
+
+    Only rows that reach the head better through it, and columns that the tail reaches better, can change. Returns the
+    cells that changed, as flat indices, and what stood there before.
+    """
+    rows, reach = np.empty(count, np.int64), np.empty(count, np.int64)
+    columns, onward = np.empty(count, np.int64), np.empty(count, np.int64)
+    n_rows = n_columns = 0
+    for i in range(count):
+        through = added(distances[i, tail], code, free)
+        if through < distances[i, head]:
+            rows[n_rows], reach[n_rows] = i, through
+            n_rows += 1
+        if added(code, distances[head, i], free) < distances[tail, i]:
+            columns[n_columns], onward[n_columns] = i, distances[head, i]
+            n_columns += 1
+    cells, before = np.empty(n_rows * n_columns, np.int64), np.empty(n_rows * n_columns, distances.dtype)
+    changed = 0
+    for r in range(n_rows):
+        i = rows[r]
+        for c in range(n_columns):
+            j = columns[c]
+            through = added(reach[r], onward[c], free)
+            if through < distances[i, j]:
+                cells[changed], before[changed] = i * distances.shape[1] + j, distances[i, j]
+                changed += 1
+                distances[i, j] = through
+    return cells[:changed].copy(), before[:changed].copy()
+
+
+@njit(cache=True)
+def insert(distances, count, tail, head, code, free):  # type: ignore[no-untyped-def]
+    """Take in one constraint that closes no negative cycle for good: the same without what stood there before."""
+    columns, onward = np.empty(count, np.int64), np.empty(count, np.int64)
+    n_columns = 0
+    for j in range(count):
+        through = added(code, distances[head, j], free)
+        if through < distances[tail, j]:
+            columns[n_columns], onward[n_columns] = j, through
+            n_columns += 1
+    for i in range(count):
+        start = distances[i, tail]
+        if start < free and added(start, code, free) < distances[i, head]:
+            for c in range(n_columns):
+                through = added(start, onward[c], free)
+                if through < distances[i, columns[c]]:
+                    distances[i, columns[c]] = through
+
+
+@njit(cache=True)
+def tighten_all(matrices, count, constraints, free):  # type: ignore[no-untyped-def]
+    """Take in constraints (rows of axis, tail, head, code); False where they close a negative cycle."""
+    for k in range(len(constraints)):
+        axis, tail, head, code = constraints[k, 0], constraints[k, 1], constraints[k, 2], constraints[k, 3]
+        if added(matrices[axis, head, tail], code, free) < 1:
+            return False
+        if code < matrices[axis, tail, head]:
+            insert(matrices[axis], count, tail, head, code, free)
+    return True
+
+
+# ---- graphs and shortest explanations
+
+
+@njit(cache=True)
+def rows_of(tails, n):  # type: ignore[no-untyped-def]
+    """Return where each point's edges begin, shape (n + 1,), and the edges in the order of their tails."""
+    first = np.zeros(n + 1, np.int64)
+    for u in tails:
+        first[u + 1] += 1
+    for u in range(n):
+        first[u + 1] += first[u]
+    place = first[:-1].copy()
+    order = np.empty(len(tails), np.int64)
+    for edge in range(len(tails)):
+        u = tails[edge]
+        order[place[u]] = edge
+        place[u] += 1
+    return first, order
+
+
+@njit(cache=True)
+def strong_parts(first, heads):  # type: ignore[no-untyped-def]
+    """Find the strongly connected parts (Tarjan 1972), numbered so that edges lead to lower numbers.
+
+    Returns the part of each point, and the points in the order of their parts.
+    """
+    n = len(first) - 1
+    index = np.full(n, -1, np.int64)
+    low = np.zeros(n, np.int64)
+    part = np.full(n, -1, np.int64)
+    members = np.empty(n, np.int64)
+    stack = np.empty(n, np.int64)
+    calls = np.empty(n, np.int64)
+    place = first[:-1].copy()
+    height, listed, parts, counter = 0, 0, 0, 0
+    for root in range(n):
+        if index[root] >= 0:
+            continue
+        depth = 0
+        calls[0] = root
+        index[root] = low[root] = counter
+        counter += 1
+        stack[height] = root
+        height += 1
+        while depth >= 0:
+            u = calls[depth]
+            if place[u] < first[u + 1]:
+                v = heads[place[u]]
+                place[u] += 1
+                if index[v] < 0:
+                    index[v] = low[v] = counter
+                    counter += 1
+                    stack[height] = v
+                    height += 1
+                    depth += 1
+                    calls[depth] = v
+                elif part[v] < 0 and index[v] < low[u]:
+                    low[u] = index[v]
+                continue
+            if low[u] == index[u]:
+                while True:
+                    height -= 1
+                    v = stack[height]
+                    part[v] = parts
+                    members[listed] = v
+                    listed += 1
+                    if v == u:
+                        break
+                parts += 1
+            depth -= 1
+            if depth >= 0 and low[u] < low[calls[depth]]:
+                low[calls[depth]] = low[u]
+    return part, members
+
+
+@njit(cache=True)
+def strict_within(first, heads, strict, part):  # type: ignore[no-untyped-def]
+    """Return the tail of a strict edge whose ends are forced to be equal, or -1 where there is none."""
+    for u in range(len(first) - 1):
+        for edge in range(first[u], first[u + 1]):
+            if strict[edge] and part[heads[edge]] == part[u]:
+                return u
+    return -1
+
+
+@njit(cache=True)
+def fewest(first, heads, strict, premise, root, goal, limit, cost, before, by, queue):  # type: ignore[no-untyped-def]
+    """Find how few premises it takes from a point to all states within ``limit``, or until the state ``goal``.
+
+    A state is twice a point, plus 1 where a strict edge has been passed. Edges of premise -1 cost nothing, others one.
+    ``cost`` holds ``FAR`` throughout and gets the costs, ``before`` and ``by`` the state and edge that a state was
+    reached from; ``queue`` has room for four entries a state, and two more. Returns how many states were reached; they
+    are the first ones in ``queue``, maybe several times.
+    """
+    begin, end = 0, 1
+    queue[0] = 2 * root
+    cost[2 * root] = 0
+    before[2 * root] = -1
+    level = 0
+    half = len(queue) // 2
+    waiting = 0
+    while end > begin:
+        while begin < end:
+            state = queue[begin]
+            begin += 1
+            if cost[state] != level:
+                continue
+            if state == goal:
+                return end
+            u, passed = state >> 1, state & 1
+            for edge in range(first[u], first[u + 1]):
+                other = 2 * heads[edge] + (1 if passed or strict[edge] else 0)
+                step = 0 if premise[edge] < 0 else 1
+                if level + step <= limit and cost[other] > level + step:
+                    cost[other] = level + step
+                    before[other] = state
+                    by[other] = edge
+                    if step == 0:
+                        queue[end] = other
+                        end += 1
+                    else:
+                        queue[half + waiting] = other
+                        waiting += 1
+        level += 1
+        for k in range(waiting):
+            queue[end + k] = queue[half + k]
+        end += waiting
+        waiting = 0
+    return end
+
+
+@njit(cache=True)
+def shortest_circle(first, heads, strict, premise, part):  # type: ignore[no-untyped-def]
+    """Return the edges of a circle with a strict edge that takes the fewest premises, in order."""
+    points = len(first) - 1
+    cost = np.full(2 * points, FAR)
+    before = np.empty(2 * points, np.int64)
+    by = np.empty(2 * points, np.int64)
+    queue = np.empty(2 * (4 * points + 2), np.int64)
+    best = FAR
+    circle = np.empty(2 * points + 1, np.int64)
+    length = 0
+    for u in range(points):
+        for edge in range(first[u], first[u + 1]):
+            v = heads[edge]
+            if not strict[edge] or part[u] != part[v]:
+                continue
+            own = 0 if premise[edge] < 0 else 1
+            reached = fewest(first, heads, strict, premise, v, 2 * u + 1, best - 1 - own, cost, before, by, queue)
+            state = 2 * u if cost[2 * u] <= cost[2 * u + 1] else 2 * u + 1
+            if cost[state] + own < best:
+                best = cost[state] + own
+                length = 1
+                circle[0] = edge
+                while before[state] >= 0:
+                    circle[length] = by[state]
+                    length += 1
+                    state = before[state]
+            for k in range(reached):
+                cost[queue[k]] = FAR
+    return circle[:length]
+
+
+@njit(cache=True)
+def tight_path(distances, count, constraints, axis, start, end):  # type: ignore[no-untyped-def]
+    """Return the fewest constraints (rows of axis, tail, head, code) that add up to the distance between two points.
+
+    They are looked for breadth first among those on some shortest way, with and without a strict one passed so far,
+    since a strict distance needs one.
+    """
+    if start == end:
+        return np.empty(0, np.int64)
+    wanted = np.int64(distances[start, end])
+    tight = np.empty(len(constraints), np.int64)
+    found = 0
+    for k in range(len(constraints)):
+        if constraints[k, 0] == axis:
+            before, after = distances[start, constraints[k, 1]], distances[constraints[k, 2], end]
+            if (np.int64(before) >> 1) + (constraints[k, 3] >> 1) + (np.int64(after) >> 1) == wanted >> 1:
+                tight[found] = k
+                found += 1
+    tight = tight[:found]
+    first, order = rows_of(constraints[tight, 1], count)
+    tight = tight[order]
+    heads, strict = constraints[tight, 2], constraints[tight, 3] & 1 == 0
+    states = 2 * count
+    cost, came, by = np.full(states, FAR), np.empty(states, np.int64), np.empty(states, np.int64)
+    state = 2 * end + (1 - (wanted & 1))
+    queue = np.empty(2 * (2 * states + 2), np.int64)
+    fewest(first, heads, strict, tight, start, state, FAR, cost, came, by, queue)
+    length = cost[state]
+    path = np.empty(length, np.int64)
+    for k in range(length):
+        path[length - 1 - k] = tight[by[state]]
+        state = came[state]
+    return path
+
+
+# ---- clauses
+
+
+@njit(cache=True)
+def standing(distances, bounds, begin, end, free):  # type: ignore[no-untyped-def]
+    """Return whether the constraints ``begin:end`` hold anyway (1), cannot all be added (-1), or neither (0).
+
+    ``distances`` is (axes, m, m), ``bounds`` rows of axis, tail, head and code. What the constraints exclude together
+    is seen among the few points that they are about: the distances among these are all that the others say of them.
+    """
+    left = 0
+    for b in range(begin, end):
+        axis, tail, head, code = bounds[b, 0], bounds[b, 1], bounds[b, 2], bounds[b, 3]
+        if distances[axis, tail, head] <= code:
+            continue
+        if added(distances[axis, head, tail], code, free) < 1:
+            return -1
+        left += 1
+    if left == 0:
+        return 1
+    if left == 1:
+        return 0
+    points = np.empty((2 * left, 2), np.int64)
+    ends = np.empty((left, 2), np.int64)
+    codes = np.empty(left, np.int64)
+    size, n = 0, 0
+    for b in range(begin, end):
+        axis, tail, head, code = bounds[b, 0], bounds[b, 1], bounds[b, 2], bounds[b, 3]
+        if distances[axis, tail, head] <= code:
+            continue
+        for side in range(2):
+            point = head if side else tail
+            place = 0
+            while place < size and (points[place, 0] != axis or points[place, 1] != point):
+                place += 1
+            if place == size:
+                points[size, 0], points[size, 1] = axis, point
+                size += 1
+            ends[n, side] = place
+        codes[n] = code
+        n += 1
+    local = np.full((size, size), free, np.int64)
+    for i in range(size):
+        for j in range(size):
+            if points[i, 0] == points[j, 0]:
+                local[i, j] = distances[points[i, 0], points[i, 1], points[j, 1]]
+    for k in range(n):
+        tail, head = ends[k]
+        if codes[k] >= local[tail, head]:
+            continue
+        if added(local[head, tail], codes[k], free) < 1:
+            return -1
+        for i in range(size):
+            start = added(local[i, tail], codes[k], free)
+            if start < local[i, head]:
+                for j in range(size):
+                    through = added(start, local[head, j], free)
+                    if through < local[i, j]:
+                        local[i, j] = through
+    return 0
+
+
+@njit(cache=True)
+def next_clause(distances, first_piece, first_bound, bounds, taken, free):  # type: ignore[no-untyped-def]
+    """Return the clause with the fewest pieces that can be added, and how many; -1 where all hold.
+
+    The pieces of clause c are ``first_piece[c]:first_piece[c + 1]``, the constraints of piece p
+    ``first_bound[p]:first_bound[p + 1]``. Clauses that were decided, or that hold anyway, are passed over.
+    """
+    best, fewest_left = -1, 1 << 40
+    for c in range(len(taken)):
+        if taken[c] >= 0:
+            continue
+        left = 0
+        for p in range(first_piece[c], first_piece[c + 1]):
+            holds = standing(distances, bounds, first_bound[p], first_bound[p + 1], free)
+            if holds == 1:
+                left = -1
+                break
+            if holds == 0:
+                left += 1
+        if 0 <= left < fewest_left:
+            best, fewest_left = c, left
+            if left == 0:
+                break
+    return best, fewest_left
+
+
+@njit(cache=True)
+def dive(distances, first_piece, first_bound, bounds, last, free):  # type: ignore[no-untyped-def]
+    """Decide all clauses without ever going back: each takes the piece that it took last, else the first one left.
+
+    Takes what is forced first, then decides the clause with the fewest pieces left. Returns 1 where all clauses hold
+    in the end, -1 where what is forced contradicts itself, and 0 where that is so after a decision, which says nothing
+    of other ways. ``distances`` and ``last`` (clauses,), -1 for none, are written.
+    """
+    alive = np.ones(len(first_bound) - 1, np.bool_)
+    pending = np.ones(len(last), np.bool_)
+    count, dead_end = distances.shape[1], -1
+    while True:
+        changed, best, fewest_left, chosen = False, -1, 1 << 30, -1
+        for c in range(len(last)):
+            if not pending[c]:
+                continue
+            left, only = 0, -1
+            for p in range(first_piece[c], first_piece[c + 1]):
+                if not alive[p]:
+                    continue
+                holds = standing(distances, bounds, first_bound[p], first_bound[p + 1], free)
+                if holds == 1:
+                    pending[c] = False
+                    break
+                if holds == -1:
+                    alive[p] = False
+                    continue
+                left += 1
+                only = p
+            if not pending[c]:
+                continue
+            if left == 0:
+                return dead_end
+            if left == 1:
+                for b in range(first_bound[only], first_bound[only + 1]):
+                    axis, tail, head, code = bounds[b, 0], bounds[b, 1], bounds[b, 2], bounds[b, 3]
+                    if code < distances[axis, tail, head]:
+                        insert(distances[axis], count, tail, head, code, free)
+                pending[c] = False
+                changed = True
+            elif left < fewest_left:
+                best, fewest_left = c, left
+        if changed:
+            continue
+        if best < 0:
+            return 1
+        dead_end = 0
+        chosen = last[best]
+        if chosen < 0 or not alive[chosen]:
+            chosen = first_piece[best]
+            while not alive[chosen]:
+                chosen += 1
+        for b in range(first_bound[chosen], first_bound[chosen + 1]):
+            axis, tail, head, code = bounds[b, 0], bounds[b, 1], bounds[b, 2], bounds[b, 3]
+            if code < distances[axis, tail, head]:
+                insert(distances[axis], count, tail, head, code, free)
+        last[best] = chosen
+        pending[best] = False

@@ -1,0 +1,39 @@
+"""Relations as choices of pieces."""
+
+from __future__ import annotations
+
+import numpy as np
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from deixis.ontology.allen import Allen
+from deixis.ontology.graph import Fact
+from deixis.ontology.tbox import default_ontology
+from deixis.reasoning.entailment.realisation.pieces import admitted_by, choice, region
+
+R = default_ontology().relations
+
+
+@settings(max_examples=100, deadline=None)
+@given(st.lists(st.integers(0, 168), max_size=40))
+def test_the_pieces_of_any_set_of_atoms_admit_just_that_set(cells: list[int]) -> None:
+    wanted = np.zeros(169, dtype=np.bool_)
+    wanted[cells] = True
+    found = choice(wanted.reshape(13, 13))
+    admitted = np.zeros((13, 13), dtype=np.bool_)
+    for piece in found.pieces:
+        admitted |= admitted_by(found.always + piece)
+    assert (admitted == wanted.reshape(13, 13)).all()
+
+
+def test_wide_relations_of_one_axis_are_one_inequality() -> None:
+    for word in ("left", "right", "top", "bottom"):
+        found = choice(region(Fact("a", (R[word],), "b")))
+        assert (len(found.always), found.pieces) == (1, ((),))
+
+
+def test_the_atom_that_on_and_under_share_pictures_neither_of_them_nor_a_denial() -> None:
+    for word in ("on", "under"):
+        for positive in (True, False):
+            assert not region(Fact("a", (R[word],), "b", positive))[Allen.EQUALS, Allen.EQUALS]
+    assert not region(Fact("a", (R["left"],), "b"))[Allen.EQUALS, Allen.EQUALS]
