@@ -184,7 +184,7 @@ def _with_things(kind: str, views: list[tuple[str, Descriptors]]) -> InstanceCat
 def constants() -> None:
     """Prints what is shipped, measured on simulated tableware."""
     named = {name: describer_named(name).describe for name in ("spin_images", "fpfh", "good", "d2_extents", "upright")}
-    for name, describe in {"spin_image_roots": recognising.ROOTS.describe, **named}.items():
+    for name, describe in {"spin_image_roots": recognising.SPIN_IMAGE_ROOTS.describe, **named}.items():
         icds = [category.width(over_things=True).icd or np.nan for category in taught(6, 2, describe).values()]
         print(f"PRIOR_SPREADS: {name} {np.median(icds):.3g}", flush=True)
     kinds = taught(6, 3, recognising.UPRIGHT.describe)
@@ -247,8 +247,8 @@ def tables() -> None:
     seen, tested = ([found_on_table(seed) for seed in seeds] for seeds in (range(1, 7), range(31, 37)))
     print(f"\nthings found on {len(tested)} laid tables: {sum(map(len, tested))}")
     ways = (
-        ("equations 1-4", recognising.ROOTS, PAPER),
-        ("spin images", recognising.ROOTS, DEFAULT),
+        ("equations 1-4", recognising.SPIN_IMAGE_ROOTS, PAPER),
+        ("spin images", recognising.SPIN_IMAGE_ROOTS, DEFAULT),
         ("by default", recognising.UPRIGHT, DEFAULT),
     )
     for said, way, settings in ways:

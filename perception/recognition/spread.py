@@ -34,7 +34,7 @@ PRIOR_SPREADS: Mapping[str, float] = MappingProxyType(
 )
 """By a descriptor's name, with its default settings: the median ICD over things of 16 kinds of simulated tableware, six
 things of each, two views of each thing (benchmarks/bench_recognition.py --constants). Roots of spin images are those of
-:data:`deixis.learning.views.ROOTS`."""
+:data:`deixis.learning.views.SPIN_IMAGE_ROOTS`."""
 
 
 @dataclass(frozen=True)

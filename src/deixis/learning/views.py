@@ -34,8 +34,8 @@ from deixis.perception.scene import Scene
 
 
 @dataclass(frozen=True)
-class Way:
-    """A way to compare views: what describes them, under which name a view keeps that, and how distances are judged."""
+class ViewDescriptor:
+    """A descriptor of views: what computes it, the name under which a view keeps it, and how distances are judged."""
 
     name: str
     describer: Describer
@@ -55,19 +55,20 @@ class Way:
         return f"{self.name} {self.describer} {self.settings}"
 
 
-UPRIGHT = Way("upright", UprightDescriber())
-"""How views in a table's frame are compared, where all of them are."""
+UPRIGHT = ViewDescriptor("upright", UprightDescriber())
+"""The descriptor of views in a table's frame, where all of them have it."""
 
-ROOTS = Way("spin_image_roots", SpinImageDescriber(support=0.2), root=True)
-"""How all others are, whatever their frame, and views that were kept before there was another way. With square roots
-the distance of equation 1 is Hellinger's; a support of 20 cm takes in most of a thing on a table."""
+SPIN_IMAGE_ROOTS = ViewDescriptor("spin_image_roots", SpinImageDescriber(support=0.2), root=True)
+"""The descriptor of all other views, whatever their frame, and of views that were kept before there was another one.
+
+With square roots the distance of equation 1 is Hellinger's; a support of 20 cm takes in most of a thing on a table."""
 
 TABLE = "table"
 """The frame in which z is up, and 0 on the table."""
 
 DISTANCES, IDS, COMPARED = "distances", "views", "compared"
-"""The names of a category's state: D_V between its views, the ids of the views, in the same order, and the way in which
-they were compared."""
+"""The names of a category's state: D_V between its views, the ids of the views, in the same order, and the descriptor
+in which they were compared."""
 
 GROUNDING = "grounding"
 """Who teaches what a grounding has found."""
@@ -119,17 +120,17 @@ class Recognised:
     answers: Mapping[str, Recognition]
 
 
-def ways_in(frame: str) -> tuple[Way, ...]:
-    """The ways to compare what is seen in a frame, the best first."""
-    return (UPRIGHT, ROOTS) if frame == TABLE else (ROOTS,)
+def descriptors_in(frame: str) -> tuple[ViewDescriptor, ...]:
+    """The descriptors to compare what is seen in a frame, the best first."""
+    return (UPRIGHT, SPIN_IMAGE_ROOTS) if frame == TABLE else (SPIN_IMAGE_ROOTS,)
 
 
 def view_of(cloud: PointCloud, frame: str, category: str, time: datetime, metadata: Mapping[str, Any]) -> View:
     """A view of a thing of a category, ready to be kept; raises CloudError where nothing on it can be described.
 
-    It is kept with what every way needs in which it can be compared.
+    It is kept with what every descriptor needs in which it can be compared.
     """
-    descriptors = {way.name: way.describe(cloud) for way in ways_in(frame)}
+    descriptors = {descriptor.name: descriptor.describe(cloud) for descriptor in descriptors_in(frame)}
     if not all(map(len, descriptors.values())):
         raise CloudError("the thing has too few points to say what it looks like; perceive it from nearer")
     points = np.ascontiguousarray(cloud.points[cloud.finite], dtype=np.float32)
@@ -152,21 +153,21 @@ def keep_views(memory: PerceptualMemory, views: Sequence[View]) -> tuple[Taught,
         place = {key.id: key.category for key in memory.listing()}
         kept = {name: list(memory.views(name)) for name in _involved(memory, views, place)}
         grown = {name: [*kept.get(name, ()), *_of(views, name)] for name in (*kept, *(view.category for view in views))}
-        ways = {name: way_of(together, (UPRIGHT, ROOTS)) for name, together in grown.items()}
-        known = {name: instances_of(memory.category(name), own, ways[name]) for name, own in kept.items()}
+        chosen = {name: descriptor_of(together, (UPRIGHT, SPIN_IMAGE_ROOTS)) for name, together in grown.items()}
+        known = {name: instances_of(memory.category(name), own, chosen[name]) for name, own in kept.items()}
         taught = []
         for view in views:
             before = place.get(view.id)
             if before is not None:
                 known[before] = known[before].without_view(view.id)
             category = known.get(view.category, InstanceCategory(view.category))
-            descriptors = view.descriptors[ways[view.category].name]
-            known[view.category] = category.with_view(view.id, descriptors, thing_of(view))
+            described = view.descriptors[chosen[view.category].name]
+            known[view.category] = category.with_view(view.id, described, thing_of(view))
             place[view.id] = view.category
             corrected = before if before != view.category else None
             again = before == view.category
             taught.append(Taught(view.id, view.category, len(known[view.category]), corrected, again))
-        records = [record_of(category, ways[name]) for name, category in known.items() if len(category)]
+        records = [record_of(category, chosen[name]) for name, category in known.items() if len(category)]
         memory.write(Batch(views, records))
         for name, category in known.items():
             if not len(category):
@@ -193,13 +194,14 @@ def _of(views: Iterable[View], category: str) -> list[View]:
     return [view for view in views if view.category == category]
 
 
-def way_of(views: Sequence[View], ways: Sequence[Way]) -> Way:
-    """The first of some ways in which these views can all be compared."""
-    return next((way for way in ways if all(way.name in view.descriptors for view in views)), ROOTS)
+def descriptor_of(views: Sequence[View], descriptors: Sequence[ViewDescriptor]) -> ViewDescriptor:
+    """The first of some descriptors in which these views can all be compared."""
+    shared = (descriptor for descriptor in descriptors if all(descriptor.name in view.descriptors for view in views))
+    return next(shared, SPIN_IMAGE_ROOTS)
 
 
 def instances_of(
-    record: CategoryRecord, views: Iterable[View], way: Way, pack: Pack = PackedViews.of
+    record: CategoryRecord, views: Iterable[View], descriptor: ViewDescriptor, pack: Pack = PackedViews.of
 ) -> InstanceCategory:
     """A category with its views' descriptors; distances that its record has are not worked out again.
 
@@ -210,45 +212,45 @@ def instances_of(
 
     def described() -> Iterator[tuple[str, NDArray[np.float32]]]:
         for view in views:
-            if way.name not in view.descriptors:
+            if descriptor.name not in view.descriptors:
                 continue
             if (thing := thing_of(view)) is not None:
                 things[view.id] = thing
-            if len(view.descriptors[way.name]):
-                yield view.id, view.descriptors[way.name]
+            if len(view.descriptors[descriptor.name]):
+                yield view.id, view.descriptors[descriptor.name]
             else:
                 empty.append(view.id)
 
     packed = pack(described())
-    if not _compared(record, packed.ids, way):
+    if not _compared(record, packed.ids, descriptor):
         return InstanceCategory.among(record.name, packed, tuple(empty), things)
     order = np.argsort(np.argsort(np.array(packed.ids, dtype=str)))
     distances = np.asarray(record.state[DISTANCES])[np.ix_(order, order)]
     return InstanceCategory(record.name, packed, distances, tuple(empty), things)
 
 
-def _compared(record: CategoryRecord, ids: Iterable[str], way: Way) -> bool:
-    """Whether a record has the distances between these views, in this way."""
-    compared = record.metadata.get(COMPARED, ROOTS.name)  # before there was a choice
-    return compared == way.name and DISTANCES in record.state and record.metadata.get(IDS) == sorted(ids)
+def _compared(record: CategoryRecord, ids: Iterable[str], descriptor: ViewDescriptor) -> bool:
+    """Whether a record has the distances between these views, in this descriptor."""
+    compared = record.metadata.get(COMPARED, SPIN_IMAGE_ROOTS.name)  # before there was a choice
+    return compared == descriptor.name and DISTANCES in record.state and record.metadata.get(IDS) == sorted(ids)
 
 
-def record_of(category: InstanceCategory, way: Way) -> CategoryRecord:
+def record_of(category: InstanceCategory, descriptor: ViewDescriptor) -> CategoryRecord:
     """What a category has learned, its views in the order of their ids."""
     order = np.argsort(np.array(category.views.ids, dtype=str))
     return CategoryRecord(
         category.name,
         {DISTANCES: category.distances[np.ix_(order, order)]},
-        {IDS: sorted(category.views.ids), COMPARED: way.name},
+        {IDS: sorted(category.views.ids), COMPARED: descriptor.name},
     )
 
 
 @dataclass(frozen=True)
 class Known:
-    """A recogniser, and the way in which it compares."""
+    """A recogniser, and the descriptor in which it compares."""
 
     recogniser: Recogniser
-    way: Way
+    descriptor: ViewDescriptor
 
 
 def recogniser_of(memory: LevelMemory, frame: str, progress: Progress | None = None) -> Known:
@@ -259,35 +261,40 @@ def recogniser_of(memory: LevelMemory, frame: str, progress: Progress | None = N
     """
     with memory.exclusive():
         names, listed = memory.categories(), list(memory.listing())
-        way = _way_in(frame, memory, listed)
+        descriptor = _descriptor_in(frame, memory, listed)
         views = {(key.category, key.id) for key in listed}
         pack = PackedViews.of if len(views) < MAPPED else mapped
         categories = []
         for name in names:
-            categories.append(instances_of(memory.category(name), memory.views(name), way, pack))
+            categories.append(instances_of(memory.category(name), memory.views(name), descriptor, pack))
             if progress is not None:  # what was imported may have no distances yet, and then this takes longest
                 progress(len(categories), len(names))
-        known = Recogniser.of(categories, way.settings)
-        calibration = kept_calibration(memory.path, views, str(way))
+        known = Recogniser.of(categories, descriptor.settings)
+        calibration = kept_calibration(memory.path, views, str(descriptor))
         if calibration is not None:
-            return Known(replace(known, calibration=calibration), way)
+            return Known(replace(known, calibration=calibration), descriptor)
         known = known.calibrated(progress)
-        keep_calibration(memory.path, known.calibration, views, str(way))
-    return Known(known, way)
+        keep_calibration(memory.path, known.calibration, views, str(descriptor))
+    return Known(known, descriptor)
 
 
-def _way_in(frame: str, memory: PerceptualReading, listed: Iterable[ViewKey]) -> Way:
-    """The first way in a frame in which all that was taught can be compared: by the categories' records, and where they
-    do not say so, by their views, until one cannot."""
+def _descriptor_in(frame: str, memory: PerceptualReading, listed: Iterable[ViewKey]) -> ViewDescriptor:
+    """The first descriptor in a frame in which all that was taught can be compared: by the categories' records, and
+    where they do not say so, by their views, until one cannot."""
     ids = defaultdict(list)
     for key in listed:
         ids[key.category].append(key.id)
 
-    def can(name: str, way: Way) -> bool:
-        said = _compared(memory.category(name), ids[name], way)
-        return said or all(way.name in view.descriptors for view in memory.views(name))
+    def can(name: str, descriptor: ViewDescriptor) -> bool:
+        said = _compared(memory.category(name), ids[name], descriptor)
+        return said or all(descriptor.name in view.descriptors for view in memory.views(name))
 
-    return next((way for way in ways_in(frame) if way is ROOTS or all(can(name, way) for name in ids)), ROOTS)
+    usable = (
+        descriptor
+        for descriptor in descriptors_in(frame)
+        if descriptor is SPIN_IMAGE_ROOTS or all(can(name, descriptor) for name in ids)
+    )
+    return next(usable, SPIN_IMAGE_ROOTS)
 
 
 def recognise(known: Known, scene: Scene, clouds: Sequence[PointCloud | None]) -> Recognised:
@@ -295,7 +302,7 @@ def recognise(known: Known, scene: Scene, clouds: Sequence[PointCloud | None]) -
     answers, things = {}, []
     for thing, cloud in zip(scene.objects, clouds, strict=True):
         if cloud is not None:
-            answer = known.recogniser.recognise(known.way.describe(cloud))
+            answer = known.recogniser.recognise(known.descriptor.describe(cloud))
             answers[thing.id] = answer
             if answer.label is not None and thing.label is None:
                 sure = float(np.clip(answer.probability, LEAST_CONFIDENCE, MOST_CONFIDENCE))
