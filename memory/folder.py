@@ -23,7 +23,7 @@ from deixis.memory.owner import LOCK_FILE
 from deixis.memory.semantic.queries.union import merge_if_overlapping
 from deixis.memory.semantic.rdf.graphs import GRAPHS
 
-VERSION = 1
+VERSION = 2
 
 _GRAPHS_0 = "urn:deixis:graph:"
 
@@ -42,7 +42,12 @@ def _from_0(old: ox.Store, new: ox.Store) -> None:
     merge_if_overlapping(new)
 
 
-MIGRATIONS: dict[int, Callable[[ox.Store, ox.Store], None]] = {0: _from_0}
+def _from_1(old: ox.Store, new: ox.Store) -> None:
+    """Version 1 kept no statistics; the first lesson that is learned or forgotten counts those that are there."""
+    new.bulk_extend(old)
+
+
+MIGRATIONS: dict[int, Callable[[ox.Store, ox.Store], None]] = {0: _from_0, 1: _from_1}
 """From a version to the step that leads to the next."""
 
 

@@ -13,7 +13,7 @@ Verified(semantic=True, perceptual=False, findings=())
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -37,6 +37,10 @@ _INDEXES = {
 """What the store looks quads up by, one index each, as places in a quad."""
 
 
+Stale = Callable[[ox.Store], Iterable[str]]
+"""What says of a store what in it is not as it would be worked out anew."""
+
+
 @dataclass(frozen=True)
 class Verified:
     """Which of the two stores are there and were read, and what in them is not as it was written."""
@@ -46,18 +50,19 @@ class Verified:
     findings: tuple[Finding, ...]
 
 
-def verify(memory: Path, progress: Progress | None = None) -> Verified:
+def verify(memory: Path, progress: Progress | None = None, stale: Stale | None = None) -> Verified:
     """Reads both stores of a memory to their end; changes neither's content.
 
+    ``stale`` says of a semantic store that could be read, a line each, what in it does not follow from its lessons.
     Raises MemoryFormatError for a folder that is no memory, MemoryBusyError where another process has it.
     """
     semantic = files.inspect(memory) not in (State.ABSENT, State.EMPTY)
     perceptual = has_views(memory)
-    findings = verify_semantic(memory, progress) if semantic else ()
+    findings = verify_semantic(memory, progress, stale) if semantic else ()
     return Verified(semantic, perceptual, (*findings, *_verify_perceptual(memory, progress)))
 
 
-def verify_semantic(memory: Path, progress: Progress | None = None) -> tuple[Finding, ...]:
+def verify_semantic(memory: Path, progress: Progress | None = None, stale: Stale | None = None) -> tuple[Finding, ...]:
     """What in the semantic store is not as it was written; ``progress`` is told of indexes done, and of their number.
 
     Raises MemoryBusyError where another process has it.
@@ -65,7 +70,11 @@ def verify_semantic(memory: Path, progress: Progress | None = None) -> tuple[Fin
     lock = OwnerLock.acquire(memory)
     try:
         files.check_store_opens(memory)
-        return tuple(_findings(ox.Store.read_only(str(files.store_in(memory))), progress))
+        store = ox.Store.read_only(str(files.store_in(memory)))
+        findings = tuple(_findings(store, progress))
+        if stale is not None and not findings:
+            findings = tuple(Finding(files.STORE, line) for line in stale(store))
+        return findings
     except MemoryFormatError as error:
         return (Finding(files.STORE, files.one_line(error)),)
     finally:

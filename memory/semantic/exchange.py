@@ -63,6 +63,16 @@ def import_dump(file: str | Path, target: str | Path) -> None:
             memory.commit(change)
 
 
+def merging_dump(memory: SemanticMemory, file: Path) -> Change:
+    """The change that takes a file into an open memory, to be committed with what follows from both.
+
+    What the file says follows is left out. Raises as :func:`import_dump`.
+    """
+    dump = read_dump(file)
+    dump.canonical[GraphName.INFERRED].clear()
+    return _merged(memory, dump, file)
+
+
 def _fill(store: ox.Store, dump: Dump) -> None:
     from deixis.memory.semantic.validation.validate import check_store
 
@@ -94,7 +104,11 @@ def _merged(memory: SemanticMemory, dump: Dump, file: Path) -> Change:
     for name, graph, loose in _loose(store, dump):
         statements += ledger.insertion(graph, sorted(loose, key=str))
         added[name].update(loose)
-    lessons = Change({name: frozenset(triples) for name, triples in added.items()}, {}, tuple(statements))
+    new_ones = {
+        name: {triple for triple in triples if ledger.quad_of(triple, graph_iri(name)) not in store}
+        for name, triples in added.items()
+    }
+    lessons = Change({name: frozenset(triples) for name, triples in new_ones.items()}, {}, tuple(statements))
     new = {which: sorted(triples, key=str) for which, triples in dump.models.items() if not memory.models(which)}
     return together(lessons, modelling(store, new))
 

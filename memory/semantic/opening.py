@@ -133,6 +133,6 @@ def _update_package(opened: Opened) -> None:
     with committed(opened.folder):
         statements = list(ledger.package_update(opened.store, packaged()))
         if statements:
-            opened.store.update(" ;\n".join(statements))
+            opened.store.update(" ;\n".join([*statements, *ledger.keeping_up(opened.store, None)]))
             opened.store.flush()
         files.write_mark(opened.folder, {**mark, "package": digest})

@@ -8,16 +8,17 @@
 
 from __future__ import annotations
 
+import contextlib
 import shutil
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import pyoxigraph as ox
 
 from deixis.memory import folder as files
-from deixis.memory.errors import MemoryFormatError, RejectedWriteError, UnknownLessonError
-from deixis.memory.folder import committed, reading
+from deixis.memory.errors import MemoryFormatError, MemoryWriteError, RejectedWriteError, UnknownLessonError
+from deixis.memory.folder import committed, read_mark, reading, write_mark
 from deixis.memory.owner import Closing
 from deixis.memory.semantic.opening import Opened, open_memory
 from deixis.memory.semantic.queries.union import default_graph, merge_if_overlapping, merging
@@ -33,7 +34,17 @@ from deixis.memory.semantic.rdf.change import (
     named,
     together,
 )
-from deixis.memory.semantic.rdf.graphs import MERGED, UNION, GraphName, ModelSet, graph_iri, loaded_graph, models_graph
+from deixis.memory.semantic.rdf.graphs import (
+    COUNTED,
+    KEPT_UP,
+    MERGED,
+    UNION,
+    GraphName,
+    ModelSet,
+    graph_iri,
+    loaded_graph,
+    models_graph,
+)
 from deixis.memory.semantic.stats import MemoryStats, count
 from deixis.ontology.relation import nearest
 
@@ -49,25 +60,47 @@ def load_aside(opened: Opened, contributions: Mapping[GraphName, Iterable[ox.Tri
 
     if GraphName.INFERRED in contributions:
         raise RejectedWriteError("what is inferred cannot be loaded: it follows from the rest")
+
+    def fill(aside: Path) -> None:
+        opened.store.backup(aside)
+        store = ox.Store(aside)
+        for name, triples in contributions.items():
+            store.bulk_extend(_quads(opened.store, GraphName(name), triples))
+        for quad in list(store.quads_for_pattern(COUNTED, KEPT_UP, None, COUNTED)):
+            store.remove(quad)  # what follows from everything is to be worked out anew
+        merge_if_overlapping(store)
+        check_store(store)
+        store.flush()
+
+    _swap_in(opened, fill, files.read_mark(opened.folder))
+
+
+def rewrite(opened: Opened, mark: dict[str, Any]) -> None:
+    """Writes the store anew with what it holds, and nothing else: the store itself never gives back the texts of what
+    was removed."""
+
+    def fill(aside: Path) -> None:
+        store = ox.Store(aside)
+        store.bulk_extend(opened.store)
+        store.flush()
+
+    _swap_in(opened, fill, mark)
+
+
+def _swap_in(opened: Opened, fill: Callable[[Path], None], mark: dict[str, Any]) -> None:
+    """Puts a store that ``fill`` makes in a folder in the place of the open one; where it fails, nothing is changed."""
     aside = opened.folder / files.NEW
     with committed(opened.folder):
         shutil.rmtree(aside, ignore_errors=True)
         opened.store.flush()
-        opened.store.backup(aside)
         try:
-            store = ox.Store(aside)
-            for name, triples in contributions.items():
-                store.bulk_extend(_quads(opened.store, GraphName(name), triples))
-            merge_if_overlapping(store)
-            check_store(store)
-            store.flush()
-            del store
+            fill(aside)
         except BaseException:
             shutil.rmtree(aside, ignore_errors=True)
             raise
         opened.shut()
         try:
-            files.swap(opened.folder, files.read_mark(opened.folder))
+            files.swap(opened.folder, mark)
         finally:
             opened.reopen()
 
@@ -86,12 +119,17 @@ def _quads(store: ox.Store, name: GraphName, triples: Iterable[ox.Triple]) -> It
         yield quad
 
 
+FEW_FORGOTTEN = 10
+"""Forgotten lessons whose room on the disk is not worth writing the store anew."""
+
+
 class SemanticMemory(Closing):
     """The semantic memory in one folder, owned by this process until it is closed."""
 
     def __init__(self, opened: Opened) -> None:
         self._opened: Opened | None = opened
         self._views: list[rdflib.Dataset] = []
+        self._forgets = 0  # how many lessons were forgotten
         self._union: list[ox.NamedNode] | None = None  # the graphs that a query looks at, since the last write
 
     @classmethod
@@ -104,11 +142,18 @@ class SemanticMemory(Closing):
         return cls(open_memory(Path(path), create))
 
     def close(self) -> None:
-        """Lets go of the folder; views made by :meth:`dataset` are of no use any more."""
+        """Lets go of the folder; views made by :meth:`dataset` are of no use any more.
+
+        Where as much was forgotten as is left, the disk that it took is given back.
+        """
         if self._opened is not None:
             opened, self._opened = self._opened, None
             self._drop_views()
-            opened.close()
+            try:
+                if self._forgets:
+                    _give_back(opened, self._forgets)
+            finally:
+                opened.close()
 
     @property
     def path(self) -> Path:
@@ -148,15 +193,28 @@ class SemanticMemory(Closing):
         names. Raises RejectedWriteError, having written nothing, where a lesson is known already, says nothing, or
         would break the shapes.
         """
-        changes, known = [], self.lessons()
+        self.commit(
+            together(self.arrival(lessons), concluding(self.store, inferred), modelling(self.store, models or {}))
+        )
+
+    def arrival(self, lessons: Mapping[str, Mapping[GraphName, Sequence[ox.Triple]]]) -> Change:
+        """The change that new lessons make, to be committed with what follows from it; raises as :meth:`learn_all`."""
+        changes = []
         for lesson, contributions in lessons.items():
-            if lesson in known:
+            if self.knows(lesson):
                 raise RejectedWriteError(f"lesson '{lesson}' is known already: forget it first, or choose another name")
             said = incoming(lesson, contributions)
             if not any(said.values()):
                 raise RejectedWriteError(f"lesson '{lesson}' says nothing: give at least one triple")
             changes.append(arriving(self.store, lesson, said))
-        self.commit(together(*changes, concluding(self.store, inferred), modelling(self.store, models or {})))
+        return together(*changes)
+
+    def departure(self, lesson: str) -> Change:
+        """The change that takes a lesson back, to be committed with what follows; raises as :meth:`forget`."""
+        self._known(lesson)
+        with reading(self.path):
+            self._forgets += 1
+            return departing(self.store, lesson)
 
     def forget(self, lesson: str, inferred: Sequence[ox.Triple], models: Models | None = None) -> None:
         """Takes back what only this lesson contributed, and replaces the inferred graph and models, in one step.
@@ -164,8 +222,7 @@ class SemanticMemory(Closing):
         Raises UnknownLessonError, naming the nearest one, where there is no such lesson; RejectedWriteError where
         something that stays depends on what would go.
         """
-        self._known(lesson)
-        gone = departing(self.store, lesson)
+        gone = self.departure(lesson)
         self.commit(together(gone, concluding(self.store, inferred), modelling(self.store, models or {})))
 
     def conclude(self, inferred: Sequence[ox.Triple], models: Models | None = None) -> None:
@@ -178,18 +235,21 @@ class SemanticMemory(Closing):
         """Replaces the sets of learned models that are given, in one step; an empty set takes them away."""
         change = modelling(self.store, models)
         if change.statements:
-            self.commit(change)
+            self.commit(change, self.kept_up() if ModelSet.SIZES not in models else None)
 
-    def models(self, which: ModelSet) -> list[ox.Triple]:
-        """The triples of a set of learned models."""
+    def models(self, which: ModelSet, properties: Iterable[str] | None = None) -> list[ox.Triple]:
+        """The triples of a set of learned models; with ``properties`` those alone, without reading the others."""
+        graph = models_graph(which)
         with reading(self.path):
-            return list(ledger.triples_in(self.store, models_graph(which)))
+            if properties is None:
+                return list(ledger.triples_in(self.store, graph))
+            named = [ox.NamedNode(str(name)) for name in properties]
+            return [quad.triple for name in named for quad in self.store.quads_for_pattern(None, name, None, graph)]
 
     def remaining(self, lesson: str) -> dict[GraphName, list[ox.Triple]]:
         """What the canonical graphs would hold without that lesson; raises UnknownLessonError where there is none."""
-        self._known(lesson)
+        gone = self.departure(lesson).removed
         with reading(self.path):
-            gone = departing(self.store, lesson).removed
             return {
                 name: [triple for triple in self.triples(name) if triple not in gone.get(name, frozenset())]
                 for name in GraphName
@@ -209,6 +269,11 @@ class SemanticMemory(Closing):
         """The lessons in the order learned."""
         with reading(self.path):
             return ledger.lessons(self.store)
+
+    def knows(self, lesson: str) -> bool:
+        """Whether there is a lesson of that id."""
+        with reading(self.path):
+            return ledger.knows(self.store, lesson)
 
     def contributions(self, lesson: str) -> dict[GraphName, list[ox.Triple]]:
         """What one lesson contributed, by graph; raises UnknownLessonError where there is none."""
@@ -246,20 +311,30 @@ class SemanticMemory(Closing):
         with reading(self.path):
             return count(self.store, self.path, len(self.lessons()))
 
-    def commit(self, change: Change) -> None:
-        """Writes a change in one step, if what comes of it keeps to the shapes; raises RejectedWriteError if not."""
+    def commit(self, change: Change, kept_up: str | None = None) -> None:
+        """Writes a change in one step, if what comes of it keeps to the shapes; raises RejectedWriteError if not.
+
+        ``kept_up`` says that what follows from everything is right after the change, and for which rules; see
+        :meth:`kept_up`. Without it, what follows is to be worked out anew.
+        """
         from deixis.memory.semantic.validation.validate import check_change
 
         check_change(self.store, change)
         self._union = None
         with committed(self.path):
             statements = [*change.statements, *merging(self.store, change.added, change.removed)]
+            statements += ledger.keeping_up(self.store, kept_up)
             self.store.update(" ;\n".join(statements))
             self.store.flush()
 
+    def kept_up(self) -> str | None:
+        """The rules by which the inferred graph and the statistics are right; None where they are to be made anew."""
+        with reading(self.path):
+            return ledger.kept_up(self.store)
+
     def _known(self, lesson: str) -> None:
-        known = self.lessons()
-        if lesson not in known:
+        if not self.knows(lesson):
+            known = self.lessons()
             near = nearest(lesson, list(known))
             hint = (
                 f"did you mean '{near}'?" if near else f"it holds: {', '.join(known[-5:])}" if known else "it has none"
@@ -270,3 +345,18 @@ class SemanticMemory(Closing):
         for view in self._views:
             view.store._store = ox.Store()  # type: ignore[attr-defined]
         self._views.clear()
+
+
+def _give_back(opened: Opened, forgotten: int) -> None:
+    """Writes a store anew that holds no more lessons than were forgotten since it was; where that fails, it stays.
+
+    So every lesson that is forgotten pays for one that is copied, however many there are.
+    """
+
+    with contextlib.suppress(MemoryWriteError, MemoryFormatError, OSError):
+        mark = read_mark(opened.folder)
+        gone = int(mark.pop("forgotten", 0)) + forgotten
+        if gone >= FEW_FORGOTTEN and gone >= len(ledger.lessons(opened.store)):
+            rewrite(opened, mark)
+        else:
+            write_mark(opened.folder, {**mark, "forgotten": gone})

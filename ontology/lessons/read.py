@@ -24,23 +24,14 @@ def layouts(triples: Iterable[ox.Triple], relations: Relations) -> tuple[LayoutC
     return tuple(_layout(layout, index, relations) for layout in index.subjects(W3C.RDFS_SUB_CLASS_OF, DX.LAYOUT))
 
 
-def layout_named(known: Iterable[LayoutConcept], name: str, lessons: tuple[str, ...]) -> LayoutConcept:
-    """The layout of that name, learned last among several; or the one of the lesson with that id.
-
-    ``lessons`` are all lessons in the order learned. Raises UnknownTermError with the nearest name there is.
-    """
-    by_lesson = {layout.lesson: layout for layout in known}
-    if name in by_lesson:
-        return by_lesson[name]
-    for lesson in reversed(lessons):
-        if lesson in by_lesson and by_lesson[lesson].name == name:
-            return by_lesson[lesson]
-    names = sorted({layout.name for layout in by_lesson.values()})
+def unknown_layout(name: str, known: Iterable[str]) -> UnknownTermError:
+    """The error that says that no layout has a name, with the nearest of those that there are."""
+    names = sorted(set(known))
     if not names:
-        raise UnknownTermError(f"no layout '{name}' has been learned, nor any other")
+        return UnknownTermError(f"no layout '{name}' has been learned, nor any other")
     hint = nearest(name, names)
     told = f"did you mean '{hint}'?" if hint else f"the learned ones are: {', '.join(names)}"
-    raise UnknownTermError(f"no layout '{name}' has been learned; {told}")
+    return UnknownTermError(f"no layout '{name}' has been learned; {told}")
 
 
 def _layout(layout: str, index: TripleIndex, relations: Relations) -> LayoutConcept:

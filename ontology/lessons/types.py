@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 from typing import Protocol
@@ -173,13 +173,19 @@ class WordLesson:
     proved_best: bool = False
 
 
-def next_lesson_id(name: str, known: Sequence[str]) -> str:
-    """The id of a new lesson about a layout of this name.
+def next_lesson_id(name: str, taken: Callable[[str], bool]) -> str:
+    """The id of a new lesson about a layout of this name; ``taken`` says which are.
 
-    >>> next_lesson_id("formal_dinner", ["formal_dinner-1", "picnic-7"])
+    The number is one that is free behind one that is taken. It is looked for in steps that double, since there may be
+    thousands of lessons of one name.
+
+    >>> next_lesson_id("formal_dinner", ["formal_dinner-1", "picnic-7"].__contains__)
     'formal_dinner-2'
     """
-    number = 1
-    while f"{name}-{number}" in known:
-        number += 1
-    return f"{name}-{number}"
+    used, free = 0, 1
+    while taken(f"{name}-{free}"):
+        used, free = free, 2 * free
+    while free - used > 1:
+        middle = (used + free) // 2
+        used, free = (middle, free) if taken(f"{name}-{middle}") else (used, middle)
+    return f"{name}-{free}"

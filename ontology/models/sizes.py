@@ -31,9 +31,21 @@ class SizeModel:
     views: float = 0.0
 
 
+SIZE_PROPERTIES = (
+    W3C.RDF_TYPE, DX.OF_KIND, DX.MEDIAN_LENGTH, DX.LENGTH_DEVIATION, DX.MEDIAN_ASPECT, DX.ASPECT_DEVIATION,
+    DX.RELATIVE_LENGTH, DX.VIEW_COUNT,
+)  # fmt: skip
+"""What is said of a size model, but for the scenes that it is derived from."""
+
+
+def size_iri(kind: str) -> str:
+    """The model of the size of a kind (its class IRI)."""
+    return learned_iri("size-model", kind.removeprefix(BASE).removeprefix(LEARNED))
+
+
 def size_triples(kind: str, model: SizeModel, scenes: Iterable[str]) -> Iterator[ox.Triple]:
     """The size of a kind (its class IRI), learned from the scenes of those IRIs."""
-    about = Description(learned_iri("size-model", kind.removeprefix(BASE).removeprefix(LEARNED)))
+    about = Description(size_iri(kind))
     about.say(W3C.RDF_TYPE, iri(DX.SIZE_MODEL))
     about.say(DX.OF_KIND, iri(kind))
     about.say(DX.MEDIAN_LENGTH, typed(_median(model.length[0])))

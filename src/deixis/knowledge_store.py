@@ -69,11 +69,11 @@ class KnowledgeStore(Closing):
     def _in_force(self) -> Meaning:
         from deixis.memory.semantic.rdf.graphs import ModelSet
         from deixis.ontology.models.relation_triples import models_from_triples
-        from deixis.ontology.models.sizes import sizes_from_triples
+        from deixis.ontology.models.sizes import SIZE_PROPERTIES, sizes_from_triples
         from deixis.reasoning.grounding.evidence.meaning import shipped_models
 
         words = models_from_triples(self.memory().models(ModelSet.WORDS))
-        sizes = sizes_from_triples(self.memory().models(ModelSet.SIZES))
+        sizes = sizes_from_triples(self.memory().models(ModelSet.SIZES, SIZE_PROPERTIES))
         return Meaning(shipped_models().replaced(*words) if words else None, sizes)
 
     def recollection(self) -> Recollection:
@@ -83,11 +83,11 @@ class KnowledgeStore(Closing):
 
         return remembered(self.memory(), self.ontology) if self.exists() else Recollection(())
 
-    def keep(self, lesson: Lesson) -> None:
-        """Writes a lesson, and what follows; raises DeixisError, having changed nothing, where it is refused."""
+    def keep(self, lessons: Sequence[Lesson]) -> None:
+        """Write lessons, and what follows, in one commit; raise DeixisError, having changed nothing, if refused."""
         from deixis.learning.update import keep
 
-        keep(self.memory(create=True), self.ontology, lesson)
+        keep(self.memory(create=True), self.ontology, lessons)
         self._meaning = None
 
     def learn_relations(self, examples: Sequence[tuple[Script, Scene]] = (), strength: float = 3.0) -> LearnedWords:
@@ -100,8 +100,8 @@ class KnowledgeStore(Closing):
         from deixis.learning.update import keep_words
         from deixis.learning.words import new_lessons
 
-        ids = self.memory().lessons() if self.exists() else ()
-        lessons, left_out = new_lessons(examples, self.recollection(), ids)
+        taken = self.memory().knows if self.exists() else lambda id: False
+        lessons, left_out = new_lessons(examples, self.recollection(), taken)
         if not lessons and not self.exists():
             none = f"nothing is remembered at {self.path}, and no example teaches anything"
             raise NothingFoundError("; ".join((f"nothing to learn: {none}", *left_out)))
@@ -147,9 +147,9 @@ class KnowledgeStore(Closing):
 
     def layout(self, name: str) -> LayoutConcept:
         """The layout of that name, learned last, or of the lesson with that id; raises UnknownTermError for none."""
-        from deixis.ontology.lessons.read import layout_named
+        from deixis.learning.recollection import find_layout
 
-        return layout_named(self.layouts(), name, self.memory().lessons())
+        return find_layout(self.memory(), name, self.ontology.relations)
 
     def show(self, name: str) -> str:
         """A learned layout as a script again."""

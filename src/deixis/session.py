@@ -107,7 +107,20 @@ class Session(Closing):
         for :meth:`learn_relations`. Sizes are learned at once. What a teacher named stays of that name. Raises
         DeixisError, having changed nothing, where the script contradicts itself or what was learned before.
         """
-        return learn(script, scene, self.knowledge_store, self.view_store, engine, time_limit)
+        (learned,) = self.learn_all([(script, scene)], engine, time_limit)
+        return learned
+
+    def learn_all(
+        self,
+        examples: Sequence[tuple[Script | str | Path, Scene | str | Path | Mapping[str, Any]]],
+        engine: str = "exact",
+        time_limit: float = DEFAULT_TIME_LIMIT,
+    ) -> tuple[Learned, ...]:
+        """Learn from many scripts, each with its scene, as :meth:`learn` does from one: all of them, or none.
+
+        Each is grounded with what the memory had learned before this call. ``time_limit`` is for each grounding.
+        """
+        return learn(examples, self.knowledge_store, self.view_store, engine, time_limit)
 
     def check(
         self,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import chain
 
@@ -19,7 +19,10 @@ Models = Mapping[ModelSet, Sequence[ox.Triple]]
 
 @dataclass(frozen=True)
 class Change:
-    """What a write adds to and removes from the canonical graphs, and the operations of its one update."""
+    """What a write adds to the canonical graphs and removes from them, and the operations of its one update.
+
+    What is added was not there, and what is removed was: what a lesson says that is known already changes nothing.
+    """
 
     added: ledger.Triples = field(default_factory=dict)
     removed: ledger.Triples = field(default_factory=dict)
@@ -40,8 +43,13 @@ def together(*changes: Change) -> Change:
 
 def arriving(store: ox.Store, lesson: str, said: Mapping[GraphName, Sequence[ox.Triple]]) -> Change:
     """The change that a new lesson makes, but for what follows from it."""
-    added = {name: frozenset(triples) for name, triples in said.items()}
+    added = {name: frozenset(_new(store, graph_iri(name), triples)) for name, triples in said.items()}
     return Change(added=added, statements=tuple(ledger.arrival(store, lesson, said)))
+
+
+def _new(store: ox.Store, graph: ox.NamedNode, triples: Iterable[ox.Triple]) -> Iterator[ox.Triple]:
+    """Those that a graph does not hold yet."""
+    return (triple for triple in triples if ledger.quad_of(triple, graph) not in store)
 
 
 def departing(store: ox.Store, lesson: str) -> Change:
@@ -70,13 +78,24 @@ def modelling(store: ox.Store, models: Models) -> Change:
 
 
 def _modelling(store: ox.Store, copy: ox.NamedNode, triples: Iterable[ox.Triple]) -> Change:
-    gone, come = ledger.difference(store, copy, triples)
+    return remodelling(store, copy, *ledger.difference(store, copy, triples))
+
+
+def remodelling(store: ox.Store, copy: ox.NamedNode, gone: Sequence[ox.Triple], come: Sequence[ox.Triple]) -> Change:
+    """The change that takes triples out of a copy of learned models and puts others in."""
     only = ledger.only_of(store, copy, GraphName.LEARNED, gone)
     return Change(
-        {GraphName.LEARNED: frozenset(come)},
+        {GraphName.LEARNED: frozenset(_new(store, graph_iri(GraphName.LEARNED), come))},
         {GraphName.LEARNED: frozenset(only)},
         tuple(ledger.replacement(store, copy, GraphName.LEARNED, gone, come)),
     )
+
+
+def reconcluding(gone: Iterable[ox.Triple], come: Iterable[ox.Triple]) -> Change:
+    """The change that takes triples out of the inferred graph and puts others in; those go that are there."""
+    graph, gone, come = graph_iri(GraphName.INFERRED), frozenset(gone), frozenset(come)
+    statements = (*ledger.deletion(graph, sorted(gone, key=str)), *ledger.insertion(graph, sorted(come, key=str)))
+    return Change({GraphName.INFERRED: come}, {GraphName.INFERRED: gone}, statements)
 
 
 def incoming(lesson: str, contributions: Mapping[GraphName, Iterable[ox.Triple]]) -> dict[GraphName, list[ox.Triple]]:

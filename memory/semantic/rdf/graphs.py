@@ -4,7 +4,9 @@ The six canonical graphs are what is known. Beside them stands, for every lesson
 contributed, and for the packaged ontology and shapes likewise: a triple may go when nobody's copy holds it any more.
 What was loaded in bulk belongs to no lesson and stands in the canonical graph alone; of a triple that a lesson
 contributes too, a copy under ``loaded`` says that it stays when the lesson goes. Learned models, which all lessons
-teach together, have copies of their own under ``models``, and are replaced as a whole.
+teach together, have copies of their own under ``models``, and are replaced as a whole. What they are learned from,
+counted, stands under ``statistics``: once for all lessons, and a share for each. It follows from the lessons: no query
+looks at it, and no export has it.
 """
 
 from __future__ import annotations
@@ -19,6 +21,7 @@ LESSONS = GRAPHS + "lesson/"
 PACKAGE = GRAPHS + "package/"
 LOADED = GRAPHS + "loaded/"
 MODELS = GRAPHS + "models/"
+STATISTICS = GRAPHS + "statistics/"
 
 
 class GraphName(StrEnum):
@@ -110,6 +113,18 @@ def lesson_of_graph(iri: str) -> tuple[str, GraphName] | None:
     if not lesson or not slash or name not in CONTRIBUTED:
         return None
     return unquote(lesson), GraphName(name)
+
+
+COUNTED = ox.NamedNode(STATISTICS + "counted")
+"""The graph of what all lessons come to."""
+
+KEPT_UP = ox.NamedNode(STATISTICS + "kept-up")
+"""What the statistics and the inferred graph are right for is said under this, in :data:`COUNTED` about itself."""
+
+
+def share_graph(lesson: str) -> ox.NamedNode:
+    """The graph that holds what one lesson adds to the statistics."""
+    return ox.NamedNode(f"{STATISTICS}lesson/{quote(lesson, safe='')}")
 
 
 def copied_graph(iri: str) -> GraphName | None:

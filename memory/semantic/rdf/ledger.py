@@ -10,6 +10,8 @@ import pyoxigraph as ox
 
 from deixis.memory.semantic.rdf.graphs import (
     CONTRIBUTED,
+    COUNTED,
+    KEPT_UP,
     GraphName,
     copied_graph,
     graph_iri,
@@ -34,10 +36,15 @@ NEVER = datetime.min.replace(tzinfo=UTC)
 def lessons(store: ox.Store) -> tuple[str, ...]:
     """The lessons that a store holds, in the order learned: by when they started, then by id."""
     found = {known[0] for graph in store.named_graphs() if (known := lesson_of_graph(graph.value))}
-    return tuple(sorted(found, key=lambda lesson: (_started(store, lesson), lesson)))
+    return tuple(sorted(found, key=lambda lesson: (started(store, lesson), lesson)))
 
 
-def _started(store: ox.Store, lesson: str) -> datetime:
+def knows(store: ox.Store, lesson: str) -> bool:
+    """Whether a store holds a lesson."""
+    return any(store.contains_named_graph(lesson_graph(lesson, name)) for name in CONTRIBUTED)
+
+
+def started(store: ox.Store, lesson: str) -> datetime:
     """When a lesson started; as text, times do not sort, since the store drops zeros at the end of a fraction."""
     node, episodes = ox.NamedNode(learned_iri("lesson", lesson)), graph_iri(GraphName.EPISODES)
     times = (getattr(quad.object, "value", "") for quad in store.quads_for_pattern(node, _STARTED, None, episodes))
@@ -95,8 +102,9 @@ def arrival(store: ox.Store, lesson: str, contributions: Contributions) -> Itera
 def _unowned(store: ox.Store, name: GraphName, triples: Iterable[ox.Triple]) -> Iterator[ox.Triple]:
     """Those that were loaded in bulk: the canonical graph has them, and no copy does."""
     for triple in triples:
-        graphs = {quad.graph_name for quad in quads_of(store, triple)}
-        if graph_iri(name) in graphs and not any(_copies(graph, name) for graph in graphs):
+        if quad_of(triple, graph_iri(name)) in store and not any(
+            _copies(quad.graph_name, name) for quad in quads_of(store, triple)
+        ):
             yield triple
 
 
@@ -135,6 +143,20 @@ def as_stored(triples: Iterable[ox.Triple]) -> list[ox.Triple]:
     store = ox.Store()
     store.extend(ox.Quad(t.subject, t.predicate, t.object) for t in triples)
     return sorted((quad.triple for quad in store), key=str)
+
+
+def kept_up(store: ox.Store) -> str | None:
+    """The rules by which a store's inferred graph and statistics are right, None where they are to be made anew."""
+    found = list(store.quads_for_pattern(COUNTED, KEPT_UP, None, COUNTED))
+    return found[0].object.value if len(found) == 1 and isinstance(found[0].object, ox.Literal) else None
+
+
+def keeping_up(store: ox.Store, rules: str | None) -> Iterator[str]:
+    """The operations that say by which rules they are right from now on; None: by none."""
+    old = {quad.triple for quad in store.quads_for_pattern(COUNTED, KEPT_UP, None, COUNTED)}
+    new = {ox.Triple(COUNTED, KEPT_UP, ox.Literal(rules))} if rules is not None else set()
+    yield from deletion(COUNTED, old - new)
+    yield from insertion(COUNTED, new - old)
 
 
 def insertion(graph: ox.NamedNode, triples: Iterable[ox.Triple]) -> Iterator[str]:

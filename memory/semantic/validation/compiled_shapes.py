@@ -17,9 +17,10 @@ from pathlib import Path
 import pyoxigraph as ox
 
 from deixis.errors import OntologyError
+from deixis.memory.semantic.rdf.after import Node
 from deixis.memory.semantic.rdf.package import SHAPES_FILE
 from deixis.memory.semantic.validation.constraints import CONSTRAINTS, Values
-from deixis.memory.semantic.validation.focus_data import TYPE, Node, View
+from deixis.memory.semantic.validation.focus_data import TYPE, View
 
 SH = "http://www.w3.org/ns/shacl#"
 _FIRST = ox.NamedNode("http://www.w3.org/1999/02/22-rdf-syntax-ns#first")
@@ -52,8 +53,8 @@ class Shape:
         """Whether a node is one of its focus nodes."""
         return (
             any(view.is_a(node, kind) for kind in self.classes)
-            or any(view.values(node, predicate) for predicate in self.subjects_of)
-            or any(view.subjects(predicate, node) for predicate in self.objects_of)
+            or any(view.some(node, predicate, 1) for predicate in self.subjects_of)
+            or any(view.leads_here(predicate, node) for predicate in self.objects_of)
         )
 
     def sure(self, view: View, node: Node) -> bool:
@@ -83,8 +84,15 @@ class Shapes:
         return frozenset(predicate for shape in self.shapes for predicate in shape.objects_of)
 
     def sure(self, view: View, node: Node) -> bool:
-        """Whether a node surely conforms to every shape that targets it."""
-        return all(shape.sure(view, node) for shape in self.shapes if shape.targets(view, node))
+        """Whether a node surely conforms to every shape that targets it.
+
+        Of a node of which much is said, only what changes is looked at; a shape that did not target it before doubts.
+        """
+        return all(
+            shape.sure(view, node) and not (view.says_much(node) and not shape.targets(view.before, node))
+            for shape in self.shapes
+            if shape.targets(view, node)
+        )
 
 
 @lru_cache(maxsize=1)
@@ -126,7 +134,7 @@ class _Compiler:
         if said[_sh("severity")] not in ([], [_sh("Violation")]):
             return []
         path = said[_sh("path")]
-        values = self._path(path[0]) if path else _itself
+        values = self._path(path[0]) if path else _ITSELF
         return [
             self._constraint(predicate, said, values) for predicate in list(said) if predicate not in _NO_CONSTRAINT
         ]
@@ -134,10 +142,10 @@ class _Compiler:
     def _path(self, path: Node) -> Values:
         inverse = self._said[path][_sh("inversePath")] if isinstance(path, ox.BlankNode) else []
         if inverse:
-            return _backwards(_names(inverse)[0])
+            return _Backwards(_names(inverse)[0])
         if not isinstance(path, ox.NamedNode):
             raise OntologyError("a shape's path must be one step here, forwards or sh:inversePath")
-        return _forwards(path)
+        return _Forwards(path)
 
     def _constraint(self, predicate: ox.NamedNode, said: Said, values: Values) -> Check:
         name, arguments = predicate.value.removeprefix(SH), said[predicate]
@@ -167,7 +175,7 @@ class _Compiler:
         if said[_sh("path")] or not outer_path:
             return _all_of(self._shape(said))
         placed: Said = defaultdict(list, {**said, _sh("path"): outer_path})
-        return _all_of([self._constraint(p, placed, _itself) for p in list(said) if p not in _NO_CONSTRAINT])
+        return _all_of([self._constraint(p, placed, _ITSELF) for p in list(said) if p not in _NO_CONSTRAINT])
 
     def _list(self, head: Node) -> list[Node]:
         items = []
@@ -181,16 +189,50 @@ def _names(nodes: Iterable[Node]) -> tuple[ox.NamedNode, ...]:
     return tuple(node for node in nodes if isinstance(node, ox.NamedNode))
 
 
-def _itself(view: View, node: Node) -> Sequence[Node]:
-    return (node,)
+class _Itself:
+    """The node alone: no path."""
+
+    def __call__(self, view: View, node: Node) -> Iterable[Node]:
+        return (node,)
+
+    def some(self, view: View, node: Node, number: int) -> Iterable[Node]:
+        return (node,)[:number]
+
+    fresh = __call__
 
 
-def _forwards(predicate: ox.NamedNode) -> Values:
-    return lambda view, node: view.values(node, predicate)
+@dataclass(frozen=True)
+class _Forwards:
+    """What is said of a node under a predicate."""
+
+    predicate: ox.NamedNode
+
+    def __call__(self, view: View, node: Node) -> Iterable[Node]:
+        return view.values(node, self.predicate)
+
+    def some(self, view: View, node: Node, number: int) -> Iterable[Node]:
+        return view.some(node, self.predicate, number)
+
+    def fresh(self, view: View, node: Node) -> Iterable[Node]:
+        return view.fresh(node, self.predicate)
 
 
-def _backwards(predicate: ox.NamedNode) -> Values:
-    return lambda view, node: view.subjects(predicate, node)
+@dataclass(frozen=True)
+class _Backwards:
+    """The nodes that lead to a node under a predicate."""
+
+    predicate: ox.NamedNode
+
+    def __call__(self, view: View, node: Node) -> Iterable[Node]:
+        return view.subjects(self.predicate, node)
+
+    def some(self, view: View, node: Node, number: int) -> Iterable[Node]:
+        return list(view.subjects(self.predicate, node))[:number]
+
+    fresh = __call__
+
+
+_ITSELF = _Itself()
 
 
 def _all_of(checks: Sequence[Check]) -> Check:

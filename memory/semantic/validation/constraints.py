@@ -9,12 +9,27 @@ import math
 import re
 from collections.abc import Callable, Iterable, Sequence
 from datetime import datetime
+from typing import Protocol
 
 import pyoxigraph as ox
 
-from deixis.memory.semantic.validation.focus_data import Node, View
+from deixis.memory.semantic.rdf.after import Node
+from deixis.memory.semantic.validation.focus_data import View
 
-Values = Callable[[View, Node], Iterable[Node]]
+
+class Values(Protocol):
+    """What a path leads to from a node."""
+
+    def __call__(self, view: View, node: Node) -> Iterable[Node]:
+        """All of it."""
+
+    def some(self, view: View, node: Node, number: int) -> Iterable[Node]:
+        """So many at the most."""
+
+    def fresh(self, view: View, node: Node) -> Iterable[Node]:
+        """Those whose class may be another than before the change."""
+
+
 Check = Callable[[View, Node], bool]
 Make = Callable[[Values, Sequence[Node]], Check]
 
@@ -69,12 +84,12 @@ def _integers(arguments: Sequence[Node]) -> list[int]:
 
 def _min_count(values: Values, arguments: Sequence[Node]) -> Check:
     least = max(_integers(arguments))
-    return lambda view, node: len(list(values(view, node))) >= least
+    return lambda view, node: len(list(values.some(view, node, least))) >= least
 
 
 def _max_count(values: Values, arguments: Sequence[Node]) -> Check:
     most = min(_integers(arguments))
-    return lambda view, node: len(list(values(view, node))) <= most
+    return lambda view, node: len(list(values.some(view, node, most + 1))) <= most
 
 
 def _each(values: Values, holds: Callable[[Node], bool]) -> Check:
@@ -89,7 +104,7 @@ def _datatype(values: Values, arguments: Sequence[Node]) -> Check:
 
 
 def _class(values: Values, arguments: Sequence[Node]) -> Check:
-    return lambda view, node: all(view.is_a(value, kind) for value in values(view, node) for kind in arguments)
+    return lambda view, node: all(view.is_a(value, kind) for value in values.fresh(view, node) for kind in arguments)
 
 
 def _node_kind(values: Values, arguments: Sequence[Node]) -> Check:

@@ -4,65 +4,132 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Iterator
+from functools import cached_property
+from itertools import islice
 
 import pyoxigraph as ox
 
+from deixis.memory.semantic.rdf.after import DATA, After, Node
 from deixis.memory.semantic.rdf.change import Change
-from deixis.memory.semantic.rdf.graphs import GraphName, graph_iri
 from deixis.ontology.vocabulary import W3C
-
-Node = ox.NamedNode | ox.BlankNode | ox.Literal | ox.Triple
-
-DATA = tuple(name for name in GraphName if name is not GraphName.SHAPES)
-"""The graphs whose union is checked."""
 
 TYPE = ox.NamedNode(W3C.RDF_TYPE)
 SUB_CLASS_OF = ox.NamedNode(W3C.RDFS_SUB_CLASS_OF)
+
+MANY = 48
+"""Statements about a node, those of lessons' copies too, from which on they are read predicate by predicate.
+
+A category that a thousand lessons taught, or the size of a kind from a thousand scenes, leads to all of them; a check
+must not read them all for one lesson more.
+"""
 
 
 class View:
     """The union of the data graphs of a store after a change that is not written yet."""
 
     def __init__(self, store: ox.Store, change: Change | None = None) -> None:
-        self._store = store
-        self._names: dict[object, GraphName] = {graph_iri(name): name for name in DATA}
-        self._removed = change.removed if change else {}
-        self._added = ox.Store()
-        for name in DATA:
-            coming = change.added.get(name, ()) if change else ()
-            self._added.bulk_extend(ox.Quad(triple.subject, triple.predicate, triple.object) for triple in coming)
-        self._about: dict[Node, dict[ox.NamedNode, set[Node]]] = {}
+        self._store, self._after, self._whole = store, After(store, change), change is None
+        self._about: dict[Node, dict[ox.NamedNode, set[Node]] | None] = {}
+        self._values: dict[tuple[Node, ox.NamedNode], set[Node]] = {}
         self._broader: dict[Node, frozenset[Node]] = {}
+
+    @cached_property
+    def before(self) -> View:
+        """The data as it is before the change."""
+        return View(self._store)
+
+    def says_much(self, node: Node) -> bool:
+        """Whether so much is said of a node that it is read predicate by predicate."""
+        return self._few(node) is None
 
     def about(self, node: Node) -> dict[ox.NamedNode, set[Node]]:
         """What is said of a node, by predicate."""
-        known = self._about.get(node)
-        if known is None:
-            known = self._about[node] = defaultdict(set)
-            if isinstance(node, ox.NamedNode):
-                for quad in self._store.quads_for_pattern(node, None, None, None):
-                    if self._stays(quad):
-                        known[quad.predicate].add(quad.object)
-            if isinstance(node, ox.NamedNode | ox.BlankNode):
-                for quad in self._added.quads_for_pattern(node, None, None):
-                    known[quad.predicate].add(quad.object)
-        return known
+        found = self._few(node)
+        if found is None:
+            found = defaultdict(set)
+            for name in DATA:
+                for triple in self._after.triples(name, node):
+                    found[triple.predicate].add(triple.object)
+        return found
+
+    def _few(self, node: Node) -> dict[ox.NamedNode, set[Node]] | None:
+        """What is said of a node, by predicate; None where that is much."""
+        if node not in self._about:
+            self._about[node] = self._read(node)
+        return self._about[node]
+
+    def _read(self, node: Node) -> dict[ox.NamedNode, set[Node]] | None:
+        found: dict[ox.NamedNode, set[Node]] = defaultdict(set)
+        if isinstance(node, ox.NamedNode | ox.BlankNode):
+            quads = list(islice(self._store.quads_for_pattern(node, None, None, None), MANY + 1))
+            if len(quads) > MANY:
+                return None
+            for triple in self._after.of_data(quads):
+                found[triple.predicate].add(triple.object)
+            for name in DATA:
+                for triple in self._after.coming(name, node):
+                    found[triple.predicate].add(triple.object)
+        return found
 
     def values(self, node: Node, predicate: ox.NamedNode) -> Iterable[Node]:
         """The objects of a node under a predicate."""
-        return self.about(node).get(predicate, ())
+        few = self._few(node)
+        if few is not None:
+            return few.get(predicate, ())
+        known = self._values.get((node, predicate))
+        if known is None:
+            known = {triple.object for name in DATA for triple in self._after.triples(name, node, predicate)}
+            self._values[node, predicate] = known
+        return known
+
+    def some(self, node: Node, predicate: ox.NamedNode, number: int) -> Iterable[Node]:
+        """The objects of a node under a predicate, so many of them at the most."""
+        few = self._few(node)
+        if few is not None:
+            return list(few.get(predicate, ()))[:number]
+        each = (triple.object for name in DATA for triple in self._after.triples(name, node, predicate))
+        found: set[Node] = set()
+        while len(found) < number and (value := next(each, None)) is not None:
+            found.add(value)
+        return found
+
+    def fresh(self, node: Node, predicate: ox.NamedNode) -> Iterable[Node]:
+        """The objects of a node under a predicate whose class the change may have altered: new ones, and changed ones.
+
+        All of them where they are few, and where there is no change.
+        """
+        if self._whole or not self.says_much(node):
+            return self.values(node, predicate)
+        new = {triple.object for name in DATA for triple in self._after.coming(name, node, predicate)}
+        return new | self._to_untyped.get((node, predicate), set())
+
+    @cached_property
+    def _to_untyped(self) -> dict[tuple[Node, ox.NamedNode], set[Node]]:
+        """The nodes that lose a class, or whose class loses a broader one, by what leads to them."""
+        removed = [triple for name in DATA for triple in self._after.change.removed.get(name, ())]
+        untyped: set[Node] = {triple.subject for triple in removed if triple.predicate == TYPE}
+        for kind in {triple.subject for triple in removed if triple.predicate == SUB_CLASS_OF}:
+            untyped.update(self.before.instances(kind))
+        found: dict[tuple[Node, ox.NamedNode], set[Node]] = defaultdict(set)
+        for node in untyped:
+            for triple in self.leading(node):
+                found[triple.subject, triple.predicate].add(node)
+        return found
 
     def subjects(self, predicate: ox.NamedNode, node: Node) -> set[Node]:
         """The nodes that lead to this one under a predicate."""
-        found: set[Node] = {quad.subject for quad in self._added.quads_for_pattern(None, predicate, node)}
-        if isinstance(node, ox.NamedNode | ox.Literal):
-            quads = self._store.quads_for_pattern(None, predicate, node, None)
-            found.update(quad.subject for quad in quads if self._stays(quad))
-        return found
+        return {triple.subject for triple in self.leading(node, predicate)}
 
-    def _stays(self, quad: ox.Quad) -> bool:
-        name = self._names.get(quad.graph_name)
-        return name is not None and not (self._removed.get(name) and quad.triple in self._removed[name])
+    def leads_here(self, predicate: ox.NamedNode, node: Node) -> bool:
+        """Whether any node leads to this one under a predicate."""
+        return any(True for _ in self.leading(node, predicate))
+
+    def leading(self, node: Node, predicate: ox.NamedNode | None = None) -> Iterator[ox.Triple]:
+        """What leads to a node, under any predicate or that one; a triple may come twice."""
+        if isinstance(node, ox.NamedNode | ox.Literal | ox.BlankNode):
+            yield from self._after.of_data(self._store.quads_for_pattern(None, predicate, node, None))
+            for name in DATA:
+                yield from self._after.arriving(name, predicate, node)
 
     def is_a(self, node: Node, kind: Node) -> bool:
         """Whether a node is an instance of a class, or of a narrower one."""
@@ -95,11 +162,9 @@ class View:
             yield from self.subjects(TYPE, narrower)
 
     def subjects_of(self, predicate: ox.NamedNode) -> set[Node]:
-        """The nodes of which a predicate is used, in the store alone."""
-        return {
-            quad.subject for quad in self._store.quads_for_pattern(None, predicate, None, None) if self._stays(quad)
-        }
+        """The nodes of which a predicate is used."""
+        return {triple.subject for name in DATA for triple in self._after.triples(name, None, predicate)}
 
     def objects_of(self, predicate: ox.NamedNode) -> set[Node]:
-        """The nodes that a predicate leads to, in the store alone."""
-        return {quad.object for quad in self._store.quads_for_pattern(None, predicate, None, None) if self._stays(quad)}
+        """The nodes that a predicate leads to."""
+        return {triple.object for name in DATA for triple in self._after.triples(name, None, predicate)}

@@ -11,9 +11,10 @@ from collections.abc import Iterable, Iterator
 import pyoxigraph as ox
 
 from deixis.memory.errors import RejectedWriteError, ShapeResult
+from deixis.memory.semantic.rdf.after import DATA, Node
 from deixis.memory.semantic.rdf.change import Change
 from deixis.memory.semantic.validation.compiled_shapes import Shapes, packaged_shapes
-from deixis.memory.semantic.validation.focus_data import DATA, SUB_CLASS_OF, TYPE, Node, View
+from deixis.memory.semantic.validation.focus_data import SUB_CLASS_OF, TYPE, View
 
 BATCH = 200
 """How many doubtful nodes pyshacl is asked about at a time; the first batch with violations ends the search."""
@@ -50,7 +51,7 @@ def touched(shapes: Shapes, view: View, change: Change) -> set[Node]:
 
 def _leading_to(shapes: Shapes, view: View, node: Node) -> set[Node]:
     """The nodes of which a shape asks that what they lead to be of some class."""
-    return {other for predicate in shapes.paths_to_classes for other in view.subjects(predicate, node)}
+    return {triple.subject for triple in view.leading(node) if triple.predicate in shapes.paths_to_classes}
 
 
 def _check(shapes: Shapes, view: View, nodes: Iterable[Node]) -> None:

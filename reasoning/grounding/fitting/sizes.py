@@ -59,10 +59,13 @@ def pooled_prior(kinds: Sequence[Array]) -> SizePrior:
     everything = np.concatenate(seen)
     centre = np.median(everything, axis=0)
     apart = np.sum([np.abs(views - np.median(views, axis=0)).sum(axis=0) for views in seen], axis=0)
-    free = len(everything) - len(seen)
-    within = (FROM_MEAN * apart + VIEWS_OF_PRIOR * USUAL_SPREAD) / (free + VIEWS_OF_PRIOR)
-    between = np.maximum(FROM_MEAN * np.abs(everything - centre).mean(axis=0), within)
-    return SizePrior(centre, between, within)
+    return pool(centre, np.abs(everything - centre).sum(axis=0), apart, len(everything), len(seen))
+
+
+def pool(centre: Array, off_centre: Array, apart: Array, views: int, kinds: int) -> SizePrior:
+    """The same from sums: of how far all views are from their common median, and from that of their own kind."""
+    within = (FROM_MEAN * apart + VIEWS_OF_PRIOR * USUAL_SPREAD) / (views - kinds + VIEWS_OF_PRIOR)
+    return SizePrior(centre, np.maximum(FROM_MEAN * off_centre / views, within), within)
 
 
 def learn_size(views: Array, prior: SizePrior, relative: bool = False) -> SizeModel:
@@ -73,16 +76,20 @@ def learn_size(views: Array, prior: SizePrior, relative: bool = False) -> SizeMo
     and the doubt about it is added. ``relative``: the views are, and upright, as images show them. Raises SettingError
     without a view.
     """
-    n = len(views)
-    if not n:
+    if not len(views):
         raise SettingError("a size is learned from one view at least")
     median = np.median(views, axis=0)
-    spread = FROM_MEDIAN * np.median(np.abs(views - median), axis=0)
+    return size_of(len(views), median, np.median(np.abs(views - median), axis=0), prior, relative)
+
+
+def size_of(n: int, median: Array, deviation: Array, prior: SizePrior, relative: bool = False) -> SizeModel:
+    """The same from the median of n views, shape (2,), and their median absolute deviation from it."""
+    spread = FROM_MEDIAN * deviation
     variance = (n * spread**2 + VIEWS_OF_PRIOR * prior.within**2) / (n + VIEWS_OF_PRIOR)
     precision = n / variance + 1 / prior.between**2
     typical = (n * median / variance + prior.centre / prior.between**2) / precision
-    deviation = np.maximum(np.sqrt(variance + 1 / precision), LEAST_SPREAD)
-    length, aspect = zip(typical.tolist(), deviation.tolist(), strict=True)
+    doubted = np.maximum(np.sqrt(variance + 1 / precision), LEAST_SPREAD)
+    length, aspect = zip(typical.tolist(), doubted.tolist(), strict=True)
     return SizeModel(length, aspect if relative else (min(aspect[0], 0.0), aspect[1]), relative, float(n))
 
 

@@ -19,7 +19,6 @@ from deixis.cli.common import (
     MemoryDir,
     NoMemory,
     SceneFile,
-    Script,
     TimeLimit,
     print_json,
     print_lines,
@@ -45,8 +44,14 @@ def register(app: typer.Typer) -> None:
 
 
 def learn(
-    script: Script,
-    scene: SceneFile,
+    inputs: Annotated[
+        list[Path],
+        typer.Argument(
+            metavar="SCRIPT SCENE ...",
+            help="Scripts (.layout), each with its scene after it; or folders, in which NAME.layout goes with "
+            "NAME.scene.json.",
+        ),
+    ],
     engine: Annotated[EngineName, typer.Option(help=ENGINE_HELP)] = EngineName.EXACT,
     time_limit: TimeLimit = 10.0,
     hide_labels: HideLabels = False,
@@ -54,27 +59,29 @@ def learn(
     memory: MemoryDir = None,
     as_json: AsJson = False,
 ) -> None:
-    """Ground a script in a scene, and keep the layout and its objects as concepts."""
+    """Ground scripts in their scenes, and keep the layouts and their objects as concepts: all of them, or none."""
     from deixis.reasoning.errors import NothingFoundError
     from deixis.report.json_answers import learned_to_dict
     from deixis.report.script import learned_lines
     from deixis.session import Session
-    from deixis.workflows.read import load_scene
+    from deixis.workflows.read import example_pairs, load_scene
 
-    seen = load_scene(scene, hide_labels, image)
+    pairs = [(script, load_scene(scene, hide_labels, image)) for script, scene in example_pairs(inputs)]
     ready_to_ground(engine)
     with Session(memory) as session:
         try:
             with working("grounding"):
-                learned = session.learn(script, seen, engine, time_limit)
+                lessons = session.learn_all(pairs, engine, time_limit)
         except NothingFoundError as error:
             print(f"deixis: {error}", file=sys.stderr)
             raise typer.Exit(NO) from error
         where = session.path
     if as_json:
-        print_json(learned_to_dict(learned))
+        told = [learned_to_dict(learned) for learned in lessons]
+        print_json(told[0] if len(inputs) == 2 and len(told) == 1 else told)
     else:
-        print_lines(learned_lines(learned, str(where)))
+        for learned in lessons:
+            print_lines(learned_lines(learned, str(where)))
 
 
 def show(

@@ -139,14 +139,17 @@ def stats(memory: MemoryDir = None, as_json: AsJson = False) -> None:
 
 @memory_app.command("verify")
 def verify(memory: MemoryDir = None, as_json: AsJson = False) -> None:
-    """Read all that was learned and taught, and say what is not as it was written; exit 1 where something is not."""
+    """Read all that was learned and taught, and say what is not as it was written, or does not follow from the lessons;
+    exit 1 where something is not."""
+    from deixis.learning.update import stale
     from deixis.memory.on_demand import default_memory
     from deixis.memory.verify import verify as run
+    from deixis.ontology.tbox import default_ontology
 
     where = memory or default_memory()
     require_memory(where)
     with progress_bar("verifying") as progress:
-        found = run(where, progress)
+        found = run(where, progress, lambda store: stale(store, default_ontology()))
     if as_json:
         findings = [{"where": entry.where, "what": entry.what} for entry in found.findings]
         print_json({"verified": {"concepts": found.semantic, "views": found.perceptual}, "findings": findings})

@@ -5,20 +5,30 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import pyoxigraph as ox
 
 from deixis.errors import DeixisError
 from deixis.grammar.parser import parse_script
 from deixis.learning.scene_evidence import scene_labels
+from deixis.memory.semantic.rdf.graphs import GraphName, graph_iri
+from deixis.memory.semantic.rdf.ledger import started
 from deixis.ontology.graph import RelationGraph
 from deixis.ontology.kinds import Kinds
-from deixis.ontology.lessons.read import LessonRecord, layouts, lesson_records
-from deixis.ontology.lessons.types import LayoutConcept
+from deixis.ontology.lessons.read import LessonRecord, layouts, lesson_records, unknown_layout
+from deixis.ontology.lessons.types import LayoutConcept, Lesson, WordLesson
+from deixis.ontology.lessons.write import layout_iri
+from deixis.ontology.relation import Relations
 from deixis.ontology.tbox import Ontology
+from deixis.ontology.triples import iri, last_part, text
+from deixis.ontology.vocabulary import DX, W3C
 from deixis.perception.formats.scene_json import read_scene
 from deixis.perception.scene import Scene
 from deixis.reasoning.grounding.evidence.labels import naming
+
+if TYPE_CHECKING:
+    from deixis.memory.semantic.store import SemanticMemory
 
 
 @dataclass(frozen=True)
@@ -54,6 +64,29 @@ class Recollection:
         return Recollection(tuple(one for one in self.lessons if one.lesson in wanted))
 
 
+def find_layout(memory: SemanticMemory, name: str, relations: Relations) -> LayoutConcept:
+    """The layout of the lesson with that id, or of that name, learned last among several; no other is read.
+
+    Raises UnknownTermError with the nearest name there is.
+    """
+    store, graph = memory.store, graph_iri(GraphName.LEARNED)
+    is_layout = (iri(W3C.RDFS_SUB_CLASS_OF), iri(DX.LAYOUT), graph)
+    node = iri(layout_iri(name))
+    if not any(store.quads_for_pattern(node, *is_layout)):
+        labelled = store.quads_for_pattern(None, iri(W3C.RDFS_LABEL), text(name), graph)
+        nodes = (quad.subject for quad in labelled if isinstance(quad.subject, ox.NamedNode))
+        named = [one for one in nodes if any(store.quads_for_pattern(one, *is_layout))]
+        if not named:
+            every = [quad.subject for quad in store.quads_for_pattern(None, *is_layout)]
+            labels = (store.quads_for_pattern(one, iri(W3C.RDFS_LABEL), None, graph) for one in every)
+            raise unknown_layout(name, (str(getattr(q.object, "value", "")) for found in labels for q in found))
+        node = max(named, key=lambda one: (started(store, last_part(one.value)), one.value))
+    parts = [quad.subject for quad in store.quads_for_pattern(None, iri(DX.IN_LAYOUT), node, graph)]
+    triples = (quad.triple for part in (node, *parts) for quad in store.quads_for_pattern(part, None, None, graph))
+    (layout,) = layouts(triples, relations)
+    return layout
+
+
 def recollect(learned: Iterable[ox.Triple], episodes: Iterable[ox.Triple], ontology: Ontology) -> Recollection:
     """Reads the lessons in the triples of the learned graph and of the episodes."""
     learned = list(learned)
@@ -66,6 +99,13 @@ def recollect(learned: Iterable[ox.Triple], episodes: Iterable[ox.Triple], ontol
         except (DeixisError, ValueError) as error:
             unreadable.append(f"{record.id}: {str(error).splitlines()[0]}")
     return Recollection(tuple(found), tuple(unreadable))
+
+
+def remembered_lesson(lesson: Lesson | WordLesson, ontology: Ontology) -> Remembered:
+    """A lesson that is just learned, as it would be read again."""
+    layout, matches = (lesson.layout, lesson.matches) if isinstance(lesson, Lesson) else (None, ())
+    texts = (lesson.script_file, lesson.script_text, lesson.scene_text)
+    return _remembered(LessonRecord(lesson.id, *texts, matches, layout is None), layout, ontology)
 
 
 def _remembered(record: LessonRecord, layout: LayoutConcept | None, ontology: Ontology) -> Remembered:

@@ -1,13 +1,19 @@
-"""How large things of a kind are, from all that is remembered, whether or not the ontology knows the kind."""
+"""How large things of a kind are, from all that is remembered, whether or not the ontology knows the kind.
+
+A lesson's share are its views: things that are known to be of a kind, each with its size. They are added to counts by
+kind, and taken out when the lesson is forgotten (:mod:`deixis.reasoning.grounding.fitting.size_statistics`); the same
+box counts once, however many lessons show it. A model is made from the counts of its kind, near a usual size, or near
+what all kinds have in common. So a lesson touches the kinds that it shows, and no others unless what is common changes.
+"""
 
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator, Mapping, Set
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass
 
 import numpy as np
 import pyoxigraph as ox
-from numpy.typing import NDArray
 
 from deixis.learning.recollection import Recollection, Remembered
 from deixis.ontology.kinds import Kinds, plain_name
@@ -15,10 +21,12 @@ from deixis.ontology.lessons.write import scene_text_iri
 from deixis.ontology.models.sizes import SizeModel, size_triples
 from deixis.ontology.sizes import Sizes
 from deixis.ontology.tbox import Ontology
+from deixis.ontology.triples import content_key
 from deixis.reasoning.grounding.evidence.labels import category_of, classes
 from deixis.reasoning.grounding.evidence.sizes import usual_size
 from deixis.reasoning.grounding.evidence.unary import log_sizes
-from deixis.reasoning.grounding.fitting.sizes import learn_sizes
+from deixis.reasoning.grounding.fitting.size_statistics import BUCKET, SCALE, Distribution, steps
+from deixis.reasoning.grounding.fitting.sizes import SizePrior, pool, size_of, usual_prior
 
 FEWEST = 3
 """Views that take the place of a usual size. With fewer, one wrong view moves the median at will."""
@@ -26,60 +34,64 @@ FEWEST = 3
 SURE = 0.9
 """Confidence from which a label says what a thing is like; a median bears the tenth that is wrong."""
 
-View = tuple[Remembered, int]  # a lesson, and the place of a thing in its scene
+SETTLED = 64
+"""Views of all kinds together from which on what they have in common is rounded.
+
+Else every lesson would alter the model of every kind of which no usual size is known, by nothing that matters.
+"""
+
+GRAIN = 1 / 32
+"""What it is rounded to then: 3 per cent of a length."""
+
+AXES = ("length", "aspect")
 
 
-def learned_size_triples(recollection: Recollection, ontology: Ontology) -> list[ox.Triple]:
-    """The sizes that the lessons teach, with the scenes that they are derived from."""
-    used = {
-        kind: _comparable(views)
-        for kind, views in _views(recollection, ontology.kinds).items()
-        if len(views) >= FEWEST or usual_size(kind, ontology.sizes) is None
-    }
-    models = _models(used, ontology.sizes)
-    triples: list[ox.Triple] = []
-    for kind, views in used.items():
-        scenes = sorted({scene_text_iri(lesson.texts[1]) for lesson, _ in views})
-        triples += size_triples(kind, models[kind], scenes)
-    return triples
+@dataclass(frozen=True, slots=True, order=True)
+class SizeView:
+    """One thing of a kind, seen in one scene: logarithms of its length and aspect, in steps, in metres and relative.
+
+    ``box`` tells boxes apart. Of several views of one box the least counts, in the order of these fields.
+    """
+
+    kind: str
+    box: str
+    scene: str
+    metric: bool
+    plain: tuple[int, int]
+    relative: tuple[int, int]
+
+    @property
+    def place(self) -> str:
+        """What views of the same box as of the same kind share."""
+        return content_key(f"{self.kind} {self.box}")
+
+    def written(self) -> str:
+        """The view as a text; :meth:`read` is its inverse."""
+        numbers = (int(self.metric), *self.plain, *self.relative)
+        return " ".join((self.kind, self.box, self.scene, *map(str, numbers)))
+
+    @classmethod
+    def read(cls, text: str) -> SizeView:
+        kind, box, scene, *numbers = text.split(" ")
+        metric, *sizes = map(int, numbers)
+        return cls(kind, box, scene, bool(metric), (sizes[0], sizes[1]), (sizes[2], sizes[3]))
 
 
-def _comparable(views: list[View]) -> list[View]:
-    """Those in metres where they are enough; else all, to be compared relative to their scenes."""
-    metric = [view for view in views if _metric(view)]
-    return metric if len(metric) >= FEWEST else views
-
-
-def _metric(view: View) -> bool:
-    return view[0].scene.unit == "m"
-
-
-def _models(used: Mapping[str, list[View]], sizes: Sizes) -> dict[str, SizeModel]:
-    """The size of each kind, in metres where all its views are, else relative to their scenes."""
-    in_metres = {kind for kind, views in used.items() if all(map(_metric, views))}
-    usual = {kind: model for kind in in_metres if (model := usual_size(kind, sizes))}
-    relative = learn_sizes(_measured(used, used.keys() - in_metres, relative=True), relative=True)
-    return learn_sizes(_measured(used, in_metres, relative=False), usual=usual) | relative
-
-
-def _measured(used: Mapping[str, list[View]], kinds: Set[str], relative: bool) -> dict[str, NDArray[np.float64]]:
-    """Log length and log aspect of the views (n, 2) of some kinds; each scene is measured once."""
-    lessons = {lesson.lesson: lesson for kind in kinds for lesson, _ in used[kind]}
-    sizes = {id: log_sizes(lesson.scene.boxes, relative) for id, lesson in lessons.items()}
-    return {
-        kind: np.array([sizes[lesson.lesson][thing] for lesson, thing in views])
-        for kind, views in used.items()
-        if kind in kinds
-    }
-
-
-def _views(recollection: Recollection, kinds: Kinds) -> dict[str, list[View]]:
-    """Every thing that is known to be of a kind, by class IRI; the same box once, however many lessons show it."""
-    found: dict[str, dict[bytes, View]] = defaultdict(dict)
-    for lesson in recollection.lessons:
-        for kind, thing in [*_matched(lesson), *_labelled(lesson, kinds)]:
-            found[kind].setdefault(lesson.scene.boxes[thing].tobytes(), (lesson, thing))
-    return {kind: list(views.values()) for kind, views in sorted(found.items())}
+def size_views(lesson: Remembered, kinds: Kinds) -> list[SizeView]:
+    """What a lesson adds to the statistics of sizes: every thing that is known to be of a kind."""
+    boxes, scene = lesson.scene.boxes, scene_text_iri(lesson.texts[1])
+    metric = lesson.scene.unit == "m"
+    known = dict.fromkeys([*_matched(lesson), *_labelled(lesson, kinds)])
+    if not known:
+        return []
+    plain, relative = (
+        [(steps(length), steps(aspect)) for length, aspect in log_sizes(boxes, by_scene).tolist()]
+        for by_scene in (False, True)
+    )
+    return [
+        SizeView(kind, content_key(boxes[thing].tobytes().hex()), scene, metric, plain[thing], relative[thing])
+        for kind, thing in known
+    ]
 
 
 def _matched(lesson: Remembered) -> Iterator[tuple[str, int]]:
@@ -96,3 +108,258 @@ def _labelled(lesson: Remembered, kinds: Kinds) -> Iterator[tuple[str, int]]:
         if thing.label and thing.confidence >= SURE:
             kind = kinds.of_word(plain_name(thing.label))
             yield kind.iri if kind else category_of(thing.label), place
+
+
+# ---- the statistics
+
+Row = dict[str, str]
+"""What is counted about one thing: values by key."""
+
+
+class Counts:
+    """Rows of counts, read as they are needed, and what of them has changed since.
+
+    ``value`` reads one key of a row and ``row`` all of them, from where the counts are kept.
+    """
+
+    def __init__(
+        self,
+        value: Callable[[str, str], str | None] = lambda name, key: None,
+        row: Callable[[str], Row] = lambda name: {},
+    ) -> None:
+        self._value, self._row = value, row
+        self._read: dict[str, dict[str, str | None]] = defaultdict(dict)
+        self._now: dict[str, dict[str, str | None]] = defaultdict(dict)
+        self._whole: set[str] = set()
+
+    def get(self, name: str, key: str) -> str | None:
+        """Return one value, or None."""
+        if key not in self._now[name]:
+            found = None if name in self._whole else self._value(name, key)
+            self._read[name][key] = self._now[name][key] = found
+        return self._now[name][key]
+
+    def row(self, name: str) -> Row:
+        """Return all values of a row."""
+        if name not in self._whole:
+            for key, value in self._row(name).items():
+                self._read[name].setdefault(key, value)
+                self._now[name].setdefault(key, value)
+            self._whole.add(name)
+        return {key: value for key, value in self._now[name].items() if value is not None}
+
+    def set(self, name: str, key: str, value: str | None) -> None:
+        """Set one value; None takes it away."""
+        self.get(name, key)
+        self._now[name][key] = value
+
+    def add(self, name: str, key: str, number: int) -> int:
+        """Add to a whole number, which is not kept where it is 0; return the sum."""
+        total = int(self.get(name, key) or 0) + number
+        self.set(name, key, str(total) if total else None)
+        return total
+
+    def changed(self, name: str) -> Iterator[tuple[str, str | None, str | None]]:
+        """Yield the keys of a row whose values have changed, with the old value and the new one."""
+        for key, new in self._now[name].items():
+            old = self._read[name].get(key)
+            if old != new:
+                yield key, old, new
+
+    def difference(self) -> tuple[list[tuple[str, str, str]], list[tuple[str, str, str]]]:
+        """Return what is no longer so, and what is new: rows, keys and values."""
+        every = [
+            (name, *entry) for name in sorted(self._now) for entry in sorted(self.changed(name), key=lambda e: e[0])
+        ]
+        gone = [(name, key, old) for name, key, old, _ in every if old is not None]
+        return gone, [(name, key, new) for name, key, _, new in every if new is not None]
+
+
+@dataclass(frozen=True, slots=True)
+class _Used:
+    """The views that the model of a kind is made from: those in metres where they are enough, else all by scene."""
+
+    mode: str | None  # 'm', 'r', or None for too few views
+    views: int
+    medians: tuple[float, float] = (0.0, 0.0)
+    deviations: tuple[float, float] = (0.0, 0.0)
+
+
+METRES, RELATIVE = "m", "r"
+
+
+class SizeStatistics:
+    """Counts of views by kind, and the models that they come to."""
+
+    def __init__(self, counts: Counts, sizes: Sizes) -> None:
+        self._counts, self._sizes = counts, sizes
+        self._before: dict[str, _Used] = {}
+        self._after: dict[str, _Used] = {}
+        self._priors: dict[str, SizePrior | None] | None = None
+
+    def add(self, view: SizeView) -> None:
+        """Count a view, unless one of the same box counts already that comes first."""
+        counted = self._counts.get("views", view.place)
+        if counted is None or view < SizeView.read(counted):
+            self._exchange(None if counted is None else SizeView.read(counted), view)
+
+    def remove(self, view: SizeView, others: Iterable[SizeView]) -> None:
+        """Take a view out; ``others`` are those of the same box that other lessons have, and one of them counts now."""
+        if self._counts.get("views", view.place) == view.written():
+            left = min(others, default=None)
+            if left != view:
+                self._exchange(view, left)
+
+    def _exchange(self, gone: SizeView | None, come: SizeView | None) -> None:
+        some = gone or come
+        assert some is not None
+        self._touch(some.kind)
+        for view, times in ((gone, -1), (come, 1)):
+            if view is not None:
+                self._count(view, times)
+        self._counts.set("views", some.place, None if come is None else come.written())
+
+    def _count(self, view: SizeView, times: int) -> None:
+        for mode, values in ((METRES, view.plain), (RELATIVE, view.relative)):
+            if mode == RELATIVE or view.metric:
+                self._counts.add(f"number/{mode}", view.kind, times)
+                self._counts.add(_row("scenes", mode, view.kind), view.scene, times)
+                for axis, value in zip(AXES, values, strict=True):
+                    self._bucket(_row(axis, mode, view.kind), str(value // BUCKET), times, times * value)
+
+    def _bucket(self, row: str, key: str, count: int, total: int) -> None:
+        """Add views to a bucket, or take them out: their number, and the sum of their steps."""
+        before, sum = _pair(self._counts.get(row, key))
+        self._counts.set(row, key, f"{before + count} {sum + total}" if before + count else None)
+
+    def _touch(self, kind: str) -> None:
+        """Take a kind out of what all have in common, before its views change."""
+        if self._priors is None:
+            self._priors = {mode: self._prior(mode) for mode in (METRES, RELATIVE)}
+        if kind not in self._before:
+            self._before[kind] = self._used(kind)
+            self._pool(kind, self._before[kind], -1)
+
+    def _used(self, kind: str) -> _Used:
+        metric, number = (int(self._counts.get(f"number/{mode}", kind) or 0) for mode in (METRES, RELATIVE))
+        if not number or (number < FEWEST and usual_size(kind, self._sizes) is not None):
+            return _Used(None, number)
+        mode = METRES if metric >= FEWEST or metric == number else RELATIVE
+        along = [self._distribution(_row(axis, mode, kind)) for axis in AXES]
+        medians = tuple(axis.median() for axis in along)
+        deviations = tuple(axis.median_deviation(median) for axis, median in zip(along, medians, strict=True))
+        return _Used(mode, along[0].size, (medians[0], medians[1]), (deviations[0], deviations[1]))
+
+    def _distribution(self, row: str) -> Distribution:
+        return Distribution({int(key): _pair(value) for key, value in self._counts.row(row).items()})
+
+    def _pool(self, kind: str, used: _Used, times: int) -> None:
+        """Add the views of a kind to what all have in common, or take them out."""
+        if used.mode is None:
+            return
+        self._counts.set(f"kinds/{used.mode}", kind, "" if times > 0 else None)
+        self._counts.add("pool", f"kinds/{used.mode}", times)
+        for axis, median in zip(AXES, used.medians, strict=True):
+            own, common = _row(axis, used.mode, kind), _row(axis, used.mode)
+            apart = round(self._distribution(own).deviations(median) * SCALE)
+            self._counts.add("pool", f"apart/{axis}/{used.mode}", times * apart)
+            for key, value in self._counts.row(own).items():
+                count, total = _pair(value)
+                self._bucket(common, key, times * count, times * total)
+
+    def _prior(self, mode: str) -> SizePrior | None:
+        """What all kinds have in common; None without any."""
+        kinds = int(self._counts.get("pool", f"kinds/{mode}") or 0)
+        if not kinds:
+            return None
+        along = [self._distribution(_row(axis, mode)) for axis in AXES]
+        centre = np.array([axis.median() for axis in along])
+        off = np.array([axis.deviations(middle) for axis, middle in zip(along, centre.tolist(), strict=True)])
+        apart = [int(self._counts.get("pool", f"apart/{axis}/{mode}") or 0) / SCALE for axis in AXES]
+        found = pool(centre, off, np.array(apart), along[0].size, kinds)
+        if along[0].size < SETTLED:
+            return found
+        centre, between, within = (
+            np.round(part / GRAIN) * GRAIN for part in (found.centre, found.between, found.within)
+        )
+        return SizePrior(centre, np.maximum(between, GRAIN), np.maximum(within, GRAIN))
+
+    def settle(self) -> None:
+        """Count the kinds that were touched among what all have in common; to be called once, when all views are in."""
+        self._after = {kind: self._used(kind) for kind in self._before}
+        for kind, used in self._after.items():
+            self._pool(kind, used, 1)
+
+    def models(self) -> dict[str, tuple[SizeModel | None, set[str], set[str]]]:
+        """The models that are not as they were, by kind: the model, or None, scenes that are gone, and new ones.
+
+        To be called after :meth:`settle`.
+        """
+        if self._priors is None:
+            return {}
+        priors = {mode: self._prior(mode) for mode in (METRES, RELATIVE)}
+        found = {kind: self._model(kind, priors, *self._scenes(kind)) for kind in self._before}
+        for mode, prior in priors.items():
+            if not _same(prior, self._priors[mode]):
+                for kind in self._counts.row(f"kinds/{mode}"):
+                    if kind not in found and (mode == RELATIVE or usual_size(kind, self._sizes) is None):
+                        found[kind] = self._model(kind, priors, set(), set())
+        return found
+
+    def _model(
+        self, kind: str, priors: Mapping[str, SizePrior | None], gone: set[str], come: set[str]
+    ) -> tuple[SizeModel | None, set[str], set[str]]:
+        used = self._after.get(kind) or self._used(kind)
+        if used.mode is None:
+            return None, gone, come
+        usual = usual_size(kind, self._sizes) if used.mode == METRES else None
+        prior = usual_prior(usual) if usual is not None else priors[used.mode]
+        assert prior is not None
+        medians, deviations = np.array(used.medians), np.array(used.deviations)
+        return size_of(used.views, medians, deviations, prior, used.mode == RELATIVE), gone, come
+
+    def _scenes(self, kind: str) -> tuple[set[str], set[str]]:
+        """The scenes that a kind's model is no longer derived from, and those that it is newly derived from."""
+        old, new = self._before[kind].mode, self._after[kind].mode
+        rows = {mode: _row("scenes", mode, kind) for mode in (old, new) if mode is not None}
+        changed = {mode: list(self._counts.changed(row)) for mode, row in rows.items()}
+        if old == new:
+            entries = changed.get(new, []) if new is not None else []
+            return {key for key, _, now in entries if now is None}, {key for key, was, _ in entries if was is None}
+        whole = {mode: set(self._counts.row(row)) for mode, row in rows.items()}
+        come = whole[new] if new is not None else set()
+        gone = set[str]()
+        if old is not None:
+            new_ones = {key for key, was, _ in changed[old] if was is None}
+            gone = whole[old] - new_ones | {key for key, _, now in changed[old] if now is None}
+        return gone - come, come - gone
+
+
+def _row(what: str, mode: str, kind: str = "") -> str:
+    return f"{what}/{mode}/{kind}" if kind else f"{what}/{mode}"
+
+
+def _pair(value: str | None) -> tuple[int, int]:
+    count, _, total = (value or "0 0").partition(" ")
+    return int(count), int(total)
+
+
+def _same(one: SizePrior | None, other: SizePrior | None) -> bool:
+    if one is None or other is None:
+        return one is other
+    pairs = ((one.centre, other.centre), (one.between, other.between), (one.within, other.within))
+    return all(np.array_equal(a, b) for a, b in pairs)
+
+
+def learned_size_triples(recollection: Recollection, ontology: Ontology) -> list[ox.Triple]:
+    """The sizes that lessons teach, with the scenes that they are derived from, counted from nothing."""
+    statistics = SizeStatistics(Counts(), ontology.sizes)
+    for lesson in recollection.lessons:
+        for view in size_views(lesson, ontology.kinds):
+            statistics.add(view)
+    statistics.settle()
+    triples: list[ox.Triple] = []
+    for kind, (model, _, scenes) in sorted(statistics.models().items(), key=lambda entry: entry[0]):
+        if model is not None:
+            triples += size_triples(kind, model, sorted(scenes))
+    return triples

@@ -1,42 +1,65 @@
-"""Writing to a memory: lessons in and out, with all that follows from what is there then, in one step each."""
+"""Writing to a memory: lessons in and out, with all that follows from what is there then, in one step each.
+
+What a lesson costs does not depend on how many came before: what follows is changed where it is touched, and sizes are
+counts that views are added to and taken out of. A memory says by which rules it was kept up; where that is not how it
+would be done now, because it is of an earlier version, was filled by hand, or knows another ontology, the next lesson
+works everything out anew.
+"""
 
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence, Set
+from functools import lru_cache
 from pathlib import Path
+from urllib.parse import quote, unquote
 
 import pyoxigraph as ox
 
-from deixis.learning.lesson import consequences
-from deixis.learning.recollection import Recollection, recollect
-from deixis.learning.sizes import learned_size_triples
+from deixis.learning.inferred_graph import everything_by_hermit, everything_that_follows, following
+from deixis.learning.recollection import Recollection, Remembered, recollect, remembered_lesson
+from deixis.learning.sizes import Counts, Row, SizeStatistics, SizeView, size_views
 from deixis.learning.words import LearnedWords, fit, informed
 from deixis.memory.folder import State, inspect
-from deixis.memory.semantic.exchange import import_dump
-from deixis.memory.semantic.rdf.change import Models
-from deixis.memory.semantic.rdf.graphs import GraphName, ModelSet
+from deixis.memory.semantic.exchange import import_dump, merging_dump
+from deixis.memory.semantic.rdf import ledger
+from deixis.memory.semantic.rdf.after import After
+from deixis.memory.semantic.rdf.change import Change, concluding, modelling, remodelling, together
+from deixis.memory.semantic.rdf.graphs import COUNTED, STATISTICS, GraphName, ModelSet, models_graph, share_graph
+from deixis.memory.semantic.rdf.package import package_digest
 from deixis.memory.semantic.store import SemanticMemory
 from deixis.ontology.lessons.shapes import layout_shapes
 from deixis.ontology.lessons.types import Lesson, WordLesson
 from deixis.ontology.lessons.write import asserted_triples, episode_triples, learned_triples
 from deixis.ontology.models.relation_triples import model_triples, models_from_triples
 from deixis.ontology.models.relations import RelationModel
+from deixis.ontology.models.sizes import SIZE_PROPERTIES, size_iri, size_triples
 from deixis.ontology.tbox import Ontology
+from deixis.ontology.triples import content_key, iri, text
+from deixis.ontology.vocabulary import PROV
+from deixis.reasoning.description_logic.subsumption import BeyondLessonsError
 from deixis.reasoning.errors import NothingFoundError
 
-Graphs = Mapping[GraphName, Sequence[ox.Triple]]
+RULES = 1
+"""The version of the rules by which what follows from lessons, and what is counted of them, is worked out."""
+
+BY_HERMIT = " by HermiT"
+"""What is said beside the rules where more is said of classes than lessons say."""
+
+SEEN = iri(STATISTICS + "seen")
+"""What a lesson's share says of a place in the counts: the view that the lesson has of it."""
 
 
 def remembered(memory: SemanticMemory, ontology: Ontology) -> Recollection:
     """All lessons of a memory, ready to be learned from."""
-    return recollect(memory.triples(GraphName.LEARNED), memory.triples(GraphName.EPISODES), ontology)
+    return _recollected(After(memory.store), ontology)
 
 
-def keep(memory: SemanticMemory, ontology: Ontology, lesson: Lesson) -> None:
-    """Writes a lesson."""
-    new, graphs = _with(memory, ontology, [lesson])
-    memory.learn_all(new, _inferred(graphs, ontology), _models(graphs, ontology))
+def keep(memory: SemanticMemory, ontology: Ontology, lessons: Sequence[Lesson]) -> None:
+    """Writes lessons."""
+    change = memory.arrival({lesson.id: _contributions(lesson, ontology) for lesson in lessons})
+    change, rules = _followed(memory, ontology, change, [remembered_lesson(lesson, ontology) for lesson in lessons])
+    memory.commit(change, rules)
 
 
 def keep_words(
@@ -46,35 +69,36 @@ def keep_words(
 
     Raises NothingFoundError, having written nothing, where there is nothing to learn from.
     """
-    new, graphs = _with(memory, ontology, lessons)
-    words = fit(_recollected(graphs, ontology), strength)
+    change = memory.arrival({lesson.id: _contributions(lesson, ontology) for lesson in lessons})
+    words = fit(_recollected(After(memory.store, change), ontology), strength)
     if not words.taught:
         told = "; ".join(("nothing to learn: no fact of a lesson has both its objects in its scene", *words.left_out))
         raise NothingFoundError(f"{told}; learn from a script with a labelled scene, or ground one ('deixis learn')")
+    models = modelling(memory.store, {ModelSet.WORDS: word_triples(words.changed)})
+    rules = memory.kept_up()
     if lessons:
-        memory.learn_all(new, _inferred(graphs, ontology), _models(graphs, ontology, words.changed))
-    else:
-        memory.keep_models({ModelSet.WORDS: word_triples(words.changed)})
+        come = [remembered_lesson(lesson, ontology) for lesson in lessons]
+        change, rules = _followed(memory, ontology, change, come)
+    memory.commit(together(change, models), rules)
     return words
 
 
-def _with(
-    memory: SemanticMemory, ontology: Ontology, lessons: Sequence[Lesson | WordLesson]
-) -> tuple[dict[str, dict[GraphName, list[ox.Triple]]], Graphs]:
-    """What lessons contribute, and what the memory's graphs then hold."""
-    new = {lesson.id: _contributions(lesson, ontology) for lesson in lessons}
-    come = {name: [triple for said in new.values() for triple in said.get(name, ())] for name in GraphName}
-    return new, {name: [*memory.triples(name), *come[name]] for name in GraphName}
-
-
 def forget(memory: SemanticMemory, ontology: Ontology, lesson: str) -> None:
-    """Takes back one lesson, with what follows from it alone and what it taught."""
-    graphs = memory.remaining(lesson)
+    """Takes back one lesson, with what follows from it alone and what it taught.
+
+    Words are fitted anew where it was among the lessons that they were fitted to, from the others of those.
+    """
+    change, rules = _followed(memory, ontology, memory.departure(lesson), gone=[lesson])
     known, strength = informed(models_from_triples(memory.models(ModelSet.WORDS)))
-    words = None
     if lesson in known:
-        words = fit(_recollected(graphs, ontology).of(known - {lesson}), strength).changed
-    memory.forget(lesson, _inferred(graphs, ontology), _models(graphs, ontology, words))
+        others = [memory.contributions(id) for id in sorted(known - {lesson}) if memory.knows(id)]
+        learned, episodes = (
+            [triple for said in others for triple in said.get(name, ())]
+            for name in (GraphName.LEARNED, GraphName.EPISODES)
+        )
+        words = word_triples(fit(recollect(learned, episodes, ontology), strength).changed)
+        change = together(change, modelling(memory.store, {ModelSet.WORDS: words}))
+    memory.commit(change, rules)
 
 
 def take_in(file: str | Path, target: Path, ontology: Ontology) -> None:
@@ -85,25 +109,25 @@ def take_in(file: str | Path, target: Path, ontology: Ontology) -> None:
     """
     with tempfile.TemporaryDirectory() as scratch:
         import_dump(file, Path(scratch) / "memory")
-        graphs, theirs = _content(Path(scratch) / "memory")
-    words: Sequence[RelationModel] | None = None
-    if inspect(target) not in (State.ABSENT, State.EMPTY):
-        own_graphs, ours = _content(target)
-        graphs = {name: list({*triples, *own_graphs[name]}) for name, triples in graphs.items()}
-        lessons, strength = informed(ours)
-        if ours and theirs and informed(theirs)[0] != lessons:
-            both = lessons | informed(theirs)[0]
-            words = fit(_recollected(graphs, ontology).of(both), strength).changed
-    inferred, models = _inferred(graphs, ontology), _models(graphs, ontology, words)
-    import_dump(file, target)
+        with SemanticMemory.open(Path(scratch) / "memory") as theirs:
+            brought = models_from_triples(theirs.models(ModelSet.WORDS))
+            new = inspect(target) in (State.ABSENT, State.EMPTY)
+            follows = _followed(theirs, ontology, Change(), anew=True) if new else None
+    if follows is not None:
+        import_dump(file, target)
     with SemanticMemory.open(target) as memory:
-        memory.conclude(inferred, models)
-
-
-def _content(folder: Path) -> tuple[dict[GraphName, list[ox.Triple]], tuple[RelationModel, ...]]:
-    with SemanticMemory.open(folder) as memory:
-        graphs = {name: list(memory.triples(name)) for name in GraphName}
-        return graphs, models_from_triples(memory.models(ModelSet.WORDS))
+        if follows is not None:
+            memory.commit(*follows)
+            return
+        change = merging_dump(memory, Path(file))
+        ours = models_from_triples(memory.models(ModelSet.WORDS))
+        lessons, strength = informed(ours)
+        words = Change()
+        if ours and brought and informed(brought)[0] != lessons:
+            both = _recollected(After(memory.store, change), ontology).of(lessons | informed(brought)[0])
+            words = modelling(memory.store, {ModelSet.WORDS: word_triples(fit(both, strength).changed)})
+        change, rules = _followed(memory, ontology, change, anew=True)
+        memory.commit(together(change, words), rules)
 
 
 def word_triples(models: Iterable[RelationModel]) -> list[ox.Triple]:
@@ -119,16 +143,183 @@ def _contributions(lesson: Lesson | WordLesson, ontology: Ontology) -> dict[Grap
     return said
 
 
-def _recollected(graphs: Graphs, ontology: Ontology) -> Recollection:
-    return recollect(graphs[GraphName.LEARNED], graphs[GraphName.EPISODES], ontology)
+def _recollected(after: After, ontology: Ontology) -> Recollection:
+    return recollect(after.triples(GraphName.LEARNED), after.triples(GraphName.EPISODES), ontology)
 
 
-def _inferred(graphs: Graphs, ontology: Ontology) -> list[ox.Triple]:
-    stated, learned, asserted = (graphs[n] for n in (GraphName.ONTOLOGY, GraphName.LEARNED, GraphName.ASSERTED))
-    return consequences(stated, learned, asserted, ontology.relations)
+# ---- what follows
 
 
-def _models(graphs: Graphs, ontology: Ontology, words: Iterable[RelationModel] | None = None) -> Models:
-    """The learned models to write: sizes always, words where they were fitted anew."""
-    sizes = learned_size_triples(_recollected(graphs, ontology), ontology)
-    return {ModelSet.SIZES: sizes} if words is None else {ModelSet.SIZES: sizes, ModelSet.WORDS: word_triples(words)}
+def _followed(
+    memory: SemanticMemory,
+    ontology: Ontology,
+    change: Change,
+    come: Sequence[Remembered] = (),
+    gone: Sequence[str] = (),
+    anew: bool = False,
+) -> tuple[Change, str]:
+    """A change of what is said together with that of what follows from it, and the rules that it keeps to.
+
+    ``come`` are the lessons that it brings, ``gone`` the ids of those that it takes back; with ``anew`` they are not
+    asked for. Raises InconsistencyError where a class becomes impossible.
+    """
+    rules, known = kept_up_rules(ontology), None if anew else memory.kept_up()
+    after = After(memory.store, change)
+    inferred, by_hermit = _inferred(after, ontology, stepwise=known == rules)
+    if known in (rules, rules + BY_HERMIT):
+        sizes = _recounted(memory.store, ontology, come, gone)
+    else:
+        sizes = _counted_anew(memory.store, ontology, _recollected(after, ontology))
+    return together(change, inferred, sizes), rules + BY_HERMIT if by_hermit else rules
+
+
+def kept_up_rules(ontology: Ontology) -> str:
+    """The rules by which a memory is kept up with an ontology, as a memory says them."""
+    words = content_key(
+        repr([(kind.iri, kind.words, kind.broader, ontology.sizes.of(kind.iri)) for kind in ontology.kinds])
+    )
+    return f"{RULES} {package_digest()[:16]} {words}"
+
+
+def _inferred(after: After, ontology: Ontology, stepwise: bool) -> tuple[Change, bool]:
+    """The change of the inferred graph, and whether it took HermiT."""
+    try:
+        if stepwise:
+            return following(after, ontology.relations), False
+        return concluding(after.store, everything_that_follows(after, ontology.relations)), False
+    except BeyondLessonsError:
+        return concluding(after.store, everything_by_hermit(after, ontology.relations)), True
+
+
+def _recounted(store: ox.Store, ontology: Ontology, come: Sequence[Remembered], gone: Sequence[str]) -> Change:
+    """The change of the statistics and models of sizes when lessons come and go."""
+    counts = Counts(lambda row, key: _value(store, row, key), lambda row: _row(store, row))
+    statistics = SizeStatistics(counts, ontology.sizes)
+    statements: list[str] = []
+    for lesson in gone:
+        share = share_graph(lesson)
+        for quad in list(store.quads_for_pattern(None, SEEN, None, share)):
+            same_box = store.quads_for_pattern(quad.subject, SEEN, None, None)
+            others = (_view(other) for other in same_box if other.graph_name != share)
+            statistics.remove(_view(quad), others)
+        statements.append(f"DROP SILENT GRAPH {share}")
+    statements += _shares(statistics, come, ontology)
+    statistics.settle()
+    copy = models_graph(ModelSet.SIZES)
+    old: list[ox.Triple] = []
+    new: list[ox.Triple] = []
+    for kind, (model, scenes_gone, scenes_come) in statistics.models().items():
+        node, derived = iri(size_iri(kind)), iri(PROV.WAS_DERIVED_FROM)
+        old += [q.triple for p in SIZE_PROPERTIES for q in store.quads_for_pattern(node, iri(p), None, copy)]
+        old += [ox.Triple(node, derived, iri(scene)) for scene in sorted(scenes_gone)]
+        if model is not None:
+            new += size_triples(kind, model, sorted(scenes_come))
+    come_now = [triple for triple in ledger.as_stored(new) if ledger.quad_of(triple, copy) not in store]
+    stay = set(ledger.as_stored(new))
+    left = [triple for triple in old if triple not in stay]
+    return together(remodelling(store, copy, left, come_now), Change(statements=(*statements, *_rows(counts))))
+
+
+def _counted_anew(store: ox.Store, ontology: Ontology, recollection: Recollection) -> Change:
+    """The same from all lessons, whatever was counted before."""
+    counts, shares, triples = _counted(recollection, ontology)
+    statements = [f"DROP SILENT GRAPH {graph}" for graph in _share_graphs(store)]
+    statements += ledger.deletion(COUNTED, sorted(_kept_rows(store), key=str))
+    models = modelling(store, {ModelSet.SIZES: triples})
+    return together(models, Change(statements=(*statements, *shares, *_rows(counts))))
+
+
+def _counted(recollection: Recollection, ontology: Ontology) -> tuple[Counts, list[str], list[ox.Triple]]:
+    """The counts of all lessons, the operations that write the share of each, and the models."""
+    counts = Counts()
+    statistics = SizeStatistics(counts, ontology.sizes)
+    shares = _shares(statistics, recollection.lessons, ontology)
+    statistics.settle()
+    triples: list[ox.Triple] = []
+    for kind, (model, _, scenes) in statistics.models().items():
+        triples += size_triples(kind, model, sorted(scenes)) if model is not None else ()
+    return counts, shares, triples
+
+
+def _share_graphs(store: ox.Store) -> list[ox.NamedNode]:
+    graphs = (graph for graph in store.named_graphs() if isinstance(graph, ox.NamedNode))
+    return [graph for graph in graphs if graph.value.startswith(f"{STATISTICS}lesson/")]
+
+
+def _kept_rows(store: ox.Store) -> set[ox.Triple]:
+    """What is counted, but for what the store says of itself."""
+    return {quad.triple for quad in store.quads_for_pattern(None, None, None, COUNTED) if quad.subject != COUNTED}
+
+
+def stale(store: ox.Store, ontology: Ontology) -> Iterator[str]:
+    """What of that which follows from a memory's lessons is not as it would be worked out from nothing, a line each.
+
+    A memory of which it is to be made anew anyhow has nothing stale.
+    """
+    known, rules = ledger.kept_up(store), kept_up_rules(ontology)
+    if known not in (rules, rules + BY_HERMIT):
+        return
+    after = After(store)
+    follows = everything_that_follows if known == rules else everything_by_hermit
+    inferred = set(ledger.as_stored(follows(after, ontology.relations)))
+    counts, shares, sizes = _counted(_recollected(after, ontology), ontology)
+    scratch = ox.Store()
+    if shares:
+        scratch.update(" ;\n".join(shares))
+    kept_shares = {quad for graph in _share_graphs(store) for quad in store.quads_for_pattern(None, None, None, graph)}
+    rows = {ox.Triple(_node(row), _node(key), text(value)) for row, key, value in counts.difference()[1]}
+    pairs: list[tuple[str, Set[object], Set[object]]] = [
+        ("inferred triples", set(after.triples(GraphName.INFERRED)), inferred),
+        ("counts", _kept_rows(store), rows),
+        ("lessons' shares of the counts", kept_shares, set(scratch)),
+        (
+            "triples of size models",
+            set(ledger.triples_in(store, models_graph(ModelSet.SIZES))),
+            set(ledger.as_stored(sizes)),
+        ),
+    ]
+    for what, kept, right in pairs:
+        if kept != right:
+            yield f"{what} are not what the lessons come to: {len(kept - right)} too many, {len(right - kept)} missing"
+
+
+def _shares(statistics: SizeStatistics, lessons: Iterable[Remembered], ontology: Ontology) -> list[str]:
+    """Adds what lessons show to the statistics; returns the operations that write their shares."""
+    statements: list[str] = []
+    for lesson in lessons:
+        views = size_views(lesson, ontology.kinds)
+        for view in views:
+            statistics.add(view)
+        seen = {ox.Triple(_node(view.place), SEEN, text(view.written())) for view in views}
+        statements += ledger.insertion(share_graph(lesson.lesson), sorted(seen, key=str))
+    return statements
+
+
+def _view(quad: ox.Quad) -> SizeView:
+    return SizeView.read(str(getattr(quad.object, "value", "")))
+
+
+# ---- rows of counts as triples: the row is the subject, the key the predicate
+
+
+@lru_cache(maxsize=4096)
+def _node(name: str) -> ox.NamedNode:
+    return iri(STATISTICS + quote(name, safe="/"))
+
+
+def _value(store: ox.Store, row: str, key: str) -> str | None:
+    found = next(store.quads_for_pattern(_node(row), _node(key), None, COUNTED), None)
+    return None if found is None else str(getattr(found.object, "value", ""))
+
+
+def _row(store: ox.Store, row: str) -> Row:
+    quads = store.quads_for_pattern(_node(row), None, None, COUNTED)
+    return {unquote(q.predicate.value.removeprefix(STATISTICS)): str(getattr(q.object, "value", "")) for q in quads}
+
+
+def _rows(counts: Counts) -> list[str]:
+    """The operations that bring the rows up to date."""
+    gone, come = (
+        [ox.Triple(_node(row), _node(key), text(value)) for row, key, value in side] for side in counts.difference()
+    )
+    return [*ledger.deletion(COUNTED, gone), *ledger.insertion(COUNTED, come)]

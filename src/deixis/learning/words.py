@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 
@@ -103,23 +103,23 @@ def teaching(examples: Sequence[Example]) -> tuple[list[Example], list[str]]:
 
 
 def new_lessons(
-    examples: Sequence[Example], known: Recollection, taken: Iterable[str]
+    examples: Sequence[Example], known: Recollection, taken: Callable[[str], bool]
 ) -> tuple[list[WordLesson], list[str]]:
     """Lessons about words from the examples that teach something new; and of the others, a line each, why not.
 
-    Their ids differ from those that are ``taken``.
+    Their ids are not ``taken``.
     """
     taught, left_out = teaching(examples)
-    texts, ids = {one.texts: one.lesson for one in known.lessons}, list(taken)
+    texts, ids = {one.texts: one.lesson for one in known.lessons}, set[str]()
     lessons: list[WordLesson] = []
     for script, scene in taught:
         now = datetime.now(UTC)
-        id = next_lesson_id(f"words_{layout_name(script)}", ids)
+        id = next_lesson_id(f"words_{layout_name(script)}", lambda id: id in ids or taken(id))
         lesson = word_lesson(script, scene, id, Occasion(now, now, VERSION))
         same = texts.setdefault((lesson.script_text, lesson.scene_text), id)
         if same == id:
             lessons.append(lesson)
-            ids.append(id)
+            ids.add(id)
         else:
             left_out.append(f"{script.file} {scene.file}: remembered already, as {same}")
     return lessons, left_out

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -21,6 +21,7 @@ from deixis.workflows.read import as_scene, as_script
 
 if TYPE_CHECKING:
     from deixis.learning.views import StandingWord, Taught
+    from deixis.memory.perceptual.records import View
     from deixis.ontology.lessons.types import Lesson
 
 
@@ -45,19 +46,42 @@ class Learned:
 
 
 def learn(
-    script: Script | str | Path,
-    scene: Scene | str | Path | Mapping[str, Any],
+    examples: Sequence[tuple[Script | str | Path, Scene | str | Path | Mapping[str, Any]]],
     knowledge: KnowledgeStore,
     views: ViewStore,
     engine: str = "exact",
     time_limit: float = DEFAULT_TIME_LIMIT,
-) -> Learned:
-    """Grounds a script in a scene, and keeps the layout and what its objects look like, with where it comes from.
+) -> tuple[Learned, ...]:
+    """Ground scripts, each in its scene, and keep the layouts and what their objects look like: all of them, or none.
 
-    What is doubtful or interchangeable is kept as such and teaches no category; how sure each match is is kept too,
-    for :meth:`KnowledgeStore.learn_relations`. Sizes are learned at once. What a teacher named stays of that name.
-    Raises DeixisError, having changed nothing, where the script contradicts itself or what was learned before.
+    Each is grounded with what the memory had learned before this call; ``time_limit`` is for each grounding. What is
+    doubtful or interchangeable is kept as such and teaches no category; how sure each match is is kept too, for
+    :meth:`KnowledgeStore.learn_relations`. Sizes are learned at once. What a teacher named stays of that name. Raises
+    DeixisError, having changed nothing, where a script contradicts itself or what was learned before.
     """
+    taken: set[str] = set()
+    learned = [_lesson(script, scene, knowledge, engine, time_limit, taken) for script, scene in examples]
+    if not learned:
+        return ()
+    groups = [views.but_for_taught(seen) for _, seen in learned]
+    with views.keeping([view for new, _ in groups for view in new]) as kept:
+        knowledge.keep([one.lesson for one, _ in learned])
+    found, left = [], list(kept)
+    for (one, _), (new, standing) in zip(learned, groups, strict=True):
+        found.append(replace(one, seen=tuple(left[: len(new)]), standing=standing))
+        del left[: len(new)]
+    return tuple(found)
+
+
+def _lesson(
+    script: Script | str | Path,
+    scene: Scene | str | Path | Mapping[str, Any],
+    knowledge: KnowledgeStore,
+    engine: str,
+    time_limit: float,
+    taken: set[str],
+) -> tuple[Learned, list[View]]:
+    """Return the lesson that a script and a scene are, not kept yet, and its views; put its id among those taken."""
     from deixis.learning.lesson import Occasion, layout_name, lesson_of
     from deixis.ontology.lessons.types import next_lesson_id
 
@@ -70,10 +94,10 @@ def learn(
     started = datetime.now(UTC)
     found = answer(request)
     if not found.matches:
-        raise NothingFoundError("nothing that the script names was found in the scene, so nothing was learned")
-    id = next_lesson_id(layout_name(script), knowledge.memory(create=True).lessons())
-    lesson = lesson_of(script, scene, found, id, Occasion(started, datetime.now(UTC), VERSION))
-    new, standing = views.but_for_taught(views_of_matches(scene, found.matches.values()))
-    with views.keeping(new) as seen:
-        knowledge.keep(lesson)
-    return Learned(lesson, found, seen, standing)
+        where = f"the script {script.file} names was found in the scene {scene.file}"
+        raise NothingFoundError(f"nothing that {where}, so nothing was learned")
+    knows = knowledge.memory(create=True).knows
+    lesson_id = next_lesson_id(layout_name(script), lambda name: name in taken or knows(name))
+    taken.add(lesson_id)
+    lesson = lesson_of(script, scene, found, lesson_id, Occasion(started, datetime.now(UTC), VERSION))
+    return Learned(lesson, found), views_of_matches(scene, found.matches.values())

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from deixis.errors import DeixisError
 from deixis.grammar.parser import parse_script
 from deixis.grammar.parser import read_script as read_script_file
 from deixis.grammar.script import Script
 from deixis.ontology.tbox import Ontology
 from deixis.perception.formats.scene_json import read_scene
 from deixis.perception.scene import Scene
+
+SCRIPT_ENDING, SCENE_ENDING = ".layout", ".scene.json"
 
 
 def read_script(path: str | Path | None = None, *, text: str | None = None, ontology: Ontology | None = None) -> Script:
@@ -44,4 +47,38 @@ def as_scene(scene: Scene | str | Path | Mapping[str, Any]) -> Scene:
 
 def is_script_file(layout: str | Path) -> bool:
     """Whether a layout is given as a file rather than by its name."""
-    return isinstance(layout, Path) or layout.endswith(".layout") or os.sep in layout
+    return isinstance(layout, Path) or layout.endswith(SCRIPT_ENDING) or os.sep in layout
+
+
+def example_pairs(inputs: Sequence[Path]) -> list[tuple[Path, Path]]:
+    """Each script with its scene: files come in turn, of a folder every ``NAME.layout`` goes with ``NAME.scene.json``.
+
+    Raises DeixisError for a script without a scene, a scene in a folder without a script, and a folder without either.
+    """
+    pairs: list[tuple[Path, Path]] = []
+    script: Path | None = None
+    for given in inputs:
+        if given.is_dir():
+            if script is not None:
+                break
+            pairs += _in_folder(given)
+        elif script is None:
+            script = given
+        else:
+            pairs.append((script, given))
+            script = None
+    if script is not None:
+        raise DeixisError(f"{script}: name its scene behind it, as in 'SCRIPT SCENE'")
+    return pairs
+
+
+def _in_folder(folder: Path) -> Iterator[tuple[Path, Path]]:
+    scripts = {file.name.removesuffix(SCRIPT_ENDING): file for file in sorted(folder.glob(f"*{SCRIPT_ENDING}"))}
+    scenes = {file.name.removesuffix(SCENE_ENDING): file for file in sorted(folder.glob(f"*{SCENE_ENDING}"))}
+    if not scripts and not scenes:
+        raise DeixisError(f"{folder}: there is no NAME{SCRIPT_ENDING} with a NAME{SCENE_ENDING} in this folder")
+    for name in sorted(scripts.keys() ^ scenes.keys()):
+        there, lacking = (scripts[name], SCENE_ENDING) if name in scripts else (scenes[name], SCRIPT_ENDING)
+        raise DeixisError(f"{there}: there is no {name}{lacking} beside it")
+    for name, script in scripts.items():
+        yield script, scenes[name]

@@ -10,6 +10,7 @@ import pyoxigraph as ox
 import pytest
 from commands import deixis
 
+from deixis.errors import UnknownTermError
 from deixis.examples_data import example
 from deixis.experiments.place_settings import formal_setting
 from deixis.grammar.format import layout_script
@@ -45,6 +46,14 @@ def test_a_lesson_outlives_the_process_that_learned_it(taught: Path) -> None:
         assert [layout.name for layout in session.layouts()] == ["formal_dinner", "script1"]
         concept = session.layout("formal_dinner")
         assert [str(fact) for fact in concept.facts] == [str(fact) for fact in read_script(FULL).facts]
+
+
+def test_a_layout_is_found_by_its_name_or_its_lesson(taught: Path) -> None:
+    with Session(taught) as session:
+        assert session.layout("formal_dinner-1").name == session.layout("formal_dinner").name == "formal_dinner"
+        assert session.layout("formal_dinner") == session.layouts()[0]
+        with pytest.raises(UnknownTermError, match="did you mean 'script1'"):
+            session.layout("script")
 
 
 def test_the_layout_is_a_class_whose_label_is_its_name(taught: Path) -> None:

@@ -19,6 +19,7 @@ from deixis.errors import DeixisError
 from deixis.memory import folder as files
 from deixis.memory import owner as disk
 from deixis.memory.errors import MemoryBusyError, MemoryFormatError, MemoryWriteError
+from deixis.memory.folder import VERSION
 from deixis.memory.semantic import opening
 from deixis.memory.semantic.exchange import export_memory
 from deixis.memory.semantic.rdf.graphs import GRAPHS, GraphName
@@ -61,7 +62,7 @@ def test_a_new_memory_is_made_only_when_asked(tmp_path: Path) -> None:
     SemanticMemory.open(tmp_path / "a" / "b", create=True).close()
     assert sorted(os.listdir(tmp_path / "a" / "b")) == ["memory.json", "owner.lock", "semantic"]
     mark = json.loads((tmp_path / "a" / "b" / "memory.json").read_text())
-    assert (mark["format"], mark["version"]) == ("deixis-memory", 1)
+    assert (mark["format"], mark["version"]) == ("deixis-memory", VERSION)
 
 
 def test_an_empty_folder_becomes_one_only_when_asked(tmp_path: Path) -> None:
@@ -168,7 +169,7 @@ def _exported(folder: Path) -> str:
 
 def test_an_old_memory_is_brought_up_to_date(kept_old: Path, kept_export: str) -> None:
     assert _exported(kept_old) == kept_export
-    assert files.read_mark(kept_old)["version"] == 1
+    assert files.read_mark(kept_old)["version"] == VERSION
     assert sorted(os.listdir(kept_old)) == ["memory.json", "owner.lock", "semantic"]
 
 

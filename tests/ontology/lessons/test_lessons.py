@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from dataclasses import replace
 from datetime import UTC, datetime
 
 import pyoxigraph as ox
-import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from deixis.errors import UnknownTermError
 from deixis.ontology.graph import Fact, Source
-from deixis.ontology.lessons.read import layout_named, layouts, lesson_records
+from deixis.ontology.lessons.read import layouts, lesson_records, unknown_layout
 from deixis.ontology.lessons.types import Alternative, LayoutConcept, Lesson, Match, Role, next_lesson_id
 from deixis.ontology.lessons.write import asserted_triples, episode_triples, learned_triples
 from deixis.ontology.tbox import default_ontology
@@ -139,20 +138,24 @@ def test_class_expressions_are_blank_nodes_outside_and_names_inside() -> None:
     assert set(with_names(outside)) == set(inside)
 
 
-def test_a_layout_is_found_by_its_name_or_its_lesson() -> None:
-    known = [lesson(["a", "b"], id).layout for id in ("dinner-1", "dinner-2")]
-    lessons = ("dinner-2", "dinner-1")  # in the order learned
-    assert layout_named(known, "dinner", lessons).lesson == "dinner-1"
-    assert layout_named(known, "dinner-2", lessons).lesson == "dinner-2"
-    with pytest.raises(UnknownTermError, match="did you mean 'dinner'"):
-        layout_named(known, "diner", lessons)
-    with pytest.raises(UnknownTermError, match="nor any other"):
-        layout_named([], "diner", ())
+def test_an_unknown_layout_is_told_with_the_nearest_name() -> None:
+    assert "did you mean 'dinner'" in str(unknown_layout("diner", ["dinner", "dinner", "picnic"]))
+    assert "the learned ones are: dinner, picnic" in str(unknown_layout("x", ["picnic", "dinner"]))
+    assert "nor any other" in str(unknown_layout("diner", ()))
 
 
 def test_lesson_ids_are_never_used_twice() -> None:
-    assert next_lesson_id("a", []) == "a-1"
-    assert next_lesson_id("a", ["a-1", "a-3"]) == "a-2"
+    assert next_lesson_id("a", [].__contains__) == "a-1"
+    assert next_lesson_id("a", ["a-1", "a-3"].__contains__) == "a-2"
+    taken = {f"a-{number}" for number in range(1, 1001)}
+    asked = Counter[str]()
+
+    def is_taken(id: str) -> bool:
+        asked[id] += 1
+        return id in taken
+
+    assert next_lesson_id("a", is_taken) == "a-1001"
+    assert asked.total() < 30
 
 
 def test_numbers_keep_their_value_and_get_the_right_type() -> None:

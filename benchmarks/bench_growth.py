@@ -1,0 +1,166 @@
+"""What learning, checking, recognising, asking and forgetting take when few lessons are known, and when many are.
+
+Lessons are generated: seven things of a formal place setting, some under words that the ontology does not know, each
+table laid a little differently. One warm process learns them one by one. At 10, 100 and 1,000 it measures further
+lessons, the part of learning behind the grounding, and the rest (medians of ``--runs``, 9). Then it learns 10,000 as a
+batch into another memory, says what that takes a lesson, and measures again. At the end it forgets what the first
+memory knows but for ten lessons, to see that the disk is given back. ``--quick`` stops at 20 lessons and a batch of 20.
+"""
+
+from __future__ import annotations
+
+import argparse
+import random
+import statistics
+import tempfile
+import time
+from collections import defaultdict
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+
+from deixis.experiments.place_settings import formal_setting
+from deixis.grammar.script import Script
+from deixis.memory.folder import size
+from deixis.ontology.tbox import default_ontology
+from deixis.perception.scene import Scene
+from deixis.session import Session
+from deixis.workflows import learn as learning
+from deixis.workflows.read import read_script
+
+THINGS = 7
+UNKNOWN = [first + last for first in ("zor", "mil", "tef", "gau", "pim") for last in ("ble", "cket", "dril", "nop")]
+"""Words that the ontology does not know."""
+
+Times = dict[str, list[float]]
+
+
+def generated(number: int) -> tuple[Script, Scene]:
+    """The script and the labelled scene of one table; the same for the same number."""
+    rng, relations = random.Random(number), default_ontology().relations
+    whole = formal_setting(number, 0.01)
+    things = rng.sample(whole.objects, THINGS)
+    names = [f"{rng.choice(UNKNOWN)}_{n}" if rng.random() < 0.15 else thing.id for n, thing in enumerate(things)]
+    objects = [replace(t, id=f"p{n}", label=name) for n, (t, name) in enumerate(zip(things, names, strict=True))]
+    scene = replace(whole, objects=tuple(objects))
+    seen = scene.relations(relations).names
+    facts = []
+    for one in range(1, THINGS):
+        other = rng.randrange(one)
+        exact = relations.members(1 << int(seen[one, other]))[0]
+        facts.append(f"{names[one]} {relations.wide(exact).phrase} {names[other]}")
+    return read_script(text="\n".join([f"layout table_{number}", *facts])), scene
+
+
+@contextmanager
+def timed(times: Times, what: str) -> Iterator[None]:
+    started = time.perf_counter()
+    yield
+    times[what].append(time.perf_counter() - started)
+
+
+def measure(session: Session, first: int, runs: int) -> Times:
+    """The times of further lessons, which are forgotten again, and of what is asked between."""
+    times: Times = defaultdict(list)
+    answer = learning.answer
+    for number in range(first, first + runs):
+        script, scene = generated(number)
+        grounding: Times = defaultdict(list)
+
+        def grounded(*told: object, **more: object) -> object:
+            with timed(grounding, "ground"):  # noqa: B023
+                return answer(*told, **more)  # type: ignore[arg-type]
+
+        learning.answer = grounded  # type: ignore[assignment]
+        try:
+            with timed(times, "learn"):
+                learned = session.learn(script, scene)
+        finally:
+            learning.answer = answer
+        times["behind the grounding"].append(times["learn"][-1] - grounding["ground"][-1])
+        with timed(times, "check"):
+            session.check(f"table_{number}", scene)
+        with timed(times, "recognise"):
+            session.recognise(scene)
+        with timed(times, "query"):
+            asked = (
+                f"SELECT ?role {{ ?role a dx:Role ; dx:inLayout ?l . ?l rdfs:label 'table_{number}' }} ORDER BY ?role"
+            )
+            assert len(session.query(asked).rows) == THINGS
+        with timed(times, "forget"):
+            session.forget(learned.lesson.id)
+    return times
+
+
+def told(lessons: int, times: Times, base: Times | None) -> str:
+    """One line: medians in milliseconds, and how many times what they were with the fewest lessons."""
+    parts = []
+    for what, taken in times.items():
+        median = statistics.median(taken)
+        ratio = f" ({median / statistics.median(base[what]):.2f})" if base is not None else ""
+        parts.append(f"{what} {median * 1e3:.1f} ms{ratio}")
+    return f"{lessons:>6,} lessons: " + ", ".join(parts)
+
+
+def singly(path: Path, numbers: list[int], runs: int) -> Times:
+    """Learns one by one up to each number of lessons, and measures there; returns the times with the fewest."""
+    base: Times | None = None
+    with Session(path) as session:
+        measure(session, 10_000_000, 2)  # everything is compiled and read once
+        known = 0
+        for number in numbers:
+            for new in range(known, number):
+                session.learn(*generated(new))
+            known = number
+            times = measure(session, 1_000_000, runs)
+            print(told(number, times, base), flush=True)
+            base = base or times
+    assert base is not None
+    print(f"        on disk: {size(path) / 1e6:.1f} MB", flush=True)
+    return base
+
+
+def as_batch(path: Path, number: int, runs: int, base: Times) -> None:
+    """Learns a batch in one call, and measures there."""
+    examples = [generated(new) for new in range(number)]
+    with Session(path) as session:
+        started = time.perf_counter()
+        session.learn_all(examples)
+        taken = time.perf_counter() - started
+        print(f"a batch of {number:,}: {taken:.1f} s, {taken / number * 1e3:.1f} ms a lesson", flush=True)
+        print(told(number, measure(session, 1_000_000, runs), base), flush=True)
+    print(f"        on disk: {size(path) / 1e6:.1f} MB", flush=True)
+
+
+def forgetting(path: Path, left: int) -> None:
+    """Forgets all lessons but some, and says what is on the disk then."""
+    before = size(path)
+    with Session(path) as session:
+        lessons = session.memory().lessons()[left:]
+        started = time.perf_counter()
+        for lesson in lessons:
+            session.forget(lesson)
+    taken = time.perf_counter() - started
+    print(f"forgotten {len(lessons):,} in {taken:.1f} s: {before / 1e6:.1f} MB before, {size(path) / 1e6:.1f} MB after")
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--runs", type=int, default=9)
+    parser.add_argument("--batch", type=int, default=10_000)
+    parser.add_argument("--most", type=int, default=1000, help="lessons learned one by one")
+    parser.add_argument("--quick", action="store_true")
+    options = parser.parse_args()
+    if options.quick:
+        options.runs, options.batch, options.most = 3, 20, 20
+    with tempfile.TemporaryDirectory() as scratch:
+        numbers = [number for number in (10, 100, 1000) if number < options.most]
+        base = singly(Path(scratch) / "singly", [*numbers, options.most], options.runs)
+        if options.batch:
+            as_batch(Path(scratch) / "batch", options.batch, options.runs, base)
+        forgetting(Path(scratch) / "singly", 10)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,318 @@
+"""What follows from what was learned and seen, and was not said: the content of the inferred graph, kept up to date.
+
+Every broader class of each class, every broader class of what a thing is said to be, and the wide relations of pairs
+from their exact ones. A change of what is stated decides what is looked at again: the classes that it speaks of, those
+above and below them, the things whose kinds it alters, and the pairs that it relates. Nothing else can follow otherwise
+than before. Lessons speak in a part of OWL in which subsumption needs no reasoner
+(:mod:`deixis.reasoning.description_logic.subsumption`); of a memory into which more was brought, HermiT classifies
+everything, as ``deixis reason`` does on demand.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+
+import pyoxigraph as ox
+
+from deixis.memory.semantic.rdf.after import After, Node
+from deixis.memory.semantic.rdf.change import Change, reconcluding
+from deixis.memory.semantic.rdf.graphs import GraphName, graph_iri
+from deixis.ontology.relation import Reading, Relations
+from deixis.ontology.triples import GENID, iri, learned_iri, text, with_blank_nodes
+from deixis.ontology.vocabulary import PROV, W3C
+from deixis.reasoning.description_logic.reasoners import Classification, classify
+from deixis.reasoning.description_logic.subsumption import (
+    BEYOND,
+    BeyondLessonsError,
+    PropertyEnds,
+    Subsumption,
+    ToldClass,
+)
+from deixis.reasoning.errors import InconsistencyError
+
+ENGINES = {"Deixis": "broader classes, kinds of things, and wide relations of pairs from exact ones"}
+"""What works out the inferred graph."""
+
+OWL, RDFS = "http://www.w3.org/2002/07/owl#", "http://www.w3.org/2000/01/rdf-schema#"
+RDF = "http://www.w3.org/1999/02/22-rdf-syntax-ns#"
+
+TYPE, SUB_CLASS_OF = iri(W3C.RDF_TYPE), iri(W3C.RDFS_SUB_CLASS_OF)
+SUB_PROPERTY_OF, DOMAIN, RANGE = (iri(RDFS + name) for name in ("subPropertyOf", "domain", "range"))
+INVERSE_OF, MEMBERS, DISJOINT_WITH = (iri(OWL + name) for name in ("inverseOf", "members", "disjointWith"))
+ON_PROPERTY, SOME_VALUES_FROM = iri(OWL + "onProperty"), iri(OWL + "someValuesFrom")
+
+CLASSES = (GraphName.ONTOLOGY, GraphName.LEARNED)
+"""The graphs that say what classes are."""
+
+STATED = (GraphName.LEARNED, GraphName.ASSERTED)
+"""The graphs whose triples are not inferred as well."""
+
+
+def following(after: After, relations: Relations) -> Change:
+    """The change of the inferred graph that a change of the others asks for.
+
+    ``after`` is a store whose inferred graph is right for what it holds now. Raises InconsistencyError where a class
+    becomes impossible; BeyondLessonsError where more is said of classes than lessons say.
+    """
+    said = _Said(after, relations)
+    said.require_lessons_only(after.change.added)
+    gone: set[ox.Triple] = set()
+    come: set[ox.Triple] = set()
+
+    def replace(old: Iterable[ox.Triple], new: set[ox.Triple]) -> None:
+        was = set(old)
+        gone.update(was - new)
+        come.update(new - was)
+
+    changed = [
+        triple
+        for side in (after.change.added, after.change.removed)
+        for name in STATED
+        for triple in side.get(name, ())
+    ]
+    classes = {
+        _value(t.subject) for t in changed if t.predicate == SUB_CLASS_OF and not _value(t.subject).startswith(GENID)
+    }
+    module = said.module(classes)
+    said.require_satisfiable(module)
+    for name in module:
+        replace(after.triples(GraphName.INFERRED, iri(name), SUB_CLASS_OF), said.class_triples(name))
+    things = {t.subject for t in changed if t.predicate == TYPE}
+    reclassified = {*map(iri, classes), *(t.subject for t in (*gone, *come))}
+    things |= {t.subject for kind in reclassified for t in after.triples(GraphName.ASSERTED, None, TYPE, kind)}
+    for thing in things:
+        replace(after.triples(GraphName.INFERRED, thing, TYPE), said.types(thing))
+    for subject, object in {(t.subject, t.object) for t in changed if t.predicate in said.wider}:
+        old = after.triples(GraphName.INFERRED, subject, None, object)
+        replace((t for t in old if t.predicate not in (TYPE, SUB_CLASS_OF)), said.wide(subject, object))
+    for name in STATED:
+        gone |= {t for t in after.change.added.get(name, ()) if after.holds(GraphName.INFERRED, t)}
+    return reconcluding(gone - come, come - gone)
+
+
+def everything_that_follows(after: After, relations: Relations) -> set[ox.Triple]:
+    """The inferred graph of a store, worked out anew; raises as :func:`following` does."""
+    said = _Said(after, relations)
+    said.require_lessons_only({name: after.triples(name) for name in CLASSES})
+    names = {_value(t.subject) for name in CLASSES for t in after.triples(name, None, SUB_CLASS_OF)}
+    said.require_satisfiable(names)
+    found = {triple for name in names for triple in said.class_triples(name)}
+    return found | said.of_things() | set(origin())
+
+
+def everything_by_hermit(after: After, relations: Relations) -> set[ox.Triple]:
+    """The same of a store that says more of classes than lessons do; raises InconsistencyError as the others."""
+    learned = list(after.triples(GraphName.LEARNED))
+    axioms = with_blank_nodes([*after.triples(GraphName.ONTOLOGY), *class_axioms(learned)])
+    text = (ox.serialize(axioms, format=ox.RdfFormat.N_TRIPLES) or b"").decode("utf-8")
+    classified = _classified("".join(sorted(text.splitlines(keepends=True))))
+    if classified.unsatisfiable:
+        raise impossible(classified.unsatisfiable)
+    quads = ox.parse(classified.inferred, format=ox.RdfFormat.N_TRIPLES)
+    said = _Said(after, relations, {quad.triple for quad in quads})
+    found = {triple for triple in said.classified or () if not said.stated(triple)}
+    return found | said.of_things() | set(origin({**ENGINES, "HermiT": "broader classes"}))
+
+
+def impossible(classes: Iterable[str]) -> InconsistencyError:
+    """The error that says that nothing can belong to some classes any more."""
+    listed = ", ".join(name.rsplit("/", 1)[-1] for name in sorted(classes))
+    return InconsistencyError(
+        f"nothing can be a '{listed}' any more: what was learned about it before says it is of another kind; "
+        "forget that lesson, or declare the same kind in both scripts"
+    )
+
+
+def class_axioms(learned: list[ox.Triple]) -> list[ox.Triple]:
+    """What learned triples say of classes; roles, statements and matches are no business of classification."""
+    classes = {t.subject for t in learned if t.predicate == TYPE and _value(t.object) == W3C.OWL_CLASS}
+    return [t for t in learned if t.subject in classes or _value(t.subject).startswith(GENID)]
+
+
+@lru_cache(maxsize=4)
+def _classified(axioms: str) -> Classification:
+    """HermiT's answer, which takes a second."""
+    return classify(axioms)
+
+
+class _Said:
+    """What is stated after a change, as the rules look at it; ``classified`` is what HermiT made of the classes."""
+
+    def __init__(self, after: After, relations: Relations, classified: set[ox.Triple] | None = None) -> None:
+        self._after, self.classified = after, classified
+        self.wider = {
+            iri(relation.iri): [iri(relations[broader].iri) for broader in relation.broader]
+            for relation in relations.of_reading(Reading.EXACT)
+        }
+        self._subsumption = Subsumption(_Told(after), *_schema(after))
+        self._by_hermit: dict[str, set[str]] = {}
+        for triple in classified or ():
+            if triple.predicate == SUB_CLASS_OF:
+                self._by_hermit.setdefault(_value(triple.subject), set()).add(_value(triple.object))
+
+    def stated(self, triple: ox.Triple) -> bool:
+        return any(self._after.holds(name, triple) for name in STATED)
+
+    def require_lessons_only(self, triples: Mapping[GraphName, Iterable[ox.Triple]]) -> None:
+        """Raises BeyondLessonsError where classes are said to be more than lessons say; ``triples`` are new ones."""
+        for predicate in map(iri, BEYOND):
+            for name in CLASSES:
+                if any(True for _ in self._after.triples(name, None, predicate)):
+                    raise BeyondLessonsError(f"the {name} graph uses <{predicate.value}>")
+        for name in CLASSES:
+            for triple in triples.get(name, ()):
+                if triple.predicate == SUB_CLASS_OF and _value(triple.subject).startswith(GENID):
+                    raise BeyondLessonsError(f"the {name} graph says what <{_value(triple.subject)}> is narrower than")
+
+    def module(self, classes: set[str]) -> set[str]:
+        """Some classes, and all above and below them: those whose super-classes can have changed."""
+        module = classes.union(*(self._broader(name) for name in classes))
+        todo = list(classes)
+        while todo:
+            name = iri(todo.pop())
+            for graph in CLASSES:
+                below = {_value(t.subject) for t in self._after.triples(graph, None, SUB_CLASS_OF, name)}
+                new = {name for name in below if not name.startswith(GENID)} - module
+                module |= new
+                todo += new
+        return module
+
+    def require_satisfiable(self, names: Iterable[str]) -> None:
+        wrong = [name for name in names if not self._subsumption.satisfiable(name)]
+        if wrong:
+            raise impossible(wrong)
+
+    def class_triples(self, name: str) -> set[ox.Triple]:
+        """What follows about a class and is nowhere said."""
+        found = (ox.Triple(iri(name), SUB_CLASS_OF, iri(other)) for other in self._broader(name))
+        return {t for t in found if not self.stated(t) and not self._after.holds(GraphName.ONTOLOGY, t)}
+
+    def types(self, thing: ox.NamedNode | ox.BlankNode | ox.Triple) -> set[ox.Triple]:
+        """Every broader class of what a thing is said to be."""
+        kinds = {_value(t.object) for t in self._after.triples(GraphName.ASSERTED, thing, TYPE)}
+        broader = set[str]().union(*map(self._broader_of_kind, kinds)) - kinds
+        found = (ox.Triple(thing, TYPE, iri(kind)) for kind in broader)
+        return {triple for triple in found if not self.stated(triple)}
+
+    def wide(self, subject: ox.NamedNode | ox.BlankNode | ox.Triple, object: Node) -> set[ox.Triple]:
+        """The wide relations of a pair by its exact ones."""
+        exact = (t.predicate for t in self._after.triples(GraphName.ASSERTED, subject, None, object))
+        found = {ox.Triple(subject, wide, object) for name in exact for wide in self.wider.get(name, ())}
+        return {triple for triple in found if not self.stated(triple)}
+
+    def of_things(self) -> set[ox.Triple]:
+        """What follows of all things and pairs."""
+        asserted = list(self._after.triples(GraphName.ASSERTED))
+        things = {triple.subject for triple in asserted if triple.predicate == TYPE}
+        pairs = {(t.subject, t.object) for t in asserted if t.predicate in self.wider}
+        return {t for thing in things for t in self.types(thing)} | {t for pair in pairs for t in self.wide(*pair)}
+
+    def _broader(self, name: str) -> frozenset[str]:
+        return self._subsumption.broader(name)
+
+    def _broader_of_kind(self, kind: str) -> set[str]:
+        """The classes above a kind, but those of which only the ontology says it."""
+        found = set(self._broader(kind)) if self.classified is None else self._by_hermit.get(kind, set())
+        told = {
+            name: {_value(t.object) for t in self._after.triples(name, iri(kind), SUB_CLASS_OF)} for name in CLASSES
+        }
+        learned = {value for value in told[GraphName.LEARNED] if not value.startswith(GENID)}
+        return (found - told[GraphName.ONTOLOGY]) | learned
+
+
+@dataclass(frozen=True)
+class _Told:
+    """What the ontology and the lessons say of a class; apart from what asks, so that no circle keeps a store open."""
+
+    after: After
+
+    def __call__(self, name: str) -> ToldClass:
+        broader: set[str] = set()
+        shows: set[tuple[str, str]] = set()
+        for graph in CLASSES:
+            for triple in self.after.triples(graph, iri(name), SUB_CLASS_OF):
+                value = _value(triple.object)
+                if value.startswith(GENID):
+                    shows.add(self._restriction(triple.object))
+                else:
+                    broader.add(value)
+        return ToldClass(frozenset(broader), frozenset(shows))
+
+    def _restriction(self, node: Node) -> tuple[str, str]:
+        ends = [
+            {_value(t.object) for name in CLASSES for t in self.after.triples(name, node, predicate)}
+            for predicate in (ON_PROPERTY, SOME_VALUES_FROM)
+        ]
+        if [len(end) for end in ends] != [1, 1] or any(value.startswith(GENID) for end in ends for value in end):
+            raise BeyondLessonsError(f"<{_value(node)}> is no restriction to some values of one property")
+        return ends[0].pop(), ends[1].pop()
+
+
+def _schema(after: After) -> tuple[Callable[[str], PropertyEnds], list[frozenset[str]]]:
+    """What the ontology and the lessons say of the ends of properties, and of disjoint classes."""
+
+    def pairs(predicate: ox.NamedNode) -> list[tuple[str, str]]:
+        found = (t for name in CLASSES for t in after.triples(name, None, predicate))
+        return [(_value(triple.subject), _value(triple.object)) for triple in found]
+
+    groups = [frozenset(pair) for pair in pairs(DISJOINT_WITH)]
+    for name in CLASSES:
+        for triple in after.triples(name, None, TYPE, iri(OWL + "AllDisjointClasses")):
+            heads = [t.object for t in after.triples(name, triple.subject, MEMBERS)]
+            groups += [frozenset(_list(after, name, head)) for head in heads]
+    inverses, broader = pairs(INVERSE_OF), pairs(SUB_PROPERTY_OF)
+    inverses += [(other, one) for one, other in inverses]
+    domains, ranges = pairs(DOMAIN), pairs(RANGE)
+
+    def ends(property: str) -> PropertyEnds:
+        forwards, backwards, size = {property}, set[str](), 0
+        while size < len(forwards) + len(backwards):  # super-properties, and inverses as often as there are any
+            size = len(forwards) + len(backwards)
+            forwards |= {high for low, high in broader if low in forwards} | {o for p, o in inverses if p in backwards}
+            backwards |= {high for low, high in broader if low in backwards} | {o for p, o in inverses if p in forwards}
+        here = [*(kind for p, kind in domains if p in forwards), *(kind for p, kind in ranges if p in backwards)]
+        there = [*(kind for p, kind in ranges if p in forwards), *(kind for p, kind in domains if p in backwards)]
+        functional = any(_is_functional(after, name) for name in forwards)
+        return PropertyEnds(frozenset(here), frozenset(there), functional)
+
+    return ends, groups
+
+
+def _is_functional(after: After, name: str) -> bool:
+    kind = ox.Triple(iri(name), TYPE, iri(OWL + "FunctionalProperty"))
+    return any(after.holds(graph, kind) for graph in CLASSES)
+
+
+def _list(after: After, name: GraphName, head: Node) -> Iterator[str]:
+    while first := next(after.triples(name, head, iri(RDF + "first")), None):
+        yield _value(first.object)
+        rest = next(after.triples(name, head, iri(RDF + "rest")), None)
+        if rest is None:
+            return
+        head = rest.object
+
+
+def origin(engines: Mapping[str, str] = ENGINES) -> Iterator[ox.Triple]:
+    """Where the inferred graph comes from, said in it: from what, and by which engines.
+
+    It bears no time: the same facts always come to the same graph.
+    """
+    graph, inference = graph_iri(GraphName.INFERRED), iri(learned_iri("inference"))
+    sources = [graph_iri(name) for name in (GraphName.ONTOLOGY, GraphName.LEARNED, GraphName.ASSERTED)]
+    yield ox.Triple(graph, TYPE, iri(PROV.ENTITY))
+    yield ox.Triple(graph, iri(PROV.WAS_GENERATED_BY), inference)
+    yield ox.Triple(inference, TYPE, iri(PROV.ACTIVITY))
+    for source in sources:
+        yield ox.Triple(graph, iri(PROV.WAS_DERIVED_FROM), source)
+        yield ox.Triple(inference, iri(PROV.USED), source)
+    for name, does in engines.items():
+        agent = iri(learned_iri("agent", name))
+        yield ox.Triple(inference, iri(PROV.WAS_ASSOCIATED_WITH), agent)
+        yield ox.Triple(agent, TYPE, iri(PROV.SOFTWARE_AGENT))
+        yield ox.Triple(agent, iri(W3C.RDFS_LABEL), text(f"{name}: {does}"))
+
+
+def _value(term: object) -> str:
+    return str(getattr(term, "value", ""))
