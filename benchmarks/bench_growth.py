@@ -20,18 +20,21 @@ from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 
+import deixis.workflows.learn as learning
 from deixis.experiments.place_settings import formal_setting
 from deixis.grammar.script import Script
 from deixis.memory.folder import size
 from deixis.ontology.tbox import default_ontology
 from deixis.perception.scene import Scene
 from deixis.session import Session
-from deixis.workflows import learn as learning
 from deixis.workflows.read import read_script
 
 THINGS = 7
 UNKNOWN = [first + last for first in ("zor", "mil", "tef", "gau", "pim") for last in ("ble", "cket", "dril", "nop")]
 """Words that the ontology does not know."""
+
+AT_ONCE = 500
+"""Lessons of a batch that are committed together: a commit holds some 4 MB a lesson."""
 
 Times = dict[str, list[float]]
 
@@ -63,7 +66,7 @@ def timed(times: Times, what: str) -> Iterator[None]:
 def measure(session: Session, first: int, runs: int) -> Times:
     """The times of further lessons, which are forgotten again, and of what is asked between."""
     times: Times = defaultdict(list)
-    answer = learning.answer
+    answer = learning.answer  # type: ignore[attr-defined]
     for number in range(first, first + runs):
         script, scene = generated(number)
         grounding: Times = defaultdict(list)
@@ -72,12 +75,12 @@ def measure(session: Session, first: int, runs: int) -> Times:
             with timed(grounding, "ground"):  # noqa: B023
                 return answer(*told, **more)  # type: ignore[arg-type]
 
-        learning.answer = grounded  # type: ignore[assignment]
+        learning.answer = grounded  # type: ignore[attr-defined, assignment]
         try:
             with timed(times, "learn"):
                 learned = session.learn(script, scene)
         finally:
-            learning.answer = answer
+            learning.answer = answer  # type: ignore[attr-defined]
         times["behind the grounding"].append(times["learn"][-1] - grounding["ground"][-1])
         with timed(times, "check"):
             session.check(f"table_{number}", scene)
@@ -122,11 +125,12 @@ def singly(path: Path, numbers: list[int], runs: int) -> Times:
 
 
 def as_batch(path: Path, number: int, runs: int, base: Times) -> None:
-    """Learns a batch in one call, and measures there."""
+    """Learns a batch, so many lessons a call, and measures there."""
     examples = [generated(new) for new in range(number)]
     with Session(path) as session:
         started = time.perf_counter()
-        session.learn_all(examples)
+        for start in range(0, number, AT_ONCE):
+            session.learn_all(examples[start : start + AT_ONCE])
         taken = time.perf_counter() - started
         print(f"a batch of {number:,}: {taken:.1f} s, {taken / number * 1e3:.1f} ms a lesson", flush=True)
         print(told(number, measure(session, 1_000_000, runs), base), flush=True)

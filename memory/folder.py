@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from enum import Enum, auto
 from pathlib import Path
@@ -20,42 +20,18 @@ from deixis.errors import DeixisError
 from deixis.memory import owner as disk
 from deixis.memory.errors import MemoryFormatError, MemoryWriteError
 from deixis.memory.owner import LOCK_FILE
-from deixis.memory.semantic.queries.union import merge_if_overlapping
-from deixis.memory.semantic.rdf.graphs import GRAPHS
 
 VERSION = 2
-
-_GRAPHS_0 = "urn:deixis:graph:"
-
-
-def _from_0(old: ox.Store, new: ox.Store) -> None:
-    """Version 0 named its graphs ``urn:deixis:graph:learned``, a lesson's ``urn:deixis:graph:lesson:set-1:learned``."""
-
-    def renamed() -> Iterator[ox.Quad]:
-        for quad in old:
-            graph = quad.graph_name
-            if isinstance(graph, ox.NamedNode) and graph.value.startswith(_GRAPHS_0):
-                graph = ox.NamedNode(GRAPHS + graph.value.removeprefix(_GRAPHS_0).replace(":", "/"))
-            yield ox.Quad(quad.subject, quad.predicate, quad.object, graph)
-
-    new.bulk_extend(renamed())
-    merge_if_overlapping(new)
-
-
-def _from_1(old: ox.Store, new: ox.Store) -> None:
-    """Version 1 kept no statistics; the first lesson that is learned or forgotten counts those that are there."""
-    new.bulk_extend(old)
-
-
-MIGRATIONS: dict[int, Callable[[ox.Store, ox.Store], None]] = {0: _from_0, 1: _from_1}
-"""From a version to the step that leads to the next."""
-
+"""The format that this program writes; ``memory.semantic.migrations`` reads those before it, from 0 on."""
 
 FORMAT = "deixis-memory"
 MARK, STORE, NEW, OLD = "memory.json", "semantic", "semantic.new", "semantic.old"
 NEW_MARK = MARK + ".new"
 PERCEPTUAL = "perceptual"
 """The perceptual memory, which may be there before anything else is."""
+
+Migration = Callable[[ox.Store, ox.Store], None]
+"""Fills a new store from one of an older format."""
 
 
 class State(Enum):
@@ -117,7 +93,7 @@ def read_mark(folder: Path) -> dict[str, Any]:
             f"the memory at {folder} was written by a newer version (format {version}, this program knows {VERSION}); "
             "upgrade deixis to open it"
         )
-    if version != VERSION and version not in MIGRATIONS:
+    if not 0 <= version <= VERSION:
         raise MemoryFormatError(f"the memory at {folder} has the unknown format version {version}")
     return mark
 
@@ -200,11 +176,11 @@ def swap(folder: Path, mark: dict[str, Any]) -> None:
     disk.remove(folder / OLD)
 
 
-def migrate(folder: Path) -> None:
-    """Brings an older memory to this version, one step at a time, each on a copy that is then swapped in."""
+def migrate(folder: Path, steps: Mapping[int, Migration]) -> None:
+    """Bring an older memory to this version, one step at a time, each on a copy that is then swapped in."""
     mark = read_mark(folder)
     while mark["version"] != VERSION:
-        step = MIGRATIONS[mark["version"]]
+        step = steps[mark["version"]]
         disk.remove(folder / NEW)
         old, new = ox.Store.read_only(str(folder / STORE)), ox.Store(folder / NEW)
         step(old, new)

@@ -12,6 +12,7 @@ from deixis.memory import folder as files
 from deixis.memory.errors import MemoryBusyError, MemoryFormatError, MemoryWriteError
 from deixis.memory.folder import State, committed
 from deixis.memory.owner import OwnerLock
+from deixis.memory.semantic.migrations import MIGRATIONS
 from deixis.memory.semantic.rdf import ledger
 from deixis.memory.semantic.rdf.package import package_digest, packaged, packaged_quads
 
@@ -122,7 +123,7 @@ def _prepare(folder: Path, fill: Callable[[ox.Store], None]) -> None:
     files.check_store_opens(folder)
     with committed(folder):
         files.finish(folder)
-        files.migrate(folder)
+        files.migrate(folder, MIGRATIONS)
 
 
 def _update_package(opened: Opened) -> None:

@@ -1,0 +1,36 @@
+"""Older formats of semantic memory, brought up to date one version at a time."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pyoxigraph as ox
+
+from deixis.memory.folder import Migration
+from deixis.memory.semantic.queries.union import merge_if_overlapping
+from deixis.memory.semantic.rdf.graphs import GRAPHS
+
+_GRAPHS_0 = "urn:deixis:graph:"
+
+
+def _from_0(old: ox.Store, new: ox.Store) -> None:
+    """Version 0 named its graphs ``urn:deixis:graph:learned``, a lesson's ``urn:deixis:graph:lesson:set-1:learned``."""
+
+    def renamed() -> Iterator[ox.Quad]:
+        for quad in old:
+            graph = quad.graph_name
+            if isinstance(graph, ox.NamedNode) and graph.value.startswith(_GRAPHS_0):
+                graph = ox.NamedNode(GRAPHS + graph.value.removeprefix(_GRAPHS_0).replace(":", "/"))
+            yield ox.Quad(quad.subject, quad.predicate, quad.object, graph)
+
+    new.bulk_extend(renamed())
+    merge_if_overlapping(new)
+
+
+def _from_1(old: ox.Store, new: ox.Store) -> None:
+    """Version 1 kept no statistics; the first lesson that is learned or forgotten counts those that are there."""
+    new.bulk_extend(old)
+
+
+MIGRATIONS: dict[int, Migration] = {0: _from_0, 1: _from_1}
+"""From a version to the step that leads to the next."""
