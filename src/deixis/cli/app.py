@@ -9,36 +9,36 @@ import io
 import os
 import signal
 import sys
-from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from deixis.cli.category import register as register_category
-from deixis.cli.common import (
-    BAD_INPUT,
-    NO,
-    UNDECIDED,
-    AsJson,
-    Script,
-    print_json,
-    print_lines,
-)
-from deixis.cli.concepts import register as register_concepts
-from deixis.cli.experiment import register as register_experiment
+from deixis.cli.ask import ask
+from deixis.cli.category import category_app
+from deixis.cli.check import check
+from deixis.cli.common import BAD_INPUT, UNDECIDED
+from deixis.cli.experiment import experiment
+from deixis.cli.fmt import fmt
 from deixis.cli.ground import ground
-from deixis.cli.imagine import register as register_imagine
+from deixis.cli.imagine import imagine
 from deixis.cli.infer import infer
 from deixis.cli.interrupts import INTERRUPTED, noting_interrupts
+from deixis.cli.learn import learn
+from deixis.cli.learn_relation import learn_relation
 from deixis.cli.memory import memory_app
+from deixis.cli.parse import parse
+from deixis.cli.perceive import perceive
+from deixis.cli.query import query
 from deixis.cli.reason import reason
+from deixis.cli.recognise import recognise
 from deixis.cli.relate import relate
-from deixis.cli.relation import register as register_relation
+from deixis.cli.relation import relation
 from deixis.cli.retrieve import retrieve
-from deixis.cli.see import register as register_see
-from deixis.cli.simulate import register as register_simulate
+from deixis.cli.show import show
+from deixis.cli.simulate import simulate
 from deixis.cli.solve import solve
+from deixis.cli.teach import teach
 from deixis.cli.time import time_command
 
 app = typer.Typer(
@@ -49,13 +49,6 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
 )
-
-
-class GraphFormat(StrEnum):
-    TEXT = "text"
-    JSON = "json"
-    TURTLE = "turtle"
-    DOT = "dot"
 
 
 def _print_version(wanted: bool) -> None:
@@ -75,65 +68,14 @@ def _root(
     pass
 
 
-@app.command()
-def parse(
-    script: Script,
-    format: Annotated[GraphFormat, typer.Option("--format", help="How to print the facts.")] = GraphFormat.TEXT,
-    as_json: AsJson = False,
-) -> None:
-    """Print the facts of a script with their lines."""
-    from deixis.grammar.parser import read_script
-
-    parsed = read_script(script)
-    if as_json or format is GraphFormat.JSON:
-        from deixis.report.json_answers import script_to_dict
-
-        print_json(script_to_dict(parsed))
-    elif format is GraphFormat.TEXT:
-        from deixis.report.script import script_lines
-
-        print_lines(script_lines(parsed))
-    else:
-        from deixis.ontology.export import graph_to_dot, graph_to_turtle
-
-        written = graph_to_turtle if format is GraphFormat.TURTLE else graph_to_dot
-        sys.stdout.write(written(parsed.graph()))
-
-
-@app.command()
-def fmt(
-    script: Script,
-    write: Annotated[bool, typer.Option("--write", "-w", help="Write the file instead of printing it.")] = False,
-    check: Annotated[bool, typer.Option("--check", help="Print nothing; exit 1 where the form differs.")] = False,
-    as_json: AsJson = False,
-) -> None:
-    """Print a script in its canonical form, comments kept."""
-    from deixis.errors import DeixisError
-    from deixis.grammar.format import format_script
-    from deixis.grammar.parser import read_script
-
-    if write and check:
-        raise DeixisError("fmt: --check and --write exclude each other")
-    formatted = format_script(read_script(script))
-    same = formatted == Path(script).read_bytes().decode("utf-8-sig")
-    if write and not same:
-        _replace(Path(script), formatted)
-    if as_json:
-        print_json({"file": script, "canonical": same, "text": formatted})
-    elif not check and not write:
-        sys.stdout.write(formatted)
-    if check and not same:
-        raise typer.Exit(NO)
-
-
+app.command()(parse)
+app.command()(fmt)
 app.command()(infer)
 app.command()(reason)
 app.command()(relate)
 app.command()(retrieve)
 app.command()(solve)
 app.command("time")(time_command)
-
-
 app.command()(ground)
 
 
@@ -147,26 +89,21 @@ def demo(
     tell(out)
 
 
-register_concepts(app)
+app.command()(learn)
+app.command()(show)
+app.command()(check)
+app.command()(query)
 app.add_typer(memory_app, name="memory")
-register_experiment(app)
-register_imagine(app)
-register_relation(app)
-register_see(app)
-register_category(app)
-register_simulate(app)
-
-
-def _replace(path: Path, text: str) -> None:
-    """Writes a file in one step, so that a crash leaves the old one; through a link, and with the file's mode."""
-    target = path.resolve()
-    draft = target.with_name(f".{target.name}.{os.getpid()}")
-    try:
-        draft.write_text(text, encoding="utf-8", newline="")
-        draft.chmod(target.stat().st_mode & 0o7777)
-        draft.replace(target)
-    finally:
-        draft.unlink(missing_ok=True)
+app.add_typer(experiment, name="experiment")
+app.command()(imagine)
+app.command()(relation)
+app.command("learn-relation")(learn_relation)
+app.command()(perceive)
+app.command()(teach)
+app.command()(recognise)
+app.command()(ask)
+app.add_typer(category_app, name="category")
+app.command()(simulate)
 
 
 def main() -> None:

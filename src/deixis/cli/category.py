@@ -12,11 +12,6 @@ from deixis.cli.common import BAD_INPUT, AsJson, MemoryDir, print_json, print_li
 category_app = typer.Typer(help="List, rename, merge or forget what was taught.", no_args_is_help=True)
 
 
-def register(app: typer.Typer) -> None:
-    """Adds these commands to the command line."""
-    app.add_typer(category_app, name="category")
-
-
 @category_app.command("list")
 def list_categories(memory: MemoryDir = None, as_json: AsJson = False) -> None:
     """What was taught, with the number of views; exit 2 where damaged ones are left out."""

@@ -29,6 +29,9 @@ MemoryDir = Annotated[
     typer.Option("--memory", metavar="DIR", help="The memory (default: $DEIXIS_MEMORY, else a folder of yours)."),
 ]
 NoMemory = Annotated[bool, typer.Option("--no-memory", help="As if nothing were remembered.")]
+Picture = Annotated[Path | None, typer.Option("--plot", metavar="FILE", help="Draw it (.png, .svg, .pdf).")]
+
+PerceivedScene = Annotated[str, typer.Argument(metavar="SCENE", help="A scene that perceive wrote, with clouds.")]
 
 
 def print_json(data: Any) -> None:
@@ -155,3 +158,8 @@ def compiled(ready: Callable[[], None]) -> None:
     """Says so where compiling takes long, as it does the first time after an installation."""
     with working("compiling, once", PATIENCE):
         ready()
+
+
+def print_note(note: str) -> None:
+    """Print to standard error what is not part of the answer."""
+    print(f"deixis: {note}", file=sys.stderr)

@@ -101,8 +101,3 @@ def _write(found: Imagination, scenes: list[Path], pictures: list[Path]) -> None
         from deixis.plots.imagine import plot_table
 
         plot_table(table, found.script.ontology.kinds, file, found.script.title or found.script.name)
-
-
-def register(app: typer.Typer) -> None:
-    """Adds the command to the command line."""
-    app.command()(imagine)

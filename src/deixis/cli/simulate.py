@@ -181,8 +181,3 @@ def simulation_to_dict(found: Simulation, view: View, seed: int) -> dict[str, An
         "missed": [fact_to_dict(fact) for fact in found.laid.missed],
         "scene": scene_to_dict(found.truth),
     }
-
-
-def register(app: typer.Typer) -> None:
-    """Adds the command to the command line."""
-    app.command()(simulate)

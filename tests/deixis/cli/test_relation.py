@@ -9,7 +9,8 @@ import pytest
 import typer
 from typer.testing import CliRunner, Result
 
-from deixis.cli.relation import read_models, register
+from deixis.cli.learn_relation import learn_relation
+from deixis.cli.relation import read_models, relation
 from deixis.errors import DeixisError
 from deixis.ontology.models.relation_triples import models_to_turtle
 from deixis.ontology.tbox import default_ontology
@@ -17,7 +18,8 @@ from deixis.plots.relation import field
 from deixis.reasoning.grounding.evidence.meaning import shipped_models
 
 APP = typer.Typer(pretty_exceptions_enable=False)
-register(APP)
+APP.command()(relation)
+APP.command("learn-relation")(learn_relation)
 
 
 @pytest.fixture(autouse=True)

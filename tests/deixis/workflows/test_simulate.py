@@ -13,7 +13,7 @@ import typer
 from solid_checks import deepest
 from typer.testing import CliRunner, Result
 
-from deixis.cli.simulate import register
+from deixis.cli.simulate import simulate as simulate_command
 from deixis.errors import DeixisError
 from deixis.grammar.parser import parse_script, read_script
 from deixis.perception.clouds.cloud_file import read_cloud
@@ -174,7 +174,7 @@ def test_what_cannot_be_laid_is_refused_with_the_reason() -> None:
 def run(*args: object) -> Result:
     app = typer.Typer()
     app.callback()(lambda: None)
-    register(app)
+    app.command()(simulate_command)
     return CliRunner().invoke(app, ["simulate", *map(str, args)])
 
 

@@ -1,0 +1,49 @@
+"""The command ``deixis fmt``: a script in its canonical form."""
+
+from __future__ import annotations
+
+import os
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from deixis.cli.common import NO, AsJson, Script, print_json
+
+
+def fmt(
+    script: Script,
+    write: Annotated[bool, typer.Option("--write", "-w", help="Write the file instead of printing it.")] = False,
+    check: Annotated[bool, typer.Option("--check", help="Print nothing; exit 1 where the form differs.")] = False,
+    as_json: AsJson = False,
+) -> None:
+    """Print a script in its canonical form, comments kept."""
+    from deixis.errors import DeixisError
+    from deixis.grammar.format import format_script
+    from deixis.grammar.parser import read_script
+
+    if write and check:
+        raise DeixisError("fmt: --check and --write exclude each other")
+    formatted = format_script(read_script(script))
+    same = formatted == Path(script).read_bytes().decode("utf-8-sig")
+    if write and not same:
+        _replace(Path(script), formatted)
+    if as_json:
+        print_json({"file": script, "canonical": same, "text": formatted})
+    elif not check and not write:
+        sys.stdout.write(formatted)
+    if check and not same:
+        raise typer.Exit(NO)
+
+
+def _replace(path: Path, text: str) -> None:
+    """Writes a file in one step, so that a crash leaves the old one; through a link, and with the file's mode."""
+    target = path.resolve()
+    draft = target.with_name(f".{target.name}.{os.getpid()}")
+    try:
+        draft.write_text(text, encoding="utf-8", newline="")
+        draft.chmod(target.stat().st_mode & 0o7777)
+        draft.replace(target)
+    finally:
+        draft.unlink(missing_ok=True)

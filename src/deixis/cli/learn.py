@@ -1,0 +1,65 @@
+"""The command ``deixis learn``: keep layouts and what their objects look like."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from deixis.cli.common import (
+    ENGINE_HELP,
+    NO,
+    AsJson,
+    HideLabels,
+    Image,
+    MemoryDir,
+    TimeLimit,
+    print_json,
+    print_lines,
+    ready_to_ground,
+    working,
+)
+from deixis.reasoning.grounding.options import EngineName
+
+
+def learn(
+    inputs: Annotated[
+        list[Path],
+        typer.Argument(
+            metavar="SCRIPT SCENE ...",
+            help="Scripts (.layout), each with its scene after it; or folders, in which NAME.layout goes with "
+            "NAME.scene.json.",
+        ),
+    ],
+    engine: Annotated[EngineName, typer.Option(help=ENGINE_HELP)] = EngineName.EXACT,
+    time_limit: TimeLimit = 10.0,
+    hide_labels: HideLabels = False,
+    image: Image = None,
+    memory: MemoryDir = None,
+    as_json: AsJson = False,
+) -> None:
+    """Ground scripts in their scenes, and keep the layouts and their objects as concepts: all of them, or none."""
+    from deixis.reasoning.errors import NothingFoundError
+    from deixis.report.json_answers import learned_to_dict
+    from deixis.report.script import learned_lines
+    from deixis.session import Session
+    from deixis.workflows.read import example_pairs, load_scene
+
+    pairs = [(script, load_scene(scene, hide_labels, image)) for script, scene in example_pairs(inputs)]
+    ready_to_ground(engine)
+    with Session(memory) as session:
+        try:
+            with working("grounding"):
+                lessons = session.learn_all(pairs, engine, time_limit)
+        except NothingFoundError as error:
+            print(f"deixis: {error}", file=sys.stderr)
+            raise typer.Exit(NO) from error
+        where = session.path
+    if as_json:
+        told = [learned_to_dict(learned) for learned in lessons]
+        print_json(told[0] if len(inputs) == 2 and len(told) == 1 else told)
+    else:
+        for learned in lessons:
+            print_lines(learned_lines(learned, str(where)))

@@ -1,0 +1,62 @@
+"""The command ``deixis query``: SPARQL over everything remembered."""
+
+from __future__ import annotations
+
+import sys
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from deixis.cli.common import (
+    NO,
+    AsJson,
+    MemoryDir,
+    print_lines,
+)
+
+
+class TableFormat(StrEnum):
+    TABLE = "table"
+    JSON = "json"
+    CSV = "csv"
+    TURTLE = "turtle"
+
+
+def query(
+    sparql: Annotated[str | None, typer.Argument(metavar="SPARQL", help="SELECT, ASK, CONSTRUCT or DESCRIBE.")] = None,
+    file: Annotated[
+        Path | None, typer.Option("-f", "--file", metavar="FILE", help="Read the query from a file.")
+    ] = None,
+    format: Annotated[TableFormat, typer.Option("--format", help="How to print the answer.")] = TableFormat.TABLE,
+    memory: MemoryDir = None,
+    as_json: AsJson = False,
+) -> None:
+    """Ask SPARQL of everything remembered."""
+    from deixis.errors import DeixisError
+    from deixis.session import Session
+
+    if (sparql is None) == (file is None):
+        raise DeixisError("give a query, or a file with -f, and one of them only")
+    with Session(memory) as session:
+        result = session.query(_text(file) if file is not None else sparql or "")
+        if as_json or format is TableFormat.JSON:
+            print(result.to_json())
+        elif format is TableFormat.CSV:
+            sys.stdout.write(result.to_csv())
+        elif format is TableFormat.TURTLE:
+            sys.stdout.write(result.to_turtle())
+        else:
+            print_lines(result.to_table())
+        if result.boolean is False:
+            raise typer.Exit(NO)
+
+
+def _text(file: Path) -> str:
+    from deixis.errors import DeixisError
+
+    try:
+        return file.read_text(encoding="utf-8")
+    except UnicodeDecodeError as error:
+        raise DeixisError(f"{file}: the file is not UTF-8 (byte {error.start})") from error

@@ -1,0 +1,70 @@
+"""The command ``deixis recognise``: name what looks like what was taught."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from deixis.cli.common import (
+    NO,
+    AsJson,
+    MemoryDir,
+    PerceivedScene,
+    Picture,
+    print_json,
+    print_lines,
+    print_note,
+    print_written,
+    progress_bar,
+    require_memory,
+    require_plot,
+    require_scene_name,
+    require_writable,
+)
+
+if TYPE_CHECKING:
+    from deixis.perception.scene import Scene
+
+
+def recognise(
+    scene: PerceivedScene,
+    out: Annotated[Path | None, typer.Option("-o", "--out", metavar="FILE", help="Write the scene with names.")] = None,
+    plot: Picture = None,
+    memory: MemoryDir = None,
+    as_json: AsJson = False,
+) -> None:
+    """Name the things of a scene that look like what was taught; exit 1 where none is known."""
+    from deixis.report.seen import answer_line, recognised_to_dict
+    from deixis.session import Session
+    from deixis.workflows.read import load_scene
+
+    require_plot(plot)
+    require_scene_name(out)
+    require_memory(memory)
+    seen = load_scene(scene)
+    require_writable([out, plot], _cloud_files(seen))
+    with Session(memory) as session, progress_bar("reading what was taught") as progress:
+        found = session.recognise(seen, progress, print_note)
+    if out is not None:
+        from deixis.workflows.perceive import write_scene
+
+        write_scene(found.scene, out)
+    if plot is not None:
+        from deixis.plots.seen import plot_recognised
+
+        plot_recognised(found, plot)
+    if as_json:
+        print_json(recognised_to_dict(found))
+    else:
+        print_lines(answer_line(id, answer) for id, answer in found.answers.items())
+        if not found.answers:
+            print("Nothing in this scene has a cloud: only what perceive -o wrote can be recognised.")
+        print_written(out, plot)
+    if not any(answer.label for answer in found.answers.values()):
+        raise typer.Exit(NO)
+
+
+def _cloud_files(scene: Scene) -> list[Path]:
+    return [Path(scene.file).parent / thing.cloud for thing in scene.objects if isinstance(thing.cloud, str)]

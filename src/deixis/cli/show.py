@@ -1,0 +1,33 @@
+"""The command ``deixis show``: a learned layout as a script again."""
+
+from __future__ import annotations
+
+import sys
+from typing import Annotated
+
+import typer
+
+from deixis.cli.common import (
+    AsJson,
+    MemoryDir,
+    print_json,
+)
+
+
+def show(
+    layout: Annotated[str, typer.Argument(metavar="LAYOUT", help="A learned layout's name, or a lesson's id.")],
+    memory: MemoryDir = None,
+    as_json: AsJson = False,
+) -> None:
+    """Print a learned layout as a script again."""
+    from deixis.ontology.export import fact_to_dict
+    from deixis.session import Session
+
+    with Session(memory) as session:
+        concept, text = session.layout(layout), session.show(layout)
+    if as_json:
+        facts = [fact_to_dict(fact) for fact in concept.facts]
+        head = {"name": concept.name, "title": concept.title, "viewpoint": concept.viewpoint, "lesson": concept.lesson}
+        print_json({**head, "facts": facts, "text": text})
+    else:
+        sys.stdout.write(text)
