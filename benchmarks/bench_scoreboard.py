@@ -19,10 +19,10 @@ from peers import annealing, cp_sat, faq, graph_matching
 from deixis.cli.common import print_json, print_lines
 from deixis.cli.experiment import progress
 from deixis.experiments.photographs import photographs_folder
-from deixis.experiments.scoreboard.contestants import Answer, Contestant, engines, peer
+from deixis.experiments.scoreboard.contestants import Contestant, ContestantAnswer, engines, peer
 from deixis.experiments.scoreboard.plot import plot_scoreboard
 from deixis.experiments.scoreboard.report import lines, to_dict
-from deixis.experiments.scoreboard.run import Plan, run, steps
+from deixis.experiments.scoreboard.run import ScoreboardPlan, run, steps
 from deixis.reasoning.grounding.matching.problem import Problem
 
 MOST = {"annealing": 300, "faq": 100, "cp-sat": 8, "pygmtools": 30}
@@ -67,21 +67,21 @@ def _lacking(package: str) -> str:
     return "" if find_spec(package) else f"{package} is not installed"
 
 
-def _annealing(problem: Problem, seconds: float) -> Answer:
-    return Answer(annealing.solve(problem, steps=max(LEAST_STEPS, annealing.proposals(len(problem.absent)))))
+def _annealing(problem: Problem, seconds: float) -> ContestantAnswer:
+    return ContestantAnswer(annealing.solve(problem, steps=max(LEAST_STEPS, annealing.proposals(len(problem.absent)))))
 
 
-def _faq(problem: Problem, seconds: float) -> Answer:
-    return Answer(faq.solve(problem))
+def _faq(problem: Problem, seconds: float) -> ContestantAnswer:
+    return ContestantAnswer(faq.solve(problem))
 
 
-def _cp_sat(problem: Problem, seconds: float) -> Answer:
+def _cp_sat(problem: Problem, seconds: float) -> ContestantAnswer:
     solved = cp_sat.solve(problem, seconds)
-    return Answer(solved.assignment, solved.proved)
+    return ContestantAnswer(solved.assignment, solved.proved)
 
 
-def _graph_matching(problem: Problem, seconds: float, settings: graph_matching.Settings) -> Answer:
-    return Answer(graph_matching.solve(problem, settings))
+def _graph_matching(problem: Problem, seconds: float, settings: graph_matching.Settings) -> ContestantAnswer:
+    return ContestantAnswer(graph_matching.solve(problem, settings))
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -94,7 +94,9 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("--plot", type=Path, help="draw it (.png, .svg, .pdf)")
     parser.add_argument("--json", action="store_true")
     options = parser.parse_args(arguments)
-    plan = Plan(cases=options.cases, seed=options.seed, time_limit=options.time_limit, photographs=photographs_folder())
+    plan = ScoreboardPlan(
+        cases=options.cases, seed=options.seed, time_limit=options.time_limit, photographs=photographs_folder()
+    )
     plan = plan.quick() if options.quick else plan
     plan = plan.only(options.size) if options.size else plan
     with progress(steps(plan)) as tick:

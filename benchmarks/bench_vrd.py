@@ -11,7 +11,7 @@ import argparse
 from common import data_folder
 
 from deixis.experiments.photographs import FOLDER
-from deixis.experiments.scoreboard.board import play
+from deixis.experiments.scoreboard.board import run_contestants
 from deixis.experiments.scoreboard.cases import photograph_cases
 from deixis.experiments.scoreboard.contestants import engines
 
@@ -26,7 +26,7 @@ def main() -> None:
     if folder is None:
         return
     cases = photograph_cases(folder, options.orders, None, options.seed)
-    board = play(engines(), cases, options.time_limit, lambda _: None)
+    board = run_contestants(engines(), cases, options.time_limit, lambda _: None)
     (group,) = board.groups
     for one in board.contestants:
         right, grouped = (board.mean(one.name, group, measure) for measure in ("right", "grouped"))

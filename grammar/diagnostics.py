@@ -8,31 +8,39 @@ from difflib import SequenceMatcher
 from lark import Token
 
 from deixis.grammar.draft import Draft
-from deixis.grammar.errors import SHOWN, Refusal, shortened
-from deixis.grammar.names import KEPT_FOR, how_to_name, may_be_meant_as_name, names_things_too
-from deixis.grammar.tree import FIRM_QUALITY, source_of, span_of
+from deixis.grammar.errors import MAX_PROBLEMS_SHOWN, Refusal, shortened
+from deixis.grammar.names import RESERVED_FOR, is_also_noun, may_be_meant_as_name, naming_hint
+from deixis.grammar.tree import UNQUALIFIED_DECLARATION, source_of, span_of
 from deixis.ontology.graph import Source
 from deixis.ontology.relation import plain_phrase
 
-A_RELATION = "expected a relation such as 'left of', or 'is a'"
+RELATION_EXPECTED = "expected a relation such as 'left of', or 'is a'"
 SMART_QUOTES = "“”„‟«»‘’"
-QUOTE = "if it belongs to a name, quote the name"
-NEARNESS = {"near", "nearer", "next", "close", "closer", "beside", "besides", "between", "by", "far", "farther"}
-NO_NEARNESS = "no relation says how near things are; say on which side: left of, right of, above, below, on"
-PARTED = "';' parts two statements on one line"
-ONE_QUALITY = "an object is of one kind and one colour: say the one that it mostly is"
+QUOTE_HINT = "if it belongs to a name, quote the name"
+NEARNESS_WORDS = {"near", "nearer", "next", "close", "closer", "beside", "besides", "between", "by", "far", "farther"}
+NEARNESS_HINT = "no relation says how near things are; say on which side: left of, right of, above, below, on"
+SEPARATOR_HINT = "';' parts two statements on one line"
+ONE_QUALITY_HINT = "an object is of one kind and one colour: say the one that it mostly is"
 NAMES = ("NAME", "STRING")
 RESERVED = ("RELATION", "HEDGE", "IS", "VERB", "NOT", "OPTIONAL")
 QUALIFIERS = ("NOT", "OPTIONAL", "HEDGE")
 OUT_OF_PLACE = ("_LAYOUT", "_INCLUDE", "_SEEN", "_FROM", "CHAIN")
-LIKE_ENOUGH = 0.7  # of 1: how like a relation phrase must be to what was said, to be suggested
-LONGEST_NAME_SEARCHED = 200  # characters of a name in which a misspelt relation is looked for
+MIN_SIMILARITY = 0.7  # of 1: how like a relation phrase must be to what was said, to be suggested
+MAX_NAME_SEARCHED = 200  # characters of a name in which a misspelt relation is looked for
 
 
 def bad_token(token: Token) -> Refusal:
-    """What is wrong with a token that can stand nowhere in a script."""
+    """Return what is wrong with a token that can stand nowhere in a script."""
     if token.type == "UNKNOWN":
-        return _unknown(token[0], source_of(token))
+        character, where = token[0], source_of(token)
+        where = replace(where, end_column=where.column + 1)
+        if character in SMART_QUOTES:
+            return Refusal(where, f"names are quoted with \", not with '{character}'")
+        if character == ":":
+            return Refusal(where, "a colon stands only after the head of a chain, such as 'left to right:'")
+        if not character.isprintable():
+            return Refusal(where, f"a control character (U+{ord(character):04X}) cannot be in a script")
+        return Refusal(where, f"the character '{character}' means nothing here", "a name with odd characters is quoted")
     if token.type == "OPEN_STRING":
         return Refusal(source_of(token), "this quotation mark is not closed on its line")
     shown = shortened(token)
@@ -42,66 +50,57 @@ def bad_token(token: Token) -> Refusal:
     return Refusal(source_of(token), message, f'quote it: "{shown}"')
 
 
-def _unknown(character: str, where: Source) -> Refusal:
-    where = replace(where, end_column=where.column + 1)
-    if character in SMART_QUOTES:
-        return Refusal(where, f"names are quoted with \", not with '{character}'")
-    if character == ":":
-        return Refusal(where, "a colon stands only after the head of a chain, such as 'left to right:'")
-    if not character.isprintable():
-        return Refusal(where, f"a control character (U+{ord(character):04X}) cannot be in a script")
-    return Refusal(where, f"the character '{character}' means nothing here", "a name with odd characters is quoted")
-
-
 def unexpected(tokens: list[Token], at: int, accepts: set[str], draft: Draft) -> Refusal:
-    """The problem of a statement whose token number ``at`` is not among those that the parser accepts."""
+    """Return the problem of a statement whose token number ``at`` is not among those that the parser accepts."""
     if tokens[0].type == "_LAYOUT":
-        return _in_header(tokens, at)
+        found = f", not '{shortened(tokens[at])}'" if at < len(tokens) else ""
+        hint = 'as in: layout dinner "A dinner" seen from chair'
+        message = f"expected a name, a title in quotation marks, or 'seen from'{found}"
+        return Refusal(_place(tokens, at), message, hint)
     if tokens[0].type == "_INCLUDE":
         hint = 'as in: include "other.layout"'
         return Refusal(_place(tokens, at), "expected a file name in quotation marks, and nothing else", hint)
     if at == len(tokens):
-        return _too_early(tokens, accepts, draft)
+        return _premature_end(tokens, accepts, draft)
     token = tokens[at]
     if token.type == "ARTICLE":
-        return _no_name(tokens, at)
+        # An article that no name follows; perhaps a reserved word was meant as one.
+        message = f"expected a name after '{tokens[at]}'"
+        if at + 1 == len(tokens) or not may_be_meant_as_name(tokens, at + 1):
+            return Refusal(source_of(tokens[at]), message)
+        word = tokens[at + 1]
+        message = f"{message}, not '{shortened(word)}', which {RESERVED_FOR[word.type]}"
+        return Refusal(source_of(word), message, naming_hint(tokens, at + 1))
     if token.type in OUT_OF_PLACE:
-        return Refusal(source_of(token), f"'{token}' is not expected here", QUOTE)
+        return Refusal(source_of(token), f"'{token}' is not expected here", QUOTE_HINT)
     if token.type == "FUNCTION" or (token.type in NAMES and at and tokens[at - 1].type in NAMES):
-        return _no_relation(tokens, at, accepts, draft)
-    return _other(tokens, at, accepts)
-
-
-def _no_name(tokens: list[Token], at: int) -> Refusal:
-    """An article that no name follows; perhaps a reserved word that was meant as one."""
-    message = f"expected a name after '{tokens[at]}'"
-    if at + 1 == len(tokens) or not may_be_meant_as_name(tokens, at + 1):
-        return Refusal(source_of(tokens[at]), message)
-    word = tokens[at + 1]
-    message = f"{message}, not '{shortened(word)}', which {KEPT_FOR[word.type]}"
-    return Refusal(source_of(word), message, how_to_name(tokens, at + 1))
+        return _missing_relation(tokens, at, accepts, draft)
+    return _unexpected_token(tokens, at, accepts)
 
 
 def _place(tokens: list[Token], at: int) -> Source:
-    """Where token ``at`` stands; the place behind the last one where there is none."""
+    """Return where token ``at`` stands; the place behind the last one where there is none."""
     if at < len(tokens):
         return source_of(tokens[at])
     end = source_of(tokens[-1])
     return Source(end.file, end.end_line, end.end_column, end.end_line, end.end_column + 1)
 
 
-def _in_header(tokens: list[Token], at: int) -> Refusal:
-    found = f", not '{shortened(tokens[at])}'" if at < len(tokens) else ""
-    hint = 'as in: layout dinner "A dinner" seen from chair'
-    message = f"expected a name, a title in quotation marks, or 'seen from'{found}"
-    return Refusal(_place(tokens, at), message, hint)
-
-
-def _too_early(tokens: list[Token], accepts: set[str], draft: Draft) -> Refusal:
-    """The statement ends before it has said anything."""
+def _premature_end(tokens: list[Token], accepts: set[str], draft: Draft) -> Refusal:
+    """Return what is missing where a statement ends too early."""
     last, where = tokens[-1], _place(tokens, len(tokens))
     if "IS" in accepts and last.type in NAMES:
-        return _bare(tokens, draft)
+        listed = [token for token in tokens if token.type in NAMES]
+        if len(listed) > 1:
+            return Refusal(span_of(tokens), f"nothing is said of these {len(listed)} objects", RELATION_EXPECTED)
+        name = str(listed[0])
+        message = f"nothing is said of '{shortened(name.strip(chr(34)))}'"
+        if len(name) <= MAX_NAME_SEARCHED and listed[0].type == "NAME":
+            for word in name.split("_")[1:-1]:
+                near = draft.nearest(word, list(draft.phrases))
+                if near is not None:
+                    return Refusal(span_of(tokens), message, f"did you mean '{draft.phrases[near]}' by '{word}'?")
+        return Refusal(span_of(tokens), message, RELATION_EXPECTED)
     if last.type == "IS":
         return Refusal(where, f"expected a kind of thing or a relation after '{last}'")
     if accepts & {"NAME", "STRING"}:
@@ -115,38 +114,29 @@ def _too_early(tokens: list[Token], accepts: set[str], draft: Draft) -> Refusal:
     return Refusal(where, f"expected a relation such as 'left of' after '{shortened(last)}'")
 
 
-def _bare(tokens: list[Token], draft: Draft) -> Refusal:
-    """Names and nothing else; perhaps a word in the middle of one was meant as a relation."""
-    listed = [token for token in tokens if token.type in NAMES]
-    if len(listed) > 1:
-        return Refusal(span_of(tokens), f"nothing is said of these {len(listed)} objects", A_RELATION)
-    name = str(listed[0])
-    message = f"nothing is said of '{shortened(name.strip(chr(34)))}'"
-    if len(name) <= LONGEST_NAME_SEARCHED and listed[0].type == "NAME":
-        for word in name.split("_")[1:-1]:
-            near = draft.nearest(word, list(draft.phrases))
-            if near is not None:
-                return Refusal(span_of(tokens), message, f"did you mean '{draft.phrases[near]}' by '{word}'?")
-    return Refusal(span_of(tokens), message, A_RELATION)
-
-
-def _no_relation(tokens: list[Token], at: int, accepts: set[str], draft: Draft) -> Refusal:
+def _missing_relation(tokens: list[Token], at: int, accepts: set[str], draft: Draft) -> Refusal:
     """Something stands where a relation should: the phrase that is meant, if one looks like the words there."""
     token, shown = tokens[at], shortened(tokens[at])
-    if names_things_too(token):
-        return Refusal(source_of(token), _expected(accepts, shown), how_to_name(tokens, at))
-    if "RELATION" in accepts and (meant := _meant(tokens, at, draft)) is not None:
+    if is_also_noun(token):
+        if accepts & {"NAME", "STRING"}:
+            message = _no_bare_name(shown)
+        elif "RELATION" in accepts:
+            message = f"{RELATION_EXPECTED}, not '{shown}'"
+        else:
+            message = f"'{shown}' is not expected here"
+        return Refusal(source_of(token), message, naming_hint(tokens, at))
+    if "RELATION" in accepts and (meant := _nearest_relation(tokens, at, draft)) is not None:
         said, where, phrase = meant
         return Refusal(where, f"expected a relation, not '{said}'", f"did you mean '{phrase}'?")
     if token.type in NAMES:
-        return _other(tokens, at, accepts)
+        return _unexpected_token(tokens, at, accepts)
     if at and tokens[at - 1].type == "NAME":
         if "RELATION" not in accepts:
-            return _other(tokens, at, accepts)
+            return _unexpected_token(tokens, at, accepts)
         parts = [str(t) for t in tokens[at - 1 : at + 2] if t.type in ("NAME", "FUNCTION")]
         hint = f"if it belongs to a name, write {shortened('_'.join(parts))} or quote the name"
-        return Refusal(source_of(token), f"{A_RELATION}, not '{shown}'", hint)
-    nearness = NO_NEARNESS if str(token).casefold() in NEARNESS else None
+        return Refusal(source_of(token), f"{RELATION_EXPECTED}, not '{shown}'", hint)
+    nearness = NEARNESS_HINT if str(token).casefold() in NEARNESS_WORDS else None
     return Refusal(source_of(token), _no_bare_name(shown), nearness)
 
 
@@ -154,17 +144,11 @@ def _no_bare_name(shown: str) -> str:
     return f"expected a name, and '{shown}' cannot be in one unquoted"
 
 
-def _expected(accepts: set[str], shown: str) -> str:
-    if accepts & {"NAME", "STRING"}:
-        return _no_bare_name(shown)
-    return f"{A_RELATION}, not '{shown}'" if "RELATION" in accepts else f"'{shown}' is not expected here"
-
-
-def _meant(tokens: list[Token], at: int, draft: Draft) -> tuple[str, Source, str] | None:
-    """What is said around token ``at``, where, and the relation phrase that looks most like it."""
+def _nearest_relation(tokens: list[Token], at: int, draft: Draft) -> tuple[str, Source, str] | None:
+    """Return what is said around token ``at``, where, and the relation phrase that looks most like it."""
     phrases = draft.phrases
-    best, found = LIKE_ENOUGH, None
-    if len(draft.problems) >= SHOWN:
+    best, found = MIN_SIMILARITY, None
+    if len(draft.problems) >= MAX_PROBLEMS_SHOWN:
         return None
     for start in (at - 1, at):
         if start < 0 or (start < at and tokens[start].type != "NAME"):
@@ -190,29 +174,31 @@ def _from_last_word(first: Token, last: Token) -> Source:
     return Source(start.file, start.end_line, column, end.end_line, end.end_column)
 
 
-def _other(tokens: list[Token], at: int, accepts: set[str]) -> Refusal:
+def _unexpected_token(tokens: list[Token], at: int, accepts: set[str]) -> Refusal:
     token, shown = tokens[at], shortened(tokens[at])
     where = source_of(token)
     if at == 0:
-        hint = QUOTE if token.type in RESERVED else None
+        hint = QUOTE_HINT if token.type in RESERVED else None
         return Refusal(where, f"expected a name before '{shown}'", hint)
     before = shortened(tokens[at - 1])
     if accepts & {"NAME", "STRING"}:
-        hint = QUOTE if token.type in RESERVED else None
+        hint = QUOTE_HINT if token.type in RESERVED else None
         return Refusal(where, f"expected a name after '{before}', not '{shown}'", hint)
     if "RELATION" in accepts:
         if token.type in NAMES and tokens[at - 1].type in QUALIFIERS:
-            return Refusal(where, f"{A_RELATION}, not '{shown}'", FIRM_QUALITY)
-        return Refusal(where, f"{A_RELATION}, not '{shown}'")
+            return Refusal(where, f"{RELATION_EXPECTED}, not '{shown}'", UNQUALIFIED_DECLARATION)
+        return Refusal(where, f"{RELATION_EXPECTED}, not '{shown}'")
     if "_COMMA" in accepts and "$END" not in accepts:
         return Refusal(where, f"expected a comma and a second name, not '{shown}'")
     if "_RPAR" in accepts:
         return Refusal(where, f"expected a closing bracket, not '{shown}'")
     if "_LPAR" in accepts:
         named = token.type == "NAME" and may_be_meant_as_name(tokens, at - 1)
-        hint = how_to_name(tokens, at - 1) if named else None
+        hint = naming_hint(tokens, at - 1) if named else None
         return Refusal(where, f"expected a pair in brackets, as in left(fork, plate), not '{shown}'", hint)
     if "$END" in accepts:
         quality = token.type in ("_AND", "_OR") and tokens[at - 2].type == "IS"
-        return Refusal(where, f"expected the end of the statement, not '{shown}'", ONE_QUALITY if quality else PARTED)
+        return Refusal(
+            where, f"expected the end of the statement, not '{shown}'", ONE_QUALITY_HINT if quality else SEPARATOR_HINT
+        )
     return Refusal(where, f"'{shown}' is not expected here")

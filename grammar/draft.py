@@ -6,8 +6,8 @@ from contextvars import ContextVar
 from dataclasses import dataclass, field
 from functools import cached_property
 
-from deixis.grammar.errors import SHOWN, Problem, Refusal, shortened
-from deixis.grammar.names import NameBook
+from deixis.grammar.errors import MAX_PROBLEMS_SHOWN, Diagnostic, Refusal, shortened
+from deixis.grammar.names import NameTable
 from deixis.grammar.script import Mention
 from deixis.grammar.words import chains
 from deixis.ontology.colours import Colour
@@ -16,8 +16,8 @@ from deixis.ontology.kinds import Kind, with_article
 from deixis.ontology.relation import Relation, nearest, plain_phrase
 from deixis.ontology.tbox import Ontology
 
-MOST_FACTS = 1_000_000  # of one script with all that it includes
-LONGEST_COMPARED = 40  # characters of a word for which the nearest known one is looked for
+MAX_FACTS = 1_000_000  # of one script with all that it includes
+MAX_COMPARED_CHARACTERS = 40  # characters of a word for which the nearest known one is looked for
 
 
 @dataclass
@@ -25,8 +25,8 @@ class Draft:
     """What one script and all the files that it includes share while they are read."""
 
     ontology: Ontology
-    problems: list[Problem] = field(default_factory=list)
-    book: NameBook = field(default_factory=NameBook)
+    problems: list[Diagnostic] = field(default_factory=list)
+    book: NameTable = field(default_factory=NameTable)
     viewpoint: str | None = None
     size: int = 0  # facts and declared objects so far
     declared: dict[str, list[Kind]] = field(default_factory=dict)
@@ -34,13 +34,13 @@ class Draft:
     _relations: dict[str, Relation] = field(default_factory=dict)
 
     def nearest(self, word: str, known: list[str]) -> str | None:
-        """The known word that looks most like this one; none once more problems were found than are shown."""
-        if len(self.problems) >= SHOWN or len(word) > LONGEST_COMPARED:
+        """Return the known word that looks most like this one; none once more problems were found than are shown."""
+        if len(self.problems) >= MAX_PROBLEMS_SHOWN or len(word) > MAX_COMPARED_CHARACTERS:
             return None
         return nearest(word.casefold(), known)
 
     def relation(self, phrase: str) -> Relation:
-        """The relation that a phrase stands for; the lexer knows that there is one."""
+        """Return the relation that a phrase stands for; the lexer knows that there is one."""
         found = self._relations.get(phrase)
         if found is None:
             found = self._relations[phrase] = self.ontology.relations.by_word[plain_phrase(phrase)]
@@ -62,13 +62,13 @@ class Draft:
         return {plain_phrase(word): weight for word, weight in self.ontology.hedges.items()}
 
     def grow(self, more: int, source: Source) -> None:
-        """Counts facts before they are made; raises Refusal beyond the limit."""
-        if self.size + more > MOST_FACTS:
-            raise Refusal(source, f"a script states at most {MOST_FACTS:,} facts, and with these it states more")
+        """Count facts before they are made; raises Refusal beyond the limit."""
+        if self.size + more > MAX_FACTS:
+            raise Refusal(source, f"a script states at most {MAX_FACTS:,} facts, and with these it states more")
         self.size += more
 
     def quality(self, word: str, source: Source) -> tuple[Kind | None, Colour | None]:
-        """The kind of thing, its plural if need be, the colour, or the kind in a colour that a word stands for.
+        """Return the kind of thing, its plural if need be, the colour, or the kind in a colour that a word stands for.
 
         Raises Refusal where there is none.
         """

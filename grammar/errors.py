@@ -8,15 +8,15 @@ from dataclasses import dataclass
 from deixis.errors import DeixisError
 from deixis.ontology.graph import Source
 
-SHOWN = 50  # problems that are shown in full
-WINDOW = 100  # characters of a long line that are shown
+MAX_PROBLEMS_SHOWN = 50  # problems that are shown in full
+LINE_WINDOW = 100  # characters of a long line that are shown
 
 
 @dataclass(frozen=True, slots=True)
-class Problem:
+class Diagnostic:
     """One thing that is wrong, at one place.
 
-    >>> print(Problem(Source("t.layout", 1, 6, 1, 9), "what is this?", "fork lft plate", "did you mean 'left'?"))
+    >>> print(Diagnostic(Source("t.layout", 1, 6, 1, 9), "what is this?", "fork lft plate", "did you mean 'left'?"))
     t.layout:1:6: what is this?
     fork lft plate
          ^^^
@@ -29,29 +29,26 @@ class Problem:
     hint: str | None = None
 
     def __str__(self) -> str:
-        line, caret = _pointed(self.line_text, self.source)
+        line, caret = _line_with_carets(self.line_text, self.source)
         parts = [f"{self.source}: {self.message}", line, caret]
         return "\n".join(parts if self.hint is None else [*parts, self.hint])
 
 
-def _pointed(line: str, source: Source) -> tuple[str, str]:
-    """The line, cut to a window where it is long, and carets under what is meant."""
+def _line_with_carets(line: str, source: Source) -> tuple[str, str]:
+    """Return the line, cut to a window where it is long, and carets under what is meant."""
     start = source.column - 1
     end = source.end_column - 1 if source.end_line == source.line else len(line)
-    left = 0 if len(line) <= WINDOW else max(0, min(start - WINDOW // 2, len(line) - WINDOW))
-    right = min(len(line), left + WINDOW)
+    left = 0 if len(line) <= LINE_WINDOW else max(0, min(start - LINE_WINDOW // 2, len(line) - LINE_WINDOW))
+    right = min(len(line), left + LINE_WINDOW)
     before = ("…" if left else "") + line[left:start]
     shown = ("…" if left else "") + line[left:right] + ("…" if right < len(line) else "")
     carets = max(1, _width(line[start : min(end, right)]))
-    return _printable(shown), " " * _width(before) + "^" * carets
-
-
-def _printable(line: str) -> str:
-    return "".join(c if c.isprintable() else " " if c.isspace() else "\ufffd" for c in line)
+    printable = "".join(c if c.isprintable() else " " if c.isspace() else "\ufffd" for c in shown)
+    return printable, " " * _width(before) + "^" * carets
 
 
 def _width(text: str) -> int:
-    """The columns that a text takes in a terminal."""
+    """Return the columns that a text takes in a terminal."""
     if text.isascii():
         return len(text)
     wide = sum(unicodedata.east_asian_width(c) in "WF" for c in text)
@@ -61,14 +58,14 @@ def _width(text: str) -> int:
 class ScriptError(DeixisError, ValueError):
     """A script that cannot be read as it stands; ``problems`` are all that is wrong with it, in order."""
 
-    def __init__(self, problems: tuple[Problem, ...]) -> None:
+    def __init__(self, problems: tuple[Diagnostic, ...]) -> None:
         super().__init__(problems)
         self.problems = problems
 
     def __str__(self) -> str:
-        shown = [str(problem) for problem in self.problems[:SHOWN]]
-        if len(self.problems) > SHOWN:
-            shown.append(f"… and {len(self.problems) - SHOWN} more")
+        shown = [str(problem) for problem in self.problems[:MAX_PROBLEMS_SHOWN]]
+        if len(self.problems) > MAX_PROBLEMS_SHOWN:
+            shown.append(f"… and {len(self.problems) - MAX_PROBLEMS_SHOWN} more")
         return "\n".join(shown)
 
 
@@ -87,5 +84,5 @@ class Refusal(Exception):
 
 
 def shortened(name: str, limit: int = 60) -> str:
-    """A name or phrase as messages show it."""
+    """Return a name or phrase as messages show it."""
     return name if len(name) <= limit else name[: limit - 1] + "…"

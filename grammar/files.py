@@ -10,13 +10,13 @@ from pathlib import Path
 from deixis.grammar.errors import Refusal, ScriptFileError, shortened
 from deixis.ontology.graph import Source
 
-LARGEST = 64 * 1024 * 1024  # bytes of one file
-DEEPEST = 32  # includes within includes
-MOST_FILES = 1_000  # included by one script
+MAX_FILE_BYTES = 64 * 1024 * 1024  # bytes of one file
+MAX_INCLUDE_DEPTH = 32  # includes within includes
+MAX_INCLUDED_FILES = 1_000  # included by one script
 
 
 def read_text(path: Path, shown: str) -> str:
-    """The text of a file; raises ScriptFileError, which names it as ``shown``, where it cannot be read."""
+    """Return the text of a file; raises ScriptFileError, which names it as ``shown``, where it cannot be read."""
     try:
         status = path.stat()
         if stat.S_ISDIR(status.st_mode):
@@ -24,7 +24,7 @@ def read_text(path: Path, shown: str) -> str:
         if not stat.S_ISREG(status.st_mode):
             raise ScriptFileError(f"{shown}: this is no regular file")
         with path.open("rb") as file:
-            data = file.read(LARGEST + 1)
+            data = file.read(MAX_FILE_BYTES + 1)
     except FileNotFoundError:
         raise ScriptFileError(f"{shown}: there is no such file") from None
     except ScriptFileError:
@@ -32,12 +32,8 @@ def read_text(path: Path, shown: str) -> str:
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
         raise ScriptFileError(f"{shown}: this file cannot be read ({reason})") from None
-    if len(data) > LARGEST:
-        raise ScriptFileError(f"{shown}: this file is larger than {LARGEST // 1024**2} MB")
-    return _decoded(data, shown)
-
-
-def _decoded(data: bytes, shown: str) -> str:
+    if len(data) > MAX_FILE_BYTES:
+        raise ScriptFileError(f"{shown}: this file is larger than {MAX_FILE_BYTES // 1024**2} MB")
     if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
         raise ScriptFileError(f"{shown}: this file is UTF-16, not UTF-8; save it as UTF-8")
     try:
@@ -69,16 +65,14 @@ class Includes:
         if not real.is_relative_to(self.folder):
             raise Refusal(source, f"'{shortened(path)}' is outside the folder of the script")
         if real in self.open:
-            raise Refusal(source, f"'{shortened(path)}' includes itself", self._cycle(real))
+            names = [path.name for path in self.open[self.open.index(real) :]]
+            cycle = " includes ".join([*names, real.name]) if len(names) > 1 else None
+            raise Refusal(source, f"'{shortened(path)}' includes itself", cycle)
         if real in self.seen:
             return None
-        if len(self.open) > DEEPEST:
-            raise Refusal(source, f"includes are nested deeper than {DEEPEST}")
-        if len(self.seen) >= MOST_FILES:
-            raise Refusal(source, f"more than {MOST_FILES:,} files are included")
+        if len(self.open) > MAX_INCLUDE_DEPTH:
+            raise Refusal(source, f"includes are nested deeper than {MAX_INCLUDE_DEPTH}")
+        if len(self.seen) >= MAX_INCLUDED_FILES:
+            raise Refusal(source, f"more than {MAX_INCLUDED_FILES:,} files are included")
         self.seen.add(real)
         return real
-
-    def _cycle(self, real: Path) -> str | None:
-        names = [path.name for path in self.open[self.open.index(real) :]]
-        return " includes ".join([*names, real.name]) if len(names) > 1 else None

@@ -18,15 +18,14 @@ from deixis.grammar.script import (
     Statement,
 )
 from deixis.ontology.colours import Colour
-from deixis.ontology.graph import Fact, Source
+from deixis.ontology.graph import Source
 from deixis.ontology.kinds import Kind
-from deixis.ontology.lessons.types import LayoutConcept, Role
-from deixis.ontology.relation import Relation
+from deixis.ontology.lessons.types import LayoutConcept
 from deixis.ontology.tbox import Ontology
 
 
 def format_script(script: Script) -> str:
-    """The script's own statements in canonical form; formatting what this returns changes nothing.
+    """Return the script's own statements in canonical form; formatting what this returns changes nothing.
 
     >>> from deixis.grammar.parser import parse_script
     >>> print(format_script(parse_script("left(salad fork, the plate); not on(napkin, plate)  # never")), end="")
@@ -59,7 +58,7 @@ class _Block:
 
 
 def _blocks(script: Script) -> Iterator[_Block]:
-    """The script cut into blocks, in order.
+    """Yield the script cut into blocks, in order.
 
     A comment inside a statement goes above it. One behind a statement, on the line where it ends, stays there, unless
     a second statement follows on that line: then it belongs to that one.
@@ -101,7 +100,7 @@ class StatementWriter:
         self._written: dict[str, str] = {}
 
     def write(self, statement: Statement) -> str:
-        """The statement on one line, without its end."""
+        """Return the statement on one line, without its end."""
         match statement:
             case Header(name, title, viewpoint):
                 view = f"seen from {self.name(viewpoint)}" if viewpoint else None
@@ -116,11 +115,12 @@ class StatementWriter:
                 return f"{_front(modifiers)}{head}: {self._list(objects)}"
             case Placement(subjects, relations, objects, modifiers):
                 denied = "" if modifiers.positive else "not "
-                said = f"{denied}{_phrases(relations)}"
+                phrases = " or ".join(relation.phrase for relation in relations)
+                said = f"{denied}{phrases}"
                 return f"{_front(modifiers)}{self._list(subjects)} {said} {self._list(objects)}"
 
     def name(self, name: str) -> str:
-        """The name, quoted where it would not be read back as it is."""
+        """Return the name, quoted where it would not be read back as it is."""
         written = self._written.get(name)
         if written is None:
             written = name if self._language.reads_as_name(name) else f'"{name}"'
@@ -135,28 +135,21 @@ class StatementWriter:
         return counted + self.name(mention.name)
 
     def _is(self, subjects: tuple[Mention, ...], kind: Kind | None, colour: Colour | None) -> str:
-        word = self._quality(kind, colour)
-        if len(subjects) > 1 or subjects[0].count is not None:
-            return f"are {word}"
-        return f"is {word}" if kind is None else f"is {'an' if word[0] in 'AEIOUaeiou' else 'a'} {word}"
-
-    def _quality(self, kind: Kind | None, colour: Colour | None) -> str:
-        """The first words for a kind, a colour, or both, that are read back as they are meant."""
+        # The first words that are read back as they are meant.
         shades = colour.words if colour else ("",)
         things = (kind.name, *kind.words) if kind else ("",)
         phrases = [f"{shade} {thing}".strip() for shade in shades for thing in things]
         meant = (phrase for phrase in phrases if self._ontology.quality(phrase) == (kind, colour))
         words = next(meant, phrases[0]).split()
-        return " ".join(words) if all(map(self._language.reads_as_name, words)) else self.name("_".join(words))
+        word = " ".join(words) if all(map(self._language.reads_as_name, words)) else self.name("_".join(words))
+        if len(subjects) > 1 or subjects[0].count is not None:
+            return f"are {word}"
+        return f"is {word}" if kind is None else f"is {'an' if word[0] in 'AEIOUaeiou' else 'a'} {word}"
 
 
 def _front(modifiers: Modifiers) -> str:
     optional = "optional " if modifiers.optional else ""
     return optional + (f"{modifiers.hedge} " if modifiers.hedge else "")
-
-
-def _phrases(relations: tuple[Relation, ...]) -> str:
-    return " or ".join(relation.phrase for relation in relations)
 
 
 def layout_script(layout: LayoutConcept, ontology: Ontology) -> str:
@@ -184,7 +177,10 @@ def _statements(layout: LayoutConcept, ontology: Ontology, lines: _Lines) -> Ite
     related = {name for fact in layout.facts for name in (fact.subject, fact.object)}
     for role in layout.roles:
         kind = ontology.kinds[role.kind] if role.declared and role.kind is not None else None
-        colour = _declared_colour(role, role.name in related, ontology)
+        # The colour is not declared where the name says it already and a fact bears the name.
+        colour = ontology.colours[role.colour] if role.colour is not None else None
+        if role.name in related and colour is ontology.of_name(role.name)[1]:
+            colour = None
         if kind is not None or colour is not None:
             source = lines.next(gap)
             yield Declaration((_mention(role.name, source),), kind, colour, source)
@@ -192,21 +188,11 @@ def _statements(layout: LayoutConcept, ontology: Ontology, lines: _Lines) -> Ite
     gap = True
     for fact in layout.facts:
         source = lines.next(gap)
-        yield _placement(fact, ontology, source)
+        hedge = None if fact.weight >= 1 else _hedge(fact.weight, ontology)
+        modifiers = Modifiers(fact.positive, fact.optional, hedge, fact.weight)
+        ends = [(_mention(name, source),) for name in (fact.subject, fact.object)]
+        yield Placement(ends[0], fact.relations, ends[1], modifiers, source)
         gap = False
-
-
-def _declared_colour(role: Role, related: bool, ontology: Ontology) -> Colour | None:
-    """The colour of a role, None where its name says it already and a fact bears the name."""
-    colour = ontology.colours[role.colour] if role.colour is not None else None
-    return None if related and colour is ontology.of_name(role.name)[1] else colour
-
-
-def _placement(fact: Fact, ontology: Ontology, source: Source) -> Placement:
-    hedge = None if fact.weight >= 1 else _hedge(fact.weight, ontology)
-    modifiers = Modifiers(fact.positive, fact.optional, hedge, fact.weight)
-    ends = [(_mention(name, source),) for name in (fact.subject, fact.object)]
-    return Placement(ends[0], fact.relations, ends[1], modifiers, source)
 
 
 def _mention(name: str, source: Source) -> Mention:
@@ -214,6 +200,6 @@ def _mention(name: str, source: Source) -> Mention:
 
 
 def _hedge(weight: float, ontology: Ontology) -> str:
-    """The first word whose weight is nearest."""
+    """Return the first word whose weight is nearest."""
     words: Sequence[str] = list(ontology.hedges)
     return min(words, key=lambda word: abs(ontology.hedges[word] - weight))

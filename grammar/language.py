@@ -10,7 +10,7 @@ from lark import Lark, Token
 from lark.lark import PostLex
 from lark.lexer import PatternRE, TerminalDef
 
-from deixis.grammar.tokens import HOMELESS, Scanner
+from deixis.grammar.tokens import TERMINALS_WITHOUT_RULE, Scanner
 from deixis.grammar.tree import TreeBuilder
 from deixis.grammar.words import chains, phrase_pattern
 from deixis.ontology.relation import plain_phrase
@@ -19,10 +19,10 @@ from deixis.ontology.tbox import Ontology
 NOTHING = "(?!)"  # the pattern of a terminal for which the ontology has no word
 
 
-class KeepHomeless(PostLex):
+class KeepUnusedTerminals(PostLex):
     """Keeps lark from dropping the terminals that no rule uses."""
 
-    always_accept = HOMELESS
+    always_accept = TERMINALS_WITHOUT_RULE
 
     def process(self, stream: Iterator[Token]) -> Iterator[Token]:
         return stream
@@ -37,7 +37,7 @@ class Language:
     phrase_starts: frozenset[str]  # words with which a longer relation phrase begins: 'upper', 'to', 'in front'
 
     def reads_as_name(self, text: str) -> bool:
-        """Whether the text, unquoted, is read as a name that is spelled just so, also before a relation."""
+        """Return whether the text, unquoted, is read as a name that is spelled just so, also before a relation."""
         if plain_phrase(text) in self.phrase_starts:
             return False
         found = list(self.scanner.tokens(text))
@@ -45,7 +45,7 @@ class Language:
 
 
 def language_of(ontology: Ontology) -> Language:
-    """The language with the words of this ontology; built once for the same words."""
+    """Return the language with the words of this ontology; built once for the same words."""
     return _build(
         tuple(ontology.relations.by_word),
         tuple(plain_phrase(hedge) for hedge in ontology.hedges),
@@ -76,7 +76,7 @@ def _build(
         lexer="basic",
         start="statement",
         transformer=TreeBuilder(),
-        postlex=KeepHomeless(),
+        postlex=KeepUnusedTerminals(),
         edit_terminals=from_ontology,
     )
     split = [phrase.split() for phrase in relations]

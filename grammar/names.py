@@ -11,7 +11,7 @@ from deixis.grammar.script import Mention
 from deixis.grammar.words import NOUNS_TOO
 from deixis.ontology.graph import Source
 
-KEPT_FOR = {
+RESERVED_FOR = {
     "FUNCTION": "is kept for sentences",
     "RELATION": "is a word for a relation",
     "HEDGE": "says how sure a fact is",
@@ -28,38 +28,40 @@ KEPT_FOR = {
 }
 """What the terminals are for that are words, and no names."""
 
-LINKS = frozenset({"RELATION", "IS", "VERB"})
+RELATING_TERMINALS = frozenset({"RELATION", "IS", "VERB"})
 
 
-def names_things_too(token: Token) -> bool:
-    """Whether a word that makes sentences is the name of a thing as well: a watering can."""
+def is_also_noun(token: Token) -> bool:
+    """Return whether a word that makes sentences is the name of a thing as well: a watering can."""
     return token.type == "FUNCTION" and token.casefold() in NOUNS_TOO
 
 
 def may_be_meant_as_name(tokens: list[Token], at: int) -> bool:
-    """Whether the word number ``at`` is reserved, and no relation that the statement needs."""
+    """Return whether the word number ``at`` is reserved, and no relation that the statement needs."""
     others = (token.type for number, token in enumerate(tokens) if number != at)
-    return tokens[at].type in KEPT_FOR and (tokens[at].type != "RELATION" or not LINKS.isdisjoint(others))
+    return tokens[at].type in RESERVED_FOR and (
+        tokens[at].type != "RELATION" or not RELATING_TERMINALS.isdisjoint(others)
+    )
 
 
-def how_to_name(tokens: list[Token], at: int) -> str:
-    """How a name is written to which the reserved word number ``at`` belongs, with the words around it."""
+def naming_hint(tokens: list[Token], at: int) -> str:
+    """Return how a name is written to which the reserved word number ``at`` belongs, with the words around it."""
     word = tokens[at]
     parts = [str(t) for t in tokens[max(at - 1, 0) : at + 2] if t is word or t.type == "NAME"]
     joined = "_".join("_".join(parts).split())
     if len(parts) == 1:
         return f"if '{shortened(word)}' is a name, quote it: \"{shortened(word)}\""
-    kept = f"'{shortened(word)}' {KEPT_FOR[word.type]}"
+    kept = f"'{shortened(word)}' {RESERVED_FOR[word.type]}"
     return f"{kept}; if it belongs to a name, write {shortened(joined)} or quote the name"
 
 
-MOST_OBJECTS = 1_000_000  # of one script with all that it includes
+MAX_OBJECTS = 1_000_000  # of one script with all that it includes
 BLANKS = "\t\u00a0\u2002\u2003\u2009\u202f\u3000"  # the space is printable as it is
 JOINERS = "\u200c\u200d"  # invisible, but part of words in Persian and the scripts of India
 
 
 def key_of(name: str) -> str:
-    """What two spellings of one name have in common.
+    """Return what two spellings of one name have in common.
 
     >>> key_of("Dinner_Plate") == key_of("dinner_plate")
     True
@@ -67,8 +69,8 @@ def key_of(name: str) -> str:
     return name.casefold() if name.isascii() else unicodedata.normalize("NFC", name.casefold())
 
 
-def unquoted(text: str, source: Source) -> str:
-    """The name that a quoted text stands for, blanks as underscores; raises Refusal where it is none."""
+def unquote(text: str, source: Source) -> str:
+    """Return the name that a quoted text stands for, blanks as underscores; raises Refusal where it is none."""
     for i, character in enumerate(text):
         if not (character.isprintable() or character in BLANKS or character in JOINERS):
             place = Source(source.file, source.line, source.column + 1 + i, source.line, source.column + 2 + i)
@@ -79,7 +81,7 @@ def unquoted(text: str, source: Source) -> str:
     return name
 
 
-class NameBook:
+class NameTable:
     """The names that were mentioned so far, in a script and in what it includes."""
 
     def __init__(self) -> None:
@@ -88,40 +90,35 @@ class NameBook:
         self._names: dict[str, tuple[str, ...]] = {}
 
     def mention(self, name: str, count: int | None, source: Source) -> Mention:
-        """The object or objects that a name means here; raises Refusal where it does not fit earlier ones."""
+        """Return the object or objects that a name means here; raises Refusal where it does not fit earlier ones."""
         key = key_of(name)
         if count is not None:
-            return self._several(name, key, count, source)
+            known = self._counts.get(key)
+            if known is None and key in self._spelling:
+                hint = "a name is either counted wherever it stands, or nowhere"
+                raise Refusal(source, f"'{shortened(name)}' was one object before, and is {count} now", hint)
+            if known is not None and known != count:
+                message = f"there are {known} of '{shortened(name)}', not {count}"
+                raise Refusal(source, message, f"say `{known} {shortened(name)}`")
+            if known is None:
+                self._make_room(count, source)
+                self._counts[key] = count
+                self._spelling[key] = name
+                each = [f"{name}_{number}" for number in range(1, count + 1)]
+                self._names[key] = tuple(self._spelling.setdefault(key_of(one), one) for one in each)
+            return Mention(self._spelling[key], source, count, self._names[key])
         if key in self._counts:
-            raise Refusal(source, f"'{shortened(name)}' alone does not say which", self._which(key))
+            shown, known = shortened(self._spelling[key]), self._counts[key]
+            each = [f"{shown}_{number}" for number in range(1, known + 1)]
+            listed = ", ".join(each if known <= 3 else [each[0], "…", each[-1]])
+            hint = f"there are {known}: say {listed} or `{known} {shown}`"
+            raise Refusal(source, f"'{shortened(name)}' alone does not say which", hint)
         spelled = self._spelling.get(key)
         if spelled is None:
             self._make_room(1, source)
             spelled = self._spelling[key] = name
         return Mention(spelled, source, None, (spelled,))
 
-    def _several(self, name: str, key: str, count: int, source: Source) -> Mention:
-        known = self._counts.get(key)
-        if known is None and key in self._spelling:
-            hint = "a name is either counted wherever it stands, or nowhere"
-            raise Refusal(source, f"'{shortened(name)}' was one object before, and is {count} now", hint)
-        if known is not None and known != count:
-            message = f"there are {known} of '{shortened(name)}', not {count}"
-            raise Refusal(source, message, f"say `{known} {shortened(name)}`")
-        if known is None:
-            self._make_room(count, source)
-            self._counts[key] = count
-            self._spelling[key] = name
-            each = [f"{name}_{number}" for number in range(1, count + 1)]
-            self._names[key] = tuple(self._spelling.setdefault(key_of(one), one) for one in each)
-        return Mention(self._spelling[key], source, count, self._names[key])
-
     def _make_room(self, more: int, source: Source) -> None:
-        if len(self._spelling) + more > MOST_OBJECTS:
-            raise Refusal(source, f"a script names at most {MOST_OBJECTS:,} objects, and here it names more")
-
-    def _which(self, key: str) -> str:
-        name, count = shortened(self._spelling[key]), self._counts[key]
-        each = [f"{name}_{number}" for number in range(1, count + 1)]
-        listed = ", ".join(each if count <= 3 else [each[0], "…", each[-1]])
-        return f"there are {count}: say {listed} or `{count} {name}`"
+        if len(self._spelling) + more > MAX_OBJECTS:
+            raise Refusal(source, f"a script names at most {MAX_OBJECTS:,} objects, and here it names more")

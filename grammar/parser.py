@@ -12,19 +12,19 @@ from lark.exceptions import UnexpectedToken
 
 from deixis.grammar.diagnostics import bad_token, unexpected
 from deixis.grammar.draft import Draft, Place, place
-from deixis.grammar.errors import SHOWN, Problem, Refusal, ScriptError, ScriptFileError
+from deixis.grammar.errors import MAX_PROBLEMS_SHOWN, Diagnostic, Refusal, ScriptError, ScriptFileError
 from deixis.grammar.files import Includes, read_text
 from deixis.grammar.language import Language, language_of
 from deixis.grammar.names import key_of
 from deixis.grammar.script import Comment, Header, Include, Script, Statement
-from deixis.grammar.tokens import HOMELESS
+from deixis.grammar.tokens import TERMINALS_WITHOUT_RULE
 from deixis.grammar.tree import span_of
 from deixis.ontology.graph import Source
 from deixis.ontology.tbox import Ontology, default_ontology
 
 
 def parse_script(text: str, file: str = "<text>", ontology: Ontology | None = None) -> Script:
-    """The script that a text is; ``file`` is what its places are called.
+    """Return the script that a text is; ``file`` is what its places are called.
 
     Raises ScriptError with all problems of the text; an include is one, since a text lies in no folder.
 
@@ -43,7 +43,7 @@ def parse_script(text: str, file: str = "<text>", ontology: Ontology | None = No
 
 
 def read_script(path: str | Path, ontology: Ontology | None = None) -> Script:
-    """The script in a file, with the files that it includes.
+    """Return the script in a file, with the files that it includes.
 
     Raises ScriptFileError where the file cannot be read, ScriptError with all problems of it and of what it includes.
     """
@@ -89,7 +89,7 @@ class FileReader:
         self.text = self.text.removeprefix("\ufeff").replace("\r\n", "\n")
 
     def read(self) -> Iterator[Statement]:
-        """The statements that make sense; the problems of the others go to the draft."""
+        """Yield the statements that make sense; the problems of the others go to the draft."""
         here = Place(self.draft, self.file, Source(self.file, 1, 1, 1, 1))
         statement: Statement | None
         first = True
@@ -97,9 +97,12 @@ class FileReader:
             previous = place.set(here)
             try:
                 here.statement = span_of(tokens)
-                statement = self._finished(self._parsed(tokens), first)
+                statement = self._resolve(self._parse(tokens), first)
             except Refusal as refusal:
-                self._report(refusal)
+                if self._lines is None:
+                    self._lines = self.text.split("\n")
+                line = self._lines[refusal.source.line - 1]
+                self.draft.problems.append(Diagnostic(refusal.source, refusal.message, line, refusal.hint))
                 statement = None
             finally:
                 place.reset(previous)
@@ -113,7 +116,10 @@ class FileReader:
         line = 0  # of the last token that is no comment
         for token in self.language.scanner.tokens(self.text):
             if token.type == "COMMENT":
-                self.comments.append(self._comment(token, own_line=token.line != line))
+                assert token.line is not None
+                assert token.column is not None
+                source = Source(self.file, token.line, token.column, token.line, token.column + len(token))
+                self.comments.append(Comment(token[1:].strip(), source, token.line != line))
                 continue
             line = token.end_line or 0
             if token.type != "END":
@@ -129,15 +135,9 @@ class FileReader:
         if statement:
             yield statement
 
-    def _comment(self, token: Token, own_line: bool) -> Comment:
-        assert token.line is not None
-        assert token.column is not None
-        source = Source(self.file, token.line, token.column, token.line, token.column + len(token))
-        return Comment(token[1:].strip(), source, own_line)
-
-    def _parsed(self, tokens: list[Token]) -> Statement:
+    def _parse(self, tokens: list[Token]) -> Statement:
         for token in tokens:
-            if token.type in HOMELESS:
+            if token.type in TERMINALS_WITHOUT_RULE:
                 raise bad_token(token)
         parser = self.language.lark.parse_interactive()
         state = parser.parser_state
@@ -148,32 +148,30 @@ class FileReader:
             at = len(tokens)
             statement: Statement = state.feed_token(Token.new_borrow_pos("$END", "", tokens[-1]), True)
         except UnexpectedToken as error:
-            many = len(self.draft.problems) >= SHOWN  # then what comes near enough will do
+            many = len(self.draft.problems) >= MAX_PROBLEMS_SHOWN  # then what comes near enough will do
             accepts = error.expected if many else parser.accepts()  # type: ignore[no-untyped-call]
             raise unexpected(tokens, at, set(accepts), self.draft) from None
         return statement
 
-    def _finished(self, statement: Statement, first: bool) -> Statement:
-        """The statement, with what depends on where it stands: the header's place, and an include's content."""
+    def _resolve(self, statement: Statement, first: bool) -> Statement:
+        """Check the place and the viewpoint of a header; add the content of an included file."""
         if isinstance(statement, Header):
             if not first:
                 raise Refusal(statement.source, "the header must be the first statement, and there is only one")
-            self._look_from(statement)
+            seen_from = self.draft.viewpoint
+            if statement.viewpoint is not None:
+                if self.includes is None or len(self.includes.open) == 1:
+                    self.draft.viewpoint = statement.viewpoint
+                elif seen_from is not None and key_of(seen_from) != key_of(statement.viewpoint):
+                    message = (
+                        f"this is seen from '{statement.viewpoint}', but included where all is seen from '{seen_from}'"
+                    )
+                    raise Refusal(statement.source, message)
         if isinstance(statement, Include):
-            return replace(statement, statements=tuple(self._included(statement)))
+            return replace(statement, statements=tuple(self._read_included(statement)))
         return statement
 
-    def _look_from(self, header: Header) -> None:
-        if header.viewpoint is None:
-            return
-        seen_from = self.draft.viewpoint
-        if self.includes is None or len(self.includes.open) == 1:
-            self.draft.viewpoint = header.viewpoint
-        elif seen_from is not None and key_of(seen_from) != key_of(header.viewpoint):
-            message = f"this is seen from '{header.viewpoint}', but included where all is seen from '{seen_from}'"
-            raise Refusal(header.source, message)
-
-    def _included(self, include: Include) -> Iterator[Statement]:
+    def _read_included(self, include: Include) -> Iterator[Statement]:
         if self.includes is None:
             raise Refusal(include.source, "a text has no folder to include from; read the script from a file")
         beside = self.includes.open[-1].parent
@@ -188,9 +186,3 @@ class FileReader:
         self.includes.open.append(real)
         yield from FileReader(text, shown, self.draft, self.language, self.includes).read()
         self.includes.open.pop()
-
-    def _report(self, refusal: Refusal) -> None:
-        if self._lines is None:
-            self._lines = self.text.split("\n")
-        line = self._lines[refusal.source.line - 1]
-        self.draft.problems.append(Problem(refusal.source, refusal.message, line, refusal.hint))

@@ -86,7 +86,7 @@ class Placement:
     source: Source
 
     def facts(self) -> Iterator[Fact]:
-        """Each subject with each object, in the order of writing."""
+        """Yield each subject with each object, in the order of writing."""
         for subject, thing in product(_names(self.subjects), _names(self.objects)):
             yield _fact(subject, self.relations, thing, self)
 
@@ -101,7 +101,7 @@ class Chain:
     source: Source
 
     def facts(self) -> Iterator[Fact]:
-        """Each object with its neighbour, in the order of writing."""
+        """Yield each object with its neighbour, in the order of writing."""
         relations = (self.relation,)
         for subject, thing in pairwise(_names(self.objects)):
             yield _fact(subject, relations, thing, self)
@@ -140,7 +140,7 @@ class Script:
     ontology: Ontology = field(repr=False, compare=False)
 
     def all_statements(self) -> Iterator[Statement]:
-        """The statements in order, those of included files in the place of their include."""
+        """Return the statements in order, those of included files in the place of their include."""
         return _flat(self.statements)
 
     @cached_property
@@ -199,14 +199,11 @@ class Script:
 
     @cached_property
     def _graph(self) -> RelationGraph:
-        kinds = [self._kind_of(name) for name in self.objects]
+        known = [self.kinds.get(name) or self.ontology.of_name(name)[0] for name in self.objects]
+        kinds = [kind.iri if kind else None for kind in known]
         colours = [self.colours[name].iri if name in self.colours else None for name in self.objects]
         shown = colours if self.colours else ()
         return RelationGraph.from_facts(self.ontology.relations, self.objects, self.facts, kinds=kinds, colours=shown)
-
-    def _kind_of(self, name: str) -> str | None:
-        kind = self.kinds.get(name) or self.ontology.of_name(name)[0]
-        return kind.iri if kind else None
 
 
 def _flat(statements: tuple[Statement, ...]) -> Iterator[Statement]:

@@ -15,8 +15,8 @@ from lark.lexer import TerminalDef
 from deixis.grammar.words import KEYWORDS
 from deixis.ontology.relation import ARTICLES
 
-BEFORE_A_THING = frozenset({"COUNT", "STRING", "COMPOUND"})
-HOMELESS = ("END", "COMMENT", "COMPOUND", "NUMBER", "OPEN_STRING", "UNKNOWN")
+NOUN_PHRASE_TERMINALS = frozenset({"COUNT", "STRING", "COMPOUND"})
+TERMINALS_WITHOUT_RULE = ("END", "COMMENT", "COMPOUND", "NUMBER", "OPEN_STRING", "UNKNOWN")
 """Terminals that no rule uses: those that part statements, and those that are wrong in every statement."""
 
 
@@ -29,7 +29,10 @@ class Scanner:
         self._next = re.compile(union).finditer
 
     def tokens(self, text: str) -> Iterator[Token]:
-        """The tokens of a text, names joined; FUNCTION, ARTICLE and HOMELESS ones fit nowhere in the grammar."""
+        """Yield the tokens of a text, names joined.
+
+        No rule of the grammar takes FUNCTION, ARTICLE and TERMINALS_WITHOUT_RULE.
+        """
         run: list[Token] = []
         for token in self._terminals(text):
             if token.type == "NAME":
@@ -61,20 +64,20 @@ class Scanner:
 
 
 def join(run: list[Token], following: str) -> Iterator[Token]:
-    """The names in a run of words: an article before a word starts a new name, and is dropped.
+    """Yield the names in a run of words: an article before a word starts a new name, and is dropped.
 
     ``a`` is a name where no word follows it, so that ``left(a, b)`` and ``a is a plate`` mean an object called a.
     """
     words: list[Token] = []
     last = len(run) - 1
     for i, word in enumerate(run):
-        if word.casefold() not in ARTICLES or (i == last and following not in BEFORE_A_THING and word in "aA"):
+        if word.casefold() not in ARTICLES or (i == last and following not in NOUN_PHRASE_TERMINALS and word in "aA"):
             words.append(word)
             continue
         if words:
             yield _name(words, " ".join(words))
             words = []
-        if i == last and following not in BEFORE_A_THING:
+        if i == last and following not in NOUN_PHRASE_TERMINALS:
             word.type = "ARTICLE"
             yield word
     if words:
@@ -82,19 +85,13 @@ def join(run: list[Token], following: str) -> Iterator[Token]:
 
 
 def _name(words: list[Token], text: str) -> Token:
-    """One NAME from the first word's start to the last one's end, or UNKNOWN at the first character that cannot be."""
+    """Join words into one NAME token, or return UNKNOWN at the first character that no name may hold."""
     for word in words:
-        if not word.isascii() and (bad := _bad_character(word)) is not None:
-            return bad
+        for i, character in enumerate("" if word.isascii() else word):
+            if character != "-" and not (character if i == 0 else "x" + character).isidentifier():
+                assert word.column is not None
+                column = word.column + i
+                return Token("UNKNOWN", character, None, word.line, column, word.line, column + 1)
     first, last = words[0], words[-1]
     value = unicodedata.normalize("NFC", "_".join(text.split()))
     return Token("NAME", value, first.start_pos, first.line, first.column, last.end_line, last.end_column, last.end_pos)
-
-
-def _bad_character(word: Token) -> Token | None:
-    for i, character in enumerate(word):
-        if character != "-" and not (character if i == 0 else "x" + character).isidentifier():
-            assert word.column is not None
-            column = word.column + i
-            return Token("UNKNOWN", character, None, word.line, column, word.line, column + 1)
-    return None

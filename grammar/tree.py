@@ -6,31 +6,31 @@ from lark import Token, Transformer, v_args
 
 from deixis.grammar.draft import place
 from deixis.grammar.errors import Refusal, shortened
-from deixis.grammar.names import unquoted
+from deixis.grammar.names import unquote
 from deixis.grammar.script import Chain, Declaration, Header, Include, Mention, Modifiers, Placement, Statement
 from deixis.grammar.words import NUMBERS, VERBS_OR_NOUNS
 from deixis.ontology.graph import Source
 from deixis.ontology.relation import Relation, plain_phrase
 
-FIRM_QUALITY = "what kind of thing an object is, or its colour, cannot be denied, optional or hedged"
+UNQUALIFIED_DECLARATION = "what kind of thing an object is, or its colour, cannot be denied, optional or hedged"
 
 Pair = tuple[tuple[Relation, ...], Mention, Mention]
 
 
 def source_of(token: Token) -> Source:
-    """Where a token stands."""
+    """Return where a token stands."""
     return Source(place.get().file, token.line, token.column, token.end_line, token.end_column)  # type: ignore[arg-type]
 
 
 def span_of(tokens: list[Token]) -> Source:
-    """Where a run of tokens stands, from the start of the first to the end of the last."""
+    """Return where a run of tokens stands, from the start of the first to the end of the last."""
     first, last = tokens[0], tokens[-1]
     return Source(place.get().file, first.line, first.column, last.end_line, last.end_column)  # type: ignore[arg-type]
 
 
 def text_of(token: Token) -> str:
-    """The name that a NAME or a STRING stands for."""
-    return unquoted(token[1:-1], source_of(token)) if token.type == "STRING" else str(token)
+    """Return the name that a NAME or a STRING stands for."""
+    return unquote(token[1:-1], source_of(token)) if token.type == "STRING" else str(token)
 
 
 @v_args(inline=True)
@@ -50,7 +50,7 @@ class TreeBuilder(Transformer[Token, Statement]):
         shown = None
         if title is not None:
             shown = " ".join(title[1:-1].split())
-            unquoted(shown or "-", source_of(title))
+            unquote(shown or "-", source_of(title))
         return Header(name, shown or None, text_of(viewpoint) if viewpoint else None, place.get().statement)
 
     def include(self, path: Token) -> Include:
@@ -61,7 +61,7 @@ class TreeBuilder(Transformer[Token, Statement]):
     ) -> Declaration:
         here = place.get()
         if modifiers is not None:
-            raise Refusal(here.statement, FIRM_QUALITY)
+            raise Refusal(here.statement, UNQUALIFIED_DECLARATION)
         kind, colour = here.draft.quality(text_of(word), source_of(word))
         here.draft.grow(_size(subjects), here.statement)
         if kind is not None:
@@ -90,7 +90,19 @@ class TreeBuilder(Transformer[Token, Statement]):
             for name in mention.names:
                 if name in among:
                     raise Refusal(mention.source, f"'{shortened(name)}' cannot be related to itself")
-        return Placement(subjects, relations, objects, _merged(modifiers, how), here.statement)
+        if modifiers is None or how is None:
+            merged = modifiers or how or Modifiers()
+        else:
+            where = place.get().statement
+            if modifiers.hedge and how.hedge:
+                raise _twice("HEDGE", how.hedge, where)
+            if not modifiers.positive and not how.positive:
+                raise _twice("NOT", "not", where)
+            if modifiers.optional and how.optional:
+                raise _twice("OPTIONAL", "optional", where)
+            hedge, weight = (modifiers.hedge, modifiers.weight) if modifiers.hedge else (how.hedge, how.weight)
+            merged = Modifiers(modifiers.positive and how.positive, modifiers.optional or how.optional, hedge, weight)
+        return Placement(subjects, relations, objects, merged, here.statement)
 
     def pairs(self, modifiers: Modifiers | None, first: Pair, *others: Pair) -> Placement:
         relations, subject, thing = first
@@ -143,7 +155,7 @@ class TreeBuilder(Transformer[Token, Statement]):
         return _modifiers(words)
 
     def link(self, *words: Token) -> tuple[Modifiers, Token | None]:
-        """What qualifies the relation, and a bare verb that may be a noun (a cake stand)."""
+        """Return what qualifies the relation, and a bare verb that may be a noun (a cake stand)."""
         verbs = [word for word in words if word.type in ("IS", "VERB")]
         for before, word in zip([None, *verbs], verbs, strict=False):
             if before is not None and (before.type, word.type) != ("IS", "VERB"):
@@ -164,21 +176,6 @@ def _modifiers(words: tuple[Token, ...]) -> Modifiers:
     return Modifiers("NOT" not in found, "OPTIONAL" in found, plain, weight)
 
 
-def _merged(front: Modifiers | None, link: Modifiers | None) -> Modifiers:
-    """The modifiers at the front and those at the verb, as one."""
-    if front is None or link is None:
-        return front or link or Modifiers()
-    where = place.get().statement
-    if front.hedge and link.hedge:
-        raise _twice("HEDGE", link.hedge, where)
-    if not front.positive and not link.positive:
-        raise _twice("NOT", "not", where)
-    if front.optional and link.optional:
-        raise _twice("OPTIONAL", "optional", where)
-    hedged = front if front.hedge else link
-    return Modifiers(front.positive and link.positive, front.optional or link.optional, hedged.hedge, hedged.weight)
-
-
 def _twice(modifier: str, word: str, where: Source) -> Refusal:
     if modifier == "HEDGE":
         return Refusal(where, f"one word such as 'usually' is enough: '{word}' is a second one")
@@ -186,7 +183,7 @@ def _twice(modifier: str, word: str, where: Source) -> Refusal:
 
 
 def _one_reading(relations: tuple[Relation, ...], where: Source) -> tuple[Relation, ...]:
-    """The relations without repetition; raises Refusal where some are read widely and some exactly."""
+    """Return the relations without repetition; raises Refusal where some are read widely and some exactly."""
     if len({relation.reading for relation in relations}) > 1:
         wide, exact = sorted({r.reading: r.phrase for r in relations}.values(), key=lambda p: "exactly" in p)
         hint = "say 'exactly' with each of them, or with none"

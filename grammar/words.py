@@ -64,7 +64,7 @@ _BOUNDARY = r"(?![\w-]|[^\x00-\x7f\s])"  # the end of a word, as the terminal NA
 
 
 def phrase_pattern(phrases: Iterable[str]) -> str:
-    """A regular expression for the longest of these phrases, words parted by blanks, underscores and articles.
+    """Return a regular expression for the longest of these phrases, words parted by blanks, underscores and articles.
 
     It is a prefix tree, so that a word costs one branch a letter and not one a phrase, and nothing is tried twice.
 
@@ -84,18 +84,16 @@ def phrase_pattern(phrases: Iterable[str]) -> str:
 def _alternatives(tree: dict[str, Any]) -> str:
     by_letter: dict[str, list[str]] = {}
     for word in sorted(word for word in tree if word):
-        by_letter.setdefault(word[0], []).append(re.escape(word[1:]) + _rest(tree[word]))
+        node = tree[word]
+        longer = [_BETWEEN + _alternatives(node)] if any(node) else []
+        rest = f"(?:{'|'.join([*longer, *([_BOUNDARY] if '' in node else [])])})"
+        by_letter.setdefault(word[0], []).append(re.escape(word[1:]) + rest)
     options = [re.escape(letter) + f"(?:{'|'.join(rests)})" for letter, rests in by_letter.items()]
     return f"(?:{'|'.join(options)})"
 
 
-def _rest(node: dict[str, Any]) -> str:
-    longer = [_BETWEEN + _alternatives(node)] if any(node) else []
-    return f"(?:{'|'.join([*longer, *([_BOUNDARY] if '' in node else [])])})"
-
-
 def chains(ontology: Ontology) -> dict[str, Relation]:
-    """What may head a chain, without its colon: from one side to the opposite one, for every direction.
+    """Return what may head a chain, without its colon: from one side to the opposite one, for every direction.
 
     >>> from deixis.ontology.tbox import default_ontology
     >>> found = chains(default_ontology())

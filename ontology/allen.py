@@ -52,7 +52,7 @@ ALL_ALLEN = (1 << 13) - 1
 
 
 def allen_mask(relations: Iterable[Allen]) -> int:
-    """A set of Allen relations as a 13-bit mask, bit *i* for code *i*.
+    """Return a set of Allen relations as a 13-bit mask, bit *i* for code *i*.
 
     >>> allen_mask([Allen.BEFORE, Allen.MEETS])
     3
@@ -64,7 +64,7 @@ def allen_mask(relations: Iterable[Allen]) -> int:
 
 
 def members(mask: int) -> tuple[Allen, ...]:
-    """The relations in a 13-bit mask, in the order of their codes.
+    """Return the relations in a 13-bit mask, in the order of their codes.
 
     >>> [r.symbol for r in members(0b11)]
     ['<', 'm']
@@ -73,5 +73,5 @@ def members(mask: int) -> tuple[Allen, ...]:
 
 
 def mask_array(mask: int) -> NDArray[np.bool_]:
-    """A 13-bit mask as a boolean array of shape (13,)."""
+    """Return a 13-bit mask as a boolean array of shape (13,)."""
     return np.array([bool(mask >> code & 1) for code in range(13)])

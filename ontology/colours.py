@@ -35,7 +35,7 @@ class Colour:
     covariance: tuple[float, float, float, float, float, float]
 
     def matrix(self) -> NDArray[np.float64]:
-        """The covariance as a symmetric matrix, shape (3, 3)."""
+        """Return the covariance as a symmetric matrix, shape (3, 3)."""
         return _matrix(self.covariance)
 
 
@@ -79,7 +79,7 @@ class Colours:
         return max((len(word.split()) for word in self.words), default=0)
 
     def of_word(self, word: str) -> Colour | None:
-        """The colour that a word stands for; ``dark_blue``, ``Dark blue`` and ``dark-blue`` alike."""
+        """Return the colour that a word stands for; ``dark_blue``, ``Dark blue`` and ``dark-blue`` alike."""
         return self.words.get(" ".join(_parts(word)))
 
     def split(self, name: str) -> tuple[Colour | None, str]:
@@ -105,7 +105,7 @@ def _parts(name: str) -> list[str]:
 
 
 def rgb_of_hex(text: str) -> Rgb | None:
-    """The colour that ``#rrggbb`` stands for; None where a text is no such thing.
+    """Return the colour that ``#rrggbb`` stands for; None where a text is no such thing.
 
     >>> rgb_of_hex("#Ff8000"), rgb_of_hex("#f80")
     ((255, 128, 0), None)
@@ -117,7 +117,7 @@ def rgb_of_hex(text: str) -> Rgb | None:
 
 
 def hex_of_rgb(rgb: Rgb) -> str:
-    """The colour as ``#rrggbb``.
+    """Return the colour as ``#rrggbb``.
 
     >>> hex_of_rgb((255, 128, 0))
     '#ff8000'
@@ -126,7 +126,7 @@ def hex_of_rgb(rgb: Rgb) -> str:
 
 
 def colours_from_triples(triples: TripleIndex, words: dict[str, tuple[str, ...]]) -> Colours:
-    """Reads all colours, ``words`` by IRI; raises OntologyError where a prototype or a spread is none."""
+    """Read all colours, ``words`` by IRI; raises OntologyError where a prototype or a spread is none."""
     return Colours(tuple(_colour(iri, triples, words[iri]) for iri in words))
 
 
@@ -134,10 +134,6 @@ def _colour(iri: str, triples: TripleIndex, words: tuple[str, ...]) -> Colour:
     prototype = rgb_of_hex(triples.only(iri, DX.PROTOTYPE))
     if prototype is None:
         raise OntologyError(f"<{iri}>: a prototype is written as #rrggbb, not '{triples.only(iri, DX.PROTOTYPE)}'")
-    return Colour(iri, triples.only(iri, W3C.RDFS_LABEL), words, prototype, _covariance(iri, triples))
-
-
-def _covariance(iri: str, triples: TripleIndex) -> tuple[float, float, float, float, float, float]:
     text = triples.only(iri, DX.SPREAD)
     try:
         ll, la, lb, aa, ab, bb = map(float, text.split())
@@ -146,7 +142,7 @@ def _covariance(iri: str, triples: TripleIndex) -> tuple[float, float, float, fl
     spread = (ll, la, lb, aa, ab, bb)
     if not np.isfinite(spread).all() or np.linalg.eigvalsh(_matrix(spread)).min() <= 0:
         raise OntologyError(f"<{iri}>: its spread is no covariance: the matrix of '{text}' is not positive definite")
-    return spread
+    return Colour(iri, triples.only(iri, W3C.RDFS_LABEL), words, prototype, spread)
 
 
 def _matrix(covariance: tuple[float, float, float, float, float, float]) -> NDArray[np.float64]:

@@ -16,7 +16,7 @@ from deixis.ontology.vocabulary import BASE, DX
 
 
 def fact_to_dict(fact: Fact) -> dict[str, Any]:
-    """A fact as the commands' JSON has it: relation, subject, object, and what qualifies it."""
+    """Return a fact as the commands' JSON has it: relation, subject, object, and what qualifies it."""
     entry: dict[str, Any] = {
         "relation": " or ".join(relation.word for relation in fact.relations),
         "subject": fact.subject,
@@ -33,7 +33,7 @@ def fact_to_dict(fact: Fact) -> dict[str, Any]:
 
 
 def graph_to_dict(graph: RelationGraph) -> dict[str, Any]:
-    """The graph as plain data, ready for ``json.dumps``."""
+    """Return the graph as plain data, ready for ``json.dumps``."""
     nodes: list[dict[str, Any]] = []
     for i, name in enumerate(graph.nodes):
         node: dict[str, Any] = {"id": name}
@@ -44,14 +44,13 @@ def graph_to_dict(graph: RelationGraph) -> dict[str, Any]:
         if graph.boxes is not None:
             node |= {"min": graph.boxes[i, 0].tolist(), "max": graph.boxes[i, 1].tolist()}
         nodes.append(node)
-    return {"nodes": nodes, "facts": [_full(fact) for fact in graph.facts()]}
-
-
-def _full(fact: Fact) -> dict[str, Any]:
-    entry = fact_to_dict(fact)
-    if fact.source is not None:
-        entry |= {"end_line": fact.source.end_line, "end_column": fact.source.end_column}
-    return entry
+    facts = []
+    for fact in graph.facts():
+        entry = fact_to_dict(fact)
+        if fact.source is not None:
+            entry |= {"end_line": fact.source.end_line, "end_column": fact.source.end_column}
+        facts.append(entry)
+    return {"nodes": nodes, "facts": facts}
 
 
 PREFIXES = {
@@ -102,12 +101,12 @@ def pairs_to_ntriples(relation: Relation, pairs: NDArray[np.int64], iris: Sequen
     subjects, begins = np.unique(pairs[:, 0], return_index=True)
     for subject, objects in zip(subjects.tolist(), np.split(pairs[:, 1], begins[1:]), strict=True):
         head = f"{iris[subject]} <{relation.iri}> "
-        chunks.append(head + f" .\n{head}".join([iris[object] for object in objects.tolist()]) + " .\n")
+        chunks.append(head + f" .\n{head}".join([iris[other] for other in objects.tolist()]) + " .\n")
     return "".join(chunks)
 
 
 def node_iris(graph: RelationGraph, base: str = GRAPH_BASE) -> list[str]:
-    """The nodes' IRIs as :func:`graph_to_turtle` writes them, in angle brackets."""
+    """Return the nodes' IRIs as :func:`graph_to_turtle` writes them, in angle brackets."""
     return [_iri(base, name) for name in graph.nodes]
 
 
@@ -128,7 +127,7 @@ def _literal(text: str) -> str:
 
 
 def graph_to_dot(graph: RelationGraph) -> str:
-    """The graph in Graphviz' language: denied facts dashed, optional ones dotted, hedged ones thinner."""
+    """Return the graph in Graphviz' language: denied facts dashed, optional ones dotted, hedged ones thinner."""
     lines = ["digraph layout {", "    node [shape=box, style=rounded, fontname=Helvetica];"]
     lines += [f"    {_literal(name)};" for name in graph.nodes]
     for fact in graph.facts():

@@ -171,7 +171,7 @@ class RelationGraph:
         boxes: NDArray[np.float64] | None = None,
         colours: Sequence[str | None] = (),
     ) -> RelationGraph:
-        """The graph of these facts; raises GraphError where one names an object that is no node."""
+        """Return the graph of these facts; raises GraphError where one names an object that is no node."""
         index = {name: i for i, name in enumerate(nodes)}
         listed = list(facts)
         for fact in listed:
@@ -194,11 +194,11 @@ class RelationGraph:
         )
 
     def __len__(self) -> int:
-        """The number of edges."""
+        """Return the number of edges."""
         return len(self.subjects)
 
     def index(self, node: str) -> int:
-        """The position of a node; raises GraphError where there is none of that name."""
+        """Return the position of a node; raises GraphError where there is none of that name."""
         try:
             return self._index[node]
         except KeyError:
@@ -217,11 +217,11 @@ class RelationGraph:
         )
 
     def facts(self) -> Iterator[Fact]:
-        """All edges as objects, in their order."""
+        """Return all edges as objects, in their order."""
         return (self.fact(edge) for edge in range(len(self)))
 
     def subgraph(self, nodes: Sequence[str]) -> RelationGraph:
-        """The graph that these nodes induce, in the order given."""
+        """Return the graph that these nodes induce, in the order given."""
         keep = np.array([self.index(name) for name in nodes], dtype=np.int64)
         position = np.full(len(self.nodes), -1, dtype=np.int32)
         position[keep] = np.arange(len(keep), dtype=np.int32)
@@ -282,7 +282,7 @@ class RelationGraph:
         return graph
 
     def paper_view(self) -> PaperGraph:
-        """The graph of Definition 1: one word an edge and one edge an ordered pair.
+        """Return the graph of Definition 1: one word an edge and one edge an ordered pair.
 
         Facts that are no single affirmed relation do not enter it, nor what is rarely so, which is a denial. Where
         several facts name one pair, the most telling label stays: the one that implies the most others, the first

@@ -9,7 +9,7 @@ from functools import cached_property
 
 
 def plain_name(name: str) -> str:
-    """The name of one of several things without its number.
+    """Return the name of one of several things without its number.
 
     >>> plain_name("wine_glass_2"), plain_name("fork")
     ('wine_glass', 'fork')
@@ -18,7 +18,7 @@ def plain_name(name: str) -> str:
 
 
 def with_article(noun: str) -> str:
-    """The noun after its indefinite article, by how English words that begin so are mostly spoken.
+    """Return the noun after its indefinite article, by how English words that begin so are mostly spoken.
 
     >>> with_article("egg cup"), with_article("utensil"), with_article("fork")
     ('an egg cup', 'a utensil', 'a fork')
@@ -63,7 +63,7 @@ class Kinds:
         return len(self._all)
 
     def __contains__(self, iri: object) -> bool:
-        """Whether a kind has that IRI."""
+        """Return whether a kind has that IRI."""
         return iri in self._by_iri
 
     def __getitem__(self, iri: str) -> Kind:
@@ -83,5 +83,5 @@ class Kinds:
         return self.words.get(" ".join(word.casefold().replace("_", " ").replace("-", " ").split()))
 
     def is_a(self, kind: Kind, broader: Kind) -> bool:
-        """Whether every ``kind`` is a ``broader``."""
+        """Return whether every ``kind`` is a ``broader``."""
         return kind.iri == broader.iri or broader.iri in kind.broader

@@ -58,7 +58,7 @@ class Relation:
         return 1 << self.index
 
     def admits(self) -> NDArray[np.bool_]:
-        """The admitted atoms as a boolean array of shape (13, 13), axes x and y, indexed by Allen code."""
+        """Return the admitted atoms as a boolean array of shape (13, 13), axes x and y, indexed by Allen code."""
         codes = np.arange(13)
         return ((self.x_atoms >> codes & 1)[:, None] & (self.y_atoms >> codes & 1)[None, :]).astype(bool)
 
@@ -103,7 +103,7 @@ class Relations(Mapping[str, Relation]):
         return tuple(relation for relation in self._all if relation.reading is reading)
 
     def members(self, mask: int) -> tuple[Relation, ...]:
-        """The relations in a relation set, by index."""
+        """Return the relations in a relation set, by index."""
         return tuple(relation for relation in self._all if mask >> relation.index & 1)
 
     @cached_property
@@ -119,11 +119,11 @@ class Relations(Mapping[str, Relation]):
         return words
 
     def wide(self, exact: Relation) -> Relation:
-        """The wide relation of the same word."""
+        """Return the wide relation of the same word."""
         return self._by_name[exact.word]
 
     def exact(self, wide: Relation) -> Relation:
-        """The exact relation of the same word."""
+        """Return the exact relation of the same word."""
         return next(r for r in self._all if r.word == wide.word and r.reading is Reading.EXACT)
 
     @cached_property
@@ -144,7 +144,7 @@ class Relations(Mapping[str, Relation]):
 
 
 def plain_phrase(words: str) -> str:
-    """A phrase as scripts are matched against it: case-folded, articles dropped, underscores as spaces.
+    """Return a phrase as scripts are matched against it: case-folded, articles dropped, underscores as spaces.
 
     >>> plain_phrase("To the  Left_of")
     'to left of'
@@ -156,7 +156,7 @@ ARTICLES = frozenset({"the", "a", "an"})
 
 
 def nearest(word: str, known: Iterable[str]) -> str | None:
-    """The known word that looks most like ``word``, or None where none comes near.
+    """Return the known word that looks most like ``word``, or None where none comes near.
 
     >>> nearest("rihgt", ["left", "right"])
     'right'
@@ -166,7 +166,7 @@ def nearest(word: str, known: Iterable[str]) -> str | None:
 
 
 def relation_from_triples(iri: str, triples: TripleIndex, index: int) -> Relation:
-    """Builds a relation from what the TBox says of ``iri``; raises OntologyError where something lacks."""
+    """Build a relation from what the TBox says of ``iri``; raises OntologyError where something lacks."""
     label = triples.only(iri, W3C.RDFS_LABEL)
     reading = Reading.WIDE if triples.only(iri, DX.READING) == DX.WIDE else Reading.EXACT
     broader = [
@@ -174,13 +174,26 @@ def relation_from_triples(iri: str, triples: TripleIndex, index: int) -> Relatio
     ]
     phrase = triples.only(iri, DX.PHRASE)
     name = _name(label)
+    # An exact relation has the word of its direct wide parent.
+    if reading is Reading.WIDE:
+        word = name
+    else:
+        direct = [p for p in triples.values(iri, W3C.RDFS_SUB_PROPERTY_OF) if p in broader]
+        if len(direct) != 1:
+            raise OntologyError(f"the exact relation <{iri}> must be a sub-property of exactly one wide one")
+        word = _name(triples.only(direct[0], W3C.RDFS_LABEL))
+    # OWL states an inverse from either side.
+    stated = {*triples.values(iri, W3C.OWL_INVERSE_OF), *triples.subjects(W3C.OWL_INVERSE_OF, iri)}
+    if len(stated) != 1:
+        raise OntologyError(f"<{iri}> must have exactly one owl:inverseOf, and has {len(stated)}")
+    inverse = _name(triples.only(stated.pop(), W3C.RDFS_LABEL))
     return Relation(
         name=name,
-        word=_word(iri, name, reading, broader, triples),
+        word=word,
         iri=iri,
         reading=reading,
         index=index,
-        inverse=_inverse(iri, triples),
+        inverse=inverse,
         transitive=W3C.OWL_TRANSITIVE_PROPERTY in triples.values(iri, W3C.RDF_TYPE),
         x_atoms=_atoms(iri, DX.ADMITS_ON_X, triples),
         y_atoms=_atoms(iri, DX.ADMITS_ON_Y, triples),
@@ -193,24 +206,6 @@ def relation_from_triples(iri: str, triples: TripleIndex, index: int) -> Relatio
 
 def _name(label: str) -> str:
     return label.replace(" ", "_")
-
-
-def _word(iri: str, name: str, reading: Reading, broader: list[str], triples: TripleIndex) -> str:
-    """The wide relation's name for both: an exact relation's direct wide parent bears its word."""
-    if reading is Reading.WIDE:
-        return name
-    direct = [p for p in triples.values(iri, W3C.RDFS_SUB_PROPERTY_OF) if p in broader]
-    if len(direct) != 1:
-        raise OntologyError(f"the exact relation <{iri}> must be a sub-property of exactly one wide one")
-    return _name(triples.only(direct[0], W3C.RDFS_LABEL))
-
-
-def _inverse(iri: str, triples: TripleIndex) -> str:
-    """OWL states an inverse from either side."""
-    stated = {*triples.values(iri, W3C.OWL_INVERSE_OF), *triples.subjects(W3C.OWL_INVERSE_OF, iri)}
-    if len(stated) != 1:
-        raise OntologyError(f"<{iri}> must have exactly one owl:inverseOf, and has {len(stated)}")
-    return _name(triples.only(stated.pop(), W3C.RDFS_LABEL))
 
 
 def _atoms(iri: str, prop: DX, triples: TripleIndex) -> int:

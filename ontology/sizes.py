@@ -33,7 +33,7 @@ class Extent:
         return f"{100 * self.least:g} to {100 * self.greatest:g} cm"
 
     def admits(self, metres: float, tolerance: float = 0.0) -> bool:
-        """Whether a length is usual.
+        """Return whether a length is usual.
 
         >>> Extent(0.2, 0.25, 0.3).admits(0.31), Extent(0.2, 0.25, 0.3).admits(0.31, tolerance=0.02)
         (False, True)
@@ -80,7 +80,7 @@ class Sizes:
         self._parents = {iri: tuple(above) for iri, above in parents.items()}
 
     def of(self, kind: str | None) -> SizeRange:
-        """The size range of a kind; what is stated of all things where the kind is not known (None).
+        """Return the size range of a kind; what is stated of all things where the kind is not known (None).
 
         Raises OntologyError where the TBox states none for all things.
         """
@@ -106,7 +106,7 @@ _EXTENTS = {
 
 
 def sizes_from_triples(triples: TripleIndex) -> Sizes:
-    """Reads all sizes; raises OntologyError where one is not whole or out of order."""
+    """Read all sizes; raises OntologyError where one is not whole or out of order."""
     classes = triples.subjects(W3C.RDF_TYPE, W3C.OWL_CLASS)
     stated = {iri: _size_range(iri, triples) for iri in classes if triples.values(iri, DX.OUTLINE)}
     return Sizes(stated, {iri: triples.values(iri, W3C.RDFS_SUB_CLASS_OF) for iri in classes})

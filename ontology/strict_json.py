@@ -12,7 +12,7 @@ MAX_DIGITS = 4000
 
 
 def parse_json(text: str, file: str, error: type[DeixisError], no_number: str | None) -> Any:
-    """The data in a JSON text; raises ``error`` with the file, and the line and column where it is no JSON.
+    """Return the data in a JSON text; raises ``error`` with the file, and the line and column where it is no JSON.
 
     ``no_number`` says what is wrong with ``NaN`` and ``Infinity``, after their name; None lets them in, for a reader
     that refuses them where they stand.
@@ -28,12 +28,26 @@ def parse_json(text: str, file: str, error: type[DeixisError], no_number: str | 
     def refuse(name: str) -> float:
         raise ValueError(f"{name} {no_number}")
 
+    def whole_number(digits: str) -> int:
+        if len(digits) > MAX_DIGITS:
+            raise ValueError(f"a number of {len(digits)} digits is too large")
+        return int(digits)
+
+    def without_repeats(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+        found = dict(pairs)
+        if len(found) != len(pairs):
+            keys = [key for key, _ in pairs]
+            twice = next(key for key in keys if keys.count(key) > 1)
+            shown = twice if len(twice) <= 60 else f"{twice[:60]}…"
+            raise ValueError(f"the key '{shown}' stands twice in one object")
+        return found
+
     try:
         return json.loads(
             text.removeprefix("\ufeff"),
             parse_constant=refuse if no_number else None,
-            parse_int=_whole_number,
-            object_pairs_hook=_without_repeats,
+            parse_int=whole_number,
+            object_pairs_hook=without_repeats,
         )
     except json.JSONDecodeError as wrong:
         raise error(f"{file}:{wrong.lineno}:{wrong.colno}: this is no JSON: {wrong.msg}") from wrong
@@ -41,19 +55,3 @@ def parse_json(text: str, file: str, error: type[DeixisError], no_number: str | 
         raise error(f"{file}: the JSON is nested too deeply") from wrong
     except ValueError as wrong:
         raise error(f"{file}: {wrong}") from wrong
-
-
-def _whole_number(digits: str) -> int:
-    if len(digits) > MAX_DIGITS:
-        raise ValueError(f"a number of {len(digits)} digits is too large")
-    return int(digits)
-
-
-def _without_repeats(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    found = dict(pairs)
-    if len(found) != len(pairs):
-        keys = [key for key, _ in pairs]
-        twice = next(key for key in keys if keys.count(key) > 1)
-        shown = twice if len(twice) <= 60 else f"{twice[:60]}…"
-        raise ValueError(f"the key '{shown}' stands twice in one object")
-    return found

@@ -52,7 +52,7 @@ class Ontology:
         return (None, self.colours.of_word(words)) if colour is None else (self.kinds.of_word(rest), colour)
 
     def of_name(self, name: str) -> tuple[Kind | None, Colour | None]:
-        """The kind and the colour that the name of an object stands for, its number aside.
+        """Return the kind and the colour that the name of an object stands for, its number aside.
 
         A name that is a colour's word and no more says none: an orange may be a fruit.
         """
@@ -62,7 +62,7 @@ class Ontology:
 
 
 def load_ontology(*extra: str) -> Ontology:
-    """The shipped TBox, with further Turtle texts merged into it.
+    """Return the shipped TBox, with further Turtle texts merged into it.
 
     A ``skos:altLabel`` in an extra text is enough for scripts to understand a new word for a relation:
 
@@ -75,19 +75,26 @@ def load_ontology(*extra: str) -> Ontology:
     Raises OntologyError where a text is no Turtle or a relation lacks what code needs.
     """
     triples = TripleIndex(quad for text in (tbox_turtle(), *extra) for quad in _parse(text))
+    relations: list[Relation] = []
+    for reading in (DX.WIDE, DX.EXACT):
+        for iri in triples.subjects(DX.READING, reading):
+            relations.append(relation_from_triples(iri, triples, index=len(relations)))
+    colours = colours_from_triples(
+        triples, {iri: _words(triples, iri) for iri in triples.subjects(W3C.RDF_TYPE, DX.COLOUR)}
+    )
     return Ontology(
-        _relations(triples), _kinds(triples), _hedges(triples), sizes_from_triples(triples), _colours(triples)
+        Relations(tuple(relations)), _kinds(triples), _hedges(triples), sizes_from_triples(triples), colours
     )
 
 
 def tbox_turtle() -> str:
-    """The shipped TBox as one Turtle text."""
+    """Return the shipped TBox as one Turtle text."""
     return "\n".join(file.read_text(encoding="utf-8") for file in TBOX_FILES)
 
 
 @lru_cache(maxsize=1)
 def default_ontology() -> Ontology:
-    """The shipped ontology, read once."""
+    """Return the shipped ontology, read once."""
     return load_ontology()
 
 
@@ -103,14 +110,6 @@ def _parse(text: str) -> Iterator[ox.Quad]:
         raise OntologyError(f"the ontology is no valid Turtle: {error}") from error
 
 
-def _relations(triples: TripleIndex) -> Relations:
-    found: list[Relation] = []
-    for reading in (DX.WIDE, DX.EXACT):
-        for iri in triples.subjects(DX.READING, reading):
-            found.append(relation_from_triples(iri, triples, index=len(found)))
-    return Relations(tuple(found))
-
-
 def _words(triples: TripleIndex, iri: str) -> tuple[str, ...]:
     labels = [*triples.values(iri, W3C.RDFS_LABEL), *triples.values(iri, W3C.SKOS_ALT_LABEL)]
     return tuple(dict.fromkeys(label.casefold() for label in labels))
@@ -118,21 +117,12 @@ def _words(triples: TripleIndex, iri: str) -> tuple[str, ...]:
 
 def _kinds(triples: TripleIndex) -> Kinds:
     kinds = []
-    for iri in triples.subjects(W3C.RDF_TYPE, W3C.OWL_CLASS):
+    classes = frozenset(triples.subjects(W3C.RDF_TYPE, W3C.OWL_CLASS))
+    for iri in sorted(classes):
         broader = triples.ancestors(iri, W3C.RDFS_SUB_CLASS_OF)
         if DX.THING in broader or iri == DX.THING:
-            kinds.append(Kind(iri, triples.only(iri, W3C.RDFS_LABEL), _words(triples, iri), broader & _own(triples)))
+            kinds.append(Kind(iri, triples.only(iri, W3C.RDFS_LABEL), _words(triples, iri), broader & classes))
     return Kinds(tuple(kinds))
-
-
-def _own(triples: TripleIndex) -> frozenset[str]:
-    return frozenset(triples.subjects(W3C.RDF_TYPE, W3C.OWL_CLASS))
-
-
-def _colours(triples: TripleIndex) -> Colours:
-    return colours_from_triples(
-        triples, {iri: _words(triples, iri) for iri in triples.subjects(W3C.RDF_TYPE, DX.COLOUR)}
-    )
 
 
 def _hedges(triples: TripleIndex) -> dict[str, float]:

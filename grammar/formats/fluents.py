@@ -52,7 +52,7 @@ class FluentFile:
 
 
 def read_fluents(path: str | Path) -> FluentFile:
-    """Reads a file of fluents.
+    """Read a file of fluents.
 
     Raises FluentFileError, with the place in it, where it is no such file; ScriptFileError where it cannot be read.
     """
@@ -62,7 +62,7 @@ def read_fluents(path: str | Path) -> FluentFile:
 
 
 def parse_fluents(text: str, file: str = "<fluents>") -> FluentFile:
-    """Reads the text of a file of fluents; ``file`` is how messages and explanations call it.
+    """Read the text of a file of fluents; ``file`` is how messages and explanations call it.
 
     >>> cup = '{"id": "f", "statement": ["cup", "full"], "start": [0, 2]}'
     >>> parsed = parse_fluents(f'{{"origin": "noon", "fluents": [{cup}]}}')
@@ -93,14 +93,14 @@ def parse_fluents(text: str, file: str = "<fluents>") -> FluentFile:
 
 def _fluent(data: Any, where: str, scale: float) -> Fluent:
     entry = _object(data, where, ("id", "statement", "start", "finish"), ("id", "statement"))
-    id = _text(entry["id"], f"{where}.id")
+    name = _text(entry["id"], f"{where}.id")
     words = _list(entry["statement"], f"{where}.statement")
     if len(words) not in (2, 3):
         raise FluentFileError(f"{where}.statement: subject, predicate and, if there is one, object are expected")
     statement = Statement(*(_text(word, f"{where}.statement[{position}]") for position, word in enumerate(words)))
     start = _bounds(entry.get("start"), f"{where}.start", scale)
     finish = _bounds(entry.get("finish"), f"{where}.finish", scale)
-    return Fluent(id, statement, start, finish, where)
+    return Fluent(name, statement, start, finish, where)
 
 
 def _relation(
@@ -202,7 +202,7 @@ def _kind(data: Any) -> str:
 
 
 def format_fluents(content: FluentFile) -> str:
-    """The text of a file of fluents, a fluent or a relation a line; reading it gives the same again."""
+    """Return the text of a file of fluents, a fluent or a relation a line; reading it gives the same again."""
     head = f'{{\n  "origin": {_json(content.origin)},\n  "unit": "s",\n'
     fluents = _lines([_fluent_to_dict(fluent) for fluent in content.fluents])
     relations = _lines([_relation_to_dict(relation) for relation in content.relations])

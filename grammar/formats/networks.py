@@ -18,14 +18,14 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from deixis.errors import DeixisError
-from deixis.grammar.errors import SHOWN, Problem, shortened
+from deixis.grammar.errors import MAX_PROBLEMS_SHOWN, Diagnostic, shortened
 from deixis.grammar.files import read_text
 from deixis.ontology.graph import Source
 from deixis.reasoning.errors import NetworkError, UnknownAtomError
 from deixis.reasoning.qualitative.calculi.calculus import Calculus, bits
 from deixis.reasoning.qualitative.networks.network import Constraint, Network
 
-MOST_DIGITS = 15  # of an index
+MAX_INDEX_DIGITS = 15  # of an index
 HEADER = re.compile(r"\s*(\d+)\s*(?:#\s*(.*?)|(\S.*?)?)\s*$")
 LINE = re.compile(r"\s*(\d+)\s+(\d+)\s*\((.*?)\)\s*(?:#.*)?$")
 ATOM = re.compile(r"[^\s()]*\([^()]*\)|[^\s()]+")
@@ -34,7 +34,7 @@ ATOM = re.compile(r"[^\s()]*\([^()]*\)|[^\s()]+")
 class NetworkFileError(DeixisError, ValueError):
     """A network file that cannot be read as it stands; ``problems`` are the first that are wrong with it, in order."""
 
-    def __init__(self, problems: tuple[Problem, ...]) -> None:
+    def __init__(self, problems: tuple[Diagnostic, ...]) -> None:
         super().__init__(problems)
         self.problems = problems
 
@@ -64,7 +64,7 @@ def read_networks(path: str | Path, calculi: Sequence[Calculus]) -> tuple[Networ
 
 
 def parse_networks(text: str, calculi: Sequence[Calculus], file: str = "<text>") -> tuple[NetworkText, ...]:
-    """The networks in a text; raises NetworkFileError with file, line and column of what is wrong.
+    """Return the networks in a text; raises NetworkFileError with file, line and column of what is wrong.
 
     >>> from deixis.reasoning.qualitative.calculi.registry import calculus
     >>> point = calculus("point")
@@ -80,7 +80,7 @@ class _Reader:
         self._lines = text.removeprefix("\ufeff").splitlines()
         self._calculi = {calculus.name: calculus for calculus in calculi}
         self._file = file
-        self._problems: list[Problem] = []
+        self._problems: list[Diagnostic] = []
         self._known: dict[str, tuple[str, int]] = {}
 
     def networks(self) -> list[NetworkText]:
@@ -90,16 +90,22 @@ class _Reader:
             if not line.strip() or line.startswith("#"):
                 continue
             if header is None:
-                header = self._header(number, line)
+                match = HEADER.match(line)
+                if match is None or len(match[1]) > MAX_INDEX_DIGITS:
+                    hint = "a network begins with its largest index and a comment, as in '9 # ten things'"
+                    self._wrong(number, line, 0, len(line), "expected the largest index", hint)
+                    header = number, 10**MAX_INDEX_DIGITS, ""
+                else:
+                    header = number, int(match[1]), match[2] or match[3] or ""
                 constraints = {name: [] for name in self._calculi}
             elif line.startswith("."):
                 found.append(self._network(header, constraints))
                 header = None
             else:
                 self._constraint(number, line, header[1], constraints)
-            if len(self._problems) >= SHOWN:
+            if len(self._problems) >= MAX_PROBLEMS_SHOWN:
                 break
-        if header is not None and len(self._problems) < SHOWN:
+        if header is not None and len(self._problems) < MAX_PROBLEMS_SHOWN:
             self._unended(header[0])
         if not found and not self._problems:
             self._wrong(
@@ -108,14 +114,6 @@ class _Reader:
         if self._problems:
             raise NetworkFileError(tuple(self._problems))
         return found
-
-    def _header(self, number: int, line: str) -> tuple[int, int, str]:
-        match = HEADER.match(line)
-        if match is None or len(match[1]) > MOST_DIGITS:
-            hint = "a network begins with its largest index and a comment, as in '9 # ten things'"
-            self._wrong(number, line, 0, len(line), "expected the largest index", hint)
-            return number, 10**MOST_DIGITS, ""
-        return number, int(match[1]), match[2] or match[3] or ""
 
     def _network(self, header: tuple[int, int, str], constraints: dict[str, list[Constraint]]) -> NetworkText:
         number, largest, comment = header
@@ -127,9 +125,11 @@ class _Reader:
     def _constraint(self, number: int, line: str, largest: int, constraints: dict[str, list[Constraint]]) -> None:
         match = LINE.match(line)
         if match is None:
-            self._malformed(number, line)
+            hint = "a constraint is two indices and relations in parentheses, as in '0 1 ( < m )'; a dot ends a network"
+            start = len(line) - len(line.lstrip())
+            self._wrong(number, line, start, len(line), "expected a constraint", hint)
             return
-        outside = [group for group in (1, 2) if len(match[group]) > MOST_DIGITS or int(match[group]) > largest]
+        outside = [group for group in (1, 2) if len(match[group]) > MAX_INDEX_DIGITS or int(match[group]) > largest]
         for group in outside:
             message = f"there is no thing {shortened(match[group])}; the largest index of this network is {largest}"
             self._wrong(number, line, match.start(group), match.end(group), message)
@@ -147,7 +147,7 @@ class _Reader:
         self._wrong(number, line, 0, len(line), message, hint)
 
     def _relation(self, number: int, line: str, match: re.Match[str]) -> tuple[str, int] | None:
-        """The name of the calculus, and the relation in it."""
+        """Return the name of the calculus, and the relation in it."""
         stray = re.search(r"[()]", ATOM.sub(lambda atom: " " * len(atom[0]), match[3]))
         if stray is not None:
             start, hint = match.start(3) + stray.start(), "write one pair of parentheses, as in '0 1 ( < m )'"
@@ -179,20 +179,15 @@ class _Reader:
         return self._known[match[3]]
 
     def _split(self, atom: str) -> tuple[str | None, str]:
-        """The calculus of an atom, where it can be told, and its sign there."""
+        """Return the calculus of an atom, where it can be told, and its sign there."""
         name, colon, sign = atom.partition(":")
         if colon and name in self._calculi:
             return name, sign
         return (next(iter(self._calculi)) if len(self._calculi) == 1 else None), atom
 
-    def _malformed(self, number: int, line: str) -> None:
-        hint = "a constraint is two indices and relations in parentheses, as in '0 1 ( < m )'; a dot ends a network"
-        start = len(line) - len(line.lstrip())
-        self._wrong(number, line, start, len(line), "expected a constraint", hint)
-
     def _wrong(self, number: int, line: str, start: int, end: int, message: str, hint: str | None = None) -> None:
         source = Source(self._file, number, start + 1, number, end + 1)
-        self._problems.append(Problem(source, message, line, hint))
+        self._problems.append(Diagnostic(source, message, line, hint))
 
 
 def write_networks(networks: Iterable[tuple[Network, str]]) -> str:
@@ -204,7 +199,7 @@ def write_networks(networks: Iterable[tuple[Network, str]]) -> str:
 
 
 def network_lines(networks: Sequence[Network], comment: str = "") -> Iterator[str]:
-    """The lines of one network, in several calculi where there are several, each then named on every line."""
+    """Yield the lines of one network, in several calculi where there are several, each then named on every line."""
     size = networks[0].size
     if size < 1:
         raise NetworkError("a network file has at least one thing")
@@ -214,11 +209,8 @@ def network_lines(networks: Sequence[Network], comment: str = "") -> Iterator[st
         known: dict[int, str] = {}
         for c in network.constraints:
             if c.relation not in known:
-                known[c.relation] = _written(network.calculus, c.relation, prefixed=len(networks) > 1)
+                prefix = f"{network.calculus.name}:" if (len(networks) > 1) else ""
+                written = " ".join(["(", *(prefix + network.calculus.atoms[code] for code in bits(c.relation)), ")"])
+                known[c.relation] = written
             yield f"{c.first:>{width}} {c.second:>{width}} {known[c.relation]}"
     yield "."
-
-
-def _written(calculus: Calculus, relation: int, prefixed: bool) -> str:
-    prefix = f"{calculus.name}:" if prefixed else ""
-    return " ".join(["(", *(prefix + calculus.atoms[code] for code in bits(relation)), ")"])

@@ -11,7 +11,6 @@ import pyoxigraph as ox
 from deixis.errors import UnknownTermError
 from deixis.ontology.graph import Fact, Source
 from deixis.ontology.lessons.types import Alternative, LayoutConcept, Match, Role
-from deixis.ontology.lessons.write import lesson_iri
 from deixis.ontology.relation import Relation, Relations, nearest
 from deixis.ontology.triple_index import TripleIndex
 from deixis.ontology.triples import last_part
@@ -19,13 +18,13 @@ from deixis.ontology.vocabulary import DX, PROV, W3C
 
 
 def layouts(triples: Iterable[ox.Triple], relations: Relations) -> tuple[LayoutConcept, ...]:
-    """Every layout that learned triples describe, by lesson."""
+    """Return every layout that learned triples describe, by lesson."""
     index = TripleIndex(triples)
     return tuple(_layout(layout, index, relations) for layout in index.subjects(W3C.RDFS_SUB_CLASS_OF, DX.LAYOUT))
 
 
 def unknown_layout(name: str, known: Iterable[str]) -> UnknownTermError:
-    """The error that says that no layout has a name, with the nearest of those that there are."""
+    """Return the error that says that no layout has a name, with the nearest of those that there are."""
     names = sorted(set(known))
     if not names:
         return UnknownTermError(f"no layout '{name}' has been learned, nor any other")
@@ -40,14 +39,27 @@ def _layout(layout: str, index: TripleIndex, relations: Relations) -> LayoutConc
     facts = _in_order([part for part in parts if DX.RELATION_STATEMENT in index.values(part, W3C.RDF_TYPE)], index)
     by_iri = {relation.iri: relation for relation in relations.values()}
     viewpoint = index.value(layout, DX.DESCRIBED_FROM)
+    groups: dict[frozenset[str], None] = {}
+    for role in roles:
+        others = index.values(role, DX.INTERCHANGEABLE_WITH)
+        if others:
+            groups[frozenset((role, *others))] = None
     return LayoutConcept(
         lesson=last_part(layout),
         name=index.value(layout, W3C.RDFS_LABEL) or last_part(layout),
         title=index.value(layout, W3C.DCTERMS_TITLE),
         viewpoint=last_part(viewpoint) if viewpoint else None,
-        roles=tuple(_role(role, index) for role in roles),
+        roles=tuple(
+            Role(
+                name=last_part(role),
+                kind=index.value(role, DX.OF_KIND),
+                declared=index.value(role, DX.KIND_DECLARED) == "true",
+                colour=index.value(role, DX.OF_COLOUR),
+            )
+            for role in roles
+        ),
         facts=tuple(_fact(fact, index, by_iri) for fact in facts),
-        interchangeable=_groups(roles, index),
+        interchangeable=tuple(tuple(sorted(last_part(role) for role in group)) for group in groups),
     )
 
 
@@ -55,13 +67,15 @@ def _in_order(parts: list[str], index: TripleIndex) -> list[str]:
     return sorted(parts, key=lambda part: int(index.value(part, DX.POSITION) or 0))
 
 
-def _role(role: str, index: TripleIndex) -> Role:
-    declared = index.value(role, DX.KIND_DECLARED) == "true"
-    return Role(last_part(role), index.value(role, DX.OF_KIND), declared, index.value(role, DX.OF_COLOUR))
-
-
 def _fact(fact: str, index: TripleIndex, by_iri: dict[str, Relation]) -> Fact:
     ends = [last_part(index.value(fact, end) or "") for end in (DX.SUBJECT, DX.OBJECT)]
+    # Only the start of the span was kept.
+    stated_at = index.value(fact, DX.STATED_AT)
+    if stated_at is None:
+        source = None
+    else:
+        file, line, column = stated_at.rsplit(":", 2)
+        source = Source(file, int(line), int(column), int(line), int(column))
     return Fact(
         subject=ends[0],
         relations=tuple(sorted((by_iri[iri] for iri in index.values(fact, DX.RELATION)), key=lambda r: r.index)),
@@ -69,25 +83,8 @@ def _fact(fact: str, index: TripleIndex, by_iri: dict[str, Relation]) -> Fact:
         positive=index.value(fact, DX.POSITIVE) == "true",
         optional=index.value(fact, DX.OPTIONAL) == "true",
         weight=float(index.value(fact, DX.WEIGHT) or 1),
-        source=_source(index.value(fact, DX.STATED_AT)),
+        source=source,
     )
-
-
-def _source(stated_at: str | None) -> Source | None:
-    """The place that ``file:line:column`` names; of the span only its beginning is kept."""
-    if stated_at is None:
-        return None
-    file, line, column = stated_at.rsplit(":", 2)
-    return Source(file, int(line), int(column), int(line), int(column))
-
-
-def _groups(roles: list[str], index: TripleIndex) -> tuple[tuple[str, ...], ...]:
-    groups: dict[frozenset[str], None] = {}
-    for role in roles:
-        others = index.values(role, DX.INTERCHANGEABLE_WITH)
-        if others:
-            groups[frozenset((role, *others))] = None
-    return tuple(tuple(sorted(last_part(role) for role in group)) for group in groups)
 
 
 @dataclass(frozen=True)
@@ -103,27 +100,25 @@ class LessonRecord:
 
 
 def lesson_records(learned: Iterable[ox.Triple], episodes: Iterable[ox.Triple]) -> tuple[LessonRecord, ...]:
-    """Every lesson that keeps its script and its scene, by id."""
+    """Return every lesson that keeps its script and its scene, by id."""
     told, said = TripleIndex(episodes), TripleIndex(learned)
-    ids = [last_part(lesson) for lesson in told.subjects(W3C.RDF_TYPE, DX.LESSON)]
-    found = (_record(id, told, said) for id in ids)
-    return tuple(record for record in found if record is not None)
-
-
-def _record(id: str, told: TripleIndex, said: TripleIndex) -> LessonRecord | None:
-    lesson = lesson_iri(id)
-    texts = [told.value(lesson, predicate) for predicate in (DX.SCRIPT_TEXT, DX.SCENE_TEXT)]
-    if texts[0] is None or texts[1] is None:
-        return None
-    parts = said.subjects(PROV.WAS_GENERATED_BY, lesson)
-    kept = [_match(part, said) for part in parts if DX.MATCH in said.values(part, W3C.RDF_TYPE)]
-    matches = tuple(match for match in kept if match is not None)
-    words_only = DX.WORD_LESSON in told.values(lesson, W3C.RDF_TYPE)
-    return LessonRecord(id, told.value(lesson, DX.SCRIPT_FILE) or id, texts[0], texts[1], matches, words_only)
+    records = []
+    for lesson in told.subjects(W3C.RDF_TYPE, DX.LESSON):
+        script_text, scene_text = (told.value(lesson, predicate) for predicate in (DX.SCRIPT_TEXT, DX.SCENE_TEXT))
+        if script_text is None or scene_text is None:
+            continue
+        name = last_part(lesson)
+        parts = said.subjects(PROV.WAS_GENERATED_BY, lesson)
+        kept = [_match(part, said) for part in parts if DX.MATCH in said.values(part, W3C.RDF_TYPE)]
+        matches = tuple(match for match in kept if match is not None)
+        words_only = DX.WORD_LESSON in told.values(lesson, W3C.RDF_TYPE)
+        script_file = told.value(lesson, DX.SCRIPT_FILE) or name
+        records.append(LessonRecord(name, script_file, script_text, scene_text, matches, words_only))
+    return tuple(records)
 
 
 def _match(part: str, said: TripleIndex) -> Match | None:
-    """A match as it was kept; None where that does not say what is likeliest, as the first lessons did not."""
+    """Return a match as it was kept; None where that does not say what is likeliest, as the first lessons did not."""
     taken = said.value(part, DX.PERCEIVED_AS) or said.value(part, DX.LIKELIEST)
     if taken is None:
         return None

@@ -24,7 +24,7 @@ _RDF = "http://www.w3.org/1999/02/22-rdf-syntax-ns#"
 
 
 def layout_shapes(layout: LayoutConcept) -> Iterator[ox.Triple]:
-    """The shapes graph of a layout; blank nodes as skolem IRIs."""
+    """Yield the shapes graph of a layout; blank nodes as skolem IRIs."""
     writer = _Shapes(layout)
     yield from writer.extra()
     spare = dispensable(layout.facts)
@@ -78,7 +78,13 @@ class _Shapes:
             yield from unfilled
             cases.append(unfilled.subject)
         holds = self._blank()
-        related = self._alternatives(fact.relations)
+        if len(fact.relations) == 1:
+            related: tuple[list[ox.Triple], ox.NamedNode] = [], iri(fact.relations[0].iri)
+        else:
+            listed, head = self._list([iri(relation.iri) for relation in fact.relations])
+            alternative = self._blank()
+            alternative.say(SH + "alternativePath", head)
+            related = [*listed, *alternative], alternative.subject
         yield from self._path(holds, [([], iri(DX.SUBJECT)), self._inverse(DX.FILLS), related, ([], iri(DX.FILLS))])
         holds.say(SH + "hasValue", iri(role_iri(self._lesson, fact.object)))
         yield from holds
@@ -110,14 +116,6 @@ class _Shapes:
         node.say(SH + "inversePath", iri(prop))
         return list(node), node.subject
 
-    def _alternatives(self, relations: Sequence[Relation]) -> tuple[list[ox.Triple], ox.NamedNode]:
-        if len(relations) == 1:
-            return [], iri(relations[0].iri)
-        triples, head = self._list([iri(relation.iri) for relation in relations])
-        node = self._blank()
-        node.say(SH + "alternativePath", head)
-        return [*triples, *node], node.subject
-
     def _path(self, shape: Description, steps: list[tuple[list[ox.Triple], ox.NamedNode]]) -> Iterator[ox.Triple]:
         for triples, _ in steps:
             yield from triples
@@ -129,7 +127,7 @@ class _Shapes:
         shape.say(SH + "path", head)
 
     def _list(self, items: Sequence[ox.NamedNode]) -> tuple[list[ox.Triple], ox.NamedNode]:
-        """An RDF list, and its head."""
+        """Return an RDF list, and its head."""
         triples: list[ox.Triple] = []
         rest = iri(_RDF + "nil")
         for item in reversed(items):
@@ -164,8 +162,8 @@ def scene_data(
             yield from _said(node, (DX.FILLS, iri(role_iri(layout.lesson, fills[thing]))))
         if thing in coloured:
             yield from _said(node, (DX.OF_COLOUR, iri(coloured[thing])))
-    for subject, relation, object in related:
-        ends = [iri(learned_iri("checked", layout.lesson, thing)) for thing in (subject, object)]
+    for subject, relation, other in related:
+        ends = [iri(learned_iri("checked", layout.lesson, thing)) for thing in (subject, other)]
         yield ox.Triple(ends[0], iri(relation.iri), ends[1])
     for position, fact in enumerate(layout.facts, 1):
         node = fact_iri(layout.lesson, position)

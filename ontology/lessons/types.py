@@ -36,7 +36,7 @@ class LayoutConcept:
     interchangeable: tuple[tuple[str, ...], ...] = ()
 
     def graph(self, vocabulary: Relations) -> RelationGraph:
-        """The layout as a relation graph over its roles."""
+        """Return the layout as a relation graph over its roles."""
         names = [role.name for role in self.roles]
         kinds, colours = ([role.kind for role in self.roles], [role.colour for role in self.roles])
         return RelationGraph.from_facts(
@@ -174,7 +174,7 @@ class WordLesson:
 
 
 def next_lesson_id(name: str, taken: Callable[[str], bool]) -> str:
-    """The id of a new lesson about a layout of this name; ``taken`` says which are.
+    """Return the id of a new lesson about a layout of this name; ``taken`` says which are.
 
     The number is one that is free behind one that is taken. It is looked for in steps that double, since there may be
     thousands of lessons of one name.

@@ -27,7 +27,7 @@ _CORNERS = ((DX.MIN_X, DX.MAX_X), (DX.MIN_Y, DX.MAX_Y), (DX.MIN_Z, DX.MAX_Z))
 
 
 def learned_triples(lesson: Lesson, relations: Relations) -> Iterator[ox.Triple]:
-    """The layout as a class with its roles and statements, the categories, and the matches that show them."""
+    """Yield the layout as a class with its roles and statements, the categories, and the matches that show them."""
     layout = lesson.layout
     yield from _layout(layout, relations)
     for position, role in enumerate(layout.roles, 1):
@@ -53,8 +53,8 @@ def asserted_triples(lesson: Lesson | WordLesson) -> Iterator[ox.Triple]:
     yield from _viewpoint_triples(record.viewpoint)
     for seen in record.objects:
         yield from _seen(lesson, seen)
-    for subject, relation, object in lesson.relations if isinstance(lesson, Lesson) else ():
-        yield ox.Triple(iri(thing_iri(lesson, subject)), iri(relation.iri), iri(thing_iri(lesson, object)))
+    for subject, relation, other in lesson.relations if isinstance(lesson, Lesson) else ():
+        yield ox.Triple(iri(thing_iri(lesson, subject)), iri(relation.iri), iri(thing_iri(lesson, other)))
     for match in lesson.categories() if isinstance(lesson, Lesson) else ():
         category = category_iri(match.object)
         yield ox.Triple(iri(thing_iri(lesson, match.perceived)), iri(W3C.RDF_TYPE), iri(category))
@@ -90,7 +90,7 @@ def lesson_iri(lesson: str) -> str:
 
 
 def script_iri(lesson: str) -> str:
-    """The script that a lesson was read from, as what its statements are derived from."""
+    """Return the script that a lesson was read from, as what its statements are derived from."""
     return learned_iri("lesson", lesson, "script")
 
 
@@ -103,7 +103,7 @@ def role_iri(lesson: str, role: str) -> str:
 
 
 def fact_iri(lesson: str, position: int) -> str:
-    """The statement of a layout's fact, counted from 1."""
+    """Return the statement of a layout's fact, counted from 1."""
     return learned_iri("layout", lesson, "fact", position)
 
 
@@ -113,12 +113,12 @@ def scene_iri(lesson: Lesson | WordLesson) -> str:
 
 
 def scene_text_iri(scene_text: str) -> str:
-    """The scene that a lesson's text of it describes."""
+    """Return the scene that a lesson's text of it describes."""
     return learned_iri("scene", content_key(scene_text))
 
 
-def thing_iri(lesson: Lesson | WordLesson, id: str) -> str:
-    return learned_iri("scene", content_key(lesson.scene_text), id)
+def thing_iri(lesson: Lesson | WordLesson, name: str) -> str:
+    return learned_iri("scene", content_key(lesson.scene_text), name)
 
 
 def _viewpoint(name: str) -> str:

@@ -19,7 +19,7 @@ from deixis.ontology.vocabulary import DX, PROV, W3C
 
 
 def model_triples(model: RelationModel) -> Iterator[ox.Triple]:
-    """A model, its terms, and what made it."""
+    """Yield a model, its terms, and what made it."""
     about = Description(learned_iri("relation-model", model.name))
     about.say(W3C.RDF_TYPE, iri(DX.RELATION_MODEL))
     about.say(DX.MODEL_NAME, text(model.name))
@@ -28,7 +28,25 @@ def model_triples(model: RelationModel) -> Iterator[ox.Triple]:
     about.say(DX.EXAMPLE_COUNT, typed(float(model.provenance.examples)))
     if model.provenance != Provenance():
         about.say(PROV.WAS_GENERATED_BY, iri(_activity_iri(model.provenance)))
-        yield from _activity(model.provenance)
+        activity = Description(_activity_iri(model.provenance))
+        activity.say(W3C.RDF_TYPE, iri(PROV.ACTIVITY))
+        if model.provenance.made is not None:
+            activity.say(PROV.ENDED_AT_TIME, typed(model.provenance.made))
+        if model.provenance.version:
+            agent = Description(learned_iri("agent", f"deixis {model.provenance.version}"))
+            agent.say(W3C.RDF_TYPE, iri(PROV.SOFTWARE_AGENT))
+            agent.say(W3C.RDFS_LABEL, text(f"Deixis {model.provenance.version}"))
+            activity.say(PROV.WAS_ASSOCIATED_WITH, agent.subject)
+            yield from agent
+        for source in model.provenance.sources:
+            entity = Description(learned_iri("source", source))
+            entity.say(W3C.RDF_TYPE, iri(PROV.ENTITY))
+            activity.say(PROV.USED, entity.subject)
+            yield from entity
+        activity.say(PROV.WAS_INFORMED_BY, *(iri(learned_iri("lesson", lesson)) for lesson in model.provenance.lessons))
+        if model.provenance.strength is not None:
+            activity.say(DX.PRIOR_STRENGTH, typed(float(model.provenance.strength)))
+        yield from activity
     yield from about
     for term in model.terms:
         part = Description(learned_iri("relation-model", model.name, term.feature))
@@ -42,14 +60,21 @@ def model_triples(model: RelationModel) -> Iterator[ox.Triple]:
 
 
 def models_from_triples(triples: Iterable[ox.Triple]) -> tuple[RelationModel, ...]:
-    """Every model that the triples state, by name; raises OntologyError where one is not whole."""
+    """Return every model that the triples state, by name; raises OntologyError where one is not whole."""
     index = TripleIndex(triples)
-    subjects = index.subjects(W3C.RDF_TYPE, DX.RELATION_MODEL)
-    return tuple(sorted((_model(index, subject) for subject in subjects), key=lambda model: model.name))
+    models = []
+    for subject in index.subjects(W3C.RDF_TYPE, DX.RELATION_MODEL):
+        name = index.only(subject, DX.MODEL_NAME)
+        terms = tuple(_term(index, part) for part in index.subjects(DX.TERM_OF, subject))
+        outliers, chance, examples = (
+            _number(index, subject, predicate) for predicate in (DX.OUTLIER_RATE, DX.CHANCE_DEGREE, DX.EXAMPLE_COUNT)
+        )
+        models.append(RelationModel(name, terms, outliers, chance, _provenance(index, subject, examples)))
+    return tuple(sorted(models, key=lambda model: model.name))
 
 
 def models_to_turtle(models: Iterable[RelationModel]) -> str:
-    """The models as Turtle."""
+    """Return the models as Turtle."""
     triples = list(dict.fromkeys(triple for model in models for triple in model_triples(model)))
     prefixes = {"dx": "https://w3id.org/deixis/onto#", "prov": "http://www.w3.org/ns/prov#"}
     written = ox.serialize(triples, format=ox.RdfFormat.TURTLE, prefixes=prefixes)
@@ -57,7 +82,7 @@ def models_to_turtle(models: Iterable[RelationModel]) -> str:
 
 
 def models_from_turtle(turtle: str) -> tuple[RelationModel, ...]:
-    """The models in a Turtle text; raises OntologyError where it is no Turtle or a model is not whole."""
+    """Return the models in a Turtle text; raises OntologyError where it is no Turtle or a model is not whole."""
     try:
         quads = list(ox.parse(turtle, format=ox.RdfFormat.TURTLE))
     except SyntaxError as error:
@@ -69,37 +94,6 @@ def _activity_iri(provenance: Provenance) -> str:
     when = provenance.made.isoformat() if provenance.made else ""
     parts = (*provenance.sources, *provenance.lessons, when, provenance.version)
     return learned_iri("relation-fit", content_key(" ".join(parts)))
-
-
-def _activity(provenance: Provenance) -> Iterator[ox.Triple]:
-    about = Description(_activity_iri(provenance))
-    about.say(W3C.RDF_TYPE, iri(PROV.ACTIVITY))
-    if provenance.made is not None:
-        about.say(PROV.ENDED_AT_TIME, typed(provenance.made))
-    if provenance.version:
-        agent = Description(learned_iri("agent", f"deixis {provenance.version}"))
-        agent.say(W3C.RDF_TYPE, iri(PROV.SOFTWARE_AGENT))
-        agent.say(W3C.RDFS_LABEL, text(f"Deixis {provenance.version}"))
-        about.say(PROV.WAS_ASSOCIATED_WITH, agent.subject)
-        yield from agent
-    for source in provenance.sources:
-        entity = Description(learned_iri("source", source))
-        entity.say(W3C.RDF_TYPE, iri(PROV.ENTITY))
-        about.say(PROV.USED, entity.subject)
-        yield from entity
-    about.say(PROV.WAS_INFORMED_BY, *(iri(learned_iri("lesson", lesson)) for lesson in provenance.lessons))
-    if provenance.strength is not None:
-        about.say(DX.PRIOR_STRENGTH, typed(float(provenance.strength)))
-    yield from about
-
-
-def _model(index: TripleIndex, subject: str) -> RelationModel:
-    name = index.only(subject, DX.MODEL_NAME)
-    terms = tuple(_term(index, part) for part in index.subjects(DX.TERM_OF, subject))
-    outliers, chance, examples = (
-        _number(index, subject, predicate) for predicate in (DX.OUTLIER_RATE, DX.CHANCE_DEGREE, DX.EXAMPLE_COUNT)
-    )
-    return RelationModel(name, terms, outliers, chance, _provenance(index, subject, examples))
 
 
 def _provenance(index: TripleIndex, subject: str, examples: float) -> Provenance:

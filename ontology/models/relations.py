@@ -88,7 +88,7 @@ class RelationModel:
             raise OntologyError(f"the model '{self.name}' has two terms for one feature")
 
     def without(self, *features: str) -> RelationModel:
-        """The same model blind to some features."""
+        """Return the same model blind to some features."""
         terms = tuple(term for term in self.terms if term.feature not in features)
         return RelationModel(self.name, terms, self.outliers, self.chance, self.provenance)
 
@@ -126,7 +126,7 @@ class RelationModels:
             raise UnknownTermError(f"there is no graded model '{name}'") from None
 
     def of(self, relation: Relation) -> RelationModel:
-        """The model of a relation's word; raises UnknownTermError where it has none."""
+        """Return the model of a relation's word; raises UnknownTermError where it has none."""
         if relation.word not in FAMILIES:
             hint = nearest(relation.word, FAMILIES)
             advice = f"; did you mean '{hint}'?" if hint else ""
@@ -134,5 +134,5 @@ class RelationModels:
         return self[FAMILIES[relation.word]]
 
     def replaced(self, *models: RelationModel) -> RelationModels:
-        """The same with some models exchanged for others of their names."""
+        """Return the same with some models exchanged for others of their names."""
         return RelationModels({**self.models, **{model.name: model for model in models}})

@@ -44,7 +44,7 @@ def size_iri(kind: str) -> str:
 
 
 def size_triples(kind: str, model: SizeModel, scenes: Iterable[str]) -> Iterator[ox.Triple]:
-    """The size of a kind (its class IRI), learned from the scenes of those IRIs."""
+    """Return the size of a kind (its class IRI), learned from the scenes of those IRIs."""
     about = Description(size_iri(kind))
     about.say(W3C.RDF_TYPE, iri(DX.SIZE_MODEL))
     about.say(DX.OF_KIND, iri(kind))
@@ -59,36 +59,30 @@ def size_triples(kind: str, model: SizeModel, scenes: Iterable[str]) -> Iterator
 
 
 def _median(logarithm: float) -> float:
-    """What a logarithm is of, to six digits: more than anybody measures, and free of its rounding."""
+    """Return what a logarithm is of, to six digits: more than anybody measures, and free of its rounding."""
     return float(f"{math.exp(logarithm):.6g}")
 
 
 def sizes_from_triples(triples: Iterable[ox.Triple]) -> dict[str, SizeModel]:
-    """Every learned size that the triples state, by class IRI; raises OntologyError where one is not whole."""
+    """Return every learned size that the triples state, by class IRI; raises OntologyError where one is not whole."""
     index = TripleIndex(triples)
-    subjects = index.subjects(W3C.RDF_TYPE, DX.SIZE_MODEL)
-    return dict(sorted(_size(index, subject) for subject in subjects))
-
-
-def _size(index: TripleIndex, subject: str) -> tuple[str, SizeModel]:
-    values = {}
-    for prop in (DX.MEDIAN_LENGTH, DX.LENGTH_DEVIATION, DX.MEDIAN_ASPECT, DX.ASPECT_DEVIATION, DX.VIEW_COUNT):
-        values[prop] = _positive(index, subject, prop)
-    relative = index.only(subject, DX.RELATIVE_LENGTH)
-    return index.only(subject, DX.OF_KIND), SizeModel(
-        (math.log(values[DX.MEDIAN_LENGTH]), values[DX.LENGTH_DEVIATION]),
-        (math.log(values[DX.MEDIAN_ASPECT]), values[DX.ASPECT_DEVIATION]),
-        relative == "true",
-        values[DX.VIEW_COUNT],
-    )
-
-
-def _positive(index: TripleIndex, subject: str, predicate: str) -> float:
-    written = index.only(subject, predicate)
-    try:
-        number = float(written)
-    except ValueError:
-        number = math.nan
-    if not 0 < number < math.inf:
-        raise OntologyError(f"<{subject}>: <{predicate}> must be a number above 0, not '{written}'")
-    return number
+    sizes = {}
+    for subject in index.subjects(W3C.RDF_TYPE, DX.SIZE_MODEL):
+        values = {}
+        for prop in (DX.MEDIAN_LENGTH, DX.LENGTH_DEVIATION, DX.MEDIAN_ASPECT, DX.ASPECT_DEVIATION, DX.VIEW_COUNT):
+            written = index.only(subject, prop)
+            try:
+                number = float(written)
+            except ValueError:
+                number = math.nan
+            if not 0 < number < math.inf:
+                raise OntologyError(f"<{subject}>: <{prop}> must be a number above 0, not '{written}'")
+            values[prop] = number
+        relative = index.only(subject, DX.RELATIVE_LENGTH)
+        sizes[index.only(subject, DX.OF_KIND)] = SizeModel(
+            length=(math.log(values[DX.MEDIAN_LENGTH]), values[DX.LENGTH_DEVIATION]),
+            aspect=(math.log(values[DX.MEDIAN_ASPECT]), values[DX.ASPECT_DEVIATION]),
+            relative=relative == "true",
+            views=values[DX.VIEW_COUNT],
+        )
+    return dict(sorted(sizes.items()))

@@ -35,14 +35,14 @@ from deixis.reasoning.grounding.evidence.unary import OUTLIERS
 from deixis.reasoning.grounding.ground import DEFAULT_TIME_LIMIT, ground
 from deixis.reasoning.grounding.matching.problem import UNMATCHED
 
-SURE = 0.9
+SURE_CONFIDENCE = 0.9
 """Confidence from which a label counts as an identity."""
 
-MAX_ROTATED = 30
+MAX_ROLES_ROTATED = 30
 """Labelled roles among which rotations of three are looked for; among more, only swaps."""
 
 
-class Verdict(StrEnum):
+class RoleVerdict(StrEnum):
     """What became of a role."""
 
     CORRECT = "correct"  # its label says that it is there, and what is broken about it is the fault of others
@@ -70,7 +70,7 @@ class RoleCheck:
     """
 
     role: str
-    verdict: Verdict
+    verdict: RoleVerdict
     perceived: str | None
     label: str | None
     confidence: float | None = None  # of the label
@@ -98,7 +98,7 @@ class TableCheck:
     unexpected: tuple[FactOutcome, ...]  # hedged facts that do not hold: no fault
     grounding: Grounding
 
-    def of(self, verdict: Verdict) -> tuple[RoleCheck, ...]:
+    def of(self, verdict: RoleVerdict) -> tuple[RoleCheck, ...]:
         return tuple(check for check in self.roles if check.verdict is verdict)
 
     @property
@@ -109,7 +109,7 @@ class TableCheck:
     @property
     def well(self) -> bool:
         """Nothing is missing, misplaced, of another colour or extra, as far as can be told."""
-        wrong = (self.of(verdict) for verdict in (Verdict.MISSING, Verdict.MISPLACED, Verdict.MISCOLOURED))
+        wrong = (self.of(verdict) for verdict in (RoleVerdict.MISSING, RoleVerdict.MISPLACED, RoleVerdict.MISCOLOURED))
         return not (any(wrong) or self.extra or self.broken)
 
 
@@ -121,7 +121,7 @@ def check_table(
     seen: NDArray[np.float64] | None = None,
     colours: Colours | None = None,
 ) -> TableCheck:
-    """Reads a grounding of a layout in a scene as a verdict on every role and every thing.
+    """Read a grounding of a layout in a scene as a verdict on every role and every thing.
 
     ``evidence`` is what was grounded; ``labels`` has one entry for each thing of its scene. ``seen`` are the n2 things'
     colours in sRGB, shape (n2, 3), NaN where not known, and ``colours`` the known terms.
@@ -129,25 +129,25 @@ def check_table(
     layout = evidence.description
     sure = sure_roles(layout, labels, kinds)
     broken = tuple(entry for entry in grounding.violated if entry.fact.weight >= 1)
-    exchanged = _exchanged(evidence, grounding, sure)
+    exchanged = _exchanged_roles(evidence, grounding, sure)
     explained = [entry for entry in broken if not exchanged.keys() & {entry.fact.subject, entry.fact.object}]
-    misplaced = exchanged.keys() | _blamed(grounding, explained)
+    misplaced = exchanged.keys() | _misplaced_ends(grounding, explained)
     spare = dispensable(layout.facts())
     otherwise = _miscoloured(evidence, grounding, seen, colours)
     roles = []
     for role in layout.nodes:
         match = grounding.matches.get(role)
         if match is None:
-            roles.append(RoleCheck(role, Verdict.ABSENT if role in spare else Verdict.MISSING, None, None))
+            roles.append(RoleCheck(role, RoleVerdict.ABSENT if role in spare else RoleVerdict.MISSING, None, None))
             continue
         label = labels[match.perceived]
-        verdict = Verdict.CORRECT if role in sure[match.perceived] else Verdict.UNDETERMINED
-        verdict = Verdict.MISCOLOURED if role in otherwise else verdict
+        verdict = RoleVerdict.CORRECT if role in sure[match.perceived] else RoleVerdict.UNDETERMINED
+        verdict = RoleVerdict.MISCOLOURED if role in otherwise else verdict
         about = tuple(entry for entry in broken if role in (entry.fact.subject, entry.fact.object))
         roles.append(
             RoleCheck(
                 role=role,
-                verdict=Verdict.MISPLACED if role in misplaced else verdict,
+                verdict=RoleVerdict.MISPLACED if role in misplaced else verdict,
                 perceived=match.perceived,
                 label=label.text if label else None,
                 confidence=label.confidence if label else None,
@@ -163,7 +163,7 @@ def check_table(
 def _miscoloured(
     evidence: Evidence, grounding: Grounding, seen: NDArray[np.float64] | None, colours: Colours | None
 ) -> dict[str, Miscoloured]:
-    """The roles whose things are plainly of another colour than is said of them."""
+    """Return the roles whose things are plainly of another colour than is said of them."""
     layout = evidence.description
     if seen is None or colours is None or not layout.colours:
         return {}
@@ -177,7 +177,7 @@ def _miscoloured(
     }
 
 
-def _exchanged(evidence: Evidence, grounding: Grounding, sure: Mapping[str, frozenset[str]]) -> dict[str, str]:
+def _exchanged_roles(evidence: Evidence, grounding: Grounding, sure: Mapping[str, frozenset[str]]) -> dict[str, str]:
     """Labelled roles that have changed places, each with the role in whose place its thing stands.
 
     Of all changes among two or three roles that would mend the most broken facts, leave none about them broken and
@@ -214,14 +214,14 @@ def _best_change(
         then = evidence.degrees(other)
         mended = int((firm & (now <= 0)).sum() - (firm & (then <= 0)).sum())
         key = (mended, -len(roles), float(then.sum() - now.sum()))
-        if mended > 0 and (best is None or key > best) and _explains(evidence, roles, firm, now, then, other):
+        if mended > 0 and (best is None or key > best) and _explains_faults(evidence, roles, firm, now, then, other):
             best, change = key, (roles, places)
     return change
 
 
 def _changes(known: list[int], broken: set[int]) -> Iterator[tuple[tuple[int, ...], tuple[int, ...]]]:
     """Swaps and rotations of three among known roles, at least one of them in a broken fact."""
-    sizes = (2, 3) if len(known) <= MAX_ROTATED else (2,)
+    sizes = (2, 3) if len(known) <= MAX_ROLES_ROTATED else (2,)
     for roles in (roles for size in sizes for roles in combinations(known, size)):
         if broken & set(roles):
             yield roles, (*roles[1:], roles[0])
@@ -229,7 +229,7 @@ def _changes(known: list[int], broken: set[int]) -> Iterator[tuple[tuple[int, ..
                 yield roles, (roles[2], *roles[:2])
 
 
-def _explains(
+def _explains_faults(
     evidence: Evidence,
     roles: tuple[int, ...],
     firm: NDArray[np.bool_],
@@ -237,7 +237,7 @@ def _explains(
     then: NDArray[np.float64],
     other: NDArray[np.int64],
 ) -> bool:
-    """Whether after the change nothing firm about these roles is broken, and more holds of each of them."""
+    """Return whether after the change nothing firm about these roles is broken, and more holds of each of them."""
     if set(roles) & set(_ends(evidence, firm & (then <= 0), other).tolist()):
         return False
     edges = evidence.facts
@@ -247,7 +247,7 @@ def _explains(
 
 
 def _ends(evidence: Evidence, chosen: NDArray[np.bool_], assignment: NDArray[np.int64]) -> NDArray[np.int64]:
-    """The objects of the chosen facts, of those both of whose ends are matched."""
+    """Return the objects of the chosen facts, of those both of whose ends are matched."""
     edges = evidence.facts[chosen]
     subjects, objects = evidence.description.subjects[edges], evidence.description.objects[edges]
     both = (assignment[subjects] != UNMATCHED) & (assignment[objects] != UNMATCHED)
@@ -255,19 +255,19 @@ def _ends(evidence: Evidence, chosen: NDArray[np.bool_], assignment: NDArray[np.
 
 
 def sure_roles(layout: RelationGraph, labels: Mapping[str, Label | None], kinds: Kinds) -> dict[str, frozenset[str]]:
-    """The roles that a sure label says its thing fills: those that it fits, or the one that it names."""
+    """Return the roles that a sure label says its thing fills: those that it fits, or the one that it names."""
     known = naming(layout, list(labels.values()), kinds)
     roles = {}
     for column, (thing, label) in enumerate(labels.items()):
         named, fitted = (np.flatnonzero(which[:, column]) for which in (known.named, known.fitted))
         chosen = fitted if len(fitted) else named[: len(named) == 1]
-        sure = label is not None and label.confidence >= SURE
+        sure = label is not None and label.confidence >= SURE_CONFIDENCE
         roles[thing] = frozenset(layout.nodes[i] for i in chosen if sure)
     return roles
 
 
-def _blamed(grounding: Grounding, broken: Sequence[FactOutcome]) -> frozenset[str]:
-    """The fewest ends that explain all broken facts, as far as greed finds them: the worst share first.
+def _misplaced_ends(grounding: Grounding, broken: Sequence[FactOutcome]) -> frozenset[str]:
+    """Return the fewest ends that explain all broken facts, as far as greed finds them: the worst share first.
 
     A share is an end's broken facts over all that could be compared. Of two ends as bad it is the subject, which is
     what the script places with respect to the object.
@@ -311,9 +311,9 @@ def _extra(
     return tuple(found)
 
 
-MIN_SIZE_LOG_RATIO = float(np.log(OUTLIERS / SURE))
-"""Sizes that say less than this for a match say with probability ``SURE`` that the thing's size is not its kind's; of
-what is too high they say less."""
+MIN_SIZE_LOG_RATIO = float(np.log(OUTLIERS / SURE_CONFIDENCE))
+"""Log-likelihood ratio of a size below which the thing's size is not its kind's with probability ``SURE_CONFIDENCE``;
+of what is too high sizes say less."""
 
 RULED_OUT_LOG_RATIO = 2 * PRESENT_LOG_ODDS
 """What such a match counts as then: no facts about it outweigh that."""
@@ -328,25 +328,20 @@ def checked_table(
     seen: NDArray[np.float64] | None = None,
     colours: Colours | None = None,
 ) -> TableCheck:
-    """Grounds a layout and reads the grounding as :func:`check_table` does, as often as an impostor is found."""
+    """Ground a layout and read the grounding as :func:`check_table` does, as often as an impostor is found."""
     deadline = time.perf_counter() + time_limit
     sure = sure_roles(evidence.description, labels, kinds)
     while True:
         found = ground(evidence, engine, max(0.0, deadline - time.perf_counter()))
         table = check_table(evidence, labels, kinds, found, seen, colours)
-        rest = _without_impostors(evidence, sure, table)
+        said = evidence.sizes.copy()
+        for check in table.of(RoleVerdict.MISPLACED):
+            if check.perceived is None or check.role in sure[check.perceived]:
+                continue
+            place = evidence.description.index(check.role), evidence.scene.index(check.perceived)
+            if evidence.labels[place] <= 0 and evidence.sizes[place] < MIN_SIZE_LOG_RATIO:
+                said[place] = RULED_OUT_LOG_RATIO
+        rest = None if np.array_equal(said, evidence.sizes) else replace(evidence, sizes=said)
         if rest is None or time.perf_counter() > deadline:
             return table
         evidence = rest
-
-
-def _without_impostors(evidence: Evidence, sure: Mapping[str, frozenset[str]], table: TableCheck) -> Evidence | None:
-    """The evidence with the table's impostors ruled out, one match at least; None where there is none."""
-    said = evidence.sizes.copy()
-    for check in table.of(Verdict.MISPLACED):
-        if check.perceived is None or check.role in sure[check.perceived]:
-            continue
-        place = evidence.description.index(check.role), evidence.scene.index(check.perceived)
-        if evidence.labels[place] <= 0 and evidence.sizes[place] < MIN_SIZE_LOG_RATIO:
-            said[place] = RULED_OUT_LOG_RATIO
-    return None if np.array_equal(said, evidence.sizes) else replace(evidence, sizes=said)

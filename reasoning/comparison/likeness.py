@@ -47,7 +47,6 @@ from deixis.ontology.sizes import Sizes
 from deixis.ontology.tbox import Ontology
 from deixis.reasoning.geometry.rectangle import SceneRelations
 from deixis.reasoning.grounding.evidence.labels import category_of, classes
-from deixis.reasoning.grounding.evidence.sizes import Look
 from deixis.reasoning.grounding.evidence.unary import log_sizes, looks_in_image
 from deixis.reasoning.grounding.matching.problem import UNMATCHED, Problem
 
@@ -60,7 +59,7 @@ SIZE_SPREAD = 0.35
 def usual_sizes(
     kinds: Sequence[str], boxes: NDArray[np.float64], sizes: Sizes, learned: Mapping[str, SizeModel], metric: bool
 ) -> dict[str, Array]:
-    """How usual n boxes, shape (n, 2, d), are for each of some objects' kinds (class IRIs), each (n,).
+    """Return how usual n boxes, shape (n, 2, d), are for each of some objects' kinds (class IRIs), each (n,).
 
     A learned model takes the place of the usual size. Where units are pixels (not ``metric``), sizes in metres say how
     large the objects are beside each other, from above or from aside, whichever fits the better. A kind of which no
@@ -70,12 +69,23 @@ def usual_sizes(
         extents = np.sort(boxes[:, 1, :2] - boxes[:, 0, :2], axis=1)[:, ::-1]
         logs = np.log(np.maximum(extents, 1e-9))
         return {kind: _within(logs, *_range(kind, sizes, learned)) for kind in dict.fromkeys(kinds)}
+    from scipy.optimize import linear_sum_assignment
+
     logs = log_sizes(boxes, relative=True)
-    views = [
-        {kind: _looking(logs, looks[kind]) if kind in looks else np.ones(len(boxes)) for kind in dict.fromkeys(kinds)}
-        for looks in looks_in_image(kinds, sizes, learned)
-    ]
-    return max(views, key=lambda view: _fit(kinds, view))
+    best, usual = -1.0, {}
+    for looks in looks_in_image(kinds, sizes, learned):
+        # A look may be met in several ways: the one that a thing is nearest to counts.
+        view = dict.fromkeys(kinds, np.ones(len(boxes)))
+        for kind in view.keys() & looks.keys():
+            spread = 2 * looks[kind].spread
+            ways = [_within(logs, centre - spread, centre + spread) for centre in looks[kind].centres]
+            view[kind] = np.max(ways, axis=0)
+        # How well the whole scene fits is the sum over the best assignment.
+        table = np.array([view[kind] for kind in kinds])
+        fit = float(table[linear_sum_assignment(table, maximize=True)].sum()) if table.size else 0.0
+        if fit > best:
+            best, usual = fit, view
+    return usual
 
 
 def _within(logs: Array, least: Array, greatest: Array) -> Array:
@@ -97,22 +107,7 @@ def _range(kind: str, sizes: Sizes, learned: Mapping[str, SizeModel]) -> tuple[A
     return typical - off, typical + off
 
 
-def _looking(logs: Array, look: Look) -> Array:
-    """The same for a look, by the one of its ways that a thing is nearest to."""
-    ways = [_within(logs, centre - 2 * look.spread, centre + 2 * look.spread) for centre in look.centres]
-    result: Array = np.max(ways, axis=0)
-    return result
-
-
-def _fit(kinds: Sequence[str], usual: Mapping[str, Array]) -> float:
-    """How well a whole scene fits: the sum over the best assignment."""
-    from scipy.optimize import linear_sum_assignment
-
-    table = np.array([usual[kind] for kind in kinds])
-    return float(table[linear_sum_assignment(table, maximize=True)].sum()) if table.size else 0.0
-
-
-STEP = 0.5
+STEP_FACTOR = 0.5
 """By what similarity is multiplied for every step: it falls exponentially with distance (Shepard 1987)."""
 
 
@@ -130,23 +125,21 @@ class Closeness:
         self._known: dict[tuple[int, bool], Array] = {}
 
     def __call__(self, mask: int, positive: bool) -> Array:
-        if (mask, positive) not in self._known:
-            self._known[mask, positive] = self._work_out(mask, positive)
-        return self._known[mask, positive]
-
-    def _work_out(self, mask: int, positive: bool) -> Array:
+        if (mask, positive) in self._known:
+            return self._known[mask, positive]
         members = [relation.index for relation in self._vocabulary.members(mask)]
         implied = self._vocabulary.degrees[members].max(axis=0, initial=0.0) > 0
         admitted = [name for name in self._names if implied[name] == positive]
         result = np.zeros(len(self._vocabulary))
         for name in self._names:
             if admitted:
-                result[name] = STEP ** min(self._steps[name, other] for other in admitted)
+                result[name] = STEP_FACTOR ** min(self._steps[name, other] for other in admitted)
+        self._known[mask, positive] = result
         return result
 
 
 def _tile(relation: Relation) -> tuple[int, int, int]:
-    """Where the subject lies about the object: -1, 0 or 1 on x and y, and 1 or -1 on top of it or below."""
+    """Return where the subject lies about the object: -1, 0 or 1 on x and y, and 1 or -1 on top of it or below."""
     before, after = allen_mask([Allen.BEFORE, Allen.MEETS]), allen_mask([Allen.AFTER, Allen.MET_BY])
     x, y = (
         -1 if not atoms & ~before else 1 if not atoms & ~after else 0 for atoms in (relation.x_atoms, relation.y_atoms)
@@ -155,7 +148,7 @@ def _tile(relation: Relation) -> tuple[int, int, int]:
     return x, y, above
 
 
-OBJECTS_SHARE = 2 / 3
+OBJECT_WEIGHT = 2 / 3
 """Weight of objects in the similarity, the rest being that of relations: it retrieved best among 1/3, 1/2, 3/5 and 2/3
 in ``benchmarks/bench_retrieval.py`` with seed 2."""
 
@@ -267,7 +260,7 @@ class Comparison:
         self._of_kinds: dict[tuple[str, str], float] = {}
 
     def likeness(self, layout: Described, scene: Seen, deadline: float = math.inf) -> Likeness:
-        """The similarity by the best grounding, until ``deadline`` (``time.perf_counter``)."""
+        """Return the similarity by the best grounding, until ``deadline`` (``time.perf_counter``)."""
         from deixis.reasoning.grounding.matching.exact import exact
 
         problem = self.problem(layout, scene)
@@ -290,7 +283,7 @@ class Comparison:
         )
 
     def problem(self, layout: Described, scene: Seen) -> Problem:
-        """The matching problem whose value of a map is the similarity by it."""
+        """Return the matching problem whose value of a map is the similarity by it."""
         shares, n2 = self.shares(layout, scene), len(scene.names)
         graph = layout.graph
         edges = layout.edges
@@ -309,7 +302,7 @@ class Comparison:
         return Problem(ends, kinds, tables, unary, np.zeros(len(graph.nodes)))
 
     def objects(self, layout: Described, scene: Seen) -> Array:
-        """How far each object corresponds to each thing, shape (n1, n2), 0 to 1."""
+        """Return how far each object corresponds to each thing, shape (n1, n2), 0 to 1."""
         said = layout.said
         sized = [kind for kind, _ in said if kind in self._kinds or kind in self._learned]
         usual: Mapping[str, Array] = {}
@@ -319,7 +312,7 @@ class Comparison:
         return np.array([alike[pair] for pair in said]).reshape(len(said), len(scene.kinds))
 
     def _like(self, kind: str, name: str, scene: Seen, usual: Mapping[str, Array]) -> Array:
-        """How far each thing (n2,) is what an object is: of its kind, of its size, or of its very name."""
+        """Return how far each thing (n2,) is what an object is: of its kind, of its size, or of its very name."""
         found = usual[kind].copy() if kind in usual else np.ones(len(scene.kinds))
         for p, label in enumerate(scene.kinds):
             if label is not None:
@@ -327,7 +320,7 @@ class Comparison:
         return found
 
     def _kinship(self, a: str, b: str) -> float:
-        """1 for the same kind, times ``STEP`` for every kind, itself and broader ones, that only one of the two is.
+        """Return 1 for the same kind, times ``STEP_FACTOR`` for every kind that only one of the two is (itself too).
 
         0 where they differ and one is no known kind.
         """
@@ -335,7 +328,7 @@ class Comparison:
             self._of_kinds[a, b] = float(a == b)
             if a in self._kinds and b in self._kinds:
                 first, second = ({iri, *self._kinds[iri].broader} for iri in (a, b))
-                self._of_kinds[a, b] = float(STEP ** len(first ^ second))
+                self._of_kinds[a, b] = float(STEP_FACTOR ** len(first ^ second))
         return self._of_kinds[a, b]
 
     def shares(self, layout: Described, scene: Seen) -> Shares:
@@ -345,4 +338,4 @@ class Comparison:
         pairs = n2 * (n2 - 1)
         density = layout.total / (n1 * (n1 - 1))
         counterpart = max(density * pairs, float(layout.densest[:pairs].sum()))
-        return Shares(OBJECTS_SHARE, 1 - OBJECTS_SHARE, n1 + n2, layout.total + counterpart)
+        return Shares(OBJECT_WEIGHT, 1 - OBJECT_WEIGHT, n1 + n2, layout.total + counterpart)

@@ -16,7 +16,7 @@ import numpy as np
 from deixis.reasoning.comparison.likeness import Comparison, Described, Likeness, Seen
 from deixis.reasoning.errors import SettingError
 
-SLACK = 1e-5
+BOUND_TOLERANCE = 1e-5
 """How much a bound may fall short of a similarity by rounding."""
 
 
@@ -37,14 +37,14 @@ def rank_scenes(
 def _ranked(
     pairs: Sequence[tuple[Described, Seen]], comparison: Comparison, top: int, deadline: float
 ) -> list[Likeness]:
-    """Compares pair by pair, the one of the largest bound next, until no bound reaches the last of the best."""
+    """Compare pair by pair, the one of the largest bound next, until no bound reaches the last of the best."""
     if top < 1:
         raise SettingError(f"so many as are to be found is 1 or more, not {top}")
     open_ = [(-quick_bound(comparison, *pair), k, False) for k, pair in enumerate(pairs)]
     heapq.heapify(open_)
     found: list[Likeness] = []
     least = -math.inf
-    while open_ and -open_[0][0] >= least - SLACK:
+    while open_ and -open_[0][0] >= least - BOUND_TOLERANCE:
         bound, k, tight = heapq.heappop(open_)
         if not tight:
             heapq.heappush(open_, (max(bound, -assignment_bound(comparison, *pairs[k])), k, True))
@@ -60,11 +60,6 @@ def quick_bound(comparison: Comparison, layout: Described, scene: Seen) -> float
     shares, alike = comparison.shares(layout, scene), comparison.objects(layout, scene)
     objects = min(alike.max(axis=1, initial=0.0).sum(), alike.max(axis=0, initial=0.0).sum())
     bound = 2 * shares.objects * float(objects) / max(shares.things, 1)
-    return bound + 2 * shares.relations * _most_facts(comparison, layout, scene) / shares.facts
-
-
-def _most_facts(comparison: Comparison, layout: Described, scene: Seen) -> float:
-    """The most that facts could correspond to, if each kind of fact had its choice of all pairs."""
     graph, edges = layout.graph, layout.edges
     said: dict[tuple[int, bool], dict[tuple[int, int], float]] = {}
     for edge, weight in zip(edges.tolist(), layout.weights.tolist(), strict=True):
@@ -79,7 +74,7 @@ def _most_facts(comparison: Comparison, layout: Described, scene: Seen) -> float
         available = np.repeat(close[order], np.minimum(scene.counts[order], len(by_pair)))[: len(by_pair)]
         heaviest = sorted(by_pair.values(), reverse=True)
         total += float(np.dot(heaviest[: len(available)], available))
-    return total
+    return bound + 2 * shares.relations * total / shares.facts
 
 
 def assignment_bound(comparison: Comparison, layout: Described, scene: Seen) -> float:

@@ -45,7 +45,7 @@ def cardinal_directions(boxes: NDArray[np.float64]) -> NDArray[np.str_]:
 
 
 def cardinal_cones(boxes: NDArray[np.float64]) -> NDArray[np.int16]:
-    """The same as positions in CONES, shape (n, n)."""
+    """Return the same as positions in CONES, shape (n, n)."""
     centres = boxes.mean(axis=1)
     east = centres[:, None, 0] - centres[None, :, 0]
     north = centres[:, None, 1] - centres[None, :, 1]
@@ -126,27 +126,27 @@ class Related:
                 if i != j:
                     yield self.ids[i], signs[row[j]], self.ids[j]
 
-    def places(self, id: str | None) -> range:
-        """The place of a thing among the ids; of all where none is named.
+    def places(self, name: str | None) -> range:
+        """Return the place of a thing among the ids; of all where none is named.
 
         Raises UnknownTermError for a name that nothing has.
         """
-        if id is None:
+        if name is None:
             return range(len(self.ids))
-        if id not in self.ids:
-            hint = nearest(id, self.ids)
-            raise UnknownTermError(f"nothing here is called '{id}'" + (f"; did you mean '{hint}'?" if hint else ""))
-        place = self.ids.index(id)
+        if name not in self.ids:
+            hint = nearest(name, self.ids)
+            raise UnknownTermError(f"nothing here is called '{name}'" + (f"; did you mean '{hint}'?" if hint else ""))
+        place = self.ids.index(name)
         return range(place, place + 1)
 
 
 def signs_of(name: str) -> tuple[str, ...]:
-    """The signs that the codes of :func:`relate` stand for."""
+    """Return the signs that the codes of :func:`relate` stand for."""
     return CONES if name == "cardir" else calculus(name).atoms
 
 
 def _axis(boxes: NDArray[np.float64], axis: str) -> NDArray[np.float64]:
-    """The boxes on one axis, shape (n, 2)."""
+    """Return the boxes on one axis, shape (n, 2)."""
     if len(axis) != 1 or axis not in AXES:
         raise SettingError(f"an axis is x, y or z, not '{axis}'")
     if AXES.index(axis) >= boxes.shape[2]:
@@ -183,7 +183,7 @@ def _product(on: Callable[[NDArray[np.float64], str, float], Codes], axes: str, 
 
 
 def _by_atom(bridge: Callable[[], Bridge]) -> _Relator:
-    """What a rectangle-algebra atom says, where it says one thing."""
+    """Return what a rectangle-algebra atom says, where it says one thing."""
 
     def related(boxes: NDArray[np.float64], settings: _Settings) -> Codes:
         table = np.array([admitted.bit_length() - 1 for admitted in bridge().admits], dtype=np.int16)

@@ -19,7 +19,7 @@ from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.clouds.cloud_file import read_cloud, write_cloud
 from deixis.perception.errors import CloudError, SceneError
 from deixis.perception.scene import PerceivedObject, Scene
-from deixis.reasoning.comparison.checking import Verdict
+from deixis.reasoning.comparison.checking import RoleVerdict
 from deixis.reasoning.errors import SettingError
 from deixis.workflows.lay_table import lay_script
 from deixis.workflows.simulate import simulate
@@ -112,7 +112,7 @@ def test_what_has_no_points_is_told(seen: Scene) -> None:
 
 def test_a_table_is_checked_by_a_script_without_a_memory() -> None:
     checked = deixis.check(FULL, SECOND)
-    assert [entry.role for entry in checked.table.of(Verdict.MISSING)] == ["water_glass"]
+    assert [entry.role for entry in checked.table.of(RoleVerdict.MISSING)] == ["water_glass"]
     assert not checked.conforms
     with pytest.raises(SettingError, match="layout must be a script or its file"):
         deixis.check("formal_dinner", SECOND)
@@ -150,7 +150,7 @@ def test_recognise_makes_no_memory(seen: Scene, tmp_path: Path) -> None:
         assert set(found.answers) == set(seen.ids)
         assert not any(answer.label for answer in found.answers.values())
         assert session.categories() == {}
-        assert session.check(FULL, SECOND).table.of(Verdict.MISSING)
+        assert session.check(FULL, SECOND).table.of(RoleVerdict.MISSING)
     assert not (tmp_path / "none").exists()
 
 

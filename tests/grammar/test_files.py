@@ -131,6 +131,6 @@ def test_an_empty_file_is_an_empty_script(tmp_path: Path) -> None:
 
 
 def test_too_large(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("deixis.grammar.files.LARGEST", 1024 * 1024)
+    monkeypatch.setattr("deixis.grammar.files.MAX_FILE_BYTES", 1024 * 1024)
     with pytest.raises(ScriptFileError, match="larger than 1 MB"):
         read_script(write(tmp_path, a=" " * (1024 * 1024 + 1)))

@@ -35,14 +35,14 @@ class Bridge:
     admits: tuple[int, ...]
 
     def forward(self, relation: int) -> int:
-        """What a relation of the source leaves of the target."""
+        """Return what a relation of the source leaves of the target."""
         mask = 0
         for code in bits(relation):
             mask |= self.admits[code]
         return mask
 
     def backward(self, relation: int) -> int:
-        """What a relation of the target leaves of the source."""
+        """Return what a relation of the target leaves of the source."""
         return sum(1 << code for code, admitted in enumerate(self.admits) if admitted & relation)
 
     @cached_property
@@ -61,7 +61,13 @@ def boxes_to_directions() -> Bridge:
     ('SW', 'W', 'NW')
     """
     source, target = _product("ra"), _product("cd")
-    orders = _orders_of_centres()
+    # Orders of the two centres by Allen relation: intervals between six points show all of them.
+    ends = np.array(list(combinations(range(6), 2)), dtype=np.float64)
+    low, high = ends.T
+    codes = allen_relations(low[:, None], high[:, None], low[None, :], high[None, :])
+    middles = low + high
+    signs = 1 + np.sign(middles[:, None] - middles[None, :]).astype(int)
+    orders = [sum(1 << int(sign) for sign in np.unique(signs[codes == code])) for code in range(13)]
     admits = tuple(target.of_axes([orders[x], orders[y]]) for x, y in product(range(13), repeat=2))
     return Bridge(source, target, admits)
 
@@ -106,19 +112,19 @@ def directions_to_distances() -> Bridge:
 
 @cache
 def joint_to_directions() -> Bridge:
-    """The joint calculus of direction and distance to its directions."""
+    """Return the bridge from direction with distance to direction alone."""
     return _part(0, "cd")
 
 
 @cache
 def joint_to_distances() -> Bridge:
-    """The joint calculus of direction and distance to its distances."""
+    """Return the bridge from direction with distance to distance alone."""
     return _part(1, "distance")
 
 
 @cache
 def names_to_boxes() -> Bridge:
-    """The ten names to the rectangle algebra: the atoms that each admits."""
+    """Return the bridge from the ten names to the rectangle algebra: the atoms that each admits."""
     from deixis.ontology.tbox import default_ontology
     from deixis.reasoning.qualitative.calculi.ten import named_parts
 
@@ -126,7 +132,7 @@ def names_to_boxes() -> Bridge:
 
 
 def to_ra(names: int) -> int:
-    """A relation of ``ten`` as one of the rectangle algebra, which decides it.
+    """Return a relation of ``ten`` as one of the rectangle algebra, which decides it.
 
     >>> calculus("ra").members(to_ra(calculus("ten").relation(["top_left"])))
     ('<,mi', '<,>', 'm,mi', 'm,>')
@@ -136,16 +142,6 @@ def to_ra(names: int) -> int:
 
 def _product(name: str) -> ProductCalculus:
     return cast(ProductCalculus, calculus(name))
-
-
-def _orders_of_centres() -> list[int]:
-    """For each Allen relation the orders of the two middles; intervals between six points show all of them."""
-    ends = np.array(list(combinations(range(6), 2)), dtype=np.float64)
-    low, high = ends.T
-    codes = allen_relations(low[:, None], high[:, None], low[None, :], high[None, :])
-    middles = low + high
-    orders = 1 + np.sign(middles[:, None] - middles[None, :]).astype(int)
-    return [sum(1 << int(order) for order in np.unique(orders[codes == code])) for code in range(13)]
 
 
 def _part(position: int, name: str) -> Bridge:
@@ -203,16 +199,16 @@ class Link(Protocol):
         ...
 
     def forward(self, relation: int) -> int:
-        """The target's atoms that some atom of a source relation admits."""
+        """Return the target's atoms that some atom of a source relation admits."""
         ...
 
     def backward(self, relation: int) -> int:
-        """The source's atoms that admit some atom of a target relation."""
+        """Return the source's atoms that admit some atom of a target relation."""
         ...
 
 
 def links_between(calculi: Sequence[Calculus]) -> tuple[Link, ...]:
-    """The bridges between any two of some calculi; regions of RCC-8 have the boxes as their bounding boxes.
+    """Return the bridges between any two of some calculi; regions of RCC-8 have the boxes as their bounding boxes.
 
     >>> from deixis.reasoning.qualitative.calculi.registry import calculus
     >>> [(link.source.name, link.target.name) for link in links_between([calculus("rcc8"), calculus("ra")])]

@@ -28,7 +28,7 @@ Pieces = Callable[[int], tuple[int, ...]]
 
 
 def bits(relation: int) -> Iterator[int]:
-    """The positions of the atoms in a relation, least first.
+    """Yield the positions of the atoms in a relation, least first.
 
     >>> list(bits(0b1010))
     [1, 3]
@@ -58,11 +58,11 @@ class Calculus(ABC):
 
     @abstractmethod
     def converse(self, relation: int) -> int:
-        """The relation of b to a where ``relation`` is that of a to b."""
+        """Return the relation of b to a where ``relation`` is that of a to b."""
 
     @abstractmethod
     def compose(self, first: int, second: int) -> int:
-        """The weak composition: the atoms that a may bear to c where a ``first`` b and b ``second`` c."""
+        """Return the weak composition: the atoms that a may bear to c where a ``first`` b and b ``second`` c."""
 
     @abstractmethod
     def pieces(self, relation: int) -> tuple[int, ...]:
@@ -80,27 +80,29 @@ class Calculus(ABC):
         return {sign.casefold(): code for sign, code in codes.items()} | codes if self.any_case else codes
 
     def code(self, atom: str) -> int:
-        """The code of an atom by its sign or an alias; raises UnknownAtomError with the nearest sign."""
+        """Return the code of an atom by its sign or an alias; raises UnknownAtomError with the nearest sign."""
         found = self._codes.get(atom)
         if found is None and self.any_case:
             found = self._codes.get(atom.casefold())
         if found is None:
             hint = nearest(atom, self._codes)
+            shown = ", ".join(self.atoms[:16])
+            listed = shown if len(self.atoms) <= 16 else f"{shown}, … ({len(self.atoms)} in all)"
             raise UnknownAtomError(
                 f"{self.name} has no relation '{atom}'"
-                + (f"; did you mean '{hint}'?" if hint else f"; it has {_listed(self.atoms)}")
+                + (f"; did you mean '{hint}'?" if hint else f"; it has {listed}")
             )
         return found
 
     def relation(self, atoms: Iterable[str]) -> int:
-        """The relation that holds these atoms."""
+        """Return the relation that holds these atoms."""
         mask = 0
         for atom in atoms:
             mask |= 1 << self.code(atom)
         return mask
 
     def members(self, relation: int) -> tuple[str, ...]:
-        """The signs of a relation's atoms, in the order of their codes."""
+        """Return the signs of a relation's atoms, in the order of their codes."""
         return tuple(self.atoms[code] for code in bits(relation))
 
 
@@ -192,14 +194,14 @@ class ProductCalculus(Calculus):
         return self.code_of([axis.code(sign) for axis, sign in zip(self.axes, signs, strict=True)])
 
     def code_of(self, codes: Sequence[int]) -> int:
-        """The atom's code from the codes on the axes."""
+        """Return the atom's code from the codes on the axes."""
         total = 0
         for axis, code in zip(self.axes, codes, strict=True):
             total = total * len(axis.atoms) + code
         return total
 
     def of_axes(self, relations: Sequence[int]) -> int:
-        """The product of one relation an axis.
+        """Return the product of one relation an axis.
 
         >>> from deixis.reasoning.qualitative.calculi.registry import calculus
         >>> ra = calculus("ra")
@@ -208,7 +210,7 @@ class ProductCalculus(Calculus):
         """
         total, width = 1, 1
         for axis, relation in zip(reversed(self.axes), reversed(relations), strict=True):
-            total = _spread(relation, total, width)
+            total = sum(total << (code * width) for code in bits(relation))
             width *= len(axis.atoms)
         return total
 
@@ -239,16 +241,8 @@ class ProductCalculus(Calculus):
         )
 
 
-def _spread(relation: int, inner: int, width: int) -> int:
-    """``inner``, ``width`` bits wide, once for every bit of ``relation``."""
-    total = 0
-    for code in bits(relation):
-        total |= inner << (code * width)
-    return total
-
-
 def _boxes(relation: int, sizes: Sequence[int]) -> tuple[tuple[int, ...], ...]:
-    """Groups the first axis's atoms by what they leave to the others, and goes on with each group."""
+    """Group the first axis's atoms by what they leave to the others, and goes on with each group."""
     if not relation:
         return ()
     if len(sizes) == 1:
@@ -260,11 +254,6 @@ def _boxes(relation: int, sizes: Sequence[int]) -> tuple[tuple[int, ...], ...]:
         if row:
             rows[row] = rows.get(row, 0) | 1 << code
     return tuple((first, *rest) for row, first in rows.items() for rest in _boxes(row, sizes[1:]))
-
-
-def _listed(atoms: Sequence[str]) -> str:
-    shown = ", ".join(atoms[:16])
-    return shown if len(atoms) <= 16 else f"{shown}, … ({len(atoms)} in all)"
 
 
 def coarsening(
@@ -296,7 +285,7 @@ def coarsening(
 
 
 def atoms_of(relation: int) -> tuple[int, ...]:
-    """A relation split into its atoms.
+    """Return a relation split into its atoms.
 
     >>> atoms_of(0b110)
     (2, 4)

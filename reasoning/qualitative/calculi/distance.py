@@ -14,7 +14,7 @@ between the bounds or their squares.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
 from fractions import Fraction
@@ -102,7 +102,7 @@ def _composed(spans: Sequence[tuple[Bound, Bound] | None], i: int, j: int) -> in
 
 
 def _closes_triangle(first: tuple[Bound, Bound], second: tuple[Bound, Bound], third: tuple[Bound, Bound]) -> bool:
-    """Whether a triangle, flat ones included, has one side in each range; open below and closed above.
+    """Return whether a triangle, flat ones included, has one side in each range; open below and closed above.
 
     The third side takes every length between the least difference of the others, which is not reached, and their
     greatest sum, which is.
@@ -115,7 +115,7 @@ _AROUND = ("E", "NE", "N", "NW", "W", "SW", "S", "SE")
 """Tiles by eighths of a turn: an even one is a half axis, an odd one the open quarter turn between two."""
 
 HERE = f"EQ,{SAME}"
-MOST_RANGES = 7
+MAX_RANGES = 7
 """So many atoms as have a bit each in 64."""
 
 Range = tuple[Bound, Bound]
@@ -149,12 +149,17 @@ def direction_distance_calculus(ranges: Ranges = DEFAULT_RANGES) -> TableCalculu
     ('NW,far',)
     """
     reaches = len(ranges.names)
-    if reaches > MOST_RANGES:
-        raise SettingError(f"direction with distance takes at most {MOST_RANGES} ranges, not {reaches}")
+    if reaches > MAX_RANGES:
+        raise SettingError(f"direction with distance takes at most {MAX_RANGES} ranges, not {reaches}")
     codes = [(tile, reach) for tile in range(8) for reach in range(reaches)]
     here = len(codes)
     converses = [((tile + 4) % 8) * reaches + reach for tile, reach in codes]
-    closes = _closed_vectors(ranges)
+    spans = ranges.intervals
+    n = len(spans)
+    turned = [[_fits(shape, *tiles) for shape in _Shape] for tiles in product(range(8), repeat=3)]
+    sized = [[_has_sides(shape, *sides) for shape in _Shape] for sides in product(spans, repeat=3)]
+    both = np.einsum("ts,us->tu", np.array(turned), np.array(sized)).reshape(8, 8, 8, n, n, n)
+    closes: NDArray[np.bool_] = both.transpose(0, 3, 1, 4, 2, 5).reshape(8 * n, 8 * n, 8 * n)
     table = np.zeros((here + 1, here + 1), dtype=np.uint64)
     table[:, here] = table[here, :] = np.uint64(1) << np.arange(here + 1, dtype=np.uint64)
     for i, j in product(range(here), repeat=2):
@@ -174,19 +179,8 @@ def direction_distance_calculus(ranges: Ranges = DEFAULT_RANGES) -> TableCalculu
     )
 
 
-def _closed_vectors(ranges: Ranges) -> NDArray[np.bool_]:
-    """Whether vectors of two atoms can have a sum of a third, shape (m, m, m) for the m atoms with a direction."""
-    spans = ranges.intervals
-    n = len(spans)
-    turned = [[_fits(shape, *tiles) for shape in _Shape] for tiles in product(range(8), repeat=3)]
-    sized = [[_has_sides(shape, *sides) for shape in _Shape] for sides in product(spans, repeat=3)]
-    both = np.einsum("ts,us->tu", np.array(turned), np.array(sized)).reshape(8, 8, 8, n, n, n)
-    closed: NDArray[np.bool_] = both.transpose(0, 3, 1, 4, 2, 5).reshape(8 * n, 8 * n, 8 * n)
-    return closed
-
-
 def _fits(shape: _Shape, p: int, q: int, r: int) -> bool:
-    """Whether vectors in these tiles can be turned so, all to the left or all to the right."""
+    """Return whether vectors in these tiles can be turned so, all to the left or all to the right."""
     to_q, to_r, r_to_q = shape.value
     return any(
         _turns(p, q, side * to_q) and _turns(p, r, side * to_r) and _turns(r, q, side * r_to_q) for side in (1, -1)
@@ -194,40 +188,22 @@ def _fits(shape: _Shape, p: int, q: int, r: int) -> bool:
 
 
 def _turns(start: int, end: int, turn: int) -> bool:
-    """Whether something in tile ``start`` and something in ``end`` can have that turn between them."""
+    """Return whether something in tile ``start`` and something in ``end`` can have that turn between them."""
     off = (end - start - turn) % 8
     both_open = start % 2 == 1 and end % 2 == 1
     return off == 0 or (both_open and off in (1, 7))
 
 
 def _has_sides(shape: _Shape, p: Range, q: Range, r: Range) -> bool:
-    """Whether a triangle of that shape has its sides in the three ranges."""
+    """Return whether a triangle of that shape can have its sides in the three ranges."""
     kind, _, opposite = shape.name.partition("_")
-    first, second, longest = {"A": (q, r, p), "B": (p, r, q)}.get(opposite, (p, q, r))
-    return _SIDES[kind](first, second, longest)
-
-
-def _acute(a: Range, b: Range, c: Range) -> bool:
-    least = max(0, a[0] ** 2 - b[1] ** 2, b[0] ** 2 - a[1] ** 2)
+    a, b, c = {"A": (q, r, p), "B": (p, r, q)}.get(opposite, (p, q, r))
+    # Whether a and b in their ranges leave a length for c in its own; ranges are open below and closed above.
+    if kind == "FLAT":  # c = a + b
+        return a[0] + b[0] < c[1] and c[0] < a[1] + b[1]
+    if kind == "OBTUSE":  # a² + b² < c² < (a + b)²
+        return a[0] ** 2 + b[0] ** 2 < c[1] ** 2 and c[0] < a[1] + b[1]
+    if kind == "RIGHT":  # c² = a² + b²
+        return a[0] ** 2 + b[0] ** 2 < c[1] ** 2 and c[0] ** 2 < a[1] ** 2 + b[1] ** 2
+    least = max(0, a[0] ** 2 - b[1] ** 2, b[0] ** 2 - a[1] ** 2)  # acute: c² < a² + b², and so for each side
     return least < c[1] ** 2 and c[0] ** 2 < a[1] ** 2 + b[1] ** 2
-
-
-def _right(a: Range, b: Range, c: Range) -> bool:
-    return a[0] ** 2 + b[0] ** 2 < c[1] ** 2 and c[0] ** 2 < a[1] ** 2 + b[1] ** 2
-
-
-def _obtuse(a: Range, b: Range, c: Range) -> bool:
-    return a[0] ** 2 + b[0] ** 2 < c[1] ** 2 and c[0] < a[1] + b[1]
-
-
-def _flat(a: Range, b: Range, c: Range) -> bool:
-    return a[0] + b[0] < c[1] and c[0] < a[1] + b[1]
-
-
-_SIDES: dict[str, Callable[[Range, Range, Range], bool]] = {
-    "ACUTE": _acute,  # c² < a² + b², and so for each side
-    "RIGHT": _right,  # c² = a² + b²
-    "OBTUSE": _obtuse,  # a² + b² < c² < (a + b)²
-    "FLAT": _flat,  # c = a + b
-}
-"""Whether a and b in their ranges leave a length for c in its own; ranges are open below and closed above."""

@@ -22,7 +22,7 @@ from deixis.reasoning.qualitative.calculi.tractable import ORD_HORN
 
 
 def converses_in(codes: NDArray[np.integer], atoms: int) -> NDArray[np.int64]:
-    """The code of each atom's converse, shape (atoms,), from the atom of every ordered pair, ``codes`` (m, m).
+    """Return the code of each atom's converse, shape (atoms,), from the atom of every ordered pair, ``codes`` (m, m).
 
     >>> converses_in(np.array([[1, 0], [2, 1]]), 3).tolist()
     [2, 1, 0]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import cache
 from typing import cast
 
@@ -10,9 +9,12 @@ from deixis.ontology.relation import nearest
 from deixis.reasoning.errors import UnknownCalculusError
 from deixis.reasoning.qualitative.calculi.calculus import Calculus, ProductCalculus, TableCalculus
 
+CALCULI: tuple[str, ...] = ("point", "allen", "ra", "ba", "rcc8", "cd", "ten", "distance", "direction-distance")
+"""The names of all calculi."""
+
 
 def calculus(name: str) -> Calculus:
-    """The calculus of that name; raises UnknownCalculusError with the nearest name.
+    """Return the calculus of that name; raises UnknownCalculusError with the nearest name.
 
     >>> len(calculus("ra").atoms)
     169
@@ -21,86 +23,49 @@ def calculus(name: str) -> Calculus:
         ...
     deixis.reasoning.errors.UnknownCalculusError: there is no calculus 'rcc9'; did you mean 'rcc8'?
     """
-    if name not in _BUILDERS:
-        hint = nearest(name, _BUILDERS)
+    if name not in CALCULI:
+        hint = nearest(name, CALCULI)
         raise UnknownCalculusError(
             f"there is no calculus '{name}'; "
             + (f"did you mean '{hint}'?" if hint else f"there are {', '.join(CALCULI)}")
         )
-    return _built(name)
+    return _build(name)
 
 
 @cache
-def _built(name: str) -> Calculus:
-    return _BUILDERS[name]()
+def _build(name: str) -> Calculus:
+    match name:
+        case "point" | "allen" | "ra" | "ba" | "cd":
+            from deixis.reasoning.qualitative.calculi.endpoints import (
+                block_algebra,
+                cardinal_directions,
+                interval_algebra,
+                point_algebra,
+                rectangle_algebra,
+            )
 
+            if name == "point":
+                return point_algebra()
+            if name == "allen":
+                return interval_algebra()
+            if name == "cd":
+                return cardinal_directions(cast(TableCalculus, calculus("point")))
+            algebra = rectangle_algebra if name == "ra" else block_algebra
+            return algebra(cast(TableCalculus, calculus("allen")))
+        case "rcc8":
+            from deixis.reasoning.qualitative.calculi.rcc8 import region_connection_calculus
 
-def _point() -> Calculus:
-    from deixis.reasoning.qualitative.calculi.endpoints import point_algebra
+            return region_connection_calculus()
+        case "ten":
+            from deixis.ontology.tbox import default_ontology
+            from deixis.reasoning.qualitative.calculi.ten import ten_names
 
-    return point_algebra()
+            return ten_names(default_ontology().relations, cast(ProductCalculus, calculus("ra")))
+        case "distance":
+            from deixis.reasoning.qualitative.calculi.distance import distance_calculus
 
+            return distance_calculus()
+        case _:
+            from deixis.reasoning.qualitative.calculi.distance import direction_distance_calculus
 
-def _allen() -> Calculus:
-    from deixis.reasoning.qualitative.calculi.endpoints import interval_algebra
-
-    return interval_algebra()
-
-
-def _ra() -> Calculus:
-    from deixis.reasoning.qualitative.calculi.endpoints import rectangle_algebra
-
-    return rectangle_algebra(cast(TableCalculus, calculus("allen")))
-
-
-def _ba() -> Calculus:
-    from deixis.reasoning.qualitative.calculi.endpoints import block_algebra
-
-    return block_algebra(cast(TableCalculus, calculus("allen")))
-
-
-def _cd() -> Calculus:
-    from deixis.reasoning.qualitative.calculi.endpoints import cardinal_directions
-
-    return cardinal_directions(cast(TableCalculus, calculus("point")))
-
-
-def _rcc8() -> Calculus:
-    from deixis.reasoning.qualitative.calculi.rcc8 import region_connection_calculus
-
-    return region_connection_calculus()
-
-
-def _ten() -> Calculus:
-    from deixis.ontology.tbox import default_ontology
-    from deixis.reasoning.qualitative.calculi.ten import ten_names
-
-    return ten_names(default_ontology().relations, cast(ProductCalculus, calculus("ra")))
-
-
-def _distance() -> Calculus:
-    from deixis.reasoning.qualitative.calculi.distance import distance_calculus
-
-    return distance_calculus()
-
-
-def _direction_distance() -> Calculus:
-    from deixis.reasoning.qualitative.calculi.distance import direction_distance_calculus
-
-    return direction_distance_calculus()
-
-
-_BUILDERS: dict[str, Callable[[], Calculus]] = {
-    "point": _point,
-    "allen": _allen,
-    "ra": _ra,
-    "ba": _ba,
-    "rcc8": _rcc8,
-    "cd": _cd,
-    "ten": _ten,
-    "distance": _distance,
-    "direction-distance": _direction_distance,
-}
-
-CALCULI: tuple[str, ...] = tuple(_BUILDERS)
-"""The names of all calculi."""
+            return direction_distance_calculus()

@@ -17,7 +17,7 @@ UNNAMED = "overlap"
 
 
 def ten_names(vocabulary: Relations, rectangles: ProductCalculus) -> TableCalculus:
-    """The calculus of the ten exact names and what they leave."""
+    """Return the calculus of the ten exact names and what they leave."""
     parts = named_parts(vocabulary)
     return coarsening(
         "ten",

@@ -60,7 +60,7 @@ _PLACES = ((0, 0), (0, 1), (0, 2), (0, 3), (0, 4), (1, 2), (1, 3), (1, 4), (2, 2
 
 
 def _dimension(relation: int) -> int:
-    """The greatest number of a's end points that are free to move; -1 for the empty relation (Ligozat 1996)."""
+    """Return the greatest number of a's end points that are free to move; -1 for the empty relation (Ligozat 1996)."""
     return max((2 - sum(place % 2 for place in _PLACES[code]) for code in bits(relation)), default=-1)
 
 
@@ -73,10 +73,6 @@ def convex_closure(relation: int) -> int:
     return convex_hull(relation).mask if relation else 0
 
 
-def _is_convex(relation: int) -> bool:
-    return convex_closure(relation) == relation
-
-
 def _is_preconvex(relation: int) -> bool:
     return not relation or _dimension(convex_closure(relation) & ~relation) < _dimension(relation)
 
@@ -84,7 +80,7 @@ def _is_preconvex(relation: int) -> bool:
 @cache
 def _pointizable() -> frozenset[int]:
     """What conjunctions of point relations between the end points can say: one of eight for each of four pairs."""
-    signs = [[_order(place, end) for end in (1, 3)] for place in range(5)]
+    signs = [[(place > end) - (place < end) + 1 for end in (1, 3)] for place in range(5)]
     found = set()
     for wanted in product(range(8), repeat=4):
         found.add(
@@ -97,15 +93,10 @@ def _pointizable() -> frozenset[int]:
     return frozenset(found)
 
 
-def _order(place: int, other: int) -> int:
-    """0, 1 or 2: less, equal, greater."""
-    return (place > other) - (place < other) + 1
-
-
 ORD_HORN = Subclass("ORD-Horn", 13, _is_preconvex, "Nebel and Bürckert 1995; as pre-convex relations Ligozat 1996")
 """The one maximal tractable subclass of Allen's algebra that has all atoms."""
 
-CONVEX = Subclass("convex", 13, _is_convex, "Nökel 1989; Ligozat 1996")
+CONVEX = Subclass("convex", 13, lambda relation: convex_closure(relation) == relation, "Nökel 1989; Ligozat 1996")
 """Closure does not only decide these: it leaves just what some solution has (van Beek and Cohen 1990)."""
 
 POINTIZABLE = Subclass("pointizable", 13, lambda relation: relation in _pointizable(), "Vilain and Kautz 1986")
@@ -116,7 +107,7 @@ _PARTS, _WHOLES = _TPP | _NTPP, _TPPI | _NTPPI
 
 
 def _both_ways(relation: int) -> bool:
-    """Whether it leaves open which of the two is part of the other, without letting them overlap partially."""
+    """Return whether it leaves open which of the two is part of the other, without letting them overlap partially."""
     return not relation & _PO and bool(relation & _PARTS) and bool(relation & _WHOLES)
 
 

@@ -23,27 +23,27 @@ class Cells(ABC):
 
     @abstractmethod
     def restrict(self, ends: tuple[Any, ...], words: Words, start: int, bookkeeping: tuple[Any, ...]) -> int:
-        """Intersects pairs (firsts, seconds, ids) with relations; returns the first constraint not dealt with."""
+        """Intersect pairs (firsts, seconds, ids) with relations; returns the first constraint not dealt with."""
 
     @abstractmethod
     def advance(self, budget: int, bookkeeping: tuple[Any, ...]) -> int:
-        """Passes changes on; returns CLOSED, EMPTIED, PAUSED or FULL."""
+        """Pass changes on; returns CLOSED, EMPTIED, PAUSED or FULL."""
 
     @abstractmethod
     def undo(self, length: int, bookkeeping: tuple[Any, ...]) -> None:
-        """Goes back to where the trail was that long."""
+        """Go back to where the trail was that long."""
 
     @abstractmethod
     def relation(self, first: int, second: int) -> int:
-        """What a pair may still be."""
+        """Return what a pair may still be."""
 
     @abstractmethod
     def relations(self) -> Words:
-        """What all pairs may still be, (n, n, words of 64 atoms)."""
+        """Return what all pairs may still be, (n, n, words of 64 atoms)."""
 
     @abstractmethod
     def relations_of(self, firsts: NDArray[np.int64], seconds: NDArray[np.int64]) -> Words:
-        """What pairs (m,), (m,) may still be, (m, words of 64 atoms)."""
+        """Return what pairs (m,), (m,) may still be, (m, words of 64 atoms)."""
 
     @abstractmethod
     def next_open(self, start: int) -> int:

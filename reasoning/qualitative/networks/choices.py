@@ -12,53 +12,49 @@ from heapq import heappop, heappush
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.reasoning.qualitative.calculi.calculus import bits
-from deixis.reasoning.qualitative.networks.state import State, distinct_rows
+from deixis.reasoning.qualitative.calculi.calculus import atoms_of
+from deixis.reasoning.qualitative.networks.state import NetworkState, distinct_rows
 
 Open = tuple[int, int, tuple[int, ...]]
 """A pair, and the relations to try for it."""
-BLOCK = 1 << 18  # pairs between two looks at the clock
+PAIRS_PER_CHECK = 1 << 18  # pairs between two looks at the clock
 
 
-class Choices(ABC):
+class PairSelector(ABC):
     """The pairs of a state for which something is still to be chosen."""
 
-    def __init__(self, state: State) -> None:
+    def __init__(self, state: NetworkState) -> None:
         self._state = state
 
     @abstractmethod
     def pick(self) -> Open | None:
-        """The next pair, and what to try for it; None where nothing is left to choose."""
+        """Return the next pair, and what to try for it; None where nothing is left to choose."""
 
     @abstractmethod
     def note(self, positions: NDArray[np.int64]) -> None:
-        """Takes account of pairs (m,) that were narrowed, given back, or chosen for in vain."""
+        """Take account of pairs (m,) that were narrowed, given back, or chosen for in vain."""
 
 
-class FewestPieces(Choices):
+class FewestPiecesFirst(PairSelector):
     """The pair with the fewest tractable pieces among those with several; atoms where no subclass decides.
 
     Pairs wait in the order in which they are picked. One that changed waits in two places, and what it waits for in
     the old one is no longer true, which is seen when its turn comes.
     """
 
-    def __init__(self, state: State, check: Callable[[], None]) -> None:
+    def __init__(self, state: NetworkState, check: Callable[[], None]) -> None:
         super().__init__(state)
         self._pieces: dict[int, tuple[int, ...]] = {}
         self._pairs = max(1, state.size**2)
-        self._first, self._next = self._scan(check), 0
-        self._later: list[int] = []  # a heap
-        self._waiting: set[int] = set()  # what is on it
-
-    def _scan(self, check: Callable[[], None]) -> NDArray[np.int64]:
-        """The keys of all pairs, in order; ``check`` is called now and then, and may raise."""
         size, found = self._state.size, [np.zeros(0, dtype=np.int64)]
-        rows = max(1, BLOCK // max(1, size))
+        rows = max(1, PAIRS_PER_CHECK // max(1, size))
         for row in range(0, size, rows):
             check()
             positions = np.arange(row * size, min(row + rows, size) * size, dtype=np.int64)
             found.append(self._keys(positions[positions % size > positions // size]))
-        return np.sort(np.concatenate(found))
+        self._first, self._next = np.sort(np.concatenate(found)), 0
+        self._later: list[int] = []  # a heap
+        self._waiting: set[int] = set()  # what is on it
 
     def _keys(self, positions: NDArray[np.int64]) -> NDArray[np.int64]:
         """Sorted by number of pieces, then by pair; only for pairs with several."""
@@ -80,26 +76,24 @@ class FewestPieces(Choices):
 
     def pick(self) -> Open | None:
         while self._later or self._next < len(self._first):
-            count, position = divmod(self._pop(), self._pairs)
+            if self._later and (self._next == len(self._first) or self._later[0] < self._first[self._next]):
+                key = heappop(self._later)
+                self._waiting.remove(key)
+            else:
+                self._next += 1
+                key = int(self._first[self._next - 1])
+            count, position = divmod(key, self._pairs)
             first, second = divmod(position, self._state.size)
             pieces = self._split(self._state.relation(first, second))
             if len(pieces) == count:
                 return first, second, pieces
         return None
 
-    def _pop(self) -> int:
-        if self._later and (self._next == len(self._first) or self._later[0] < self._first[self._next]):
-            key = heappop(self._later)
-            self._waiting.remove(key)
-            return key
-        self._next += 1
-        return int(self._first[self._next - 1])
 
-
-class NextAtoms(Choices):
+class FirstOpenPair(PairSelector):
     """The first pair that may still be several atoms."""
 
-    def __init__(self, state: State) -> None:
+    def __init__(self, state: NetworkState) -> None:
         super().__init__(state)
         self._start = 0  # no pair before it may be several
 
@@ -113,12 +107,3 @@ class NextAtoms(Choices):
             return None
         first, second = divmod(self._start, self._state.size)
         return first, second, atoms_of(self._state.relation(first, second))
-
-
-def atoms_of(relation: int) -> tuple[int, ...]:
-    """The atoms of a relation, each as a relation.
-
-    >>> atoms_of(0b101)
-    (1, 4)
-    """
-    return tuple(1 << code for code in bits(relation))

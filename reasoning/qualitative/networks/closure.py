@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from deixis.reasoning.qualitative.calculi.calculus import Calculus, ProductCalculus
 from deixis.reasoning.qualitative.networks.network import Network, on_axes
-from deixis.reasoning.qualitative.networks.state import Progress, State
+from deixis.reasoning.qualitative.networks.state import NetworkState, Progress
 from deixis.reasoning.qualitative.networks.tables import relation_of, words_of
 
 
@@ -43,8 +43,8 @@ class Closure:
         """Whether no contradiction was found; that none exists, only a tractable subclass or a search can tell."""
         return self.emptied is None
 
-    def told(self) -> NDArray[np.int64]:
-        """The pairs i < j, (m, 2), of which something is known."""
+    def known_pairs(self) -> NDArray[np.int64]:
+        """Return the pairs i < j, (m, 2), of which something is known."""
         calculus = self.network.calculus
         axes = calculus.axes if isinstance(calculus, ProductCalculus) and len(self.parts) > 1 else (calculus,)
         everything = [words_of((axis.universal,), len(axis.atoms))[0] for axis in axes]
@@ -52,7 +52,7 @@ class Closure:
         return np.argwhere(np.triu(np.logical_or.reduce(known), 1))
 
     def relation(self, first: int, second: int) -> int:
-        """The relation of two things as a set of atoms."""
+        """Return the relation of two things as a set of atoms."""
         relations = [relation_of(part[first, second]) for part in self.parts]
         return relations[0] if len(relations) == 1 else of_axes(self.network.calculus, relations)
 
@@ -60,7 +60,7 @@ class Closure:
 def close(
     network: Network, deadline: float | None = None, progress: Progress | None = None, joint: bool = False
 ) -> Closure:
-    """The algebraic closure of a network, until ``deadline`` on the clock of ``time.monotonic``.
+    """Return the algebraic closure of a network, until ``deadline`` on the clock of ``time.monotonic``.
 
     Products close axis by axis; ``joint`` closes the whole calculus at once all the same. Raises LimitError where the
     network would not fit in memory.
@@ -90,11 +90,11 @@ def close(
     )
 
 
-def opened_states(network: Network, joint: bool = False, traced: bool = False) -> tuple[State, ...]:
+def opened_states(network: Network, joint: bool = False, traced: bool = False) -> tuple[NetworkState, ...]:
     """The states of a network's axes, or of the whole, with what is stated and before anything follows from it."""
     axes = None if joint else on_axes(network)
     parts = (network,) if axes is None else axes
-    states = tuple(State(part.calculus, part.size, traced) for part in parts)
+    states = tuple(NetworkState(part.calculus, part.size, traced) for part in parts)
     for part, state in zip(parts, states, strict=True):
         state.add(part)
     return states
@@ -102,13 +102,13 @@ def opened_states(network: Network, joint: bool = False, traced: bool = False) -
 
 def closed_states(
     network: Network, deadline: float | None = None, progress: Progress | None = None, traced: bool = False
-) -> tuple[tuple[State, ...], bool]:
+) -> tuple[tuple[NetworkState, ...], bool]:
     """The states of a network's axes, or of the whole, closed up to the first contradiction; and whether in time."""
     states = opened_states(network, traced=traced)
     return states, _close_all(states, deadline, progress)
 
 
-def _close_all(states: Sequence[State], deadline: float | None, progress: Progress | None) -> bool:
+def _close_all(states: Sequence[NetworkState], deadline: float | None, progress: Progress | None) -> bool:
     for state in states:
         if any(each.emptied is not None for each in states):
             return True
@@ -117,12 +117,12 @@ def _close_all(states: Sequence[State], deadline: float | None, progress: Progre
     return True
 
 
-def whole_relation(calculus: Calculus, states: Sequence[State], first: int, second: int) -> int:
-    """The relation of two things from the states of the axes, or of the whole."""
+def whole_relation(calculus: Calculus, states: Sequence[NetworkState], first: int, second: int) -> int:
+    """Return the relation of two things from the states of the axes, or of the whole."""
     relations = [state.relation(first, second) for state in states]
     return relations[0] if len(relations) == 1 else of_axes(calculus, relations)
 
 
 def of_axes(calculus: Calculus, relations: Sequence[int]) -> int:
-    """The product of the relations on the axes; the relation itself where there is one axis."""
+    """Return the product of the relations on the axes; the relation itself where there is one axis."""
     return calculus.of_axes(relations) if isinstance(calculus, ProductCalculus) else relations[0]

@@ -19,7 +19,7 @@ from deixis.reasoning.errors import NetworkError
 from deixis.reasoning.qualitative.calculi.bridges import Link
 from deixis.reasoning.qualitative.networks.network import Constraint, Network, compacted
 from deixis.reasoning.qualitative.networks.search import Verdict, solve
-from deixis.reasoning.qualitative.networks.state import Progress, State
+from deixis.reasoning.qualitative.networks.state import NetworkState, Progress
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ class JointClosure:
     """
 
     networks: tuple[Network, ...]
-    states: tuple[State, ...]
+    states: tuple[NetworkState, ...]
     emptied: tuple[str, int, int] | None
     complete: bool
     contributions: tuple[Contribution, ...]
@@ -51,7 +51,7 @@ class JointClosure:
         return self.emptied is None
 
     def relation(self, calculus: str, first: int, second: int) -> int:
-        """The relation of two things in the calculus of that name."""
+        """Return the relation of two things in the calculus of that name."""
         for network, state in zip(self.networks, self.states, strict=True):
             if network.calculus.name == calculus:
                 return state.relation(first, second)
@@ -64,18 +64,30 @@ def close_jointly(
     deadline: float | None = None,
     progress: Progress | None = None,
 ) -> JointClosure:
-    """The joint fixpoint of closing each network and crossing each bridge.
+    """Return the joint fixpoint of closing each network and crossing each bridge.
 
     Raises NetworkError where the networks have not the same things, or not each its own calculus.
     """
     started = time.perf_counter()
-    _require_alike(networks)
-    states = tuple(State(network.calculus, network.size) for network in networks)
+    if len({network.size for network in networks}) > 1:
+        raise NetworkError("networks that are closed together must be about the same things")
+    if len({network.calculus.name for network in networks}) < len(networks):
+        raise NetworkError(f"networks that are closed together need a calculus each, not {_names(networks)}")
+    states = tuple(NetworkState(network.calculus, network.size) for network in networks)
     place = {network.calculus.name: k for k, network in enumerate(networks)}
     done = _Ledger()
     for network, state in zip(networks, states, strict=True):
         state.add(network)
-    steps = _steps(networks, states, [b for b in bridges if {b.source.name, b.target.name} <= set(place)], place)
+    steps: list[tuple[str, NetworkState, Propagator]] = [
+        (network.calculus.name, state, state.close) for network, state in zip(networks, states, strict=True)
+    ]
+    for bridge in bridges:
+        if {bridge.source.name, bridge.target.name} <= set(place):
+            source, target = states[place[bridge.source.name]], states[place[bridge.target.name]]
+            there = f"{bridge.source.name} -> {bridge.target.name}"
+            back = f"{bridge.target.name} -> {bridge.source.name}"
+            steps.append((there, target, _crossing(source, target, bridge.forward)))
+            steps.append((back, source, _crossing(target, source, bridge.backward)))
     complete, changed = True, True
     while changed and complete:
         changed = False
@@ -96,25 +108,11 @@ def close_jointly(
     )
 
 
-Step = Callable[[float | None, Progress | None], bool]
+Propagator = Callable[[float | None, Progress | None], bool]
+"""Narrows one state until a deadline, and returns whether it finished in time."""
 
 
-def _steps(
-    networks: Sequence[Network], states: Sequence[State], bridges: Sequence[Link], place: dict[str, int]
-) -> list[tuple[str, State, Step]]:
-    """What to do in each round: a name, the state that it narrows, and how."""
-    steps: list[tuple[str, State, Step]] = [
-        (network.calculus.name, state, state.close) for network, state in zip(networks, states, strict=True)
-    ]
-    for bridge in bridges:
-        source, target = states[place[bridge.source.name]], states[place[bridge.target.name]]
-        there, back = f"{bridge.source.name} -> {bridge.target.name}", f"{bridge.target.name} -> {bridge.source.name}"
-        steps.append((there, target, _crossing(source, target, bridge.forward)))
-        steps.append((back, source, _crossing(target, source, bridge.backward)))
-    return steps
-
-
-def _crossing(source: State, target: State, translate: Callable[[int], int]) -> Step:
+def _crossing(source: NetworkState, target: NetworkState, translate: Callable[[int], int]) -> Propagator:
     known: dict[int, int] = {}
 
     def cross(deadline: float | None, progress: Progress | None) -> bool:
@@ -163,7 +161,7 @@ def solve_jointly(
     time_limit: float | None = None,
     progress: Progress | None = None,
 ) -> JointSolution:
-    """Decides several networks together, where closure and each part can."""
+    """Decide several networks together, where closure and each part can."""
     deadline = None if time_limit is None else time.monotonic() + time_limit
     closure = close_jointly(networks, bridges, deadline, progress)
     if closure.emptied is not None:
@@ -196,7 +194,7 @@ class JointConflict:
 def joint_conflict(
     networks: Sequence[Network], bridges: Sequence[Link], time_limit: float = 10.0
 ) -> JointConflict | None:
-    """A deletion-minimal set of constraints that joint closure refutes; None where it refutes none in time."""
+    """Return a deletion-minimal set of constraints that joint closure refutes; None where it refutes none in time."""
     deadline = time.monotonic() + time_limit
     stated = [(n.calculus.name, c) for n in networks for c in n.constraints]
 
@@ -208,13 +206,6 @@ def joint_conflict(
         return None
     found = minimal_subset(stated, refuted, deadline, keep_last=True)
     return JointConflict(found.items, found.proved)
-
-
-def _require_alike(networks: Sequence[Network]) -> None:
-    if len({network.size for network in networks}) > 1:
-        raise NetworkError("networks that are closed together must be about the same things")
-    if len({network.calculus.name for network in networks}) < len(networks):
-        raise NetworkError(f"networks that are closed together need a calculus each, not {_names(networks)}")
 
 
 def _names(networks: Sequence[Network]) -> str:

@@ -17,7 +17,7 @@ from deixis.reasoning.errors import LimitError
 from deixis.reasoning.qualitative.networks.closure import close, closed_states
 from deixis.reasoning.qualitative.networks.network import Constraint, Network
 from deixis.reasoning.qualitative.networks.search import Verdict, decider, solve
-from deixis.reasoning.qualitative.networks.state import State
+from deixis.reasoning.qualitative.networks.state import NetworkState
 
 Core = tuple[Constraint, ...]
 
@@ -119,7 +119,7 @@ def without_leaves(network: Network) -> Core:
     return tuple(c for position, c in enumerate(network.constraints) if position not in gone)
 
 
-def resting(network: Network, small: Network, state: State, first: int, second: int) -> Core:
+def resting(network: Network, small: Network, state: NetworkState, first: int, second: int) -> Core:
     """The constraints of ``network`` (``small`` is its compact form) on which a pair's relation in a state rests."""
     needed = state.support(first, second)
     firsts, seconds = small.arrays.firsts, small.arrays.seconds

@@ -49,7 +49,7 @@ def mark(i, k, dirty, waiting):  # type: ignore[no-untyped-def]
 
 @njit(cache=True)
 def support(i, k, count, trail, needed):  # type: ignore[no-untyped-def]
-    """Marks in ``needed`` (n, n) the pairs on which the relation of i and k rests, going back through the trail."""
+    """Mark in ``needed`` (n, n) the pairs on which the relation of i and k rests, going back through the trail."""
     needed[min(i, k), max(i, k)] = True
     for m in range(count - 1, -1, -1):
         a, b, by = trail[m, 0], trail[m, 1], trail[m, 3]
@@ -73,7 +73,7 @@ def empty(planes, i, k):  # type: ignore[no-untyped-def]
 
 @njit(cache=True)
 def _take(i, k, atom, by, planes, converses, trail, count):  # type: ignore[no-untyped-def]
-    """Takes an atom from a pair, seen from both things."""
+    """Take an atom from a pair, seen from both things."""
     planes[i, k >> 6, atom] &= ~(ONE << np.uint64(k & 63))
     planes[k, i >> 6, converses[atom]] &= ~(ONE << np.uint64(i & 63))
     if count[0] >= 0:
@@ -86,7 +86,7 @@ def _take(i, k, atom, by, planes, converses, trail, count):  # type: ignore[no-u
 
 @njit(cache=True)
 def restrict(firsts, seconds, ids, masks, start, planes, converses, dirty, waiting, clock, trail, count):  # type: ignore[no-untyped-def]
-    """Intersects pairs with relations, from constraint ``start`` on; returns the first constraint not dealt with.
+    """Intersect pairs with relations, from constraint ``start`` on; returns the first constraint not dealt with.
 
     ``masks`` (relations, 64-bit words) holds the relations; the first constraint that empties its pair ends it.
     """
@@ -112,7 +112,7 @@ def restrict(firsts, seconds, ids, masks, start, planes, converses, dirty, waiti
 
 @njit(cache=True)
 def undo(length, planes, converses, dirty, waiting, clock, trail, count):  # type: ignore[no-untyped-def]
-    """Gives back the atoms taken since the trail was ``length`` long; what was closed then is closed again."""
+    """Give back the atoms taken since the trail was ``length`` long; what was closed then is closed again."""
     for m in range(count[0] - 1, length - 1, -1):
         i, k, atom = trail[m, 0], trail[m, 1], trail[m, 2]
         planes[i, k >> 6, atom] |= ONE << np.uint64(k & 63)
@@ -127,7 +127,7 @@ def undo(length, planes, converses, dirty, waiting, clock, trail, count):  # typ
 def advance(  # type: ignore[no-untyped-def]
     budget, sizes, needs, converses, full, planes, dirty, waiting, clock, trail, count
 ):
-    """Passes changes on, ``budget`` pairs of them: CLOSED, EMPTIED, PAUSED (budget spent) or FULL (the trail is)."""
+    """Pass changes on, ``budget`` pairs of them: CLOSED, EMPTIED, PAUSED (budget spent) or FULL (the trail is)."""
     n, words, atoms = planes.shape
     changed = np.zeros(words, dtype=np.uint64)
     removed = np.zeros((words, atoms), dtype=np.uint64)
@@ -225,7 +225,7 @@ def _remove_product(i, j, sizes, needs, planes, required, boxes, scratch, remove
 
 @njit(cache=True)
 def _compose_axis(given, required, before, size, after, out):  # type: ignore[no-untyped-def]
-    """Composes on one axis: ``given`` and ``out`` (atoms,) hold the things of one word for every atom."""
+    """Compose on one axis: ``given`` and ``out`` (atoms,) hold the things of one word for every atom."""
     for outer in range(before):
         for c in range(size):
             target = (outer * size + c) * after
@@ -240,7 +240,7 @@ def _compose_axis(given, required, before, size, after, out):  # type: ignore[no
 
 @njit(cache=True)
 def _boxes(i, j, sizes, planes, boxes):  # type: ignore[no-untyped-def]
-    """Writes the relation of i to j as a disjoint union of products; returns how many."""
+    """Write the relation of i to j as a disjoint union of products; returns how many."""
     rows = np.zeros((sizes[0], sizes[1]), dtype=np.uint64)
     for a in range(sizes[0]):
         for b in range(sizes[1]):
@@ -281,7 +281,7 @@ def _alike(rows, a):  # type: ignore[no-untyped-def]
 
 @njit(cache=True)
 def _apply(i, j, removed, converses, full, planes, dirty, waiting, clock, changed, trail, count):  # type: ignore[no-untyped-def]
-    """Takes from row i what j removes, and marks what changed; False where a pair is left with nothing."""
+    """Take from row i what j removes, and marks what changed; False where a pair is left with nothing."""
     _, words, atoms = planes.shape
     changed[:] = NONE
     for w in range(words):
@@ -311,7 +311,7 @@ def _apply(i, j, removed, converses, full, planes, dirty, waiting, clock, change
 
 @njit(cache=True)
 def relations(planes, out):  # type: ignore[no-untyped-def]
-    """Writes every pair's relation, (n, n, 64-bit words of atoms)."""
+    """Write every pair's relation, (n, n, 64-bit words of atoms)."""
     n, words, atoms = planes.shape
     out[:] = NONE
     for i in range(n):
@@ -326,7 +326,7 @@ def relations(planes, out):  # type: ignore[no-untyped-def]
 
 @njit(cache=True)
 def relations_of(firsts, seconds, planes, out):  # type: ignore[no-untyped-def]
-    """Writes the relations of pairs (m,), (m,), (m, 64-bit words of atoms)."""
+    """Write the relations of pairs (m,), (m,), (m, 64-bit words of atoms)."""
     out[:] = NONE
     for m in range(len(firsts)):
         for atom in range(planes.shape[2]):

@@ -34,7 +34,7 @@ def _narrow(i, k, left, by, half, masks, converses, dirty, waiting, clock, trail
 
 @njit(cache=True)
 def restrict(firsts, seconds, ids, words, start, half, masks, converses, dirty, waiting, clock, trail, count):  # type: ignore[no-untyped-def]
-    """Intersects pairs with relations, from constraint ``start`` on; returns the first constraint not dealt with."""
+    """Intersect pairs with relations, from constraint ``start`` on; returns the first constraint not dealt with."""
     for m in range(start, len(firsts)):
         if count[0] >= 0 and count[0] >= len(trail):
             return m
@@ -49,7 +49,7 @@ def restrict(firsts, seconds, ids, words, start, half, masks, converses, dirty, 
 
 @njit(cache=True)
 def undo(length, half, masks, converses, dirty, waiting, clock, trail, count):  # type: ignore[no-untyped-def]
-    """Gives back the atoms taken since the trail was ``length`` long; what was closed then is closed again."""
+    """Give back the atoms taken since the trail was ``length`` long; what was closed then is closed again."""
     for m in range(count[0] - 1, length - 1, -1):
         i, k = trail[m, 0], trail[m, 1]
         whole = masks[i, k] | np.uint16(trail[m, 2])
@@ -63,7 +63,7 @@ def undo(length, half, masks, converses, dirty, waiting, clock, trail, count):  
 
 @njit(cache=True)
 def advance(budget, half, compositions, converses, masks, dirty, waiting, clock, trail, count):  # type: ignore[no-untyped-def]
-    """Passes changes on, ``budget`` pairs of them: CLOSED, EMPTIED, PAUSED (budget spent) or FULL (the trail is)."""
+    """Pass changes on, ``budget`` pairs of them: CLOSED, EMPTIED, PAUSED (budget spent) or FULL (the trail is)."""
     n, words = dirty.shape
     rows = np.zeros((2, 1 << half), dtype=np.uint16)
     changed = np.zeros(n + 1, dtype=np.int64)
@@ -107,7 +107,7 @@ def _compose(relation, half, compositions, rows):  # type: ignore[no-untyped-def
 
 @njit(cache=True)
 def _narrower(mine, others, half, low, high, changed, lefts):  # type: ignore[no-untyped-def]
-    """Lists the pairs of a row that are narrowed, and to what; without a branch, since there is no telling which."""
+    """List the pairs of a row that are narrowed, and to what; without a branch, since there is no telling which."""
     found, shift = np.uint64(0), np.uint64(half)
     lower = (ONE << shift) - ONE
     for k in range(len(mine)):

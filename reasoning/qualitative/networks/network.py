@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -61,8 +61,9 @@ class Network:
         outside = np.flatnonzero((lowest < 0) | (np.maximum(arrays.firsts, arrays.seconds) >= self.size))
         if len(outside):
             wrong = stated[outside[0]]
+            place = "" if wrong.source is None else f"{wrong.source}: "
             raise NetworkError(
-                f"{_place(wrong)}a constraint on {wrong.first} and {wrong.second}, and the things of this network "
+                f"{place}a constraint on {wrong.first} and {wrong.second}, and the things of this network "
                 f"are 0 to {self.size - 1}"
             )
         universal = self.calculus.universal
@@ -84,7 +85,7 @@ class Network:
         )
 
     def name(self, thing: int) -> str:
-        """What a thing is called: its name, else its number."""
+        """Return what a thing is called: its name, else its number."""
         return str(thing) if self.names is None else self.names[thing]
 
     def to_networkx(self) -> nx.MultiDiGraph[Any]:
@@ -125,11 +126,11 @@ class Network:
         return graph
 
     def only(self, constraints: Iterable[Constraint]) -> Network:
-        """The same things with other constraints."""
+        """Return the same things with other constraints."""
         return replace(self, constraints=tuple(constraints))
 
     def compact(self) -> tuple[Network, NDArray[np.int64]]:
-        """The network of just the things that constraints are about, and their numbers here, in order."""
+        """Return the network of just the things that constraints are about, and their numbers here, in order."""
         (small,), kept = compacted([self])
         return small, kept
 
@@ -149,18 +150,17 @@ def compacted(networks: Sequence[Network]) -> tuple[tuple[Network, ...], NDArray
     ends = [end for network in networks for end in (network.arrays.firsts, network.arrays.seconds)]
     kept = np.unique(np.concatenate(ends))
     place = {int(thing): position for position, thing in enumerate(kept)}
-    return tuple(_placed(network, place) for network in networks), kept
-
-
-def _placed(network: Network, place: dict[int, int]) -> Network:
-    stated = network.constraints
-    constraints = tuple(Constraint(place[c.first], place[c.second], c.relation, c.source) for c in stated)
-    names = None if network.names is None else tuple(network.names[thing] for thing in place)
-    return Network(network.calculus, len(place), constraints, names)
+    compact = []
+    for network in networks:
+        stated = network.constraints
+        constraints = tuple(Constraint(place[c.first], place[c.second], c.relation, c.source) for c in stated)
+        names = None if network.names is None else tuple(network.names[thing] for thing in place)
+        compact.append(Network(network.calculus, len(place), constraints, names))
+    return tuple(compact), kept
 
 
 def on_axes(network: Network) -> tuple[Network, ...] | None:
-    """A network for each axis, where every relation is a product; None where one is not.
+    """Return a network for each axis, where every relation is a product; None where one is not.
 
     Composition and intersection of products are products, so that the axes are independent networks (Balbiani,
     Condotta and Fariñas del Cerro 1998, for rectangles). The empty relation is empty on every axis.
@@ -174,17 +174,13 @@ def on_axes(network: Network) -> tuple[Network, ...] | None:
     if any(len(box) > 1 for box in boxes):
         return None
     parts = [box[0] if box else (0,) * len(calculus.axes) for box in boxes]
-    return tuple(
-        Network(axis, network.size, tuple(_projected(network, [part[k] for part in parts], axis.universal)))
-        for k, axis in enumerate(calculus.axes)
-    )
-
-
-def _projected(network: Network, relations: Sequence[int], universal: int) -> Iterator[Constraint]:
-    for constraint, position in zip(network.constraints, network.arrays.ids.tolist(), strict=True):
-        if relations[position] != universal:
-            yield Constraint(constraint.first, constraint.second, relations[position], constraint.source)
-
-
-def _place(constraint: Constraint) -> str:
-    return "" if constraint.source is None else f"{constraint.source}: "
+    stated = list(zip(network.constraints, network.arrays.ids.tolist(), strict=True))
+    axes = []
+    for k, axis in enumerate(calculus.axes):
+        constraints = tuple(
+            Constraint(c.first, c.second, parts[position][k], c.source)
+            for c, position in stated
+            if parts[position][k] != axis.universal
+        )
+        axes.append(Network(axis, network.size, constraints))
+    return tuple(axes)

@@ -37,7 +37,7 @@ def step_lines(step: Step, network: Network, depth: int = 0) -> Iterator[str]:
 
 
 def worded(calculus: Calculus, relation: int) -> str:
-    """A relation for people: its atoms, or for each axis what it leaves there, ``any`` for everything.
+    """Return a relation for people: its atoms, or for each axis what it leaves there, ``any`` for everything.
 
     >>> from deixis.reasoning.qualitative.calculi.registry import calculus
     >>> ra = calculus("ra")
@@ -58,7 +58,7 @@ def _axis(calculus: Calculus, relation: int) -> str:
     return "any" if relation == calculus.universal else " ".join(calculus.members(relation))
 
 
-Table = list[list[int]]
+RelationTable = list[list[int]]
 
 
 class Rounds:
@@ -70,31 +70,27 @@ class Rounds:
         self._universal = network.calculus.universal
         self._composed: dict[tuple[int, int], int] = {}
         self._known: dict[tuple[int, int, int], Step] = {}
-        self._tables: list[Table] = [self._stated()]
-
-    def _stated(self) -> Table:
         n, identity = self._network.size, 1 << self._calculus.identity
         table = [[identity if i == j else self._universal for j in range(n)] for i in range(n)]
         for c in self._network.constraints:
             table[c.first][c.second] &= c.relation
             table[c.second][c.first] &= self._calculus.converse(c.relation)
-        return table
+        self._tables: list[RelationTable] = [table]
 
     def derive(self, first: int, second: int, goal: int, deadline: float) -> Step | None:
-        """The derivation of a relation within ``goal``; of any pair's empty relation where ``first`` is -1.
+        """Return the derivation of a relation within ``goal``; of any pair's empty relation where ``first`` is -1.
 
         None where the rounds end, or ``deadline`` (time.monotonic) comes, before that.
         """
         while True:
-            pair = (first, second) if first >= 0 else self._emptied()
+            pair: tuple[int, int] | None = (first, second)
+            if first < 0:
+                rows = enumerate(self._tables[-1])
+                pair = next(((i, j) for i, row in rows for j, relation in enumerate(row) if not relation), None)
             if pair is not None and not self._at(*pair, len(self._tables) - 1) & ~goal:
                 return self._step(*pair, len(self._tables) - 1, goal)
             if not self._next_round(deadline):
                 return None
-
-    def _emptied(self) -> tuple[int, int] | None:
-        table = self._tables[-1]
-        return next(((i, j) for i, row in enumerate(table) for j, relation in enumerate(row) if not relation), None)
 
     def _at(self, i: int, j: int, position: int) -> int:
         return self._tables[position][i][j]
@@ -106,7 +102,7 @@ class Rounds:
         return self._composed[key]
 
     def _between(self, i: int, j: int, position: int) -> dict[int, int]:
-        """What each third thing leaves of a pair, where that is less than everything."""
+        """Return what each third thing leaves of a pair, where that is less than everything."""
         table, between = self._tables[position], {}
         for k in range(len(table)):
             left, right = table[i][k], table[k][j]
@@ -117,7 +113,7 @@ class Rounds:
         return between
 
     def _next_round(self, deadline: float) -> bool:
-        """Whether there is another round, and was time for it."""
+        """Return whether there is another round, and was time for it."""
         last, changed = len(self._tables) - 1, False
         table = [list(row) for row in self._tables[last]]
         for i in range(len(table)):
@@ -134,17 +130,37 @@ class Rounds:
         return changed
 
     def _step(self, i: int, j: int, position: int, goal: int) -> Step:
-        """Derives a relation within ``goal``, which the table at ``position`` gives, from the tables before it."""
+        """Derive a relation within ``goal``, which the table at ``position`` gives, from the tables before it."""
         while position and not self._at(i, j, position - 1) & ~goal:
             position -= 1
         if not position:
-            return self._leaf(i, j, goal)
+            steps, relation = [], self._universal
+            if i == j:
+                relation = 1 << self._calculus.identity
+            for c in self._network.constraints:
+                if {c.first, c.second} == {i, j}:
+                    stated = c.relation if (c.first, c.second) == (i, j) else self._calculus.converse(c.relation)
+                    steps.append(Step(PairRelation(i, j, stated), Rule.STATED, source=c.source))
+                    relation &= stated
+            alone = [step for step in steps if not step.claim.relation & ~goal]
+            if alone:
+                return alone[0]
+            return Step(PairRelation(i, j, relation), Rule.CONJUNCTION if steps else Rule.STATED, tuple(steps))
         before = position - 1
         options = self._between(i, j, before)
         enough = [k for k, relation in options.items() if not relation & ~goal]
         if enough:
             return min((self._composition(i, k, j, before) for k in enough), key=lambda step: step.size())
-        return self._together(i, j, before, goal, options)
+        # The relation of before and what third things leave, as few of them as greed finds.
+        left, chosen = self._at(i, j, before), []
+        own = left != self._universal
+        while left & ~goal:
+            k = min(options, key=lambda k: (left & options[k] & ~goal).bit_count())
+            left &= options[k]
+            chosen.append(k)
+        premises = [self._exact(i, j, before)] if own else []
+        premises += [self._composition(i, k, j, before) for k in chosen]
+        return Step(PairRelation(i, j, left), Rule.CONJUNCTION, tuple(premises))
 
     def _exact(self, i: int, j: int, position: int) -> Step:
         key = (i, j, position)
@@ -156,30 +172,3 @@ class Rounds:
         relation = self._compose(self._at(i, k, before), self._at(k, j, before))
         premises = (self._exact(i, k, before), self._exact(k, j, before))
         return Step(PairRelation(i, j, relation), Rule.COMPOSITION, premises)
-
-    def _together(self, i: int, j: int, before: int, goal: int, options: dict[int, int]) -> Step:
-        """The relation of before and what third things leave, as few of them as greed finds."""
-        left, chosen = self._at(i, j, before), []
-        own = left != self._universal
-        while left & ~goal:
-            k = min(options, key=lambda k: (left & options[k] & ~goal).bit_count())
-            left &= options[k]
-            chosen.append(k)
-        premises = [self._exact(i, j, before)] if own else []
-        premises += [self._composition(i, k, j, before) for k in chosen]
-        return Step(PairRelation(i, j, left), Rule.CONJUNCTION, tuple(premises))
-
-    def _leaf(self, i: int, j: int, goal: int) -> Step:
-        """What is stated of the pair, the least that is enough."""
-        steps, relation = [], self._universal
-        if i == j:
-            relation = 1 << self._calculus.identity
-        for c in self._network.constraints:
-            if {c.first, c.second} == {i, j}:
-                stated = c.relation if (c.first, c.second) == (i, j) else self._calculus.converse(c.relation)
-                steps.append(Step(PairRelation(i, j, stated), Rule.STATED, source=c.source))
-                relation &= stated
-        alone = [step for step in steps if not step.claim.relation & ~goal]
-        if alone:
-            return alone[0]
-        return Step(PairRelation(i, j, relation), Rule.CONJUNCTION if steps else Rule.STATED, tuple(steps))

@@ -17,10 +17,10 @@ import numpy as np
 
 from deixis.reasoning.qualitative.calculi.bridges import Link
 from deixis.reasoning.qualitative.calculi.calculus import Calculus
-from deixis.reasoning.qualitative.networks.choices import Choices, FewestPieces, NextAtoms
+from deixis.reasoning.qualitative.networks.choices import FewestPiecesFirst, FirstOpenPair, PairSelector
 from deixis.reasoning.qualitative.networks.closure import closed_states, whole_relation
 from deixis.reasoning.qualitative.networks.network import Constraint, Network
-from deixis.reasoning.qualitative.networks.state import Progress, State
+from deixis.reasoning.qualitative.networks.state import NetworkState, Progress
 
 
 class Verdict(StrEnum):
@@ -78,7 +78,7 @@ class _Tally:
 def solve(
     network: Network, time_limit: float | None = None, progress: Progress | None = None, scenario: bool = False
 ) -> Solution:
-    """Decides whether a network is consistent, within ``time_limit`` seconds; ``scenario`` asks for one as well.
+    """Decide whether a network is consistent, within ``time_limit`` seconds; ``scenario`` asks for one as well.
 
     Raises LimitError where the network would not fit in memory.
 
@@ -92,11 +92,13 @@ def solve(
     bridge = decider(network.calculus)
     if bridge is not None:
         solution = solve(translated(network, bridge), time_limit, progress, scenario)
-        found = None if solution.scenario is None else _back(network, solution.scenario, bridge)
-        return replace(solution, scenario=found)
+        if solution.scenario is None:
+            return solution
+        atoms = (replace(c, relation=bridge.backward(c.relation)) for c in solution.scenario.constraints)
+        return replace(solution, scenario=network.only(atoms))
     started = time.perf_counter()
     tally = _Tally(None if time_limit is None else time.monotonic() + time_limit, progress)
-    verdict, reason, found, refuted = _decided(network, tally, scenario)
+    verdict, reason, found, refuted = _decide(network, tally, scenario)
     return Solution(verdict, tally.choices, tally.dead_ends, time.perf_counter() - started, found, refuted, reason)
 
 
@@ -110,13 +112,9 @@ def decider(calculus: Calculus) -> Link | None:
 
 
 def translated(network: Network, bridge: Link) -> Network:
-    """The same constraints in the calculus across the bridge."""
+    """Return the same constraints in the calculus across the bridge."""
     constraints = (replace(c, relation=bridge.forward(c.relation)) for c in network.constraints)
     return Network(bridge.target, network.size, tuple(constraints), network.names)
-
-
-def _back(network: Network, scenario: Network, bridge: Link) -> Network:
-    return network.only(replace(c, relation=bridge.backward(c.relation)) for c in scenario.constraints)
 
 
 def scenario(network: Network, time_limit: float | None = None) -> Network | None:
@@ -125,7 +123,7 @@ def scenario(network: Network, time_limit: float | None = None) -> Network | Non
     return solution.scenario if solution.verdict is Verdict.CONSISTENT else None
 
 
-def _decided(network: Network, tally: _Tally, scenario: bool) -> tuple[Verdict, str, Network | None, bool]:
+def _decide(network: Network, tally: _Tally, scenario: bool) -> tuple[Verdict, str, Network | None, bool]:
     try:
         states, complete = closed_states(network, tally.deadline, tally.progress, traced=True)
         if any(state.emptied is not None for state in states):
@@ -133,11 +131,11 @@ def _decided(network: Network, tally: _Tally, scenario: bool) -> tuple[Verdict, 
         if not complete:
             raise _OutOfTime
         for state in states:
-            if not _refine(state, FewestPieces(state, tally.check_clock), tally):
+            if not _refine(state, FewestPiecesFirst(state, tally.check_clock), tally):
                 return Verdict.INCONSISTENT, "", None, False
         if scenario:
             for state in states:
-                _refine(state, NextAtoms(state), tally)
+                _refine(state, FirstOpenPair(state), tally)
         found = atomic_network(network, states, tally) if scenario else None
     except _OutOfTime:
         return Verdict.UNDECIDED, "the time limit was reached", None, False
@@ -147,8 +145,8 @@ def _decided(network: Network, tally: _Tally, scenario: bool) -> tuple[Verdict, 
     return Verdict.CONSISTENT, "", found, False
 
 
-def _refine(state: State, choices: Choices, tally: _Tally) -> bool:
-    """Chooses until nothing is left to pick; False where every way leads to a contradiction."""
+def _refine(state: NetworkState, choices: PairSelector, tally: _Tally) -> bool:
+    """Choose until nothing is left to pick; False where every way leads to a contradiction."""
     stack: list[_Choice] = []
     while True:
         tally.check_clock()
@@ -161,8 +159,8 @@ def _refine(state: State, choices: Choices, tally: _Tally) -> bool:
         choices.note(state.changed(stack[-1].mark))
 
 
-def _next_choice(state: State, choices: Choices, stack: list[_Choice], tally: _Tally) -> bool:
-    """Makes the next choice that closure lets stand, going back where none is left; False where none is at all."""
+def _next_choice(state: NetworkState, choices: PairSelector, stack: list[_Choice], tally: _Tally) -> bool:
+    """Make the next choice that closure lets stand, going back where none is left; False where none is at all."""
     while stack:
         last = stack[-1]
         for piece in last.pieces:
@@ -183,13 +181,11 @@ def _next_choice(state: State, choices: Choices, stack: list[_Choice], tally: _T
     return False
 
 
-def atomic_network(network: Network, states: tuple[State, ...], tally: _Tally) -> Network:
-    """The network of what the states of its axes say of every pair i < j."""
-    return network.only(_atomic(network, states, tally))
-
-
-def _atomic(network: Network, states: tuple[State, ...], tally: _Tally) -> Iterator[Constraint]:
+def atomic_network(network: Network, states: tuple[NetworkState, ...], tally: _Tally) -> Network:
+    """Return the network of what the states of its axes say of every pair i < j."""
+    atoms = []
     for i in range(network.size):
         tally.check_clock()
         for j in range(i + 1, network.size):
-            yield Constraint(i, j, whole_relation(network.calculus, states, i, j))
+            atoms.append(Constraint(i, j, whole_relation(network.calculus, states, i, j)))
+    return network.only(atoms)

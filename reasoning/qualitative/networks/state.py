@@ -18,12 +18,12 @@ from deixis.reasoning.qualitative.networks.tables import relation_of, tables, wo
 Progress = Callable[[int, int], None]
 """Called now and then with the pairs passed on so far, and those known to be due in all; the latter may yet grow."""
 
-MEMORY = 1 << 31  # bytes that a network may take, with its relations before and after as words of 64 atoms
-LONGEST = 1 << 25  # steps of a trail: half a gigabyte
-SLICE = 20_000_000  # steps between two looks at the clock: some hundredths of a second
+MAX_BYTES = 1 << 31  # bytes that a network may take, with its relations before and after as words of 64 atoms
+MAX_TRAIL_STEPS = 1 << 25  # steps of a trail: half a gigabyte
+STEPS_PER_CHECK = 20_000_000  # steps between two looks at the clock: some hundredths of a second
 
 
-class State:
+class NetworkState:
     """What the pairs of a network may still be. ``traced`` keeps the trail that undoing and explaining need."""
 
     def __init__(self, calculus: Calculus, size: int, traced: bool = False) -> None:
@@ -58,7 +58,7 @@ class State:
         return int(self._count[0])
 
     def add(self, network: Network) -> bool:
-        """Intersects with all constraints of a network; False where a pair is left with nothing."""
+        """Intersect with all constraints of a network; False where a pair is left with nothing."""
         arrays = network.arrays
         return self.restrict(arrays.firsts, arrays.seconds, arrays.ids, arrays.relations)
 
@@ -69,7 +69,7 @@ class State:
         ids: NDArray[np.int64],
         relations: tuple[int, ...],
     ) -> bool:
-        """Intersects pairs (m,), (m,) with ``relations[ids]``; False where one is left with nothing."""
+        """Intersect pairs (m,), (m,) with ``relations[ids]``; False where one is left with nothing."""
         if not len(firsts) or self.emptied is not None:
             return self.emptied is None
         words, done = words_of(relations, self._atoms), 0
@@ -80,7 +80,7 @@ class State:
         return self.emptied is None
 
     def assign(self, first: int, second: int, relation: int) -> bool:
-        """Intersects one pair with a relation."""
+        """Intersect one pair with a relation."""
         one = np.zeros(1, dtype=np.int64)
         return self.restrict(one + first, one + second, one, (relation,))
 
@@ -90,7 +90,7 @@ class State:
 
         if self.emptied is not None or not self.size:
             return True
-        budget = SLICE // (self.size * self._work + 64) + 1
+        budget = STEPS_PER_CHECK // (self.size * self._work + 64) + 1
         while True:
             status = self._cells.advance(budget, self._bookkeeping)
             if status in (CLOSED, EMPTIED):
@@ -103,22 +103,22 @@ class State:
                 return False
 
     def undo(self, mark: int) -> None:
-        """Goes back to where the trail was ``mark`` long; what was closed then is closed again."""
+        """Go back to where the trail was ``mark`` long; what was closed then is closed again."""
         self._cells.undo(mark, self._bookkeeping)
 
     def _lengthen(self, room: int) -> None:
         length = 2 * len(self._trail) + room
-        if length > LONGEST:
+        if length > MAX_TRAIL_STEPS:
             raise LimitError(
-                f"a search among {self.size:,} things in {self.calculus.name} keeps more than {LONGEST:,} steps to "
-                "take back; split the network, or close it without a search"
+                f"a search among {self.size:,} things in {self.calculus.name} keeps more than {MAX_TRAIL_STEPS:,} "
+                "steps to take back; split the network, or close it without a search"
             )
         longer = np.zeros((length, 4), dtype=np.int32)
         longer[: len(self._trail)] = self._trail
         self._trail = longer
 
     def support(self, first: int, second: int) -> NDArray[np.bool_]:
-        """The pairs i <= k, (n, n), whose constraints led to the relation of this one."""
+        """Return the pairs i <= k, (n, n), whose constraints led to the relation of this one."""
         from deixis.reasoning.qualitative.networks.kernels import support
 
         needed = np.zeros((self.size, self.size), dtype=np.bool_)
@@ -126,25 +126,25 @@ class State:
         return needed
 
     def relation(self, first: int, second: int) -> int:
-        """What a pair may still be."""
+        """Return what a pair may still be."""
         return self._cells.relation(first, second)
 
     def relations(self) -> NDArray[np.uint64]:
-        """What all pairs may still be, (n, n, words of 64 atoms)."""
+        """Return what all pairs may still be, (n, n, words of 64 atoms)."""
         return self._cells.relations()
 
     def distinct(self) -> tuple[tuple[int, ...], NDArray[np.int64]]:
-        """The relations that occur, and for each pair (n, n) the position of its own among them."""
+        """Return the relations that occur, and for each pair (n, n) the position of its own among them."""
         words = self.relations()
         relations, ids = distinct_rows(words.reshape(-1, words.shape[2]))
         return relations, ids.reshape(self.size, self.size)
 
     def relations_of(self, positions: NDArray[np.int64]) -> NDArray[np.uint64]:
-        """What pairs (m,), counted i * n + k, may still be, (m, words of 64 atoms)."""
+        """Return what pairs (m,), counted i * n + k, may still be, (m, words of 64 atoms)."""
         return self._cells.relations_of(positions // self.size, positions % self.size)
 
     def changed(self, mark: int) -> NDArray[np.int64]:
-        """The pairs i < k narrowed since the trail was ``mark`` long, each once, counted i * n + k."""
+        """Return the pairs i < k narrowed since the trail was ``mark`` long, each once, counted i * n + k."""
         ends = self._trail[mark : self.mark, :2].astype(np.int64)
         return np.unique(ends.min(axis=1) * self.size + ends.max(axis=1))
 
@@ -165,12 +165,12 @@ def distinct_rows(words: NDArray[np.uint64]) -> tuple[tuple[int, ...], NDArray[n
 
 
 def require_size(calculus: Calculus, size: int) -> None:
-    """Raises LimitError, before anything is allocated, where a network of that size would not fit in memory."""
+    """Raise LimitError, before anything is allocated, where a network of that size would not fit in memory."""
     table = tables(calculus)
     bits = (16 if table.small else table.atoms) + 2 * 64 * ((table.atoms + 63) // 64)  # of a pair
-    if size * size * bits // 8 > MEMORY:
-        most = int((8 * MEMORY / bits) ** 0.5)
+    if size * size * bits // 8 > MAX_BYTES:
+        most = int((8 * MAX_BYTES / bits) ** 0.5)
         raise LimitError(
-            f"a network of {size:,} things in {calculus.name} takes more than {MEMORY >> 20:,} MB; up to {most:,} "
+            f"a network of {size:,} things in {calculus.name} takes more than {MAX_BYTES >> 20:,} MB; up to {most:,} "
             "things can be closed: number the things without gaps, or split the network where nothing connects it"
         )

@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 from deixis.reasoning.errors import LimitError
 from deixis.reasoning.qualitative.calculi.calculus import Calculus, TableCalculus
 
-MOST_AXES = 3
-MOST_ATOMS = 64  # of one axis
-SMALL = 16  # atoms
+MAX_AXES = 3
+MAX_AXIS_ATOMS = 64  # of one axis
+MAX_SMALL_ATOMS = 16  # atoms
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,22 +39,24 @@ class Tables:
 
 @lru_cache(maxsize=64)
 def tables(calculus: Calculus) -> Tables:
-    """The arrays of a calculus; raises LimitError for more than three axes, or 64 atoms on one."""
+    """Return the arrays of a calculus; raises LimitError for more than three axes, or 64 atoms on one."""
     axes = calculus.factors
     largest = max(len(axis.atoms) for axis in axes)
-    if len(axes) > MOST_AXES or largest > MOST_ATOMS:
+    if len(axes) > MAX_AXES or largest > MAX_AXIS_ATOMS:
         raise LimitError(
-            f"{calculus.name}: closure works for up to {MOST_AXES} axes of up to {MOST_ATOMS} atoms, "
+            f"{calculus.name}: closure works for up to {MAX_AXES} axes of up to {MAX_AXIS_ATOMS} atoms, "
             f"not {len(axes)} of up to {largest}"
         )
-    padding = MOST_AXES - len(axes)
+    padding = MAX_AXES - len(axes)
     sizes = np.array([1] * padding + [len(axis.atoms) for axis in axes], dtype=np.int64)
-    needs = np.zeros((MOST_AXES, (largest + 7) // 8, 256, largest), dtype=np.uint64)
+    needs = np.zeros((MAX_AXES, (largest + 7) // 8, 256, largest), dtype=np.uint64)
     for position, axis in enumerate(axes, start=padding):
         filled = _needs(axis)
         needs[position, : filled.shape[0], :, : filled.shape[2]] = filled
-    converses = _converses([axis.converses for axis in axes])
-    if len(axes) == 1 and largest <= SMALL:
+    converses = np.zeros(1, dtype=np.int64)
+    for axis in axes:
+        converses = (converses[:, None] * len(axis.converses) + axis.converses[None, :]).ravel()
+    if len(axes) == 1 and largest <= MAX_SMALL_ATOMS:
         return Tables(sizes, needs, converses, _compositions(axes[0]), _mask_converses(axes[0]))
     nothing = np.zeros(0, dtype=np.uint16)
     return Tables(sizes, needs, converses, nothing, nothing)
@@ -92,20 +94,13 @@ def _mask_converses(axis: TableCalculus) -> NDArray[np.uint16]:
 
 
 def half_of(atoms: int) -> int:
-    """The atoms in the lower part of a relation that is cut in two."""
+    """Return the atoms in the lower part of a relation that is cut in two."""
     return (atoms + 1) // 2
 
 
 def _holding(bit: int, width: int) -> NDArray[np.int64]:
-    """The numbers of that many bits that hold one of them."""
+    """Return the numbers of that many bits that hold one of them."""
     return np.flatnonzero(np.arange(1 << width) >> bit & 1)
-
-
-def _converses(converses: Sequence[NDArray[np.int64]]) -> NDArray[np.int64]:
-    total = np.zeros(1, dtype=np.int64)
-    for axis in converses:
-        total = (total[:, None] * len(axis) + axis[None, :]).ravel()
-    return total
 
 
 def words_of(relations: Sequence[int], atoms: int) -> NDArray[np.uint64]:
@@ -122,5 +117,5 @@ def words_of(relations: Sequence[int], atoms: int) -> NDArray[np.uint64]:
 
 
 def relation_of(words: NDArray[np.uint64]) -> int:
-    """The relation in words of 64 atoms each, shape (words,)."""
+    """Return the relation in words of 64 atoms each, shape (words,)."""
     return int.from_bytes(words.astype("<u8").tobytes(), "little")

@@ -50,10 +50,10 @@ def scoreboard(
     """Compare every engine over generated tables, and over photographs where $DEIXIS_DATA leads to them."""
     from deixis.experiments.photographs import photographs_folder
     from deixis.experiments.scoreboard.report import lines, to_dict
-    from deixis.experiments.scoreboard.run import Plan, run, steps
+    from deixis.experiments.scoreboard.run import ScoreboardPlan, run, steps
 
     require_plot(plot)
-    plan = Plan(cases=cases, seed=seed, time_limit=time_limit, photographs=photographs_folder())
+    plan = ScoreboardPlan(cases=cases, seed=seed, time_limit=time_limit, photographs=photographs_folder())
     plan = plan.quick() if quick else plan
     plan = plan.only(size) if size else plan
     with progress(steps(plan)) as tick:
@@ -80,11 +80,11 @@ def open_ended(
 ) -> None:
     """Teach every learner kind after kind, in random orders, until it learns no more."""
     from deixis.experiments.open_ended.report import lines, to_dict
-    from deixis.experiments.open_ended.run import Plan, run
+    from deixis.experiments.open_ended.run import OpenEndedPlan, run
     from deixis.experiments.open_ended.things import meshes_folder
 
     require_plot(plot)
-    plan = Plan(orders=orders, seed=seed, meshes=meshes_folder(), cache=cache)
+    plan = OpenEndedPlan(orders=orders, seed=seed, meshes=meshes_folder(), cache=cache)
     found = run(plan.quick() if quick else plan, stage=progress)
     if plot is not None:
         from deixis.experiments.open_ended.plot import plot_open_ended

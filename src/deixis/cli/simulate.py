@@ -23,7 +23,7 @@ from deixis.cli.common import (
 if TYPE_CHECKING:
     from deixis.perception.clouds.mesh import Mesh
     from deixis.workflows.lay_table import LaidScript
-    from deixis.workflows.simulate import Simulation, View
+    from deixis.workflows.simulate import CameraSetup, Simulation
 
 UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001}
 
@@ -63,7 +63,7 @@ def simulate(
     from deixis.perception.simulator.camera import KINECT
     from deixis.perception.simulator.depth import DepthSensor, in_table_frame
     from deixis.workflows.lay_table import NoTableError
-    from deixis.workflows.simulate import View
+    from deixis.workflows.simulate import CameraSetup
     from deixis.workflows.simulate import simulate as run
 
     require_scene_name(truth)
@@ -73,7 +73,7 @@ def simulate(
     meshes = _meshes(mesh or [], mesh_unit)
     sensor = DepthSensor(noise=noise, missing=missing, quantised=quantised)
     lens = KINECT if intrinsics is None else read_intrinsics(intrinsics)
-    view = View(camera_height, camera_back, math.radians(azimuth), lens, sensor)
+    view = CameraSetup(camera_height, camera_back, math.radians(azimuth), lens, sensor)
     try:
         with working("laying the table"):
             found = run(_laid(layout, random, seed, meshes, cloth), view, seed)
@@ -146,7 +146,7 @@ def _lines(found: Simulation) -> Iterator[str]:
         yield f"Does not hold: {fact}"
 
 
-def simulation_to_dict(found: Simulation, view: View, seed: int) -> dict[str, Any]:
+def simulation_to_dict(found: Simulation, view: CameraSetup, seed: int) -> dict[str, Any]:
     """The simulation as JSON, but for the points: the camera with its pose, and every thing with its label."""
     from deixis.ontology.export import fact_to_dict
     from deixis.perception.formats.scene_json import scene_to_dict

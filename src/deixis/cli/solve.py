@@ -10,7 +10,7 @@ import typer
 from deixis.cli.common import NO, UNDECIDED, AsJson, TimeLimit, compiled, print_json, print_written, progress_bar
 
 if TYPE_CHECKING:
-    from deixis.workflows.solve import Solved
+    from deixis.workflows.solve import SolvedNetwork
 
 
 def solve(
@@ -43,7 +43,7 @@ def solve(
     raise typer.Exit(_code(solved))
 
 
-def _report(file: str, solved: list[Solved], out: Path | None, as_json: bool) -> None:
+def _report(file: str, solved: list[SolvedNetwork], out: Path | None, as_json: bool) -> None:
     from deixis.grammar.formats.networks import network_lines
     from deixis.report.solve import solved_lines, solved_to_dict
 
@@ -60,7 +60,7 @@ def _report(file: str, solved: list[Solved], out: Path | None, as_json: bool) ->
     print_written(out)
 
 
-def _code(solved: list[Solved]) -> int:
+def _code(solved: list[SolvedNetwork]) -> int:
     from deixis.reasoning.qualitative.networks.search import Verdict
 
     verdicts = {each.verdict for each in solved}

@@ -21,7 +21,7 @@ FIT = FitSettings(iterations=60)
 
 
 def folds(count: int, number: int, seed: int) -> list[NDArray[np.int64]]:
-    """The numbers from 0 to ``count``, dealt out at random to so many folds."""
+    """Return the numbers from 0 to ``count``, dealt out at random to so many folds."""
     order = np.random.default_rng(seed).permutation(count)
     return [order[start::number] for start in range(number)]
 
@@ -41,7 +41,7 @@ def learned_meanings(
 
 
 def relative_sizes(images: Sequence[Photograph]) -> Mapping[str, SizeModel]:
-    """How large things of each name are beside the others of their scene, by class IRI."""
+    """Return how large things of each name are beside the others of their scene, by class IRI."""
     views: dict[str, list[NDArray[np.float64]]] = defaultdict(list)
     for said, boxes in images:
         for kind, size in zip(classes(said), log_sizes(boxes, relative=True), strict=True):

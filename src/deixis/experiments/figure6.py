@@ -68,7 +68,7 @@ DISPLACEMENT = 0.01
 
 
 @dataclass(frozen=True)
-class Spread:
+class Distribution:
     """A figure over repetitions."""
 
     mean: float
@@ -77,7 +77,7 @@ class Spread:
     high: float  # 95th percentile
 
     @classmethod
-    def of(cls, values: Sequence[float] | NDArray[np.float64]) -> Spread:
+    def of(cls, values: Sequence[float] | NDArray[np.float64]) -> Distribution:
         array = np.asarray(values, dtype=float)
         low, median, high = np.percentile(array, [5, 50, 95])
         return cls(float(array.mean()), float(low), float(median), float(high))
@@ -111,10 +111,10 @@ class Panel:
     subgraphs: int
     rho_similarity: float
     rho_facts: float
-    variants_rho_similarity: Spread
-    variants_rho_facts: Spread
-    accuracy: dict[str, Spread]
-    variants_accuracy: dict[str, Spread]
+    variants_rho_similarity: Distribution
+    variants_rho_facts: Distribution
+    accuracy: dict[str, Distribution]
+    variants_accuracy: dict[str, Distribution]
 
 
 @dataclass(frozen=True)
@@ -150,7 +150,7 @@ def _panel_lines(name: str, panel: Panel) -> list[str]:
 
 
 def run(out: Path, variants: int = 50, orders: int = 200, seed: int = 1) -> Figure6:
-    """Runs both panels and writes ``figure6a.png`` and ``figure6b.png`` to ``out``."""
+    """Run both panels and write ``figure6a.png`` and ``figure6b.png`` to ``out``."""
 
     annotated = read_scene(example("place_setting.labelled.scene.json"))
     scenes = [formal_setting(seed * 1000 + i, DISPLACEMENT) for i in range(variants)]
@@ -159,7 +159,20 @@ def run(out: Path, variants: int = 50, orders: int = 200, seed: int = 1) -> Figu
     for letter, script in (("a", "script1"), ("b", "script2")):
         trial = _Trial(script, np.random.default_rng(seed))
         points, accuracy = trial.run(annotated, orders)
-        panels.append(_panel(trial, points, accuracy, [trial.run(scene, max(orders // 10, 1)) for scene in scenes]))
+        varied = [trial.run(scene, max(orders // 10, 1)) for scene in scenes]
+        panel = Panel(
+            script=trial.name,
+            subgraphs=len(points.right),
+            rho_similarity=points.rho(points.similarity),
+            rho_facts=points.rho(points.facts),
+            variants_rho_similarity=Distribution.of([p.rho(p.similarity) for p, _ in varied]),
+            variants_rho_facts=Distribution.of([p.rho(p.facts) for p, _ in varied]),
+            accuracy={what: Distribution.of(values) for what, values in accuracy.items()},
+            variants_accuracy={
+                what: Distribution.of(np.concatenate([found[what] for _, found in varied])) for what in accuracy
+            },
+        )
+        panels.append(panel)
         path = out / f"figure6{letter}.png"
         plot_points(points, path, f"({letter}) {script}: {len(points.right)} sub-graphs", panels[-1].rho_similarity)
         pictures.append(str(path))
@@ -167,19 +180,6 @@ def run(out: Path, variants: int = 50, orders: int = 200, seed: int = 1) -> Figu
 
 
 _Run = tuple[Points, dict[str, NDArray[np.float64]]]
-
-
-def _panel(trial: _Trial, points: Points, accuracy: dict[str, NDArray[np.float64]], varied: Sequence[_Run]) -> Panel:
-    return Panel(
-        script=trial.name,
-        subgraphs=len(points.right),
-        rho_similarity=points.rho(points.similarity),
-        rho_facts=points.rho(points.facts),
-        variants_rho_similarity=Spread.of([p.rho(p.similarity) for p, _ in varied]),
-        variants_rho_facts=Spread.of([p.rho(p.facts) for p, _ in varied]),
-        accuracy={what: Spread.of(values) for what, values in accuracy.items()},
-        variants_accuracy={what: Spread.of(np.concatenate([found[what] for _, found in varied])) for what in accuracy},
-    )
 
 
 class _Trial:
@@ -190,11 +190,7 @@ class _Trial:
         self._rng = rng
         self._description: RelationGraph = read_script(example(f"{name}.layout")).graph()
         self._paper: PaperGraph = described(self._description)
-        self._members = self._choose(len(self._description.nodes))
-        groups = interchangeable(self._description, [0] * len(self._description.nodes))
-        self._group = {name: f"group {i}" for i, group in enumerate(groups) for name in group}
-
-    def _choose(self, n: int) -> NDArray[np.bool_]:
+        n = len(self._description.nodes)
         sizes = [12] if n > 12 else list(SIZES)
         chosen: list[tuple[int, ...]] = []
         for size in sizes:
@@ -205,41 +201,37 @@ class _Trial:
         members = np.zeros((len(chosen), n), dtype=bool)
         for row, kept in enumerate(chosen):
             members[row, list(kept)] = True
-        return members
-
-    def _evidence(self, scene: Scene) -> Evidence:
-        return no_unary_evidence(self._description, scene.without_labels().relations(default_ontology().relations))
-
-    def _matrices(self, evidence: Evidence) -> NDArray[np.float64]:
-        """Rounded, so that entries which are equal but for rounding do not settle what node order settles."""
-        return node_similarity(self._paper, evidence.scene.paper_view(), self._members).matrices.round(9)
+        self._members = members
+        groups = interchangeable(self._description, [0] * len(self._description.nodes))
+        self._group = {name: f"group {i}" for i, group in enumerate(groups) for name in group}
 
     def run(self, scene: Scene, orders: int) -> tuple[Points, dict[str, NDArray[np.float64]]]:
-        """The points of one scene, and the accuracies over node orders, by what chooses the sub-graph."""
-        evidence = self._evidence(scene)
-        matrices = self._matrices(evidence)
+        """Return the points of one scene, and the accuracies over node orders, by what chooses the sub-graph."""
+        evidence = no_unary_evidence(self._description, scene.without_labels().relations(default_ontology().relations))
+        # Rounded, so that entries that differ only by rounding errors do not decide what node order decides.
+        matrices = node_similarity(self._paper, evidence.scene.paper_view(), self._members).matrices.round(9)
         full = np.flatnonzero(self._members.sum(axis=1) == self._members.sum(axis=1).max())
         few = _Measured.of(self._in_orders(matrices, self._members, POINT_ORDERS), matrices, evidence)
         many = _Measured.of(self._in_orders(matrices[full], self._members[full], orders), matrices[full], evidence)
         right = self._right(few.assignments, scene, exactly=True)
         points = Points(few.similarity.mean(axis=1), few.facts.mean(axis=1), right.mean(axis=1))
-        return points, self._accuracies(many, scene)
-
-    def _accuracies(self, measured: _Measured, scene: Scene) -> dict[str, NDArray[np.float64]]:
-        result = {}
+        accuracies = {}
         for choice, keys in (
-            ("facts decide", (measured.similarity, measured.facts)),
-            ("similarity decides", (measured.facts, measured.similarity)),
+            ("facts decide", (many.similarity, many.facts)),
+            ("similarity decides", (many.facts, many.similarity)),
         ):
-            chosen = measured.best(keys, self._rng)
-            result[f"right, {choice}"] = self._right(chosen, scene, exactly=True)
-            result[f"right up to interchangeability, {choice}"] = self._right(chosen, scene, exactly=False)
-            if len(measured.assignments) > 1:
-                result[f"exactly the absent dropped, {choice}"] = self._dropped_the_absent(chosen, scene)
-        return result
+            chosen = many.best(keys, self._rng)
+            accuracies[f"right, {choice}"] = self._right(chosen, scene, exactly=True)
+            accuracies[f"right up to interchangeability, {choice}"] = self._right(chosen, scene, exactly=False)
+            if len(many.assignments) > 1:
+                present = {thing.label for thing in scene.objects}
+                absent = np.array([name not in present for name in self._description.nodes])
+                dropped = ((chosen == UNMATCHED) == absent).all(axis=-1).astype(float)
+                accuracies[f"exactly the absent dropped, {choice}"] = dropped
+        return points, accuracies
 
     def _in_orders(self, matrices: NDArray[np.float64], members: NDArray[np.bool_], orders: int) -> NDArray[np.int64]:
-        """The Hungarian assignments with both graphs' nodes in random orders: shape (sub-graphs, orders, n1)."""
+        """Return the Hungarian assignments with both graphs' nodes in random orders: shape (sub-graphs, orders, n1)."""
         found = np.full((len(matrices), orders, matrices.shape[1]), UNMATCHED, dtype=np.int64)
         for matrix, kept, assignments in zip(matrices, members, found, strict=True):
             present = np.flatnonzero(kept)
@@ -250,7 +242,7 @@ class _Trial:
         return found
 
     def _right(self, assignments: NDArray[np.int64], scene: Scene, exactly: bool) -> NDArray[np.float64]:
-        """The share of the matched objects whose thing bears their name, or one they cannot be told from."""
+        """Return the share of the matched objects whose thing bears their name, or one they cannot be told from."""
         names, labels = self._description.nodes, [thing.label or "" for thing in scene.objects]
         group = {name: name if exactly else self._group.get(name, name) for name in (*names, *labels)}
         same = np.array([[group[name] == group[label] for label in labels] for name in names])
@@ -258,12 +250,6 @@ class _Trial:
         right = same[np.arange(len(names)), assignments] & matched
         share: NDArray[np.float64] = right.sum(axis=-1) / np.maximum(matched.sum(axis=-1), 1)
         return share
-
-    def _dropped_the_absent(self, assignments: NDArray[np.int64], scene: Scene) -> NDArray[np.float64]:
-        present = {thing.label for thing in scene.objects}
-        absent = np.array([name not in present for name in self._description.nodes])
-        same: NDArray[np.float64] = ((assignments == UNMATCHED) == absent).all(axis=-1).astype(float)
-        return same
 
 
 @dataclass(frozen=True, eq=False)

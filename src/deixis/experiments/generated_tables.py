@@ -69,12 +69,12 @@ class GeneratedTable:
         return RelationGraph.from_facts(relations, names, facts, [told[i] for i in self.pieces] if kinds else ())
 
     def scene(self) -> SceneRelations:
-        """What was perceived: the exact name of every ordered pair."""
+        """Return what was perceived: the exact name of every ordered pair."""
         names = [f"o{p:04}" for p in range(len(self.boxes))]
         return scene_relations(names, self.boxes, default_ontology().relations)
 
     def crisp(self, *, centred: bool = False) -> Problem:
-        """The problem under degrees: 1 where the exact name is the word, 0.5 where it only implies it, else 0.
+        """Return the problem under degrees: 1 where the exact name is the word, 0.5 where it only implies it, else 0.
 
         ``centred`` takes off each word's mean degree over the scene's pairs, so that a fact that fails speaks against
         a match and leaving an object out can be the best there is.
@@ -98,9 +98,9 @@ def generate(
 ) -> GeneratedTable:
     """A table of ``objects`` described pieces and ``extra`` others, ``missing`` described ones then taken off."""
     rng = np.random.default_rng([seed, objects])
-    boxes, pieces = _laid(objects + extra, rng)
+    boxes, pieces = _lay_boxes(objects + extra, rng)
     relations = default_ontology().relations
-    ends = _pairs(boxes, objects, round(facts_each * objects), rng)
+    ends = _draw_pairs(boxes, objects, round(facts_each * objects), rng)
     names = box_relations(boxes, relations).names[ends[:, 0], ends[:, 1]]
     wrong = np.zeros(len(ends), dtype=bool)
     wrong[rng.choice(len(ends), round(off * len(ends)), replace=False)] = True
@@ -114,7 +114,7 @@ def generate(
     return GeneratedTable(boxes[shown], ends, words, wrong, truth[:objects], pieces[:objects])
 
 
-def _laid(count: int, rng: np.random.Generator) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+def _lay_boxes(count: int, rng: np.random.Generator) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     """Boxes of seats in rows about four times as long as deep, each seat with three quarters of its pieces; which."""
     seats = max(1, round(count / (0.75 * len(PIECES)) + 0.5))
     columns = max(1, round(2 * np.sqrt(seats)))
@@ -126,7 +126,7 @@ def _laid(count: int, rng: np.random.Generator) -> tuple[NDArray[np.float64], ND
     return np.stack([centres - halves, centres + halves], axis=1), piece.astype(np.int64)
 
 
-def _pairs(boxes: NDArray[np.float64], objects: int, count: int, rng: np.random.Generator) -> NDArray[np.int64]:
+def _draw_pairs(boxes: NDArray[np.float64], objects: int, count: int, rng: np.random.Generator) -> NDArray[np.int64]:
     """Ordered pairs of different objects: half with one of the nearest, half with any; no unordered pair twice."""
     near = nearest(boxes[:objects])
     count = min(count, objects * (objects - 1) // 2)
@@ -140,7 +140,7 @@ def _pairs(boxes: NDArray[np.float64], objects: int, count: int, rng: np.random.
 
 
 def nearest(boxes: NDArray[np.float64]) -> NDArray[np.int64]:
-    """The NEAR nearest others of every box, by their centres, shape (n, NEAR) or less."""
+    """Return the NEAR nearest others of every box, by their centres, shape (n, NEAR) or less."""
     centres = boxes.mean(axis=1)
     distance = np.linalg.norm(centres[:, None] - centres[None], axis=2)
     return np.argsort(distance, axis=1)[:, 1 : NEAR + 1]

@@ -22,7 +22,7 @@ from deixis.ontology.graph import Fact, RelationGraph
 from deixis.ontology.tbox import Ontology
 
 FOLDER = "vrd"
-LEAST_OBJECTS = 4
+MIN_OBJECTS = 4
 WORDS = {
     "on": "on",
     "on the top of": "on",
@@ -48,21 +48,21 @@ class Photograph(NamedTuple):
 
 
 def photographs_folder() -> Path | None:
-    """Where the annotations are, or None where DEIXIS_DATA does not lead to them."""
+    """Return where the annotations are, or None where DEIXIS_DATA does not lead to them."""
     root = os.environ.get("DEIXIS_DATA")
     folder = Path(root) / FOLDER if root else None
     return folder if folder is not None and folder.is_dir() else None
 
 
 def photographs(folder: Path, ontology: Ontology) -> Iterator[Photograph]:
-    """All images of which enough was said, by name; raises PhotographError where the files are no annotations."""
+    """Yield all images of which enough was said, by name; raises PhotographError where the files are no annotations."""
     try:
         annotations: dict[str, list[Any]] = json.loads((folder / "annotations.json").read_text(encoding="utf-8"))
         predicates: list[str] = json.loads((folder / "predicates.json").read_text(encoding="utf-8"))
         words: list[str] = json.loads((folder / "objects.json").read_text(encoding="utf-8"))
         for name in sorted(annotations):
             found = _photograph(annotations[name], predicates, words, ontology)
-            if len(found.boxes) >= LEAST_OBJECTS:
+            if len(found.boxes) >= MIN_OBJECTS:
                 yield found
     except (OSError, KeyError, IndexError, TypeError, AttributeError, json.JSONDecodeError) as error:
         raise PhotographError(
@@ -77,14 +77,10 @@ def _photograph(entries: list[Any], predicates: list[str], words: list[str], ont
         word = WORDS.get(predicates[entry["predicate"]])
         ends = [(entry[end]["category"], *entry[end]["bbox"]) for end in ("subject", "object")]
         if word is not None and ends[0] != ends[1]:
-            subject, object = (boxes.setdefault(end, _name(words[end[0]], len(boxes))) for end in ends)
-            facts[word, subject, object] = None
+            subject, other = (boxes.setdefault(end, f"{words[end[0]].replace(' ', '_')}_{len(boxes)}") for end in ends)
+            facts[word, subject, other] = None
     relations, names = ontology.relations, list(boxes.values())
-    stated = [Fact(subject, (relations[word],), object) for word, subject, object in facts]
+    stated = [Fact(subject, (relations[word],), other) for word, subject, other in facts]
     kinds = [kind.iri if (kind := ontology.of_name(name)[0]) else None for name in names]
     corners = [[[x0, -y1], [x1, -y0]] for _, y0, y1, x0, x1 in boxes]
     return Photograph(RelationGraph.from_facts(relations, names, stated, kinds=kinds), np.array(corners, dtype=float))
-
-
-def _name(word: str, number: int) -> str:
-    return f"{word.replace(' ', '_')}_{number}"

@@ -15,7 +15,7 @@ _Box = tuple[float, float, float, float]
 
 
 def formal_setting(seed: int | None = None, displacement: float = 0.0) -> Scene:
-    """A formal place setting of 12 objects, every thing labelled with its name.
+    """Return a formal place setting of 12 objects, every thing labelled with its name.
 
     Without a seed it is the standard one. With a seed sizes and gaps vary by up to a tenth, and every thing is moved
     by up to ``displacement`` metres on each axis (but what lies on a plate moves with it).
@@ -25,12 +25,19 @@ def formal_setting(seed: int | None = None, displacement: float = 0.0) -> Scene:
     """
     rng = None if seed is None else np.random.default_rng(seed)
     boxes = _boxes(_Sizes(rng))
-    moved = {name: _moved(box, displacement, rng) for name, box in boxes.items() if name not in _BORNE}
+    moved: dict[str, _Box] = {}
+    for name, (x0, x1, y0, y1) in boxes.items():
+        if name not in _BORNE:
+            dx, dy = (0.0, 0.0) if rng is None or not displacement else rng.uniform(-displacement, displacement, 2)
+            moved[name] = (x0 + dx, x1 + dx, y0 + dy, y1 + dy)
     for name, bearer in _BORNE.items():
         dx, dy = moved[bearer][0] - boxes[bearer][0], moved[bearer][2] - boxes[bearer][2]
         x0, x1, y0, y1 = boxes[name]
         moved[name] = (x0 + dx, x1 + dx, y0 + dy, y1 + dy)
-    things = [_thing(name, moved[name]) for name in boxes]
+    things = []
+    for name in boxes:
+        x0, x1, y0, y1 = (round(float(value), 4) for value in moved[name])
+        things.append(PerceivedObject(name, (x0, y0), (x1, y1), label=name))
     return Scene(tuple(things), file="<formal setting>")
 
 
@@ -76,7 +83,7 @@ def _boxes(size: _Sizes) -> dict[str, _Box]:
 def _row(
     boxes: dict[str, _Box], things: list[tuple[str, float, float]], edge: float, side: int, near: float, size: _Sizes
 ) -> None:
-    """Sets cutlery side by side, from the plate's edge outwards."""
+    """Set cutlery side by side, from the plate's edge outwards."""
     for name, width, length in things:
         start = edge + side * size(0.016)
         edge = start + side * size(width)
@@ -86,15 +93,3 @@ def _row(
 def _centred(bearer: _Box, width: float, depth: float) -> _Box:
     x, y = (bearer[0] + bearer[1]) / 2, (bearer[2] + bearer[3]) / 2
     return (x - width / 2, x + width / 2, y - depth / 2, y + depth / 2)
-
-
-def _moved(box: _Box, displacement: float, rng: np.random.Generator | None) -> _Box:
-    if rng is None or displacement == 0:
-        return box
-    dx, dy = rng.uniform(-displacement, displacement, 2)
-    return (box[0] + dx, box[1] + dx, box[2] + dy, box[3] + dy)
-
-
-def _thing(name: str, box: _Box) -> PerceivedObject:
-    x0, x1, y0, y1 = (round(float(value), 4) for value in box)
-    return PerceivedObject(name, (x0, y0), (x1, y1), label=name)

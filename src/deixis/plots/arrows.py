@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 GRID = 12
 """Places of a thing, on each axis, where an arrow may begin or end."""
 
-DEEP, LEAST = 0.015, 0.05
+END_DEPTH, MIN_LENGTH = 0.015, 0.05
 """How far inside its things an arrow should end, and how long it should be: shares of the picture's extent."""
 
 BEND = 0.12
@@ -30,7 +30,7 @@ Point = tuple[float, float]
 Arrow = tuple[Point, Point]
 
 
-def from_below(things: Iterable[PerceivedObject]) -> list[PerceivedObject]:
+def drawing_order(things: Iterable[PerceivedObject]) -> list[PerceivedObject]:
     """Things in the order in which they are drawn: the larger first, so that each lies over what is larger."""
     return sorted(things, key=lambda thing: -float(np.prod(_plan(thing)[1] - _plan(thing)[0])))
 
@@ -39,40 +39,42 @@ class Ends:
     """Where arrows between the things of a picture begin and end."""
 
     def __init__(self, things: Sequence[PerceivedObject]) -> None:
-        ordered = from_below(things)
+        ordered = drawing_order(things)
         self._boxes = np.array([_plan(thing) for thing in ordered])
         self._level = {thing.id: level for level, thing in enumerate(ordered)}
         self._seen: dict[str, tuple[NDArray[np.float64], NDArray[np.float64]]] = {}
         self._extent = float(np.ptp(self._boxes, axis=(0, 1)).max()) if ordered else 1.0
 
-    def arrow(self, subject: str, object: str) -> Arrow:
+    def arrow(self, subject: str, other: str) -> Arrow:
         """From the one to the other, by their ids: short, with either end where no other thing lies over its own."""
-        (starts, start_room), (ends, end_room) = self._where_seen(subject), self._where_seen(object)
+        (starts, start_room), (ends, end_room) = self._where_seen(subject), self._where_seen(other)
         length = np.linalg.norm(starts[:, None] - ends, axis=2)
-        deep, least = DEEP * self._extent, LEAST * self._extent
+        deep, least = END_DEPTH * self._extent, MIN_LENGTH * self._extent
         cost = length + 3 * np.maximum(least - length, 0)
         cost -= 4 * (np.minimum(start_room, deep)[:, None] + np.minimum(end_room, deep))
         cost += 0.05 * (_off_centre(starts)[:, None] + _off_centre(ends))
         start, end = np.unravel_index(int(cost.argmin()), cost.shape)
         return _point(starts[start]), _point(ends[end])
 
-    def _where_seen(self, id: str) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def _where_seen(self, name: str) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Places of a thing (n, 2) over which no other lies, and how far each is from an edge; all where none is."""
-        if id not in self._seen:
-            level = self._level[id]
+        if name not in self._seen:
+            level = self._level[name]
             low, high = self._boxes[level]
-            places = _grid(low, high)
+            share = (np.arange(GRID) + 0.5) / GRID
+            x, y = np.meshgrid(*(low + share[:, None] * (high - low)).T)
+            places = np.stack([x.ravel(), y.ravel()], axis=1)
             room = -_outside(places, low, high)
             above = self._boxes[level + 1 :]
             above = above[(above[:, 0] < high).all(axis=1) & (above[:, 1] > low).all(axis=1)]
             clear = _outside(places[:, None], above[:, 0], above[:, 1]).min(axis=1, initial=np.inf)
             seen = clear > 0
-            self._seen[id] = (places[seen], np.minimum(room, clear)[seen]) if seen.any() else (places, room)
-        return self._seen[id]
+            self._seen[name] = (places[seen], np.minimum(room, clear)[seen]) if seen.any() else (places, room)
+        return self._seen[name]
 
 
 def draw_arrows(axes: Axes, arrows: Sequence[Arrow], colour: str, width: float, order: int) -> None:
-    """Draws arrows, a dot where each begins; bent a little, so that one there and one back are seen as two."""
+    """Draw arrows, a dot where each begins; bent a little, so that one there and one back are seen as two."""
     from matplotlib.patches import FancyArrowPatch
 
     alpha = 0.75 if colour == QUIET else 1.0
@@ -96,7 +98,7 @@ def draw_arrows(axes: Axes, arrows: Sequence[Arrow], colour: str, width: float, 
     axes.plot(x, y, "o", color=colour, markersize=3.5, alpha=alpha, zorder=order, scalex=False, scaley=False)
 
 
-def along(arrows: Sequence[Arrow]) -> list[Point]:
+def points_along(arrows: Sequence[Arrow]) -> list[Point]:
     """Points along arrows as :func:`draw_arrows` bends them, where both axes have one scale."""
     share = np.linspace(0.0, 1.0, STEPS)[:, None]
     points: list[Point] = []
@@ -110,18 +112,12 @@ def along(arrows: Sequence[Arrow]) -> list[Point]:
 
 
 def _plan(thing: PerceivedObject) -> NDArray[np.float64]:
-    """The box from above: its least corner and its greatest, shape (2, 2)."""
+    """Return the box from above: its least corner and its greatest, shape (2, 2)."""
     return np.array([thing.minimum[:2], thing.maximum[:2]], dtype=np.float64)
 
 
-def _grid(low: NDArray[np.float64], high: NDArray[np.float64]) -> NDArray[np.float64]:
-    share = (np.arange(GRID) + 0.5) / GRID
-    x, y = np.meshgrid(*(low + share[:, None] * (high - low)).T)
-    return np.stack([x.ravel(), y.ravel()], axis=1)
-
-
 def _outside(places: NDArray[np.float64], low: NDArray[np.float64], high: NDArray[np.float64]) -> NDArray[np.float64]:
-    """How far places are outside boxes, along the axis on which they are farther; negative within."""
+    """Return how far places are outside boxes, along the axis on which they are farther; negative within."""
     distance: NDArray[np.float64] = np.maximum(low - places, places - high).max(axis=-1)
     return distance
 

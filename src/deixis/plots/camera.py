@@ -18,14 +18,14 @@ if TYPE_CHECKING:
 MARGIN = 0.1
 """How much is shown around the things, as a share of their extent."""
 
-FADED = 0.35
+BACKGROUND_STRENGTH = 0.35
 """How much of the colours of what is no thing is seen, the rest being white."""
 
 UNMEASURED = 0.98
 
 
 @dataclass(frozen=True, eq=False)
-class Camera:
+class CameraPicture:
     """An image of segments, and its things as boxes in its pixels, x to the right and y up.
 
     ``picture`` has shape (height, width, 3), its first row on top.
@@ -40,27 +40,50 @@ class Camera:
         return float(self.picture.shape[1] / self.picture.shape[0])
 
 
-def camera_of(cloud: PointCloud, labels: NDArray[np.int32], scene: Scene) -> Camera:
-    """The view of an organised cloud, as far as there are things in it; ``labels`` (n,) say whose a point is.
+def camera_of(cloud: PointCloud, labels: NDArray[np.int32], scene: Scene) -> CameraPicture:
+    """Return the view of an organised cloud, as far as there are things in it; ``labels`` (n,) say whose a point is.
 
     Grey is what was measured and belongs to no thing, nearly white what was not measured.
     """
     assert cloud.organised is not None
     numbers = labels.reshape(cloud.organised)
-    picture = _painted(cloud, labels).reshape(*cloud.organised, 3)
-    rows, columns = _cropped(numbers)
+    # Each point's colour: its thing's, in the light and shade of the image where the cloud has colours.
+    grey = np.full(len(cloud), 0.75) if cloud.colours is None else cloud.colours.mean(axis=1) / 255.0
+    picture = np.repeat((1.0 - BACKGROUND_STRENGTH * (1.0 - grey))[:, None], 3, axis=1)
+    picture[~cloud.finite] = UNMEASURED
+    on_things = labels >= 0
+    shade = 1.0 if cloud.colours is None else (0.55 + 0.45 * grey[on_things])[:, None]
+    picture[on_things] = colours_of(labels[on_things]) * shade
+    picture = picture.reshape(*cloud.organised, 3)
+    # Crop to the things; keep the whole image where there is none.
+    where = np.argwhere(numbers >= 0)
+    if not len(where):
+        rows, columns = slice(None), slice(None)
+    else:
+        low, high = where.min(axis=0), where.max(axis=0)
+        more = int(MARGIN * (high - low).max()) + 2
+        (top, left), (bottom, right) = np.maximum(low - more, 0).tolist(), (high + more + 1).tolist()
+        rows, columns = slice(top, bottom), slice(left, right)
     numbers, picture = numbers[rows, columns], picture[rows, columns]
+    from scipy.ndimage import binary_erosion, binary_fill_holes
+
     things = []
     for number, thing in enumerate(scene.objects):
         mask = numbers == number
         if mask.any():
-            picture[_rim(mask)] *= 0.5
-            things.append(_boxed(mask, thing.label or thing.id))
-    return Camera(picture, tuple(things))
+            # Darken the outermost pixels; pixels that are missing inside have no edge.
+            filled = binary_fill_holes(mask)
+            edge: NDArray[np.bool_] = filled & ~binary_erosion(filled, iterations=2)
+            picture[edge] *= 0.5
+            name = thing.label or thing.id
+            ys, xs = np.nonzero(mask[::-1])  # y up
+            low, high = (float(xs.min()), float(ys.min())), (float(xs.max() + 1), float(ys.max() + 1))
+            things.append(PerceivedObject(name, low, high, label=name))
+    return CameraPicture(picture, tuple(things))
 
 
-def draw_camera(axes: Axes, camera: Camera) -> None:
-    """Draws it in coordinates of its pixels, y up; the names are still to be written."""
+def draw_camera(axes: Axes, camera: CameraPicture) -> None:
+    """Draw it in coordinates of its pixels, y up; the names are still to be written."""
     height, width = camera.picture.shape[:2]
     axes.imshow(camera.picture, extent=(0, width, 0, height))
     axes.set_title("As the camera sees it", color=INK, fontsize=12, loc="left")
@@ -68,50 +91,10 @@ def draw_camera(axes: Axes, camera: Camera) -> None:
 
 
 def colours_of(numbers: NDArray[np.integer]) -> NDArray[np.float64]:
-    """A colour for each number, neighbours far apart on the circle of hues, shape (n, 3)."""
+    """Return a colour for each number, neighbours far apart on the circle of hues, shape (n, 3)."""
     from matplotlib.colors import hsv_to_rgb
 
     hue = (np.asarray(numbers) * 0.61803398875) % 1.0
     value = 0.6 + 0.3 * ((np.asarray(numbers) * 0.7548776662) % 1.0)
     colours: NDArray[np.float64] = hsv_to_rgb(np.stack([hue, np.full(len(hue), 0.6), value], axis=1))
     return colours
-
-
-def _painted(cloud: PointCloud, labels: NDArray[np.int32]) -> NDArray[np.float64]:
-    """Each point's colour (n, 3): the thing's, in the light and shade of the image where the cloud has colours."""
-    grey = np.full(len(cloud), 0.75) if cloud.colours is None else cloud.colours.mean(axis=1) / 255.0
-    picture = np.repeat((1.0 - FADED * (1.0 - grey))[:, None], 3, axis=1)
-    picture[~cloud.finite] = UNMEASURED
-    on_things = labels >= 0
-    shade = 1.0 if cloud.colours is None else (0.55 + 0.45 * grey[on_things])[:, None]
-    picture[on_things] = colours_of(labels[on_things]) * shade
-    return picture
-
-
-def _cropped(numbers: NDArray[np.int32]) -> tuple[slice, slice]:
-    """The rows and columns (of an image of labels) around its things; all of them where it has none."""
-    where = np.argwhere(numbers >= 0)
-    if not len(where):
-        return slice(None), slice(None)
-    low, high = where.min(axis=0), where.max(axis=0)
-    more = int(MARGIN * (high - low).max()) + 2
-    (top, left), (bottom, right) = np.maximum(low - more, 0).tolist(), (high + more + 1).tolist()
-    return slice(top, bottom), slice(left, right)
-
-
-def _rim(mask: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """The outermost pixels of a mask; pixels that are missing within it have no rim."""
-    from scipy.ndimage import binary_erosion, binary_fill_holes
-
-    filled = binary_fill_holes(mask)
-    rim: NDArray[np.bool_] = filled & ~binary_erosion(filled, iterations=2)
-    return rim
-
-
-def _boxed(mask: NDArray[np.bool_], name: str) -> PerceivedObject:
-    """Where a mask lies in its image, as a thing."""
-    rows, columns = np.nonzero(mask)
-    height = mask.shape[0]
-    low = (float(columns.min()), float(height - 1 - rows.max()))
-    high = (float(columns.max() + 1), float(height - rows.min()))
-    return PerceivedObject(name, low, high, label=name)

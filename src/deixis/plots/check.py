@@ -8,39 +8,36 @@ from pathlib import Path
 from deixis.perception.scene import Scene
 from deixis.plots.figure import save
 from deixis.plots.grounding import Marks, grounding_figure
-from deixis.reasoning.comparison.checking import Verdict
+from deixis.reasoning.comparison.checking import RoleVerdict
 from deixis.workflows.check import Checked
 
 
 def plot_check(checked: Checked, scene: Scene, path: str | Path) -> None:
-    """Draws the table from above: what is misplaced or extra in red, what is undetermined dotted, and the verdict.
+    """Draw the table from above: what is misplaced or extra in red, what is undetermined dotted, and the verdict.
 
     What is of another colour is hatched.
     """
-    title = f"{checked.layout.title or checked.layout.name}: {_summary(checked)}"
+    table = checked.table
+    found = [
+        _listed("missing", [entry.role for entry in table.of(RoleVerdict.MISSING)]),
+        _listed("misplaced", [entry.role for entry in table.of(RoleVerdict.MISPLACED)]),
+        _listed("of another colour", [entry.role for entry, _ in table.miscoloured]),
+        _listed("extra", [entry.label or entry.perceived for entry in table.extra]),
+    ]
+    summary = "; ".join(part for part in found if part) or "nothing wrong"
+    title = f"{checked.layout.title or checked.layout.name}: {summary}"
     save(grounding_figure(checked.table.grounding, scene, title, marks_of(checked)), path)
 
 
 def marks_of(checked: Checked) -> Marks:
-    """The things that the picture marks; what is both misplaced and of another colour bears both marks."""
+    """Return the things that the picture marks; what is both misplaced and of another colour bears both marks."""
     table = checked.table
-    wrong = {entry.perceived for entry in table.of(Verdict.MISPLACED) if entry.perceived is not None}
+    wrong = {entry.perceived for entry in table.of(RoleVerdict.MISPLACED) if entry.perceived is not None}
     return Marks(
         wrong=wrong | {entry.perceived for entry in table.extra},
         miscoloured={entry.perceived for entry, _ in table.miscoloured if entry.perceived is not None},
-        unsure={entry.perceived for entry in table.of(Verdict.UNDETERMINED) if entry.perceived is not None},
+        unsure={entry.perceived for entry in table.of(RoleVerdict.UNDETERMINED) if entry.perceived is not None},
     )
-
-
-def _summary(checked: Checked) -> str:
-    table = checked.table
-    found = [
-        _listed("missing", [entry.role for entry in table.of(Verdict.MISSING)]),
-        _listed("misplaced", [entry.role for entry in table.of(Verdict.MISPLACED)]),
-        _listed("of another colour", [entry.role for entry, _ in table.miscoloured]),
-        _listed("extra", [entry.label or entry.perceived for entry in table.extra]),
-    ]
-    return "; ".join(part for part in found if part) or "nothing wrong"
 
 
 def _listed(what: str, names: Sequence[str]) -> str:

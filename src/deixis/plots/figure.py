@@ -19,7 +19,7 @@ MARGIN = 0.12
 
 
 def save(figure: Figure, path: str | Path) -> None:
-    """Writes a figure, making the folder it goes to; raises DeixisError where that fails."""
+    """Write a figure, making the folder it goes to; raises DeixisError where that fails."""
     import warnings
 
     target = require_picture(path)
@@ -32,7 +32,7 @@ def save(figure: Figure, path: str | Path) -> None:
 
 
 def require_picture(path: str | Path) -> Path:
-    """The path of a picture that can be written, its folder made; raises DeixisError where it cannot be."""
+    """Return the path of a picture that can be written, its folder made; raises DeixisError where it cannot be."""
     target = Path(path)
     if target.suffix.lower() not in (".png", ".svg", ".pdf"):
         raise DeixisError(f"{target}: a picture's name ends in .png, .svg or .pdf")
@@ -46,7 +46,7 @@ def require_picture(path: str | Path) -> Path:
 
 
 def new_figure(width: float, height: float, **subplots: Any) -> tuple[Figure, Any]:
-    """An empty figure that needs no display, and its axes."""
+    """Return an empty figure that needs no display, and its axes."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
     from matplotlib.layout_engine import ConstrainedLayoutEngine

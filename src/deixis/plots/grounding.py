@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from deixis.perception.scene import PerceivedObject, Scene
-from deixis.plots.arrows import Arrow, Ends, along, draw_arrows, from_below
+from deixis.plots.arrows import Arrow, Ends, draw_arrows, drawing_order, points_along
 from deixis.plots.figure import INK, PAPER, QUIET, WRONG, dress_table, new_figure, save
 from deixis.plots.names import write_names
 from deixis.reasoning.grounding.answer import FactOutcome, Grounding
@@ -26,7 +26,7 @@ PLAIN_FILL, UNNAMED_FILL = "#ffffff", "#eceae4"
 HATCH = "////"
 """What is of another colour than it should be is hatched so."""
 
-WIDTH, LEAST_HEIGHT, MOST_HEIGHT = 9.0, 3.0, 12.0
+WIDTH, MIN_HEIGHT, MAX_HEIGHT = 9.0, 3.0, 12.0
 """Inches: how wide a picture is, and how high the table in it."""
 
 LEGEND_LINE = 0.17
@@ -35,7 +35,7 @@ LEGEND_LINE = 0.17
 LINE, HALF_LINE, TITLE_LINE = 115, 50, 75
 """Characters that fit into a line of the legend, into half of one, and into one of the title."""
 
-MOST_CLEAR = 30
+MAX_CLEAR_ARROWS = 30
 """Arrows of violated facts of which names keep clear, at most."""
 
 NO_BREAK = "\u00a0"
@@ -54,7 +54,7 @@ NO_MARKS = Marks()
 
 
 def plot_grounding(found: Grounding, scene: Scene, path: str | Path, title: str | None = None) -> None:
-    """Draws the scene from above with the names found, as PNG, SVG or PDF by the file's ending.
+    """Draw the scene from above with the names found, as PNG, SVG or PDF by the file's ending.
 
     Satisfied facts are quiet arrows, violated ones red; objects that the description cannot tell apart share a
     colour; what has no name is grey. Raises DeixisError where the file cannot be written or its ending is no picture.
@@ -63,11 +63,19 @@ def plot_grounding(found: Grounding, scene: Scene, path: str | Path, title: str 
 
 
 def grounding_figure(found: Grounding, scene: Scene, title: str | None = None, marks: Marks = NO_MARKS) -> Figure:
-    """The picture as a matplotlib figure, with what is marked in it."""
+    """Return the picture as a matplotlib figure, with what is marked in it."""
     groups = [group for group in found.interchangeable if any(name in found.matches for name in group)]
     colours = {name: GROUP_COLOURS[i % len(GROUP_COLOURS)] for i, group in enumerate(groups) for name in group}
     keys = _keys(found, groups, marks)
-    figure, axes = new_figure(WIDTH, _height(scene) + 0.9 + LEGEND_LINE * sum(_lines(key) for key in keys))
+    if not scene.objects:
+        table_height = WIDTH
+    else:
+        low, high = scene.boxes[:, 0, :2].min(axis=0), scene.boxes[:, 1, :2].max(axis=0)
+        width, height = map(float, high - low)
+        table_height = min(max(WIDTH * height / max(width, height / 4, 1e-9), MIN_HEIGHT), MAX_HEIGHT)
+    figure, axes = new_figure(
+        WIDTH, table_height + 0.9 + LEGEND_LINE * sum(1 + str(key.get_label()).count("\n") for key in keys)
+    )
     names = {match.perceived: match.object for match in found.matches.values()}
     _draw_boxes(axes, scene, names, colours, marks)
     ends = Ends(scene.objects)
@@ -77,21 +85,14 @@ def grounding_figure(found: Grounding, scene: Scene, title: str | None = None, m
     axes.set_aspect("equal", adjustable="datalim")  # a long row has room for its names above and below
     axes.margins(0.06)
     dress_table(axes, scene, title and textwrap.fill(title, TITLE_LINE))
-    _write_legend(figure, keys)
+    if keys:
+        short = all(len(key.get_label()) <= HALF_LINE for key in keys)
+        figure.legend(handles=keys, fontsize=8, frameon=False, loc="outside lower center", ncols=2 if short else 1)
     named = [replace(thing, label=names.get(thing.id) or thing.label or thing.id) for thing in scene.objects]
     quiet = {thing.id for thing in scene.objects if thing.id not in names}
     ends_of_arrows = [end for arrow in satisfied + violated for end in arrow]
-    write_names(figure, axes, named, quiet, [*ends_of_arrows, *along(violated[:MOST_CLEAR])])
+    write_names(figure, axes, named, quiet, [*ends_of_arrows, *points_along(violated[:MAX_CLEAR_ARROWS])])
     return figure
-
-
-def _height(scene: Scene) -> float:
-    """Inches that the table is high where it is as wide as the picture."""
-    if not scene.objects:
-        return WIDTH
-    low, high = scene.boxes[:, 0, :2].min(axis=0), scene.boxes[:, 1, :2].max(axis=0)
-    width, height = map(float, high - low)
-    return min(max(WIDTH * height / max(width, height / 4, 1e-9), LEAST_HEIGHT), MOST_HEIGHT)
 
 
 def _arrows(entries: Sequence[FactOutcome], ends: Ends) -> list[Arrow]:
@@ -102,7 +103,7 @@ def _draw_boxes(axes: Axes, scene: Scene, names: Mapping[str, str], colours: Map
     """Fills, over them what is hatched, and over all the edges."""
     from matplotlib.collections import PatchCollection
 
-    things = from_below(scene.objects)
+    things = drawing_order(scene.objects)
     fills = [_rectangle(thing, **_fill(names.get(thing.id), colours)) for thing in things]
     edges = [_rectangle(thing, **_edge(thing.id, names.get(thing.id), colours, marks)) for thing in things]
     hatched = [_rectangle(thing) for thing in things if thing.id in marks.miscoloured]
@@ -127,14 +128,14 @@ def _fill(name: str | None, colours: Mapping[str, str]) -> dict[str, Any]:
     return {"facecolor": fill, "alpha": 0.85 if colour is None else 0.35, "edgecolor": "none"}
 
 
-def _edge(id: str, name: str | None, colours: Mapping[str, str], marks: Marks) -> dict[str, Any]:
-    edge = WRONG if id in marks.wrong else colours.get(name or "") or (INK if name else QUIET)
-    style = (0, (1, 2)) if id in marks.unsure else "-" if name else (0, (4, 3))
+def _edge(thing: str, name: str | None, colours: Mapping[str, str], marks: Marks) -> dict[str, Any]:
+    edge = WRONG if thing in marks.wrong else colours.get(name or "") or (INK if name else QUIET)
+    style = (0, (1, 2)) if thing in marks.unsure else "-" if name else (0, (4, 3))
     return {"fill": False, "edgecolor": edge, "linewidth": 1.2, "linestyle": style}
 
 
 def _keys(found: Grounding, groups: Sequence[Sequence[str]], marks: Marks) -> list[Any]:
-    """The entries of the legend: facts, marks, and the first groups that cannot be told apart."""
+    """Return the entries of the legend: facts, marks, and the first groups that cannot be told apart."""
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
 
@@ -152,24 +153,9 @@ def _keys(found: Grounding, groups: Sequence[Sequence[str]], marks: Marks) -> li
         keys.append(Patch(facecolor=PAPER, edgecolor=INK, linestyle=":", label="named by its place alone"))
     for number, group in enumerate(groups[:MAX_LISTED]):
         colour = GROUP_COLOURS[number % len(GROUP_COLOURS)]
-        keys.append(Patch(facecolor=colour, alpha=0.45, label=_told(group)))
+        members = at_most_many([name.replace("_", NO_BREAK) for name in group])
+        told = textwrap.fill(f"cannot be told apart: {', '.join(members)}", LINE).replace(NO_BREAK, " ")
+        keys.append(Patch(facecolor=colour, alpha=0.45, label=told))
     if len(groups) > MAX_LISTED:
         keys.append(Patch(alpha=0.0, label=f"and {len(groups) - MAX_LISTED} more groups that cannot be told apart"))
     return keys
-
-
-def _told(group: Sequence[str]) -> str:
-    """The first names of a group, in lines that break between names."""
-    members = at_most_many([name.replace("_", NO_BREAK) for name in group])
-    return textwrap.fill(f"cannot be told apart: {', '.join(members)}", LINE).replace(NO_BREAK, " ")
-
-
-def _lines(key: Any) -> int:
-    return 1 + str(key.get_label()).count("\n")
-
-
-def _write_legend(figure: Figure, keys: list[Any]) -> None:
-    """Below the table; short entries stand in two columns."""
-    if keys:
-        short = all(len(key.get_label()) <= HALF_LINE for key in keys)
-        figure.legend(handles=keys, fontsize=8, frameon=False, loc="outside lower center", ncols=2 if short else 1)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,7 +10,7 @@ from deixis.ontology.sizes import Outline
 from deixis.perception.scene import PerceivedObject
 from deixis.plots.figure import INK, dress_table, new_figure, save
 from deixis.plots.names import write_names
-from deixis.workflows.imagine import Sized, Table
+from deixis.workflows.imagine import ImaginedTable, Sized
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -29,21 +28,29 @@ OTHER_FILL = "#ece6f2"
 Shape = tuple[tuple[float, float], ...]
 
 
-def plot_table(table: Table, kinds: Kinds, path: str | Path, title: str | None = None) -> None:
-    """Draws an imagined table from above, as PNG, SVG or PDF by the file's ending.
+def plot_table(table: ImaginedTable, kinds: Kinds, path: str | Path, title: str | None = None) -> None:
+    """Draw an imagined table from above, as PNG, SVG or PDF by the file's ending.
 
     Raises DeixisError where the file cannot be written or its ending is no picture.
     """
     save(table_figure(table, kinds, title), path)
 
 
-def table_figure(table: Table, kinds: Kinds, title: str | None = None) -> Figure:
-    """The picture as a matplotlib figure; the viewer sits at its lower edge."""
-    width, height = _extent(table)
+def table_figure(table: ImaginedTable, kinds: Kinds, title: str | None = None) -> Figure:
+    """Return the picture as a matplotlib figure; the viewer sits at its lower edge."""
+    boxes = table.scene.boxes
+    if not len(boxes):
+        width, height = 0.6, 0.4
+    else:
+        width, height = (boxes[:, 1, :2].max(axis=0) - boxes[:, 0, :2].min(axis=0)).tolist()
+        width, height = max(width, height / 4), max(height, width / 4)
     scale = min(max(9.0, 11.0 * width) / width, max(9.0, 11.0 * height) / height, 20.0 / max(width, height))
     figure, axes = new_figure(max(width * scale, 4.0) + 1.6, max(height * scale, 2.5) + 1.4)
-    drawn = sorted(zip(table.scene.objects, table.objects, strict=True), key=lambda pair: -_area(pair[0]))
-    for order, (thing, sized) in enumerate(drawn):
+    areas = (table.scene.boxes[:, 1, :2] - table.scene.boxes[:, 0, :2]).prod(axis=1)
+    drawn = sorted(
+        zip(table.scene.objects, table.objects, areas.tolist(), strict=True), key=lambda entry: entry[2], reverse=True
+    )
+    for order, (thing, sized, _) in enumerate(drawn):
         for patch in _shape(thing, sized, kinds):
             patch.set_zorder(1 + order)
             axes.add_patch(patch)
@@ -54,29 +61,18 @@ def table_figure(table: Table, kinds: Kinds, title: str | None = None) -> Figure
     return figure
 
 
-def _extent(table: Table) -> tuple[float, float]:
-    boxes = table.scene.boxes
-    if not len(boxes):
-        return 0.6, 0.4
-    width, height = (boxes[:, 1, :2].max(axis=0) - boxes[:, 0, :2].min(axis=0)).tolist()
-    return max(width, height / 4), max(height, width / 4)
-
-
-def _area(thing: PerceivedObject) -> float:
-    (x, y), (right, top) = thing.minimum[:2], thing.maximum[:2]
-    return (right - x) * (top - y)
-
-
 def _shape(thing: PerceivedObject, sized: Sized, kinds: Kinds) -> list[Patch]:
-    """The outline of a thing: round, like a fork, a knife or a spoon, or its box with round corners."""
+    """Return the outline of a thing: round, like a fork, a knife or a spoon, or its box with round corners."""
     from matplotlib.patches import Ellipse, FancyBboxPatch
 
     (x, y), (right, top) = thing.minimum[:2], thing.maximum[:2]
     width, height = right - x, top - y
-    style: dict[str, Any] = {"facecolor": _fill(sized.kind, kinds), "edgecolor": INK, "linewidth": 1.0}
+    colour = next((colour for word, colour in FILLS.items() if _is(sized.kind, word, kinds)), OTHER_FILL)
+    style: dict[str, Any] = {"facecolor": colour, "edgecolor": INK, "linewidth": 1.0}
     if sized.size.outline is Outline.CIRCLE:
         middle = (x + right) / 2, (y + top) / 2
-        return [Ellipse(middle, width * share, height * share, **style) for share in _rings(sized, kinds)]
+        rings = (1.0, 0.72) if _is(sized.kind, "plate", kinds) else (1.0,)  # a plate has a rim
+        return [Ellipse(middle, width * share, height * share, **style) for share in rings]
     if _is(sized.kind, "cutlery", kinds) and max(width, height) > 2 * min(width, height):
         return _cutlery(thing, sized.kind, kinds, style)
     corner = 0.12 * min(width, height)
@@ -84,13 +80,8 @@ def _shape(thing: PerceivedObject, sized: Sized, kinds: Kinds) -> list[Patch]:
     return [FancyBboxPatch(*inner, boxstyle=f"round,pad={corner}", mutation_aspect=1, **style)]
 
 
-def _rings(sized: Sized, kinds: Kinds) -> Sequence[float]:
-    """A plate has a rim."""
-    return (1.0, 0.72) if _is(sized.kind, "plate", kinds) else (1.0,)
-
-
 def _cutlery(thing: PerceivedObject, kind: Kind | None, kinds: Kinds, style: dict[str, Any]) -> list[Patch]:
-    """A handle and a head, along the longer side; the head points away from the viewer, or to the left."""
+    """Return a handle and a head, along the longer side; the head points away from the viewer, or to the left."""
     from matplotlib.patches import Polygon
 
     (x, y), (right, top) = thing.minimum[:2], thing.maximum[:2]
@@ -128,7 +119,3 @@ _SHAPES: dict[str, Shape] = {"fork": _FORK, "knife": _KNIFE, "spoon": _SPOON}
 def _is(kind: Kind | None, word: str, kinds: Kinds) -> bool:
     broader = kinds.of_word(word)
     return kind is not None and broader is not None and kinds.is_a(kind, broader)
-
-
-def _fill(kind: Kind | None, kinds: Kinds) -> str:
-    return next((colour for word, colour in FILLS.items() if _is(kind, word, kinds)), OTHER_FILL)

@@ -30,7 +30,7 @@ LINES = (0.1, 0.25, 0.5, 0.75)
 
 
 def plot_relation(relation: Relation, models: RelationModels, path: str | Path) -> None:
-    """Writes the field around a reference object as PNG, SVG or PDF by the file's ending.
+    """Write the field around a reference object as PNG, SVG or PDF by the file's ending.
 
     Raises DeixisError where the file cannot be written or its ending is no picture.
     """
@@ -76,7 +76,7 @@ def _reach(relation: Relation) -> float:
 
 
 def _origin(model: RelationModel) -> str:
-    """Whether a meaning was learned, and from how much."""
+    """Return whether a meaning was learned, and from how much."""
     origin = model.provenance
     if origin.made is None:
         return "as shipped"

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.perception.detection.settings import PlaneSettings
-from deixis.plots.camera import MARGIN, Camera, camera_of, colours_of, draw_camera
+from deixis.plots.camera import MARGIN, CameraPicture, camera_of, colours_of, draw_camera
 from deixis.plots.figure import INK, dress_table, new_figure, save
 from deixis.plots.names import write_names
 
@@ -20,28 +20,28 @@ if TYPE_CHECKING:
 
     from deixis.learning.views import Recognised
     from deixis.perception.recognition.recogniser import Recognition
-    from deixis.perception.scene import Detected, Scene
+    from deixis.perception.scene import Detected, PerceivedObject, Scene
 
-MOST_POINTS = 60_000
+MAX_POINTS = 60_000
 """Points that are drawn of the things, and of the table."""
 
-FEW = 0.005
+OUTLIER_SHARE = 0.005
 """The share of the table's points, on each side, that may be some other level surface of its height."""
 
-DOT = 0.003
+DOT_WIDTH = 0.003
 """Metres: the width of a point as it is drawn, about that between a depth camera's points on a table."""
 
 TABLE = "#dedbd1"
-WIDEST_DOT = 0.02
+MAX_DOT_WIDTH = 0.02
 """Metres: how wide a point of the table is drawn at the most, where these are far apart."""
 
-LEAST_DOT = 1.0
+MIN_DOT_POINTS = 1.0
 """The same in typographic points, whatever the scale."""
 
-HEIGHT, MOST_WIDTH = 5.4, 12.5
+HEIGHT, MAX_WIDTH = 5.4, 12.5
 """Inches: a panel's height, and how wide the panels may be together."""
 
-LONGEST_NAME = 32
+MAX_NAME_LENGTH = 32
 """Characters of a name that are drawn."""
 
 LEGEND = "Number: the probability that the name is right; beside 'unknown', that no name known is."
@@ -51,7 +51,7 @@ Window = tuple[NDArray[np.float64], NDArray[np.float64]]
 
 
 def plot_perceived(scene: Scene, path: str | Path) -> None:
-    """Draws the points from above, grey where they belong to no thing; beside it the image, where the cloud is one.
+    """Draw the points from above, grey where they belong to no thing; beside it the image, where the cloud is one.
 
     Raises SceneError for a scene that was not found in a cloud, or is read from a file.
     """
@@ -67,7 +67,11 @@ def plot_perceived(scene: Scene, path: str | Path) -> None:
     figure, axes, scale = _panels(window, camera)
     _points(axes[0], points, labels, window, scale)
     level = scene.detection.table is not None or bool(scene.objects)
-    _dress(axes[0], scene, window, _title(scene, scene.detection))
+    if scene.detection.table is not None:
+        title = "From above, in the table's frame"
+    else:
+        title = "One thing alone, from above" if scene.objects else "All points, as they stand"
+    _dress(axes[0], scene, window, title)
     if not scene.objects:
         _say(axes[0], "; ".join(scene.detection.notes) or "nothing was found")
     if not level:
@@ -78,12 +82,6 @@ def plot_perceived(scene: Scene, path: str | Path) -> None:
         draw_camera(axes[1], camera)
         write_names(figure, axes[1], camera.things)
     save(figure, path)
-
-
-def _title(scene: Scene, found: Detected) -> str:
-    if found.table is not None:
-        return "From above, in the table's frame"
-    return "One thing alone, from above" if scene.objects else "All points, as they stand"
 
 
 def plot_recognised(found: Recognised, path: str | Path) -> None:
@@ -103,20 +101,21 @@ def plot_recognised(found: Recognised, path: str | Path) -> None:
         _say(axes[0], "there is nothing in this scene")
     if found.answers:
         axes[0].set_xlabel(f"{axes[0].get_xlabel()}\n\n{LEGEND}", fontsize=8, color=INK)
-    named = [replace(thing, label=_answered(thing.id, thing.label, found)) for thing in found.scene.objects]
+    named = [replace(thing, label=_answered(thing, found)) for thing in found.scene.objects]
     write_names(figure, axes[0], named)
     save(figure, path)
 
 
-def _answered(id: str, label: str | None, found: Recognised) -> str:
-    answer: Recognition | None = found.answers.get(id)
-    name = (label if answer is None else answer.label) or "unknown"
-    name = name if len(name) <= LONGEST_NAME else f"{name[: LONGEST_NAME - 1]}…"
-    return f"{id} {name}" if answer is None else f"{id} {name} {answer.probability:.2f}"
+def _answered(thing: PerceivedObject, found: Recognised) -> str:
+    """Return the id of a thing, its name, and the probability of that where it was recognised."""
+    answer: Recognition | None = found.answers.get(thing.id)
+    name = (thing.label if answer is None else answer.label) or "unknown"
+    name = name if len(name) <= MAX_NAME_LENGTH else f"{name[: MAX_NAME_LENGTH - 1]}…"
+    return f"{thing.id} {name}" if answer is None else f"{thing.id} {name} {answer.probability:.2f}"
 
 
 def window_of(points: NDArray[np.float32], scene: Scene, found: Detected) -> Window:
-    """What is drawn of points (n, 3) in the table's frame: the things, and some of the table around them.
+    """Return what is drawn of points (n, 3) in the table's frame: the things, and some of the table around them.
 
     The whole table where nothing is on it, and all points where no table was found.
     """
@@ -125,7 +124,7 @@ def window_of(points: NDArray[np.float32], scene: Scene, found: Detected) -> Win
     flat = points[np.isfinite(points).all(axis=1)]
     if found.table is not None:
         flat = flat[np.abs(flat[:, 2]) < PlaneSettings().table_band]
-    low, high = np.quantile(flat[:, :2].astype(np.float64), [FEW, 1.0 - FEW], axis=0)
+    low, high = np.quantile(flat[:, :2].astype(np.float64), [OUTLIER_SHARE, 1.0 - OUTLIER_SHARE], axis=0)
     return _widened(low, high)
 
 
@@ -138,15 +137,15 @@ def _around_boxes(scene: Scene) -> Window:
 def _widened(low: NDArray[np.float64], high: NDArray[np.float64]) -> Window:
     """With a margin, and neither side less than half the other."""
     middle, half = (low + high) / 2, (high - low) / 2
-    half = np.maximum(half + 2 * MARGIN * half.max(), max(half.max() / 2, DOT))
+    half = np.maximum(half + 2 * MARGIN * half.max(), max(half.max() / 2, DOT_WIDTH))
     return middle - half, middle + half
 
 
-def _panels(window: Window, camera: Camera | None) -> tuple[Figure, list[Axes], float]:
-    """A figure with a panel for each view, of one height; and how many inches a metre has in the first."""
+def _panels(window: Window, camera: CameraPicture | None) -> tuple[Figure, list[Axes], float]:
+    """Return a figure with a panel for each view, of one height; and how many inches a metre has in the first."""
     width, depth = (window[1] - window[0]).tolist()
     shapes = [width / depth] if camera is None else [width / depth, camera.shape]
-    height = min(HEIGHT, MOST_WIDTH / sum(shapes))
+    height = min(HEIGHT, MAX_WIDTH / sum(shapes))
     figure, axes = new_figure(
         height * sum(shapes) + 0.4 + 0.6 * len(shapes),
         height + 1.2,
@@ -163,12 +162,12 @@ def _points(axes: Axes, points: NDArray[np.float32], labels: NDArray[np.int32], 
     style: dict[str, Any] = {"linewidths": 0, "rasterized": True}
     for of_things in (False, True):
         shown = np.flatnonzero(inside & ((labels >= 0) == of_things))
-        shown = shown[:: len(shown) // MOST_POINTS + 1]
+        shown = shown[:: len(shown) // MAX_POINTS + 1]
         shown = shown[np.argsort(points[shown, 2], kind="stable")]
         apart = float(np.sqrt(np.prod(window[1] - window[0]) / max(len(shown), 1)))
-        width = DOT if of_things else min(1.5 * max(apart, DOT), WIDEST_DOT)
+        width = DOT_WIDTH if of_things else min(1.5 * max(apart, DOT_WIDTH), MAX_DOT_WIDTH)
         colours = colours_of(labels[shown]) if of_things else TABLE
-        size = max(72 * scale * width, LEAST_DOT) ** 2
+        size = max(72 * scale * width, MIN_DOT_POINTS) ** 2
         axes.scatter(1.0 * points[shown, 0], 1.0 * points[shown, 1], s=size, c=colours, **style)
 
 

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from deixis.ontology.lessons.types import Alternative, Match
-    from deixis.reasoning.grounding.answer import FactOutcome, Grounding, LeftOut, Pivotal
+    from deixis.reasoning.grounding.answer import FactOutcome, Grounding, Pivotal
 
 MAX_LISTED = 12
 """Names, and facts that matter, that are listed one by one."""
@@ -19,8 +18,15 @@ MIN_PROBABILITY_LEAD = 0.02
 
 def grounding_lines(found: Grounding) -> list[str]:
     """Who is who, what cannot be told apart, which facts fail, what was left out, and what qualifies the answer."""
+    from deixis.reasoning.grounding.answer import Outcome, Standing
+
     lines = [_match_line(match) for match in found.matches.values()] or ["No object was found."]
-    elsewhere = [match.object for match in found.matches.values() if _likelier_elsewhere(match)]
+    elsewhere = [
+        match.object
+        for match in found.matches.values()
+        if match.probability is not None
+        and any((other.probability or 0.0) > match.probability + MIN_PROBABILITY_LEAD for other in match.alternatives)
+    ]
     if elsewhere:
         told = "This is the likeliest map as a whole; taken alone, likelier to be another thing: "
         lines += ["", f"{told}{', '.join(at_most_many(elsewhere))}."]
@@ -28,33 +34,42 @@ def grounding_lines(found: Grounding) -> list[str]:
     if groups:
         lines += ["", "The description cannot tell these apart, so their names may be swapped:"]
         lines += ["    " + ", ".join(group) for group in groups]
-    lines += ["", f"Facts: {len(found.outcomes)} stated, {len(found.satisfied)} satisfied" + _rest(found)]
+    counts = {outcome: len(found.of(outcome)) for outcome in (Outcome.VIOLATED, Outcome.WAIVED, Outcome.OPEN)}
+    words = {
+        Outcome.VIOLATED: "violated",
+        Outcome.WAIVED: "optional and not so",
+        Outcome.OPEN: "about something left out",
+    }
+    rest = "".join(f", {number} {words[outcome]}" for outcome, number in counts.items() if number)
+    lines += ["", f"Facts: {len(found.outcomes)} stated, {len(found.satisfied)} satisfied" + rest]
     lines += [f"    violated: {violation_text(entry)}" for entry in found.violated]
-    lines += _left_out_lines((*found.unmatched_objects, *found.unmatched_perceived))
-    pivotal = [line for entry in found.pivotal or () if (line := _pivotal_line(entry, found))]
-    lines += pivotal[:MAX_LISTED]
-    if len(pivotal) > MAX_LISTED:
-        lines.append(f"and {len(pivotal) - MAX_LISTED} more facts that matter (--json has them)")
-    lines.append(f"Graph similarity {found.graph_similarity:.3f}; engine {found.engine}, {_standing(found)}.")
-    return lines + [f"Note: {note}." for note in found.notes]
-
-
-def _left_out_lines(left_out: Sequence[LeftOut]) -> Iterator[str]:
-    """A line for each, or one for many that are left out for the same reason."""
+    left_out = (*found.unmatched_objects, *found.unmatched_perceived)
     for reason in dict.fromkeys(left.reason for left in left_out):
         names = [left.name for left in left_out if left.reason == reason]
         if len(names) > MAX_LISTED:
             names = [", ".join(at_most_many(names)) + " (--json has them)"]
-        yield from (f"Left out: {name}: {reason}." for name in names)
+        lines += [f"Left out: {name}: {reason}." for name in names]
+    pivotal = [line for entry in found.pivotal or () if (line := _pivotal_line(entry, found))]
+    lines += pivotal[:MAX_LISTED]
+    if len(pivotal) > MAX_LISTED:
+        lines.append(f"and {len(pivotal) - MAX_LISTED} more facts that matter (--json has them)")
+    how = "proved the best in" if found.proved_best else "not proved the best,"
+    if not found.proved_best and math.isfinite(found.gap):
+        how = f"not proved the best: another could be likelier by {found.gap:.3g} nats at most;"
+    sampled = found.probabilities is Standing.SAMPLED and math.isfinite(found.probability_error)
+    error = f"; probabilities are sampled, within about {found.probability_error:.1g}" if sampled else ""
+    standing = f"{how} {found.seconds:.2f} s{error}"
+    lines.append(f"Graph similarity {found.graph_similarity:.3f}; engine {found.engine}, {standing}.")
+    return lines + [f"Note: {note}." for note in found.notes]
 
 
 def at_most_many(told: list[str]) -> list[str]:
-    """The first ones, and how many more there are."""
+    """Return the first ones, and how many more there are."""
     return [*told[:MAX_LISTED], f"{len(told) - MAX_LISTED} more"] if len(told) > MAX_LISTED else told
 
 
 def _match_line(match: Match) -> str:
-    """An object, its thing, how probable that is, and what else it may be."""
+    """Return an object, its thing, how probable that is, and what else it may be."""
     line = f"{match.object:<24} {match.perceived:<10}"
     if match.probability is not None:
         line += f" {_probability(match.probability)}"
@@ -83,14 +98,6 @@ def _probability(value: float) -> str:
     return "1   " if value > 1 - 1e-6 else "0.99"
 
 
-def _likelier_elsewhere(match: Match) -> bool:
-    """Whether a thing by itself is more probably another one than what it is in the best map."""
-    own = match.probability
-    return own is not None and any(
-        (other.probability or 0.0) > own + MIN_PROBABILITY_LEAD for other in match.alternatives
-    )
-
-
 def _pivotal_line(pivotal: Pivotal, found: Grounding) -> str:
     """What would be otherwise without a fact, empty where interchangeable objects would only swap their things."""
     changes = dict(pivotal.changes)
@@ -107,33 +114,10 @@ def _pivotal_line(pivotal: Pivotal, found: Grounding) -> str:
     return f"Without {pivotal.fact}{place}: {'; '.join(would)}." if would else ""
 
 
-def _rest(found: Grounding) -> str:
-    from deixis.reasoning.grounding.answer import Outcome
-
-    counts = {outcome: len(found.of(outcome)) for outcome in (Outcome.VIOLATED, Outcome.WAIVED, Outcome.OPEN)}
-    words = {
-        Outcome.VIOLATED: "violated",
-        Outcome.WAIVED: "optional and not so",
-        Outcome.OPEN: "about something left out",
-    }
-    return "".join(f", {number} {words[outcome]}" for outcome, number in counts.items() if number)
-
-
 def violation_text(entry: FactOutcome) -> str:
-    """A violated fact with its line and what was perceived instead."""
+    """Return a violated fact with its line and what was perceived instead."""
     place = f" ({entry.fact.source})" if entry.fact.source else ""
     if entry.perceived is None or entry.seen is None:
         return f"{entry.fact}{place}"
-    subject, object = entry.perceived
-    return f"{entry.fact}{place}: perceived is {entry.seen.word}({subject}, {object})"
-
-
-def _standing(found: Grounding) -> str:
-    from deixis.reasoning.grounding.answer import Standing
-
-    how = "proved the best in" if found.proved_best else "not proved the best,"
-    if not found.proved_best and math.isfinite(found.gap):
-        how = f"not proved the best: another could be likelier by {found.gap:.3g} nats at most;"
-    sampled = found.probabilities is Standing.SAMPLED and math.isfinite(found.probability_error)
-    error = f"; probabilities are sampled, within about {found.probability_error:.1g}" if sampled else ""
-    return f"{how} {found.seconds:.2f} s{error}"
+    subject, other = entry.perceived
+    return f"{entry.fact}{place}: perceived is {entry.seen.word}({subject}, {other})"

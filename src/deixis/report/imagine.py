@@ -9,11 +9,11 @@ from deixis.ontology.export import fact_to_dict
 from deixis.ontology.graph import Fact
 from deixis.ontology.sizes import Extent
 from deixis.perception.formats.scene_json import scene_to_dict
-from deixis.workflows.imagine import Imagination, NoTable, Sized, Table, Waived
+from deixis.workflows.imagine import Imagination, ImaginedTable, NoTable, Sized
 
 
 def imagination_lines(found: Imagination) -> list[str]:
-    """The tables with what they do not show; or the facts that allow none, with file and line."""
+    """Return the tables with what they do not show; or the facts that allow none, with file and line."""
     if found.none is not None:
         return list(_none_lines(found.none))
     if not found.tables:
@@ -26,7 +26,7 @@ def imagination_lines(found: Imagination) -> list[str]:
     return lines
 
 
-def _table_lines(table: Table) -> Iterator[str]:
+def _table_lines(table: ImaginedTable) -> Iterator[str]:
     for thing, sized in zip(table.scene.objects, table.objects, strict=True):
         (x, y), (right, top) = thing.minimum[:2], thing.maximum[:2]
         kind = sized.kind.label if sized.kind else "kind not known"
@@ -34,7 +34,10 @@ def _table_lines(table: Table) -> Iterator[str]:
         yield f"{sized.name:<24} {size:<16} {place:<16} {kind}"
     yield f"Facts: {len(table.holds)} of {len(table.holds) + len(table.waived)} hold."
     for waived in table.waived:
-        yield from _waived_lines(waived)
+        what = "optional" if waived.fact.optional else f"weight {waived.fact.weight:g}"
+        yield f"Given up: {waived.fact}{_at(waived.fact)} [{what}]" + (", which goes against" if waived.because else "")
+        yield from (f"    {fact.source or 'stated'}: {fact}" for fact in waived.because)
+        yield from (f"    {sized}" for sized in waived.sizes)
     for a, b in table.overlapping:
         yield f"Overlap: {a} and {b}; they could not be laid apart."
     for fact in table.named_otherwise:
@@ -45,13 +48,6 @@ def _table_lines(table: Table) -> Iterator[str]:
 
 def _cm(metres: float) -> str:
     return f"{100 * metres:.1f}"
-
-
-def _waived_lines(waived: Waived) -> Iterator[str]:
-    what = "optional" if waived.fact.optional else f"weight {waived.fact.weight:g}"
-    yield f"Given up: {waived.fact}{_at(waived.fact)} [{what}]" + (", which goes against" if waived.because else "")
-    yield from (f"    {fact.source or 'stated'}: {fact}" for fact in waived.because)
-    yield from (f"    {sized}" for sized in waived.sizes)
 
 
 def _at(fact: Fact) -> str:
@@ -74,15 +70,21 @@ def _none_lines(none: NoTable) -> Iterator[str]:
 
 
 def imagination_to_dict(found: Imagination) -> dict[str, Any]:
-    """The same as JSON: ``tables``, each with its scene, or ``conflict``."""
+    """Return the same as JSON: ``tables``, each with its scene, or ``conflict``."""
     return {
         "decided": found.decided,
         "tables": [_table_to_dict(table) for table in found.tables],
-        "conflict": found.none and _none_to_dict(found.none),
+        "conflict": found.none
+        and {
+            "facts": _facts(found.none.facts),
+            "sizes": _sizes(found.none.sizes),
+            "minimal": found.none.minimal,
+            "reason": found.none.reason,
+        },
     }
 
 
-def _table_to_dict(table: Table) -> dict[str, Any]:
+def _table_to_dict(table: ImaginedTable) -> dict[str, Any]:
     return {
         "scene": scene_to_dict(table.scene),
         "kinds": {sized.name: sized.kind.name if sized.kind else None for sized in table.objects},
@@ -93,15 +95,6 @@ def _table_to_dict(table: Table) -> dict[str, Any]:
         "overlapping": [list(pair) for pair in table.overlapping],
         "named_otherwise": _facts(table.named_otherwise),
         "finished": table.finished,
-    }
-
-
-def _none_to_dict(none: NoTable) -> dict[str, Any]:
-    return {
-        "facts": _facts(none.facts),
-        "sizes": _sizes(none.sizes),
-        "minimal": none.minimal,
-        "reason": none.reason,
     }
 
 

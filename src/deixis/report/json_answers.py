@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import defaultdict
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
@@ -11,16 +12,16 @@ from deixis.ontology.export import fact_to_dict, graph_to_dict
 if TYPE_CHECKING:
     from deixis.grammar.script import Script
     from deixis.ontology.lessons.types import Alternative
-    from deixis.reasoning.entailment.derivations import Claim, Derivation
+    from deixis.reasoning.entailment.derivations import Derivation
     from deixis.reasoning.entailment.why_not import WhyNot
-    from deixis.reasoning.grounding.answer import FactOutcome, Grounding, Pivotal
+    from deixis.reasoning.grounding.answer import FactOutcome, Grounding
     from deixis.workflows.check import Checked
-    from deixis.workflows.infer import Inference, Inferred
+    from deixis.workflows.infer import Inference
     from deixis.workflows.learn import Learned
 
 
 def script_to_dict(script: Script) -> dict[str, Any]:
-    """A parsed script: its header, its objects with their kinds, and its facts with their places."""
+    """Return a parsed script: its header, its objects with their kinds, and its facts with their places."""
     graph = graph_to_dict(script.graph())
     return {
         "file": script.file,
@@ -38,31 +39,26 @@ def inference_to_dict(inference: Inference) -> dict[str, Any]:
         facts = [fact_to_dict(fact) for fact in inference.conflict.facts]
         return {"consistent": False, "conflict": {"reason": inference.conflict.reason, "facts": facts}}
     stated = [fact_to_dict(fact) | {"status": "stated"} for fact in inference.stated]
-    inferred = [_inferred_to_dict(entry) for entry in inference.inferred()]
+    inferred = [
+        fact_to_dict(entry.fact)
+        | {"status": "inferred", "rule": entry.rule.value, "steps": entry.steps, "lines": list(entry.lines)}
+        for entry in inference.inferred()
+    ]
     known = {"consistent": True if inference.decided else None, "complete": inference.complete}
     return {**known, "facts": stated + inferred}
 
 
-def _inferred_to_dict(entry: Inferred) -> dict[str, Any]:
-    how = {"status": "inferred", "rule": entry.rule.value, "steps": entry.steps, "lines": list(entry.lines)}
-    return fact_to_dict(entry.fact) | how
-
-
 def derivation_to_dict(derivation: Derivation) -> dict[str, Any]:
-    """A derivation, down to stated facts."""
-    premises = [derivation_to_dict(premise) for premise in derivation.premises]
-    return {"fact": _claim_to_dict(derivation.claim), "rule": derivation.rule.value, "premises": premises}
-
-
-def _claim_to_dict(claim: Claim) -> dict[str, Any]:
-    """A fact as elsewhere; an order of two edges, or what is impossible, in words."""
+    """Return a derivation, down to stated facts."""
     from deixis.ontology.graph import Fact
 
-    return fact_to_dict(claim) if isinstance(claim, Fact) else {"claim": str(claim)}
+    premises = [derivation_to_dict(premise) for premise in derivation.premises]
+    claim = fact_to_dict(derivation.claim) if isinstance(derivation.claim, Fact) else {"claim": str(derivation.claim)}
+    return {"fact": claim, "rule": derivation.rule.value, "premises": premises}
 
 
 def why_not_to_dict(found: WhyNot) -> dict[str, Any]:
-    """Why a fact does not follow: what excludes it, or a picture without it."""
+    """Return why a fact does not follow: what excludes it, or a picture without it."""
     answer: dict[str, Any] = {"fact": str(found.fact), "follows": found.follows is not None}
     if found.follows is not None:
         answer["derivation"] = derivation_to_dict(found.follows)
@@ -91,19 +87,19 @@ def _alternative_to_dict(other: Alternative) -> dict[str, Any]:
     }
 
 
-def _pivotal_to_dict(pivotal: Pivotal) -> dict[str, Any]:
-    return {
-        "fact": fact_to_dict(pivotal.fact),
-        "changes": dict(pivotal.changes),
-        "unsettled": list(pivotal.unsettled),
-        "settled": list(pivotal.settled),
-    }
-
-
 def grounding_to_dict(found: Grounding) -> dict[str, Any]:
-    """Who is who, and everything that qualifies it."""
+    """Return who is who, and everything that qualifies it."""
     from deixis.reasoning.grounding.answer import Outcome, Standing
 
+    pivotal = [
+        {
+            "fact": fact_to_dict(entry.fact),
+            "changes": dict(entry.changes),
+            "unsettled": list(entry.unsettled),
+            "settled": list(entry.settled),
+        }
+        for entry in found.pivotal or ()
+    ]
     return {
         "engine": found.engine,
         "matches": [
@@ -133,7 +129,7 @@ def grounding_to_dict(found: Grounding) -> dict[str, Any]:
             "waived": [outcome_to_dict(entry) for entry in found.of(Outcome.WAIVED)],
             "open": [outcome_to_dict(entry) for entry in found.of(Outcome.OPEN)],
         },
-        "pivotal": None if found.pivotal is None else [_pivotal_to_dict(entry) for entry in found.pivotal],
+        "pivotal": None if found.pivotal is None else pivotal,
         "probabilities": {
             "standing": found.probabilities.value,
             "error": None if found.probabilities is Standing.NONE else _rounded(found.probability_error),
@@ -174,7 +170,7 @@ def _dialogue_and_viewpoints(found: Grounding) -> dict[str, Any]:
 
 
 def outcome_to_dict(entry: FactOutcome) -> dict[str, Any]:
-    """A fact, its line, and what was perceived of its pair."""
+    """Return a fact, its line, and what was perceived of its pair."""
     perceived = None
     if entry.perceived is not None and entry.seen is not None:
         perceived = {
@@ -188,7 +184,7 @@ def outcome_to_dict(entry: FactOutcome) -> dict[str, Any]:
 
 
 def learned_to_dict(learned: Learned) -> dict[str, Any]:
-    """A lesson: what it taught, what it left open, and the grounding that it rests on."""
+    """Return a lesson: what it taught, what it left open, and the grounding that it rests on."""
     layout = learned.lesson.layout
     return {
         "lesson": layout.lesson,
@@ -203,17 +199,22 @@ def learned_to_dict(learned: Learned) -> dict[str, Any]:
 
 
 def check_to_dict(checked: Checked) -> dict[str, Any]:
-    """The verdicts on a table; broken facts with their lines and what was seen instead."""
-    from deixis.reasoning.comparison.checking import Verdict
+    """Return the verdicts on a table; broken facts with their lines and what was seen instead."""
+    from deixis.reasoning.comparison.checking import RoleVerdict
 
     table = checked.table
+    lines: dict[str, set[int]] = defaultdict(set)
+    for fact in checked.layout.facts:
+        if fact.source is not None:
+            lines[fact.subject].add(fact.source.line)
+            lines[fact.object].add(fact.source.line)
     return {
         "layout": checked.layout.name,
         "lesson": checked.layout.lesson,
         "well": table.well,
         "conforms": checked.conforms,
-        "correct": [{"object": c.role, "perceived": c.perceived} for c in table.of(Verdict.CORRECT)],
-        "missing": [{"object": c.role, "lines": _lines_about(c.role, checked)} for c in table.of(Verdict.MISSING)],
+        "correct": [{"object": c.role, "perceived": c.perceived} for c in table.of(RoleVerdict.CORRECT)],
+        "missing": [{"object": c.role, "lines": sorted(lines[c.role])} for c in table.of(RoleVerdict.MISSING)],
         "misplaced": [
             {
                 "object": c.role,
@@ -221,7 +222,7 @@ def check_to_dict(checked: Checked) -> dict[str, Any]:
                 "in_place_of": c.in_place_of,
                 "violated": [outcome_to_dict(entry) for entry in c.broken],
             }
-            for c in table.of(Verdict.MISPLACED)
+            for c in table.of(RoleVerdict.MISPLACED)
         ],
         "miscoloured": [
             {
@@ -233,16 +234,11 @@ def check_to_dict(checked: Checked) -> dict[str, Any]:
             for c, other in table.miscoloured
         ],
         "extra": [{"perceived": e.perceived, "label": e.label, "reason": e.reason} for e in table.extra],
-        "undetermined": [{"object": c.role, "perceived": c.perceived} for c in table.of(Verdict.UNDETERMINED)],
-        "absent": [{"object": c.role} for c in table.of(Verdict.ABSENT)],
+        "undetermined": [{"object": c.role, "perceived": c.perceived} for c in table.of(RoleVerdict.UNDETERMINED)],
+        "absent": [{"object": c.role} for c in table.of(RoleVerdict.ABSENT)],
         "violated": [outcome_to_dict(entry) for entry in table.broken],
         "unexpected": [outcome_to_dict(entry) for entry in table.unexpected],
         "proved_best": table.grounding.proved_best,
         "notes": list(table.grounding.notes),
         "report": checked.report,
     }
-
-
-def _lines_about(role: str, checked: Checked) -> list[int]:
-    facts = (fact for fact in checked.layout.facts if role in (fact.subject, fact.object))
-    return sorted({fact.source.line for fact in facts if fact.source is not None})

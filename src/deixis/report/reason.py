@@ -15,7 +15,7 @@ from deixis.reasoning.description_logic.verbalisation import Words
 
 
 def entailment_lines(found: Entailment, words: Words, triples: bool = False) -> Iterator[str]:
-    """What follows, counted or listed, and what is impossible and why."""
+    """Yield what follows, counted or listed, and what is impossible and why."""
     if found.inconsistency is not None:
         yield "The ontology is inconsistent: these cannot all hold."
         yield from _axiom_lines(found.inconsistency, words)
@@ -29,7 +29,8 @@ def entailment_lines(found: Entailment, words: Words, triples: bool = False) -> 
         yield f"Nothing can be any of these either: {', '.join(words.name(f'<{iri}>') for iri in rest)}"
     yield verdict(found)
     if triples:
-        yield from (_short(triple) for triple in found.inferred)
+        for triple in found.inferred:
+            yield " ".join(short(iri) if (iri := iri_of(part)) else part for part in triple)
         return
     counted = Counter(triple.predicate for triple in found.inferred)
     for predicate, number in sorted(counted.items(), key=lambda entry: (-entry[1], entry[0])):
@@ -37,7 +38,7 @@ def entailment_lines(found: Entailment, words: Words, triples: bool = False) -> 
 
 
 def verdict(found: Entailment) -> str:
-    """The outcome in one sentence; it claims no more than the engine decides."""
+    """Return the outcome in one sentence; it claims no more than the engine decides."""
     if found.complete:
         held = "consistent" if not found.unsatisfiable else "consistent while nothing belongs to those classes"
     elif found.unsatisfiable:
@@ -48,7 +49,7 @@ def verdict(found: Entailment) -> str:
 
 
 def explanation_lines(justification: Justification, steps: tuple[Step, ...], words: Words) -> Iterator[str]:
-    """Why a statement follows: the axioms, and the steps where rules lead from them to it."""
+    """Yield why a statement follows: the axioms, and the steps where rules lead from them to it."""
     assert justification.entailed is not None
     yield f"{words.triple(justification.entailed)}, because"
     yield from _axiom_lines(justification, words)
@@ -64,7 +65,7 @@ def _axiom_lines(justification: Justification, words: Words) -> Iterator[str]:
 
 
 def entailment_to_dict(found: Entailment, words: Words) -> dict[str, Any]:
-    """The same as plain data."""
+    """Return the entailments as plain data for JSON."""
     return {
         "engine": found.engine.value,
         "complete": found.complete,
@@ -95,7 +96,3 @@ def justification_to_dict(justification: Justification, words: Words, steps: tup
 
 def _plain(triple: Triple) -> dict[str, str]:
     return {name: iri_of(part) or part for name, part in zip(triple._fields, triple, strict=True)}
-
-
-def _short(triple: Triple) -> str:
-    return " ".join(short(iri) if (iri := iri_of(part)) else part for part in triple)

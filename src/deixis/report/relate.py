@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def pair_lines(related: Related, subject: str | None = None, object: str | None = None) -> Iterator[str]:
-    """A line for every ordered pair: subject, relation, object."""
+    """Yield a line for every ordered pair: subject, relation, object."""
     rows, columns = related.places(subject), related.places(object)
     wide = max((len(related.ids[i]) for i in rows), default=0)
     mid = max((_widest(related, i, columns) for i in rows), default=0)
@@ -26,7 +26,7 @@ def pair_lines(related: Related, subject: str | None = None, object: str | None 
 
 
 def _widest(related: Related, row: int, columns: range) -> int:
-    """The length of the longest sign that a subject bears to the objects, but for itself."""
+    """Return the length of the longest sign that a subject bears to the objects, but for itself."""
     there = np.array([column for column in columns if column != row], dtype=np.int64)
     return max((len(related.signs[code]) for code in np.unique(related.codes[row, there]).tolist()), default=0)
 
@@ -37,13 +37,13 @@ def matrix_lines(related: Related) -> Iterator[str]:
         yield "There are no objects."
         return
     lengths = np.array([len(sign) for sign in related.signs])[related.codes].max(axis=0).tolist()
-    widths = [max(len(id), length) for id, length in zip(related.ids, lengths, strict=True)]
+    widths = [max(len(name), length) for name, length in zip(related.ids, lengths, strict=True)]
     first = max(map(len, related.ids))
     yield _row("", related.ids, first, widths)
-    for i, id in enumerate(related.ids):
+    for i, name in enumerate(related.ids):
         signs = [related.signs[code] for code in related.codes[i].tolist()]
         signs[i] = "."
-        yield _row(id, signs, first, widths)
+        yield _row(name, signs, first, widths)
 
 
 def _row(head: str, cells: Sequence[str], first: int, widths: list[int]) -> str:
@@ -52,8 +52,8 @@ def _row(head: str, cells: Sequence[str], first: int, widths: list[int]) -> str:
 
 
 def json_lines(related: Related, subject: str | None = None, object: str | None = None) -> Iterator[str]:
-    """The calculus, the objects, and every ordered pair, as the lines of one JSON object."""
-    ids = {id: _json(id) for id in related.ids}
+    """Yield the calculus, the objects, and every ordered pair, as the lines of one JSON object."""
+    ids = {name: _json(name) for name in related.ids}
     signs = {sign: _json(sign) for sign in related.signs}
     head = json.dumps({"calculus": related.calculus, "objects": list(related.ids)}, indent=2, ensure_ascii=False)
     yield head.removesuffix("\n}") + ","

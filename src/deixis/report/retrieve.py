@@ -9,7 +9,7 @@ from deixis.workflows.retrieve import Retrieved
 
 
 def retrieved_lines(found: Sequence[Retrieved], query: str, among: int, least: float) -> list[str]:
-    """A line for each, best first."""
+    """Return a line for each, best first."""
     if not found:
         return [f"Nothing among {among} has a similarity of {least:g} or more to {query}."]
     wide = max(len(one.name) for one in found)
@@ -22,7 +22,7 @@ def retrieved_lines(found: Sequence[Retrieved], query: str, among: int, least: f
 
 
 def retrieved_to_dict(found: Sequence[Retrieved], query: str, among: int) -> dict[str, Any]:
-    """The query, how many it was compared with, and the results, best first."""
+    """Return the query, how many it was compared with, and the results, best first."""
     results = [
         {
             "name": one.name,

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 from deixis.ontology.kinds import with_article
 from deixis.report.ground import violation_text
 
-MANY = 12
+MAX_LISTED = 12
 """Lines of a script that are listed one by one."""
 
-MOST = 20_000
+MAX_INFERRED_LISTED = 20_000
 """Inferred facts that are listed."""
 
 if TYPE_CHECKING:
@@ -21,12 +21,12 @@ if TYPE_CHECKING:
     from deixis.reasoning.comparison.checking import RoleCheck
     from deixis.reasoning.entailment.why_not import WhyNot
     from deixis.workflows.check import Checked
-    from deixis.workflows.infer import Inference, Inferred
+    from deixis.workflows.infer import Inference
     from deixis.workflows.learn import Learned
 
 
 def script_lines(script: Script) -> list[str]:
-    """The header, then every fact with its line."""
+    """Return the header, then every fact with its line."""
     title = f' "{script.title}"' if script.title else ""
     viewpoint = f", seen from {script.viewpoint}" if script.viewpoint else ""
     head = f"{script.name or script.file}{title}: {_count(script.objects, 'object')}, {_count(script.facts, 'fact')}"
@@ -40,7 +40,7 @@ def script_lines(script: Script) -> list[str]:
 
 
 def qualified(fact: Fact) -> str:
-    """A fact with what qualifies it."""
+    """Return a fact with what qualifies it."""
     marks = [*(["optional"] if fact.optional else []), *([f"weight {fact.weight:g}"] if fact.weight != 1 else [])]
     return str(fact) + (f"   [{', '.join(marks)}]" if marks else "")
 
@@ -57,7 +57,7 @@ def _count(things: Sized, noun: str) -> str:
 
 
 def inference_lines(inference: Inference) -> Iterator[str]:
-    """What is stated and what follows, each with its lines; of a contradiction only the minimal conflict."""
+    """Yield what is stated and what follows, each with its lines; of a contradiction only the minimal conflict."""
     if inference.conflict is not None:
         yield f"The script contradicts itself: {inference.conflict.reason}."
         yield from (f"    {fact.source}: {fact}" for fact in inference.conflict.facts)
@@ -71,16 +71,23 @@ def inference_lines(inference: Inference) -> Iterator[str]:
         yield f"    {qualified(fact)}   line {fact.source.line if fact.source else '?'}"
     count = inference.implications.unstated()
     yield f"Inferred ({count}):"
-    for entry in islice(inference.each_inferred(), MOST):
-        yield f"    {entry.fact}   by {entry.rule} from {_places(entry)}"
-    if count > MOST:
-        yield f"    and {count - MOST} more: --ntriples prints all that holds, --json everything"
+    for entry in islice(inference.each_inferred(), MAX_INFERRED_LISTED):
+        lines = entry.lines
+        if not entry.steps:
+            places = "facts that leave a choice"
+        elif not lines or len(lines) > MAX_LISTED:
+            places = f"{entry.steps} facts"
+        else:
+            places = ("line " if len(lines) == 1 else "lines ") + ", ".join(map(str, lines))
+        yield f"    {entry.fact}   by {entry.rule} from {places}"
+    if count > MAX_INFERRED_LISTED:
+        yield f"    and {count - MAX_INFERRED_LISTED} more: --ntriples prints all that holds, --json everything"
     if not inference.complete:
         yield "The time limit struck: more may follow from the facts that leave a choice."
 
 
 def why_not_lines(found: WhyNot) -> list[str]:
-    """Why a fact does not follow; at the most ``MANY`` objects of a picture."""
+    """Return why a fact does not follow; at the most ``MAX_LISTED`` objects of a picture."""
     if found.follows is not None:
         return [f"{found.fact} does follow:", *(f"    {line}" for line in found.follows.lines())]
     if found.against is not None:
@@ -93,8 +100,10 @@ def why_not_lines(found: WhyNot) -> list[str]:
     lines = [f"{found.fact} does not follow: every firm fact holds in this picture, and it does not."]
     boxes = dict(zip(found.picture.objects, found.picture.boxes.astype(int).tolist(), strict=True))
     ends = dict.fromkeys((found.fact.subject, found.fact.object))
-    shown = [*ends, *(name for name in boxes if name not in ends)][:MANY]
-    lines += [f"    {name:<24} {_extent(boxes[name])}" for name in shown]
+    shown = [*ends, *(name for name in boxes if name not in ends)][:MAX_LISTED]
+    for name in shown:
+        low, high = boxes[name]
+        lines.append(f"    {name:<24} " + "   ".join(f"{axis} {low[k]} to {high[k]}" for k, axis in enumerate("xyz")))
     if len(boxes) > len(shown):
         lines.append(f"    and {len(boxes) - len(shown)} more (--json has them)")
     lines += ["It would take:", *(f"    {order}" for order in found.missing)]
@@ -102,22 +111,8 @@ def why_not_lines(found: WhyNot) -> list[str]:
     return [*lines, "What follows of the two:", *(known or ["    nothing"])]
 
 
-def _extent(box: list[list[int]]) -> str:
-    low, high = box
-    return "   ".join(f"{axis} {low[k]} to {high[k]}" for k, axis in enumerate("xyz"))
-
-
-def _places(entry: Inferred) -> str:
-    lines = entry.lines
-    if not entry.steps:
-        return "facts that leave a choice"
-    if not lines or len(lines) > MANY:
-        return f"{entry.steps} facts"
-    return ("line " if len(lines) == 1 else "lines ") + ", ".join(map(str, lines))
-
-
 def learned_lines(learned: Learned, memory: str) -> list[str]:
-    """What a lesson taught, and what it left open."""
+    """Return what a lesson taught, and what it left open."""
     layout = learned.lesson.layout
     lines = [
         f"Learned '{layout.name}' as lesson {layout.lesson}: {_count(layout.roles, 'role')}, "
@@ -138,20 +133,24 @@ def learned_lines(learned: Learned, memory: str) -> list[str]:
 
 
 def check_lines(checked: Checked) -> list[str]:
-    """The verdict on a table, what is wrong with it by line, and what cannot be told."""
-    from deixis.reasoning.comparison.checking import Verdict
+    """Return the verdict on a table, what is wrong with it by line, and what cannot be told."""
+    from deixis.reasoning.comparison.checking import RoleVerdict
 
     table = checked.table
-    right = "Nothing is known to be wrong" if table.of(Verdict.UNDETERMINED) else "Nothing is wrong"
+    right = "Nothing is known to be wrong" if table.of(RoleVerdict.UNDETERMINED) else "Nothing is wrong"
     name = checked.layout.name
     lines = [f"{right}, as '{name}' has it." if table.well else f"This table is not laid as '{name}' says."]
-    for entry in table.of(Verdict.MISSING):
-        lines.append(f"missing     {entry.role}{_said_of(entry.role, checked)}")
-    for entry in table.of(Verdict.MISPLACED):
+    for entry in table.of(RoleVerdict.MISSING):
+        facts = [
+            fact for fact in checked.layout.facts if entry.role in (fact.subject, fact.object) and not fact.optional
+        ]
+        said = "".join(f"; {fact}" + (f" ({fact.source})" if fact.source else "") for fact in facts)
+        lines.append(f"missing     {entry.role}{said}")
+    for entry in table.of(RoleVerdict.MISPLACED):
         exchanged = f", in the place of {entry.in_place_of}" if entry.in_place_of else ""
         lines.append(f"misplaced   {entry.role} ({entry.perceived}){exchanged}")
         lines += [f"            {violation_text(broken)}" for broken in entry.broken]
-    blamed = {entry.role for entry in table.of(Verdict.MISPLACED)}
+    blamed = {entry.role for entry in table.of(RoleVerdict.MISPLACED)}
     for broken in table.broken:
         if not blamed & {broken.fact.subject, broken.fact.object}:
             lines.append(f"broken      {violation_text(broken)}")
@@ -160,30 +159,26 @@ def check_lines(checked: Checked) -> list[str]:
     lines += [f"extra       {extra.perceived}: {extra.reason}" for extra in table.extra]
     lines += [f"unexpected  {violation_text(entry)}" for entry in table.unexpected]
     lines += [
-        f"undetermined {entry.role}: {entry.perceived}, {_known_by(entry)}" for entry in table.of(Verdict.UNDETERMINED)
+        f"undetermined {entry.role}: {entry.perceived}, {_known_by(entry)}"
+        for entry in table.of(RoleVerdict.UNDETERMINED)
     ]
-    lines += [f"absent      {entry.role}, which need not be there" for entry in table.of(Verdict.ABSENT)]
-    lines.append(f"correct     {len(table.of(Verdict.CORRECT))} of {len(table.roles)}")
+    lines += [f"absent      {entry.role}, which need not be there" for entry in table.of(RoleVerdict.ABSENT)]
+    lines.append(f"correct     {len(table.of(RoleVerdict.CORRECT))} of {len(table.roles)}")
     return lines + [f"Note: {note}." for note in table.grounding.notes]
 
 
 def _known_by(entry: RoleCheck) -> str:
-    from deixis.reasoning.comparison.checking import SURE
+    from deixis.reasoning.comparison.checking import SURE_CONFIDENCE
 
     if entry.label is None or entry.confidence is None:
         return "by its place alone"
-    if entry.confidence < SURE:
-        return f"labelled '{entry.label}' with confidence {entry.confidence:.2f}, below {SURE:g}"
+    if entry.confidence < SURE_CONFIDENCE:
+        return f"labelled '{entry.label}' with confidence {entry.confidence:.2f}, below {SURE_CONFIDENCE:g}"
     return f"labelled '{entry.label}', which does not settle it"
 
 
-def _said_of(role: str, checked: Checked) -> str:
-    facts = [fact for fact in checked.layout.facts if role in (fact.subject, fact.object) and not fact.optional]
-    return "".join(f"; {fact}" + (f" ({fact.source})" if fact.source else "") for fact in facts)
-
-
 def stats_lines(counted: dict[str, Any], lessons: Sequence[str]) -> list[str]:
-    """The counts of a memory, one a line, and its lessons."""
+    """Return the counts of a memory, one a line, and its lessons."""
     lines = []
     for name, value in counted.items():
         if isinstance(value, dict):

@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from deixis.reasoning.qualitative.networks.network import Constraint, Network
     from deixis.reasoning.qualitative.networks.rounds import Step
-    from deixis.workflows.solve import Solved
+    from deixis.workflows.solve import SolvedNetwork
 
-MANY = 50
+MAX_CONFLICT_LISTED = 50
 """Constraints of a conflict that are shown one by one."""
 
 
-def solved_lines(solved: Solved) -> Iterator[str]:
-    """The verdict first, then what it rests on, or what was asked for."""
+def solved_lines(solved: SolvedNetwork) -> Iterator[str]:
+    """Yield the verdict first, then what it rests on, or what was asked for."""
     networks = solved.text.networks
     stated = sum(len(network.constraints) for network in networks)
     names = "+".join(network.calculus.name for network in networks)
@@ -29,38 +29,31 @@ def solved_lines(solved: Solved) -> Iterator[str]:
     for each in solved.contributions:
         yield f"    {each.name}: {_count(each.pairs, 'pair')} narrowed, {_count(each.atoms, 'atom')} taken"
     if solved.conflict:
-        yield from _conflict_lines(solved)
+        kind = "" if solved.minimal else " (not proved minimal: time ran out before it was clear that all are needed)"
+        yield f"These cannot all hold{kind}:"
+        for network, c in solved.conflict[:MAX_CONFLICT_LISTED]:
+            yield f"    {c.source}: {c.first} {c.second} ( {' '.join(network.calculus.members(c.relation))} )"
+        if len(solved.conflict) > MAX_CONFLICT_LISTED:
+            yield f"    … and {len(solved.conflict) - MAX_CONFLICT_LISTED} more"
+        yield "Leave out or change any one of these." if solved.minimal else "Leave out or change some of these."
     elif solved.verdict == "inconsistent":
         yield "    which constraints are to blame was not found in the time that was left"
     if solved.asked is not None:
-        yield from _step_lines(solved, *solved.asked)
+        first, second = solved.asked
+        if solved.verdict == "inconsistent":
+            yield f"There is nothing to explain about {first} and {second}: what is stated cannot all hold."
+        elif not solved.explained:
+            yield f"Time ran out before it was clear why {first} and {second} are related as they are."
+        elif solved.step is None:
+            yield f"Nothing follows about {first} and {second}."
+        else:
+            from deixis.reasoning.qualitative.networks.rounds import step_lines
+
+            yield from step_lines(solved.step, solved.text.network)
 
 
-def _conflict_lines(solved: Solved) -> Iterator[str]:
-    kind = "" if solved.minimal else " (not proved minimal: time ran out before it was clear that all are needed)"
-    yield f"These cannot all hold{kind}:"
-    for network, c in solved.conflict[:MANY]:
-        yield f"    {c.source}: {c.first} {c.second} ( {' '.join(network.calculus.members(c.relation))} )"
-    if len(solved.conflict) > MANY:
-        yield f"    … and {len(solved.conflict) - MANY} more"
-    yield "Leave out or change any one of these." if solved.minimal else "Leave out or change some of these."
-
-
-def _step_lines(solved: Solved, first: int, second: int) -> Iterator[str]:
-    if solved.verdict == "inconsistent":
-        yield f"There is nothing to explain about {first} and {second}: what is stated cannot all hold."
-    elif not solved.explained:
-        yield f"Time ran out before it was clear why {first} and {second} are related as they are."
-    elif solved.step is None:
-        yield f"Nothing follows about {first} and {second}."
-    else:
-        from deixis.reasoning.qualitative.networks.rounds import step_lines
-
-        yield from step_lines(solved.step, solved.text.network)
-
-
-def solved_to_dict(solved: Solved) -> dict[str, Any]:
-    """The same for programs."""
+def solved_to_dict(solved: SolvedNetwork) -> dict[str, Any]:
+    """Return a solved network as plain data for JSON."""
     networks = solved.text.networks
     return {
         "line": solved.text.line,

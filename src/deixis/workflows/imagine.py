@@ -16,11 +16,11 @@ from deixis.perception.scene import PerceivedObject, Scene
 from deixis.reasoning.entailment.conflict import find_conflict
 from deixis.reasoning.entailment.implications import Implications
 from deixis.reasoning.entailment.realisation.demands import is_firm
-from deixis.reasoning.entailment.realisation.picture import GivenUp, Impossible, Picture, Undecided, realise
+from deixis.reasoning.entailment.realisation.picture import Impossible, Picture, Undecided, realise
 from deixis.reasoning.errors import SettingError
 
 TIME_LIMIT = 30.0
-ATTEMPTS = 5
+MAX_ATTEMPTS = 5
 """How often another table is drawn where one was seen before."""
 
 
@@ -46,7 +46,7 @@ class Waived:
 
 
 @dataclass(frozen=True)
-class Table:
+class ImaginedTable:
     """An example table. ``holds`` are the facts that it satisfies; ``overlapping`` are pairs of names."""
 
     scene: Scene
@@ -76,7 +76,7 @@ class Imagination:
     """The tables of a script, or why there is none; neither where the time was up before it was known."""
 
     script: Script
-    tables: tuple[Table, ...] = ()
+    tables: tuple[ImaginedTable, ...] = ()
     none: NoTable | None = None
 
     @property
@@ -106,7 +106,7 @@ def imagine(
         )
     graph = script.graph().affirming()
     objects = sized_objects(script, graph)
-    tables: list[Table] = []
+    tables: list[ImaginedTable] = []
     for found in _pictures(graph, objects, any_size, seed, count, time_limit, script.ontology.kinds):
         if isinstance(found, Impossible):
             return Imagination(script, none=_no_table(graph, objects, found))
@@ -128,7 +128,7 @@ def _pictures(
     sizes, lying = [thing.size for thing in objects], lying_cutlery(graph, objects, kinds)
     seen: set[bytes] = set()
     for number in range(count):
-        for attempt in range(ATTEMPTS):
+        for attempt in range(MAX_ATTEMPTS):
             plain = seed == number == attempt == 0
             rng = None if plain else np.random.default_rng([seed, number, attempt])
             found = realise(graph, sizes, lying=lying, any_size=any_size, time_limit=time_limit, rng=rng)
@@ -142,7 +142,7 @@ def _pictures(
 
 
 def sized_objects(script: Script, graph: RelationGraph) -> tuple[Sized, ...]:
-    """Every object with its kind, declared or said by the words of its name, and its usual size."""
+    """Return every object with its kind, declared or said by the words of its name, and its usual size."""
     kinds = script.ontology.kinds
     named = zip(graph.nodes, graph.kinds, strict=True)
     found = [kinds[iri] if iri else kind_by_words(name, kinds) for name, iri in named]
@@ -151,7 +151,7 @@ def sized_objects(script: Script, graph: RelationGraph) -> tuple[Sized, ...]:
 
 
 def kind_by_words(name: str, kinds: Kinds) -> Kind | None:
-    """The kind that the last words of a name stand for, as many of them as stand for one.
+    """Return the kind that the last words of a name stand for, as many of them as stand for one.
 
     >>> from deixis.ontology.tbox import default_ontology
     >>> kind_by_words("grandmother's silver_dessert_fork_2", default_ontology().kinds).name
@@ -163,7 +163,7 @@ def kind_by_words(name: str, kinds: Kinds) -> Kind | None:
 
 
 def lying_cutlery(graph: RelationGraph, objects: Sequence[Sized], kinds: Kinds) -> list[bool]:
-    """Which things rather lie across: cutlery that is said to lie above something, as for dessert."""
+    """Return which things rather lie across: cutlery that is said to lie above something, as for dessert."""
     cutlery = kinds.of_word("cutlery")
     above = {fact.subject for fact in graph.facts() if fact.plain and fact.relations[0].word == "top"}
     return [
@@ -172,30 +172,32 @@ def lying_cutlery(graph: RelationGraph, objects: Sequence[Sized], kinds: Kinds) 
     ]
 
 
-def _table(script: Script, graph: RelationGraph, objects: tuple[Sized, ...], picture: Picture) -> Table:
+def _table(script: Script, graph: RelationGraph, objects: tuple[Sized, ...], picture: Picture) -> ImaginedTable:
     things = tuple(
         PerceivedObject(f"o{number}", tuple(box[0]), tuple(box[1]), label=name)
         for number, (name, box) in enumerate(zip(graph.nodes, picture.boxes.tolist(), strict=True), start=1)
     )
     given_up = {entry.edge for entry in picture.given_up}
-    return Table(
+    return ImaginedTable(
         scene=Scene(things, viewpoint=script.viewpoint or "chair"),
         objects=objects,
         holds=tuple(graph.fact(edge) for edge in range(len(graph)) if edge not in given_up),
-        waived=tuple(_waived(graph, objects, entry) for entry in picture.given_up),
+        waived=tuple(
+            Waived(
+                fact=graph.fact(entry.edge),
+                because=tuple(graph.fact(edge) for edge in entry.because),
+                sizes=tuple(objects[i] for i in entry.sizes),
+            )
+            for entry in picture.given_up
+        ),
         overlapping=tuple((graph.nodes[a], graph.nodes[b]) for a, b in picture.overlapping),
         named_otherwise=tuple(graph.fact(edge) for edge in picture.named_otherwise),
         finished=picture.finished,
     )
 
 
-def _waived(graph: RelationGraph, objects: tuple[Sized, ...], entry: GivenUp) -> Waived:
-    because = tuple(graph.fact(edge) for edge in entry.because)
-    return Waived(graph.fact(entry.edge), because, tuple(objects[i] for i in entry.sizes))
-
-
 def _no_table(graph: RelationGraph, objects: tuple[Sized, ...], found: Impossible) -> NoTable:
-    """Why there is no table; a contradiction in the words of inference where it sees one that is as small."""
+    """Return why there is no table; a contradiction in the words of inference where it sees one that is as small."""
     facts = tuple(graph.fact(edge) for edge in found.edges)
     if found.sizes:
         return NoTable(facts, tuple(objects[i] for i in found.sizes), found.minimal)

@@ -16,7 +16,7 @@ from deixis.reasoning.entailment.conflict import Conflict, find_conflict
 from deixis.reasoning.entailment.implications import TIME_LIMIT, Implications
 from deixis.workflows.read import as_script
 
-MANY_STEPS = 12
+MAX_STEPS_LISTED = 12
 """Stated facts of which an inferred one is listed with all its lines; ``--explain`` has the others."""
 
 
@@ -56,16 +56,16 @@ class Inference:
         return self.implications.complete
 
     def inferred(self) -> tuple[Inferred, ...]:
-        """The facts that follow without being stated; none where the script contradicts itself."""
+        """Return the facts that follow without being stated; none where the script contradicts itself."""
         return tuple(self.each_inferred())
 
     def each_inferred(self) -> Iterator[Inferred]:
-        """The same one by one: there may be millions."""
+        """Yield the facts that follow without being stated one by one: there may be millions."""
         if not self.consistent or not self.decided:
             return
         places = [source.line if source else 0 for source in self.implications.graph.sources]
         for fact, steps in self.implications.implied_with_steps():
-            if steps > MANY_STEPS:
+            if steps > MAX_STEPS_LISTED:
                 yield Inferred(fact, Rule.COMPOSITION, steps, ())
                 continue
             try:
@@ -78,7 +78,7 @@ class Inference:
 
 
 def inference_of(script: Script, time_limit: float = TIME_LIMIT) -> Inference:
-    """What follows from a script, and whether it contradicts itself, within about ``time_limit`` seconds.
+    """Return what follows from a script, and whether it contradicts itself, within about ``time_limit`` seconds.
 
     Only facts that leave a choice take a search, and so need a limit.
     """

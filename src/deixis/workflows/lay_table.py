@@ -22,7 +22,6 @@ from deixis.perception.simulator.laying import (
     LINEN_CLOTH,
     WOOD,
     LaidTable,
-    LaidThing,
     Placement,
     TableTop,
     lay,
@@ -40,7 +39,7 @@ if TYPE_CHECKING:
 
 
 def is_table(thing: Sized, ontology: Ontology) -> bool:
-    """Whether a thing is of a kind of table."""
+    """Return whether a thing is of a kind of table."""
     table = ontology.kinds.of_word("table")
     return thing.kind is not None and table is not None and ontology.kinds.is_a(thing.kind, table)
 
@@ -53,7 +52,7 @@ def all_on_it(graph: RelationGraph, tables: Sequence[bool]) -> tuple[RelationGra
     on, table, facts = graph.vocabulary["on"], graph.nodes[tables.index(True)], list(graph.facts())
     beside = {table}
     while True:
-        more = {name for fact in facts for name in _elsewhere(fact, on, table, beside)} - beside
+        more = {name for fact in facts for name in _beside_table(fact, on, table, beside)} - beside
         if not more:
             break
         beside |= more
@@ -61,8 +60,8 @@ def all_on_it(graph: RelationGraph, tables: Sequence[bool]) -> tuple[RelationGra
     return (RelationGraph.from_facts(graph.vocabulary, graph.nodes, facts, graph.kinds, graph.boxes, graph.colours),)
 
 
-def _elsewhere(fact: Fact, on: Relation, table: str, beside: Set[str]) -> Iterator[str]:
-    """What a fact has beside the table, or on what is beside it."""
+def _beside_table(fact: Fact, on: Relation, table: str, beside: Set[str]) -> Iterator[str]:
+    """Yield what a fact has beside the table, or on what is beside it."""
     if not fact.positive:
         return
     if on in fact.relations:
@@ -73,13 +72,13 @@ def _elsewhere(fact: Fact, on: Relation, table: str, beside: Set[str]) -> Iterat
 
 
 TIME_LIMIT = 30.0
-TURN = np.deg2rad(2.0)
+TURN_DEVIATION = np.deg2rad(2.0)
 """How much things are turned off their axis by whoever lays the table: a standard deviation."""
 
-DRAWS = 5
+MAX_DRAWS = 5
 """How often other mugs and cups are taken where those drawn first do not fit."""
 
-LARGEST_MESH = 1.5
+MAX_MESH_EXTENT = 1.5
 
 
 class NoTableError(DeixisError, ValueError):
@@ -118,10 +117,11 @@ def lay_random(
     cloth: bool = False,
     ontology: Ontology | None = None,
 ) -> LaidScript:
-    """A table with so many random things, and the meshes (metres, z up), at random places."""
+    """Return a table with so many random things, and the meshes (metres, z up), at random places."""
     require_seed(seed)
     foreign = [
-        Placement(name, None, 0.0, 0.0, plan=_plan_of(mesh), mesh=mesh) for name, mesh in _checked(meshes or {}).items()
+        Placement(name, None, 0.0, 0.0, plan=_plan_of(mesh), mesh=mesh)
+        for name, mesh in _check_meshes(meshes or {}).items()
     ]
     table = lay(scattered(count, seed, foreign=foreign, ontology=ontology), ontology=ontology)
     return LaidScript(replace(table, top=top_under(table.things, colour=_top_colour(cloth))))
@@ -135,7 +135,7 @@ def lay_script(
     cloth: bool = False,
     time_limit: float = TIME_LIMIT,
 ) -> LaidScript:
-    """Lays a table that satisfies every firm fact of a script, with things of their kinds, varied from the seed.
+    """Lay a table that satisfies every firm fact of a script, with things of their kinds, varied from the seed.
 
     Everything is turned a little off its axis, unless a fact would no longer hold. ``meshes`` (metres, z up) stand
     for objects of the script, by name. What is a table is the table's top itself, and everything is on it, unless the
@@ -143,22 +143,24 @@ def lay_script(
     no such table, TimeIsUpError where that stayed open, SimulationError for a mesh that stands for nothing.
     """
     require_seed(seed)
-    meshes = _checked(meshes or {})
+    meshes = _check_meshes(meshes or {})
     graph = script.graph().affirming()
     unknown = sorted(set(meshes) - set(graph.nodes))
     if unknown:
         raise SimulationError(
             f"'{unknown[0]}' is to be a mesh and is no object of {script.file}; those are {', '.join(graph.nodes)}"
         )
-    plan = _planned(script, graph, meshes, seed, time_limit)
-    laid = _laid_straight_where_needed(plan)
+    plan = _plan_boxes(script, graph, meshes, seed, time_limit)
+    laid = _lay_and_straighten(plan)
     table = replace(laid, top=_top(plan, laid, cloth))
     top_name = next((name for name, found in zip(graph.nodes, plan.tables, strict=True) if found), None)
-    return LaidScript(table, script.viewpoint or "chair", _missed(plan, table), top_name)
+    held = facts_that_hold(plan.graph, _boxes_as_laid(plan, table))
+    missed = tuple(plan.graph.fact(int(edge)) for edge in np.flatnonzero(~held))
+    return LaidScript(table, script.viewpoint or "chair", missed, top_name)
 
 
 def require_seed(seed: int) -> None:
-    """Raises SimulationError where a seed is no whole number of 0 or more."""
+    """Raise SimulationError where a seed is no whole number of 0 or more."""
     if not isinstance(seed, Integral) or seed < 0:
         raise SimulationError(f"a seed is a whole number, 0 or more, not {seed!r}")
 
@@ -176,7 +178,9 @@ class _Plan:
     ontology: Ontology
 
 
-def _planned(script: Script, graph: RelationGraph, meshes: Mapping[str, Mesh], seed: int, time_limit: float) -> _Plan:
+def _plan_boxes(
+    script: Script, graph: RelationGraph, meshes: Mapping[str, Mesh], seed: int, time_limit: float
+) -> _Plan:
     """Boxes that satisfy the script, of the size of the things that will fill them."""
     ontology = script.ontology
     objects = sized_objects(script, graph)
@@ -184,13 +188,19 @@ def _planned(script: Script, graph: RelationGraph, meshes: Mapping[str, Mesh], s
     tables = tuple(is_table(thing, ontology) for thing in objects)
     graphs = (*all_on_it(graph, tables), graph)
     deadline = time.monotonic() + time_limit
-    draws = DRAWS if any(form_of(thing.kind, ontology).handle for thing in objects) else 1
+    draws = MAX_DRAWS if any(form_of(thing.kind, ontology).handle for thing in objects) else 1
     for draw in range(draws):
         sizes = [
-            _room(thing, meshes.get(thing.name), _instance(seed, number) + draw, ontology)
+            _size_in_plan(thing, meshes.get(thing.name), _instance(seed, number) + draw, ontology)
             for number, thing in enumerate(objects)
         ]
-        found = _first_picture(graphs, sizes, lying, deadline, [seed, draw])
+        # The graphs share the time that is left; the first that has a picture decides.
+        found: Picture | Impossible | Undecided | None = None
+        for number, one in enumerate(graphs):
+            left = max(0.0, deadline - time.monotonic()) / (len(graphs) - number)
+            found = realise(one, sizes, lying=lying, time_limit=left, rng=np.random.default_rng([seed, draw]))
+            if isinstance(found, Picture):
+                break
         if isinstance(found, Picture):
             return _Plan(graph, objects, found.boxes, tables, meshes, seed, ontology)
         if not isinstance(found, Impossible):
@@ -200,25 +210,8 @@ def _planned(script: Script, graph: RelationGraph, meshes: Mapping[str, Mesh], s
     )
 
 
-def _first_picture(
-    graphs: Sequence[RelationGraph],
-    sizes: Sequence[SizeRange],
-    lying: Sequence[bool],
-    deadline: float,
-    seeds: list[int],
-) -> Picture | Impossible | Undecided:
-    """A picture of the first graph that has one, else what came of the last; they share the time that is left."""
-    found: Picture | Impossible | Undecided
-    for number, graph in enumerate(graphs):
-        left = max(0.0, deadline - time.monotonic()) / (len(graphs) - number)
-        found = realise(graph, sizes, lying=lying, time_limit=left, rng=np.random.default_rng(seeds))
-        if isinstance(found, Picture):
-            break
-    return found
-
-
-def _room(thing: Sized, mesh: Mesh | None, instance: int, ontology: Ontology) -> SizeRange:
-    """How much room a thing takes in the plan: its usual size, but with the handle where there is one."""
+def _size_in_plan(thing: Sized, mesh: Mesh | None, instance: int, ontology: Ontology) -> SizeRange:
+    """Return how much room a thing takes in the plan: its usual size, but with the handle where there is one."""
     if mesh is not None:
         return _exactly(thing.size, *_plan_of(mesh))
     if form_of(thing.kind, ontology).handle:
@@ -227,7 +220,7 @@ def _room(thing: Sized, mesh: Mesh | None, instance: int, ontology: Ontology) ->
 
 
 def _exactly(size: SizeRange, *sides: float) -> SizeRange:
-    """A rectangle of these sides, rounded up to millimetres, as pictures are in whole ones."""
+    """Return a rectangle of these sides, rounded up to millimetres, as pictures are in whole ones."""
     width, length = (float(np.ceil(1000 * side - 1e-6) / 1000) for side in sorted(sides))
     return replace(
         size,
@@ -243,28 +236,29 @@ def _plan_of(mesh: Mesh) -> tuple[float, float]:
 
 
 def _instance(seed: int, number: int) -> int:
-    """The seed of the thing with that number."""
+    """Return the seed of the thing with that number."""
     return int(np.random.SeedSequence([seed, number]).generate_state(1)[0])
 
 
-def _laid_straight_where_needed(plan: _Plan) -> LaidTable:
+def _lay_and_straighten(plan: _Plan) -> LaidTable:
     """The table with things turned a little; those in facts that fail, or that come to overlap, are laid straight."""
     rng = np.random.default_rng([plan.seed, 1])
-    turns = rng.normal(0.0, TURN, len(plan.objects))
+    turns = rng.normal(0.0, TURN_DEVIATION, len(plan.objects))
     while True:
-        laid = lay(_placements(plan, turns), ontology=plan.ontology)
+        # What takes up more room is laid first: a thing on another is smaller, and is set down after it.
+        area = np.prod(plan.boxes[:, 1] - plan.boxes[:, 0], axis=1)
+        order = [i for i in np.argsort(-area, kind="stable").tolist() if not plan.tables[i]]
+        laid = lay([_placement(plan, i, float(turns[i])) for i in order], ontology=plan.ontology)
         boxes = _boxes_as_laid(plan, laid)
-        wrong = _wrongly_placed(plan, boxes) & (turns != 0)
+        # Wrong are things in a fact that holds of the plan and no longer does, and those that come to overlap.
+        broken = facts_that_hold(plan.graph, plan.boxes) & ~facts_that_hold(plan.graph, boxes)
+        wrong = np.any(_overlapping(boxes) & ~_overlapping(plan.boxes), axis=1)
+        wrong[plan.graph.subjects[broken]] = wrong[plan.graph.objects[broken]] = True
+        wrong &= turns != 0
         if not wrong.any():
-            return replace(laid, things=_in_order(plan, laid))
+            by_name = {thing.name: thing for thing in laid.things}
+            return replace(laid, things=tuple(by_name[name] for name in plan.graph.nodes if name in by_name))
         turns = np.where(wrong, 0.0, turns)
-
-
-def _placements(plan: _Plan, turns: NDArray[np.float64]) -> list[Placement]:
-    """What takes up more room first: a thing that is on another is within it, and is set down after it."""
-    area = np.prod(plan.boxes[:, 1] - plan.boxes[:, 0], axis=1)
-    order = [i for i in np.argsort(-area, kind="stable").tolist() if not plan.tables[i]]
-    return [_placement(plan, i, float(turns[i])) for i in order]
 
 
 def _placement(plan: _Plan, number: int, turn: float) -> Placement:
@@ -284,27 +278,13 @@ def _placement(plan: _Plan, number: int, turn: float) -> Placement:
     return Placement(thing.name, kind, x, y, yaw + turn, seed, plan=(min(across, deep), max(across, deep)))
 
 
-def _in_order(plan: _Plan, laid: LaidTable) -> tuple[LaidThing, ...]:
-    things = {thing.name: thing for thing in laid.things}
-    return tuple(things[name] for name in plan.graph.nodes if name in things)
-
-
 def _boxes_as_laid(plan: _Plan, laid: LaidTable) -> NDArray[np.float64]:
-    """The boxes of all objects in the plan (n, 2, 2), as they came to lie."""
+    """Return the boxes of all objects in the plan (n, 2, 2), as they came to lie."""
     boxes = plan.boxes.copy()
     number = {name: i for i, name in enumerate(plan.graph.nodes)}
     for thing in laid.things:
         boxes[number[thing.name]] = thing.box[:, :2]
     return boxes
-
-
-def _wrongly_placed(plan: _Plan, boxes: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Which things are in a fact that holds of the plan and no longer does, or overlap what they did not, (n,)."""
-    broken = facts_that_hold(plan.graph, plan.boxes) & ~facts_that_hold(plan.graph, boxes)
-    wrong = np.zeros(len(boxes), dtype=np.bool_)
-    wrong[plan.graph.subjects[broken]] = wrong[plan.graph.objects[broken]] = True
-    wrong[(_overlapping(boxes) & ~_overlapping(plan.boxes)).any(axis=1)] = True
-    return wrong
 
 
 def _overlapping(boxes: NDArray[np.float64]) -> NDArray[np.bool_]:
@@ -313,13 +293,8 @@ def _overlapping(boxes: NDArray[np.float64]) -> NDArray[np.bool_]:
     return found
 
 
-def _missed(plan: _Plan, table: LaidTable) -> tuple[Fact, ...]:
-    held = facts_that_hold(plan.graph, _boxes_as_laid(plan, table))
-    return tuple(plan.graph.fact(int(edge)) for edge in np.flatnonzero(~held))
-
-
 def _top(plan: _Plan, laid: LaidTable, cloth: bool) -> TableTop:
-    """The table that the script speaks of, else one that reaches a little beyond everything."""
+    """Return the table that the script speaks of, else one that reaches a little beyond everything."""
     colour = _top_colour(cloth)
     spoken_of = [i for i, found in enumerate(plan.tables) if found]
     if len(spoken_of) > 1:
@@ -335,8 +310,8 @@ def _top_colour(cloth: bool) -> tuple[int, int, int]:
     return LINEN_CLOTH if cloth else WOOD
 
 
-def _checked(meshes: Mapping[str, Mesh]) -> dict[str, Mesh]:
-    """The meshes, standing on z = 0; raises SimulationError for one that cannot be in metres."""
+def _check_meshes(meshes: Mapping[str, Mesh]) -> dict[str, Mesh]:
+    """Return the meshes, standing on z = 0; raises SimulationError for one that cannot be in metres."""
     standing = {}
     for name, mesh in meshes.items():
         try:
@@ -344,7 +319,7 @@ def _checked(meshes: Mapping[str, Mesh]) -> dict[str, Mesh]:
         except SimulationError as error:
             raise SimulationError(f"'{name}': {error}") from error
         extents = np.ptp(mesh.vertices, axis=0)
-        if extents.max() > LARGEST_MESH or extents.max() < 1e-3:
+        if extents.max() > MAX_MESH_EXTENT or extents.max() < 1e-3:
             raise SimulationError(
                 f"the mesh of '{name}' measures {extents.max():g} m; state the unit that its file is in"
             )

@@ -69,7 +69,10 @@ def write_scene(scene: Scene, file: str | Path) -> Scene:
         for number, thing in enumerate(scene.objects, start=1):
             if isinstance(thing.cloud, PointCloud):
                 name = thing.id if _NUMBERED.fullmatch(thing.id) else f"o{number}"
-                cloud = _write_named(folder, name, thing.cloud)
+                unnamed = folder / f"{name}.new.pcd"
+                write_cloud(unnamed, thing.cloud)
+                cloud = folder / f"{name}-{hashlib.sha256(unnamed.read_bytes()).hexdigest()[:8]}.pcd"
+                rename(unnamed, cloud)
                 thing = replace(thing, cloud=os.fspath(cloud.relative_to(file.parent)))
             elif thing.cloud is not None and base != file.parent:
                 thing = replace(thing, cloud=os.path.relpath(base / thing.cloud, file.parent))
@@ -92,21 +95,12 @@ def write_scene(scene: Scene, file: str | Path) -> Scene:
 
 
 def clouds_folder(scene: Path) -> Path:
-    """Where the clouds of a scene's things are: ``table.clouds`` beside ``table.scene.json``."""
+    """Return where the clouds of a scene's things are: ``table.clouds`` beside ``table.scene.json``."""
     return scene.with_name(f"{scene.name.removesuffix('.json').removesuffix('.scene')}.clouds")
 
 
-def _write_named(folder: Path, name: str, cloud: PointCloud) -> Path:
-    """Writes a cloud under a name that says its content: ``o3-9f86d081.pcd``."""
-    new = folder / f"{name}.new.pcd"
-    write_cloud(new, cloud)
-    named = folder / f"{name}-{hashlib.sha256(new.read_bytes()).hexdigest()[:8]}.pcd"
-    rename(new, named)
-    return named
-
-
 def _remove_others(folder: Path, kept: set[str]) -> None:
-    """Removes what other scenes, whole or not, left in the folder; what cannot be removed does no harm."""
+    """Remove what other scenes, whole or not, left in the folder; what cannot be removed does no harm."""
     with contextlib.suppress(OSError):
         for name in set(os.listdir(folder)) - kept:
             if _CLOUD.fullmatch(name):

@@ -20,7 +20,7 @@ from deixis.workflows.lay_table import LaidScript, lay_script, require_seed
 
 
 @dataclass(frozen=True, slots=True)
-class View:
+class CameraSetup:
     """From where a table is looked at, and how well; lengths in metres, the azimuth in radians.
 
     Raises SimulationError for a place where no camera can be, before a table is laid in vain.
@@ -56,8 +56,8 @@ class Simulation:
         return counts[1 + FIRST_THING :]
 
 
-def simulate(layout: LaidScript | Script | str | Path, view: View | None = None, seed: int = 0) -> Simulation:
-    """Lays a table as a script says, unless it is laid already, and looks at it; the same seed gives the same cloud.
+def simulate(layout: LaidScript | Script | str | Path, view: CameraSetup | None = None, seed: int = 0) -> Simulation:
+    """Lay a table as a script says, unless it is laid already, and looks at it; the same seed gives the same cloud.
 
     Raises NoTableError where no table satisfies the script, SimulationError for a camera or a seed that cannot be.
 
@@ -67,12 +67,11 @@ def simulate(layout: LaidScript | Script | str | Path, view: View | None = None,
     ((480, 640), ['fork', 'plate'], True)
     """
     require_seed(seed)
-    view = view or View()
-    laid = layout if isinstance(layout, LaidScript) else lay_script(_script(layout), seed)
+    view = view or CameraSetup()
+    if isinstance(layout, LaidScript):
+        laid = layout
+    else:
+        laid = lay_script(layout if isinstance(layout, Script) else read_script(str(layout)), seed)
     camera = chair_camera(laid.table, view.height, view.back, view.azimuth, view.lens)
     cloud = see(laid.table, camera, view.sensor, seed)
     return Simulation(laid, camera, cloud, truth_scene(laid.table, laid.viewpoint))
-
-
-def _script(layout: Script | str | Path) -> Script:
-    return layout if isinstance(layout, Script) else read_script(str(layout))

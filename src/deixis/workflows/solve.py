@@ -6,6 +6,7 @@ import time
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
+from itertools import combinations
 from typing import TYPE_CHECKING
 
 from deixis.errors import DeixisError
@@ -16,7 +17,7 @@ from deixis.reasoning.qualitative.networks.conflict import minimal_conflict
 from deixis.reasoning.qualitative.networks.derivation import explain, require_pair
 from deixis.reasoning.qualitative.networks.network import Constraint, Network, compacted
 from deixis.reasoning.qualitative.networks.search import Verdict, solve
-from deixis.reasoning.qualitative.networks.state import Progress, State
+from deixis.reasoning.qualitative.networks.state import Progress
 
 if TYPE_CHECKING:
     from deixis.grammar.formats.networks import NetworkText
@@ -44,7 +45,7 @@ class Wish:
 
 
 @dataclass(frozen=True, eq=False)
-class Solved:
+class SolvedNetwork:
     """One network of a file, and what was found about it.
 
     ``shown`` are the networks that were asked for, the closure or the scenario, one for each calculus.
@@ -65,7 +66,7 @@ class Solved:
 
 
 def calculi_named(text: str) -> tuple[Calculus, ...]:
-    """The calculi of ``ra+rcc8``; raises DeixisError where two are the same, or one is joined to no other."""
+    """Return the calculi of ``ra+rcc8``; raises DeixisError where two are the same, or one is joined to no other."""
     from deixis.reasoning.qualitative.calculi.registry import calculus
 
     names = [name.strip() for name in text.split("+")]
@@ -79,19 +80,19 @@ def calculi_named(text: str) -> tuple[Calculus, ...]:
     return calculi
 
 
-def solve_text(text: NetworkText, wish: Wish, progress: Progress | None = None) -> Solved:
-    """Solves one network of a file; raises LimitError where it would not fit in memory."""
-    return _alone(text, wish, progress) if len(text.networks) == 1 else _jointly(text, wish, progress)
+def solve_text(text: NetworkText, wish: Wish, progress: Progress | None = None) -> SolvedNetwork:
+    """Solve one network of a file; raises LimitError where it would not fit in memory."""
+    return _solve_single(text, wish, progress) if len(text.networks) == 1 else _solve_joint(text, wish, progress)
 
 
-def _alone(text: NetworkText, wish: Wish, progress: Progress | None) -> Solved:
+def _solve_single(text: NetworkText, wish: Wish, progress: Progress | None) -> SolvedNetwork:
     started, deadline = time.perf_counter(), time.monotonic() + wish.time_limit
     if wish.explain is not None:
         require_pair(text.network, *wish.explain)
     small, things = text.network.compact()
     closure = close(small, deadline, progress)
     found = solve(small, max(0.0, deadline - time.monotonic()), progress, wish.scenario)
-    solved = Solved(text, found.verdict, found.reason, closure.narrowed, 0.0, asked=wish.explain)
+    solved = SolvedNetwork(text, found.verdict, found.reason, closure.narrowed, 0.0, asked=wish.explain)
     if found.verdict is Verdict.INCONSISTENT:
         conflict = minimal_conflict(text.network, wish.left(deadline), inconsistent=True)
         if conflict is not None:
@@ -100,7 +101,7 @@ def _alone(text: NetworkText, wish: Wish, progress: Progress | None) -> Solved:
     elif wish.scenario and found.scenario is not None:
         solved = replace(solved, shown=(_renumbered(text.network, found.scenario.constraints, things.tolist()),))
     elif wish.closure and closure.complete:
-        relations = (Constraint(i, j, closure.relation(i, j)) for i, j in closure.told().tolist())
+        relations = (Constraint(i, j, closure.relation(i, j)) for i, j in closure.known_pairs().tolist())
         solved = replace(solved, shown=(_renumbered(text.network, relations, things.tolist()),))
     if wish.explain is not None and found.verdict is not Verdict.INCONSISTENT:
         ending = time.monotonic() + wish.left(deadline)
@@ -109,7 +110,7 @@ def _alone(text: NetworkText, wish: Wish, progress: Progress | None) -> Solved:
     return replace(solved, seconds=time.perf_counter() - started)
 
 
-def _jointly(text: NetworkText, wish: Wish, progress: Progress | None) -> Solved:
+def _solve_joint(text: NetworkText, wish: Wish, progress: Progress | None) -> SolvedNetwork:
     started, deadline = time.perf_counter(), time.monotonic() + wish.time_limit
     if wish.scenario or wish.explain is not None:
         raise DeixisError("--scenario and --explain are for one calculus at a time")
@@ -118,16 +119,26 @@ def _jointly(text: NetworkText, wish: Wish, progress: Progress | None) -> Solved
     found = solve_jointly(networks, links, wish.time_limit, progress)
     contributions = found.closure.contributions
     narrowed = sum(each.pairs for each in contributions)
-    solved = Solved(text, found.verdict, found.reason, narrowed, 0.0, contributions=contributions)
+    solved = SolvedNetwork(text, found.verdict, found.reason, narrowed, 0.0, contributions=contributions)
     if found.verdict is Verdict.INCONSISTENT:
-        solved = _blamed(solved, links, wish.left(deadline))
+        solved = _with_conflict(solved, links, wish.left(deadline))
     elif wish.closure:
         pairs = zip(text.networks, found.closure.states, strict=True)
-        solved = replace(solved, shown=tuple(_closed(network, state, things.tolist()) for network, state in pairs))
+        solved = replace(
+            solved,
+            shown=tuple(
+                _renumbered(
+                    network,
+                    (Constraint(i, j, state.relation(i, j)) for i, j in combinations(range(state.size), 2)),
+                    things.tolist(),
+                )
+                for network, state in pairs
+            ),
+        )
     return replace(solved, seconds=time.perf_counter() - started)
 
 
-def _blamed(solved: Solved, links: Sequence[Link], seconds: float) -> Solved:
+def _with_conflict(solved: SolvedNetwork, links: Sequence[Link], seconds: float) -> SolvedNetwork:
     """With the conflict that joint closure finds, else with that of a network which is inconsistent by itself."""
     deadline, networks = time.monotonic() + seconds, solved.text.networks
     joint = joint_conflict(networks, links, seconds / 2)
@@ -142,13 +153,8 @@ def _blamed(solved: Solved, links: Sequence[Link], seconds: float) -> Solved:
     return solved
 
 
-def _closed(network: Network, state: State, things: list[int]) -> Network:
-    relations = (Constraint(i, j, state.relation(i, j)) for i in range(state.size) for j in range(i + 1, state.size))
-    return _renumbered(network, relations, things)
-
-
 def _renumbered(network: Network, constraints: Iterable[Constraint], things: list[int]) -> Network:
-    """What says something of what was said about the things that constraints are about, in their own numbers."""
+    """Return the constraints that exclude something, with the things numbered as in the whole network."""
     universal = network.calculus.universal
     return network.only(
         Constraint(things[c.first], things[c.second], c.relation) for c in constraints if c.relation != universal

@@ -202,7 +202,7 @@ def test_all_that_holds_as_ntriples(tmp_path: Path) -> None:
 
 
 def test_a_long_listing_is_cut_with_its_count(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("deixis.report.script.MOST", 3)
+    monkeypatch.setattr("deixis.report.script.MAX_INFERRED_LISTED", 3)
     script = tmp_path / "row.layout"
     script.write_text("left to right: a, b, c, d\n", encoding="utf-8")
     code, out, _ = deixis("infer", str(script))

@@ -13,7 +13,7 @@ from deixis.grammar.formats.networks import parse_networks
 from deixis.reasoning.qualitative.calculi.registry import calculus
 from deixis.reasoning.qualitative.networks.search import Verdict
 from deixis.report.solve import solved_lines
-from deixis.workflows.solve import Solved
+from deixis.workflows.solve import SolvedNetwork
 
 FIGURE_5, SETTING = example("closed_but_inconsistent.csp"), example("place_setting.csp")
 JOINT = example("boxes_and_regions.csp")
@@ -147,7 +147,7 @@ def test_one_calculus_that_only_search_refutes_is_blamed_among_several(tmp_path:
 def test_a_conflict_for_which_time_was_short_says_that_it_may_not_be_minimal() -> None:
     (text,) = parse_networks(FIGURE_5.read_text(encoding="utf-8"), [calculus("allen")])
     stated = tuple((text.network, c) for c in text.network.constraints)
-    solved = Solved(text, Verdict.INCONSISTENT, "", 0, 0.0, conflict=stated, minimal=False)
+    solved = SolvedNetwork(text, Verdict.INCONSISTENT, "", 0, 0.0, conflict=stated, minimal=False)
     lines = list(solved_lines(solved))
     assert "not proved minimal" in lines[1] and lines[-1] == "Leave out or change some of these."
 

@@ -97,11 +97,11 @@ def test_with_eight_objects_near_ones_are_told_from_far_ones() -> None:
 
 def test_pairs_are_drawn_as_the_limit_takes_them_to_be() -> None:
     """The first pair of many descriptions of one table, against the probabilities by which the limit weighs."""
-    from deixis.experiments.generated_tables import _pairs
+    from deixis.experiments.generated_tables import _draw_pairs
 
     table = generate(9, 1.0, 0.0, seed=1)
     rng, draws = np.random.default_rng(2), 4000
-    seen = Counter(tuple(_pairs(table.boxes, 9, 1, rng)[0].tolist()) for _ in range(draws))
+    seen = Counter(tuple(_draw_pairs(table.boxes, 9, 1, rng)[0].tolist()) for _ in range(draws))
     first = replace(table, ends=np.array([[0, 1]]))
     pairs = [(s, o) for s in range(9) for o in range(9) if s != o]
     everyone = np.array([[s, o, *(i for i in range(9) if i not in (s, o))] for s, o in pairs])
@@ -118,5 +118,5 @@ def test_only_whole_tables_have_a_limit() -> None:
 
 
 def test_a_listing_that_is_cut_off_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(module, "MOST_MAPS", 1)
+    monkeypatch.setattr(module, "MAX_MAPS", 1)
     assert not bayes_limit(generate(8, 1.0, 0.1, seed=1)).complete

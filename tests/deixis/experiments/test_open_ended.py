@@ -12,13 +12,12 @@ import numpy as np
 import pytest
 from commands import deixis
 
-from deixis.experiments.open_ended.comparison import compared
+from deixis.experiments.open_ended.comparison import by_things, by_views, split_scores
 from deixis.experiments.open_ended.contestants import EQUATIONS, NEAREST, contestants
 from deixis.experiments.open_ended.plot import mean_curve, plot_open_ended
 from deixis.experiments.open_ended.report import lines, to_dict
-from deixis.experiments.open_ended.run import OpenEnded, Plan, run
-from deixis.experiments.open_ended.shown import CacheError, Shown, described, kept
-from deixis.experiments.open_ended.splits import by_things, by_views
+from deixis.experiments.open_ended.run import OpenEnded, OpenEndedPlan, run
+from deixis.experiments.open_ended.shown import CacheError, Shown, cached_views, describe_views
 from deixis.experiments.open_ended.things import (
     MeshListError,
     from_meshes,
@@ -34,7 +33,7 @@ from deixis.perception.recognition.learners.view_features import ViewFeatures
 from deixis.perception.recognition.settings import DEFAULT, PAPER
 from deixis.perception.simulator.tableware import FORMS, make
 
-TINY = Plan(orders=2, instances=5, views=2, asked=2, kinds=("Plate", "Fork", "Mug"))
+TINY = OpenEndedPlan(orders=2, instances=5, views=2, asked=2, kinds=("Plate", "Fork", "Mug"))
 
 
 def shown(things: int = 4, views: int = 3) -> Shown:
@@ -95,7 +94,7 @@ def test_the_nearest_taught_view_names_and_a_category_left_out_is_farther() -> N
     same = np.array(data.categories)[:, None] == np.array(data.categories)[None]
     distances = np.where(same, 1.0, 3.0).astype(np.float32)
     for settings in (None, PAPER, DEFAULT):
-        scores = compared(data, distances, by_things(data, 1), settings)
+        scores = split_scores(data, distances, by_things(data, 1), settings)
         assert (scores.accuracy, scores.auroc) == (1.0, 1.0)
 
 
@@ -106,7 +105,7 @@ def test_a_category_with_a_large_icd_swallows_others_unless_it_is_shrunk() -> No
     distances[np.ix_(fork, fork)] = 10.0  # forks 10
     distances[data.instances[:, None] == data.instances[None]] = 0.5  # and views of a thing 0.5
     found = [
-        compared(data, distances.astype(np.float32), by_views(data, 1), s).accuracy for s in (None, PAPER, DEFAULT)
+        split_scores(data, distances.astype(np.float32), by_views(data, 1), s).accuracy for s in (None, PAPER, DEFAULT)
     ]
     # by ND a cup is 0.5 / 1 from cups and 2 / 10 from forks
     assert found == [1.0, 0.5, 1.0]
@@ -119,14 +118,17 @@ def test_things_of_the_simulator_differ_from_one_another() -> None:
 
 
 def test_by_default_every_kind_that_the_simulator_has_a_shape_for_is_shown() -> None:
-    assert Plan().kinds == tuple(FORMS)
+    assert OpenEndedPlan().kinds == tuple(FORMS)
 
 
 def test_described_views_are_read_back_as_they_were_kept(tmp_path: Path) -> None:
     def build() -> Shown:
-        return described("some", simulated(("Plate", "Fork"), 1, 1, 0))
+        return describe_views("some", simulated(("Plate", "Fork"), 1, 1, 0))
 
-    one, again = kept(tmp_path, "key", build), kept(tmp_path, "key", lambda: pytest.fail("it was there"))
+    one, again = (
+        cached_views(tmp_path, "key", build),
+        cached_views(tmp_path, "key", lambda: pytest.fail("it was there")),
+    )
     assert [view.thing for view in one.views] == [view.thing for view in again.views] == ["0", "1"]
     assert one.categories == again.categories and np.array_equal(one.instances, again.instances)
     for a, b in zip(one.views, again.views, strict=True):
@@ -135,14 +137,14 @@ def test_described_views_are_read_back_as_they_were_kept(tmp_path: Path) -> None
 
 def test_a_damaged_file_is_made_again_and_a_folder_that_is_none_is_named(tmp_path: Path) -> None:
     def build() -> Shown:
-        return described("some", simulated(("Plate",), 1, 1, 0))
+        return describe_views("some", simulated(("Plate",), 1, 1, 0))
 
-    kept(tmp_path, "key", build)
+    cached_views(tmp_path, "key", build)
     (file,) = tmp_path.iterdir()
     file.write_bytes(file.read_bytes()[:-100])
-    assert len(kept(tmp_path, "key", build).views) == 1
+    assert len(cached_views(tmp_path, "key", build).views) == 1
     with pytest.raises(CacheError, match=r"views-.*npz: views cannot be kept here"):
-        kept(file, "key", build)
+        cached_views(file, "key", build)
 
 
 def test_meshes_of_a_folder_are_shown_upright_and_in_metres(tmp_path: Path) -> None:

@@ -15,13 +15,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from deixis.cli.app import main
-from deixis.experiments.scoreboard.board import Board, play
+from deixis.experiments.scoreboard.board import Board, groups, relative, right_up_to_interchangeability, run_contestants
 from deixis.experiments.scoreboard.calibration import Forecasts, calibration
 from deixis.experiments.scoreboard.cases import Group, Setting, generated_cases
-from deixis.experiments.scoreboard.contestants import DEFAULT, Answer, Contestant
-from deixis.experiments.scoreboard.measures import groups, relative, right_up_to_interchangeability
+from deixis.experiments.scoreboard.contestants import DEFAULT, Contestant, ContestantAnswer
 from deixis.experiments.scoreboard.report import lines, verdict
-from deixis.experiments.scoreboard.run import Plan, Scoreboard, run, steps
+from deixis.experiments.scoreboard.run import Scoreboard, ScoreboardPlan, run, steps
 from deixis.experiments.scoreboard.statistics import holm, interval, paired_p
 from deixis.ontology.graph import Fact, RelationGraph
 from deixis.ontology.tbox import default_ontology
@@ -29,7 +28,7 @@ from deixis.reasoning.grounding.evidence.evidence import Evidence
 from deixis.reasoning.grounding.evidence.meaning import SHIPPED
 from deixis.reasoning.grounding.matching.problem import UNMATCHED
 
-TINY = Plan(
+TINY = ScoreboardPlan(
     cases=1,
     time_limit=1.0,
     sizes=(5,),
@@ -45,21 +44,23 @@ def _knowing(name: str) -> Contestant:
     """Knows who is who by the boxes of the things, and is sure of it."""
     truths = {tuple(case.description.nodes): case.truth for case in generated_cases([SETTING], 8, seed=1)}
 
-    def solve(evidence: Evidence, deadline: float) -> Answer:
+    def solve(evidence: Evidence, deadline: float) -> ContestantAnswer:
         truth = truths[evidence.description.nodes]
         marginals = np.zeros((len(truth), len(evidence.scene.nodes) + 1))
         marginals[np.arange(len(truth)), truth] = 1.0  # UNMATCHED is the last column
-        return Answer(truth, proved=True, marginals=marginals)
+        return ContestantAnswer(truth, proved=True, marginals=marginals)
 
     return Contestant(name, "knows the truth", solve)
 
 
 def _silent(name: str) -> Contestant:
-    return Contestant(name, "leaves all out", lambda evidence, _: Answer(np.full(len(evidence.labels), UNMATCHED)))
+    return Contestant(
+        name, "leaves all out", lambda evidence, _: ContestantAnswer(np.full(len(evidence.labels), UNMATCHED))
+    )
 
 
 def _played(*contestants: Contestant) -> Board:
-    return play(contestants, generated_cases([SETTING], 8, seed=1), 1.0, lambda _: None)
+    return run_contestants(contestants, generated_cases([SETTING], 8, seed=1), 1.0, lambda _: None)
 
 
 def test_who_knows_is_right_and_who_is_silent_is_right_about_what_is_missing() -> None:

@@ -10,7 +10,7 @@ import pytest
 from matplotlib.figure import Figure
 
 from deixis.perception.scene import PerceivedObject
-from deixis.plots.arrows import Ends, Point, along, draw_arrows
+from deixis.plots.arrows import Ends, Point, draw_arrows, points_along
 
 PLATE = PerceivedObject("plate", (0.0, 0.0), (10.0, 10.0))
 
@@ -75,7 +75,7 @@ def test_points_along_an_arrow_lie_where_it_is_drawn() -> None:
     draw_arrows(axes, [arrow], "black", 1.0, 1)
     (drawn,) = axes.patches
     start, control, _ = np.asarray(drawn.get_path().vertices)[:3]
-    points = np.array(along([arrow]))
+    points = np.array(points_along([arrow]))
     assert start == pytest.approx(arrow[0]) and points[[0, -1]] == pytest.approx(np.array(arrow))
     middle = (np.array(arrow[0]) + 2 * control + np.array(arrow[1])) / 4  # of a quadratic Bezier curve
     assert np.linalg.norm(points - middle, axis=1).min() < 0.01

@@ -15,7 +15,7 @@ from deixis.examples_data import example
 from deixis.experiments.place_settings import formal_setting
 from deixis.perception.formats.scene_json import read_scene
 from deixis.perception.scene import PerceivedObject, Scene
-from deixis.reasoning.comparison.checking import Verdict
+from deixis.reasoning.comparison.checking import RoleVerdict
 from deixis.report.json_answers import check_to_dict
 from deixis.report.script import check_lines
 from deixis.session import Session
@@ -39,21 +39,21 @@ def swapped(scene: Scene, a: str, b: str) -> Scene:
     return replace(scene, objects=tuple(replace(o, label=label.get(o.label or "", o.label)) for o in scene.objects))
 
 
-def roles(checked: Checked, verdict: Verdict) -> set[str]:
+def roles(checked: Checked, verdict: RoleVerdict) -> set[str]:
     return {entry.role for entry in checked.table.of(verdict)}
 
 
 def test_a_table_that_is_laid_right_has_nothing_wrong_with_it() -> None:
     checked = check(formal_setting())
     assert checked.table.well and checked.conforms
-    assert len(checked.table.of(Verdict.CORRECT)) == 12
+    assert len(checked.table.of(RoleVerdict.CORRECT)) == 12
 
 
 def test_a_swap_that_labels_reveal_is_reported_for_both() -> None:
     checked = check(swapped(formal_setting(), "dinner_knife", "dinner_fork"))
-    assert roles(checked, Verdict.MISPLACED) == {"dinner_knife", "dinner_fork"}
+    assert roles(checked, RoleVerdict.MISPLACED) == {"dinner_knife", "dinner_fork"}
     assert not checked.table.well and not checked.conforms
-    told = {str(b.fact): b for entry in checked.table.of(Verdict.MISPLACED) for b in entry.broken}
+    told = {str(b.fact): b for entry in checked.table.of(RoleVerdict.MISPLACED) for b in entry.broken}
     broken = told["left(dinner_fork, dinner_plate)"]
     assert broken.fact.source is not None and broken.fact.source.line == 7
     assert broken.seen is not None and broken.seen.word == "right"
@@ -64,7 +64,7 @@ def test_what_is_missing_and_what_is_extra_is_named() -> None:
     napkin = PerceivedObject("n2", (0.5, 0.1), (0.6, 0.2), label="napkin")
     vase = PerceivedObject("v", (0.7, 0.1), (0.8, 0.2), label="vase")
     checked = check(replace(scene, objects=(*scene.objects, napkin, vase)))
-    assert roles(checked, Verdict.MISSING) == {"water_glass"}
+    assert roles(checked, RoleVerdict.MISSING) == {"water_glass"}
     assert {extra.perceived: extra.reason for extra in checked.table.extra} == {
         "n2": "one napkin too many",
         "v": "the layout has no place left for a vase",
@@ -89,7 +89,7 @@ CUBE = (0.3, 0.3, 0.3)
 
 def test_what_is_no_fork_by_its_size_nor_by_its_place_is_no_misplaced_fork() -> None:
     checked = check(Scene((PLATE, box("o2", (0.3, 0.06, 0.0), CUBE))), "fork left of plate")
-    assert roles(checked, Verdict.MISSING) == {"fork"} and not roles(checked, Verdict.MISPLACED)
+    assert roles(checked, RoleVerdict.MISSING) == {"fork"} and not roles(checked, RoleVerdict.MISPLACED)
     (extra,) = checked.table.extra
     assert (extra.perceived, extra.reason) == ("o2", "it fits no place that is left in the layout")
     assert not checked.table.well
@@ -98,25 +98,25 @@ def test_what_is_no_fork_by_its_size_nor_by_its_place_is_no_misplaced_fork() -> 
 def test_what_is_far_too_high_for_a_knife_is_no_misplaced_knife() -> None:
     mug = box("o2", (0.4, 0.06, 0.0), (0.12, 0.12, 0.1))  # as long and as wide as a knife that lies aslant
     low = box("o2", (0.4, 0.06, 0.0), (0.12, 0.12, 0.02))
-    for other, verdict in ((mug, Verdict.MISSING), (low, Verdict.MISPLACED)):
+    for other, verdict in ((mug, RoleVerdict.MISSING), (low, RoleVerdict.MISPLACED)):
         assert roles(check(Scene((PLATE, other)), "butter_knife left of plate"), verdict) == {"butter_knife"}
 
 
 def test_what_is_as_large_as_a_fork_or_is_called_one_is_misplaced() -> None:
     for other in (box("o2", (0.4, 0.06, 0.0), (0.025, 0.19, 0.01)), box("o2", (0.3, 0.06, 0.0), CUBE, "fork")):
         checked = check(Scene((PLATE, other)), "fork left of plate")
-        assert "fork" in roles(checked, Verdict.MISPLACED) and not checked.table.extra
+        assert "fork" in roles(checked, RoleVerdict.MISPLACED) and not checked.table.extra
 
 
 def test_what_stands_in_a_forks_place_may_be_one_whatever_its_size() -> None:
     for label in (None, "fork"):
         fork = replace(box("o2", (-0.4, 0.0, 0.0), CUBE), label=label, confidence=0.8)
-        assert roles(check(Scene((PLATE, fork)), "fork left of plate"), Verdict.UNDETERMINED) == {"fork"}
+        assert roles(check(Scene((PLATE, fork)), "fork left of plate"), RoleVerdict.UNDETERMINED) == {"fork"}
 
 
 def test_what_is_called_a_fork_and_is_seen_in_part_is_misplaced() -> None:
     part = replace(box("o2", (0.4, 0.06, 0.0), (0.03, 0.05, 0.01)), label="fork", confidence=0.85)
-    assert roles(check(Scene((PLATE, part)), "fork left of plate"), Verdict.MISPLACED) == {"fork"}
+    assert roles(check(Scene((PLATE, part)), "fork left of plate"), RoleVerdict.MISPLACED) == {"fork"}
 
 
 def test_a_thing_of_another_colour_is_a_finding_of_its_own() -> None:
@@ -131,8 +131,8 @@ def test_a_thing_of_another_colour_is_a_finding_of_its_own() -> None:
         unit="m",
     )
     checked = check(scene, text)
-    assert roles(checked, Verdict.MISCOLOURED) == {"red_mug"}
-    assert roles(checked, Verdict.CORRECT) == {"napkin", "plate", "knife"}
+    assert roles(checked, RoleVerdict.MISCOLOURED) == {"red_mug"}
+    assert roles(checked, RoleVerdict.CORRECT) == {"napkin", "plate", "knife"}
     assert not checked.table.well and not checked.conforms
     assert "miscoloured red_mug (a): blue, not red" in check_lines(checked)
     data = check_to_dict(checked)
@@ -150,7 +150,7 @@ def test_what_is_misplaced_may_be_of_another_colour_too() -> None:
         unit="m",
     )
     checked = check(scene, "napkin is white; napkin left of plate")
-    assert "napkin" in roles(checked, Verdict.MISPLACED)
+    assert "napkin" in roles(checked, RoleVerdict.MISPLACED)
     assert [entry.role for entry, _ in checked.table.miscoloured] == ["napkin"]
     assert {line.split()[0] for line in check_lines(checked)[1:]} >= {"misplaced", "miscoloured"}
 
@@ -158,14 +158,14 @@ def test_what_is_misplaced_may_be_of_another_colour_too() -> None:
 def test_without_labels_a_place_is_never_called_correct() -> None:
     checked = check(formal_setting().without_labels())
     assert checked.table.well
-    assert len(checked.table.of(Verdict.UNDETERMINED)) == 12
-    assert not checked.table.of(Verdict.CORRECT)
+    assert len(checked.table.of(RoleVerdict.UNDETERMINED)) == 12
+    assert not checked.table.of(RoleVerdict.CORRECT)
 
 
 def test_an_unsure_label_is_no_identity() -> None:
     scene = formal_setting()
     unsure = replace(scene, objects=tuple(replace(o, confidence=0.6) for o in scene.objects))
-    assert len(check(unsure).table.of(Verdict.UNDETERMINED)) == 12
+    assert len(check(unsure).table.of(RoleVerdict.UNDETERMINED)) == 12
 
 
 def test_a_thing_of_a_narrower_name_fills_its_role() -> None:
@@ -173,7 +173,7 @@ def test_a_thing_of_a_narrower_name_fills_its_role() -> None:
     places = {"a": (0.0, 0.02), "b": (0.05, 0.07), "p": (0.6, 0.8), "q": (0.9, 1.0), "r": (0.1, 0.35)}
     objects = tuple(PerceivedObject(id, (x, 0.0), (X, 0.2), label=labels[id]) for id, (x, X) in places.items())
     checked = check(Scene(objects), "2 fork left of plate")
-    assert roles(checked, Verdict.CORRECT) == {"fork_1", "fork_2", "plate"}
+    assert roles(checked, RoleVerdict.CORRECT) == {"fork_1", "fork_2", "plate"}
     assert {extra.perceived: extra.reason for extra in checked.table.extra} == {
         "p": "the layout has no place left for a dinner plate",
         "q": "the layout has no place left for a bread plate",
@@ -185,7 +185,7 @@ def test_what_is_optional_may_be_absent_and_may_fail() -> None:
                                     {"id": "p", "min": [2, 0], "max": [3, 1], "label": "plate"}]})  # fmt: skip
     checked = check(scene, "fork left of plate; optional vase above plate; optional fork above plate")
     assert checked.table.well and checked.conforms
-    assert roles(checked, Verdict.ABSENT) == {"vase"}
+    assert roles(checked, RoleVerdict.ABSENT) == {"vase"}
 
 
 @pytest.mark.parametrize("how", ["usually", "optional"])
@@ -227,7 +227,7 @@ def test_the_shacl_report_says_what_the_verdicts_say(seed: int, absent: list[str
         for result in report.subjects(rdflib.RDF.type, SH.ValidationResult)
     ]
     facts = list(FULL.graph().facts())
-    assert {name for kind, name in results if kind == "role"} == roles(checked, Verdict.MISSING)
+    assert {name for kind, name in results if kind == "role"} == roles(checked, RoleVerdict.MISSING)
     assert {str(facts[int(name) - 1]) for kind, name in results if kind == "fact"} == {
         str(entry.fact) for entry in checked.table.broken
     }
@@ -240,8 +240,8 @@ def test_the_shacl_report_says_what_the_verdicts_say(seed: int, absent: list[str
 @pytest.mark.parametrize("swap", list(combinations(FULL.objects, 2)))
 def test_of_any_swapped_pair_both_are_reported_and_nothing_else(swap: tuple[str, str]) -> None:
     checked = check(swapped(formal_setting(), *swap))
-    assert roles(checked, Verdict.MISPLACED) == set(swap)
-    assert {entry.in_place_of for entry in checked.table.of(Verdict.MISPLACED)} == set(swap)
+    assert roles(checked, RoleVerdict.MISPLACED) == set(swap)
+    assert {entry.in_place_of for entry in checked.table.of(RoleVerdict.MISPLACED)} == set(swap)
 
 
 @pytest.mark.parametrize(
@@ -251,15 +251,15 @@ def test_three_that_have_changed_places_are_all_reported_and_nothing_else(turn: 
     label = dict(zip(turn, (*turn[1:], turn[0]), strict=True))
     scene = formal_setting()
     turned = replace(scene, objects=tuple(replace(o, label=label.get(o.label or "", o.label)) for o in scene.objects))
-    assert roles(check(turned), Verdict.MISPLACED) == set(turn)
+    assert roles(check(turned), RoleVerdict.MISPLACED) == set(turn)
 
 
 def test_nothing_is_held_against_what_nothing_is_said_of() -> None:
     boxes = {"fork": 1, "knife": 0, "plate": 2, "salt_shaker": 4}
     scene = Scene(tuple(PerceivedObject(n, (x, 0.0), (x + 0.5, 1.0), label=n) for n, x in boxes.items()))
     says = "fork left of plate; knife right of plate; salt_shaker is a SaltShaker"
-    assert roles(check(scene, says), Verdict.MISPLACED) == {"knife"}
-    assert roles(check(scene, says + "; optional salt_shaker above plate"), Verdict.MISPLACED) == {"knife"}
+    assert roles(check(scene, says), RoleVerdict.MISPLACED) == {"knife"}
+    assert roles(check(scene, says + "; optional salt_shaker above plate"), RoleVerdict.MISPLACED) == {"knife"}
 
 
 def test_what_is_only_hedged_or_denied_need_not_be_there_and_is_told_where_it_fails() -> None:
@@ -268,9 +268,9 @@ def test_what_is_only_hedged_or_denied_need_not_be_there_and_is_told_where_it_fa
     checked = check(scene, "maybe candle above plate; fork left of plate; not vase on plate")
     assert checked.table.well and checked.conforms
     assert [str(entry.fact) for entry in checked.table.unexpected] == ["top(candle, plate)"]
-    assert roles(check(without(scene, "candle"), "maybe candle above plate; fork left of plate"), Verdict.ABSENT) == {
-        "candle"
-    }
+    assert roles(
+        check(without(scene, "candle"), "maybe candle above plate; fork left of plate"), RoleVerdict.ABSENT
+    ) == {"candle"}
 
 
 def test_a_number_of_things_alike_is_correct_by_its_name() -> None:
@@ -281,7 +281,7 @@ def test_a_number_of_things_alike_is_correct_by_its_name() -> None:
             PerceivedObject("p", (0.0, 0.0), (3.0, 1.0), label="plate"),
         )
     )
-    assert len(check(scene, "2 wine_glass above plate").table.of(Verdict.CORRECT)) == 3
+    assert len(check(scene, "2 wine_glass above plate").table.of(RoleVerdict.CORRECT)) == 3
 
 
 def test_why_a_place_is_undetermined_is_said() -> None:

@@ -19,19 +19,19 @@ from deixis.reasoning.errors import SettingError
 from deixis.reasoning.grounding.answer import Outcome
 from deixis.session import Session
 from deixis.workflows.ground import ground
-from deixis.workflows.imagine import Table, imagine, kind_by_words
+from deixis.workflows.imagine import ImaginedTable, imagine, kind_by_words
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 POSSIBLE = ["formal_dinner", "script1", "script2"]
 
 
-def table(text: str) -> Table:
+def table(text: str) -> ImaginedTable:
     found = imagine(parse_script(text))
     assert found.tables, found.none
     return found.tables[0]
 
 
-def require_well_laid(script: Script, imagined: Table) -> None:
+def require_well_laid(script: Script, imagined: ImaginedTable) -> None:
     """Checking and grounding see every firm fact in the scene, but for those that the table itself notes."""
     noted = {str(fact) for fact in imagined.named_otherwise}
     checked = Session(memory="not-needed").check(script, imagined.scene)

@@ -25,7 +25,7 @@ from deixis.perception.simulator.solids import fitted
 from deixis.perception.simulator.tableware import make
 from deixis.session import Session
 from deixis.workflows.lay_table import LaidScript, NoTableError, TimeIsUpError, lay_random, lay_script
-from deixis.workflows.simulate import View, simulate
+from deixis.workflows.simulate import CameraSetup, simulate
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 FORMAL = read_script(str(EXAMPLES / "formal_dinner.layout"))
@@ -165,7 +165,7 @@ def test_what_cannot_be_laid_is_refused_with_the_reason() -> None:
     with pytest.raises(SimulationError, match="state the unit"):
         lay_random(1, 0, {"toaster": box_mesh(300, 170, 200)})
     with pytest.raises(SimulationError, match="above the table"):
-        simulate(lay_random(1, 0), View(height=-1.0))
+        simulate(lay_random(1, 0), CameraSetup(height=-1.0))
 
 
 # ---- the command ------------------------------------------------------------------------------------------------

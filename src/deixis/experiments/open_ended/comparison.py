@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from deixis.experiments.open_ended.contestants import D2, SPIN
 from deixis.experiments.open_ended.shown import Shown
-from deixis.experiments.open_ended.splits import Split
 from deixis.perception.recognition.calibration import auroc
 from deixis.perception.recognition.distances import Target, view_distances
 from deixis.perception.recognition.learners.view_features import roots
@@ -21,8 +21,39 @@ from deixis.perception.recognition.views import PackedViews
 Matrix = NDArray[np.float32]
 
 
+class Split(NamedTuple):
+    """Places of views; both in random order."""
+
+    taught: NDArray[np.int64]
+    asked: NDArray[np.int64]
+
+
+def by_things(shown: Shown, seed: int) -> Split:
+    """Half of the things of each category to teach (rounded up), the other half to ask for."""
+    rng = np.random.default_rng(seed)
+    taught = np.zeros(len(shown.views), bool)
+    for category in shown.kinds:
+        things = rng.permutation(shown.instances_of(category))
+        taught[shown.of(category, things[: -(-len(things) // 2)])] = True
+    return _shuffled(taught, rng)
+
+
+def by_views(shown: Shown, seed: int) -> Split:
+    """Half of the views of each thing to teach (rounded up), the other half to ask for."""
+    rng = np.random.default_rng(seed)
+    taught = np.zeros(len(shown.views), bool)
+    for thing in np.unique(shown.instances):
+        views = rng.permutation(np.flatnonzero(shown.instances == thing))
+        taught[views[: -(-len(views) // 2)]] = True
+    return _shuffled(taught, rng)
+
+
+def _shuffled(taught: NDArray[np.bool_], rng: np.random.Generator) -> Split:
+    return Split(rng.permutation(np.flatnonzero(taught)), rng.permutation(np.flatnonzero(~taught)))
+
+
 @dataclass(frozen=True)
-class Nearest:
+class NamingMethod:
     """A way to name a view: by D_C (``settings`` None) or by ND, over the descriptors of one name."""
 
     name: str
@@ -56,7 +87,7 @@ def d2_distances(shown: Shown) -> Matrix:
     return np.stack([np.linalg.norm(rows - row, axis=1) for row in rows])
 
 
-def compared(shown: Shown, distances: Matrix, split: Split, settings: RecognitionSettings | None) -> Scores:
+def split_scores(shown: Shown, distances: Matrix, split: Split, settings: RecognitionSettings | None) -> Scores:
     """One way of naming on one split."""
     kinds = np.array(shown.kinds)
     category = np.searchsorted(kinds, shown.categories)

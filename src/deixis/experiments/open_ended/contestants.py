@@ -24,7 +24,7 @@ Contestants = Mapping[str, Callable[[], Learner]]
 
 
 def contestants(codebook: Codebook) -> Contestants:
-    """Every learner by name, the paper's as it stands first, and then as it is by default."""
+    """Return every learner by name, the paper's as it stands first, and then as it is by default."""
     return {
         EQUATIONS: lambda: InstanceBased(settings=PAPER, name=EQUATIONS),
         THINGS: lambda: InstanceBased(name=THINGS),
@@ -32,12 +32,14 @@ def contestants(codebook: Codebook) -> Contestants:
         NEAREST: lambda: InstanceBased(by_distance=True, name=NEAREST),
         "D2 and extents": lambda: InstanceBased(D2, root=False, by_distance=True, name="D2 and extents"),
         SVDD: SupportVectorDescription,
-        "committee": lambda: _committee(codebook),
+        "committee": lambda: Committee(
+            [
+                InstanceBased(name=THINGS),
+                InstanceBased("good", name="good"),
+                InstanceBased(D2, name=D2),
+                NaiveBayes(codebook),
+            ]
+        ),
         "LVQ": VectorQuantisation,
         "naive Bayes": lambda: NaiveBayes(codebook),
     }
-
-
-def _committee(codebook: Codebook) -> Committee:
-    members: list[Learner] = [InstanceBased(name=THINGS), InstanceBased("good", name="good")]
-    return Committee([*members, InstanceBased(D2, name=D2), NaiveBayes(codebook)])

@@ -4,42 +4,49 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.experiments.open_ended.run import Findings, OpenEnded
+from deixis.experiments.open_ended.run import OpenEnded
 from deixis.perception.recognition.learners.teaching import Course
 from deixis.plots.figure import INK, PAPER, QUIET, new_figure, save
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 COLOURS = ("#1f4e79", "#e0a02c", "#c0392b", "#7f8c8d", "#5a9a5a", "#8e6bbf", "#2a9d9d", "#b5703c", "#d46a9f")
 Curve = Callable[[Course], NDArray[np.float64]]
 
 
 def plot_open_ended(found: OpenEnded, path: str | Path) -> None:
-    """Draws it as PNG, SVG or PDF by the file's ending; raises DeixisError where the file cannot be written."""
+    """Draw it as PNG, SVG or PDF by the file's ending; raises DeixisError where the file cannot be written."""
     figure, axes = new_figure(12.0, 3.6 * len(found.findings) + 0.6, nrows=len(found.findings), ncols=3, squeeze=False)
     panels = (("categories known", known), ("share of all answers right", accuracy), ("instances a category", stored))
     for one, row in zip(found.findings, axes, strict=True):
         for panel, (title, curve) in zip(row, panels, strict=True):
-            _curves(panel, one, curve)
-            _dress(panel, f"{one.name}: {title}")
+            for number, name in enumerate(dict.fromkeys(taught.contestant for taught in one.taught)):
+                mean = mean_curve([curve(taught.course) for taught in one.of(name)])
+                width = 2.2 if number == 0 else 1.2
+                panel.plot(
+                    np.arange(1, len(mean) + 1), mean, color=COLOURS[number % len(COLOURS)], linewidth=width, label=name
+                )
+            panel.set_title(f"{one.name}: {title}", color=INK, fontsize=10, loc="left")
+            panel.set_xlabel("question and correction iterations", color=INK, fontsize=9)
+            panel.tick_params(colors=INK, labelsize=8)
+            panel.set_facecolor(PAPER)
+            panel.grid(color=QUIET, alpha=0.25, linewidth=0.6)
+            for side in panel.spines.values():
+                side.set_color(QUIET)
     handles, labels = axes[0, 0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=4, frameon=False, fontsize=9, labelcolor=INK)
     save(figure, path)
 
 
 def known(course: Course) -> NDArray[np.float64]:
-    """How many categories were known at each answer."""
+    """Return how many categories were known at each answer."""
     return np.array([answer.known for answer in course.answers], np.float64)
 
 
 def accuracy(course: Course) -> NDArray[np.float64]:
-    """The share of answers so far that were right, at each answer."""
+    """Return the share of answers so far that were right, at each answer."""
     right = np.array([answer.right for answer in course.answers], np.float64)
     return np.cumsum(right) / np.arange(1, len(right) + 1)
 
@@ -50,25 +57,8 @@ def stored(course: Course) -> NDArray[np.float64]:
 
 
 def mean_curve(curves: Sequence[NDArray[np.float64]]) -> NDArray[np.float64]:
-    """The mean of the curves as far as the longest goes, each staying where it ended, as its course is over."""
+    """Return the mean of the curves as far as the longest goes, each staying where it ended, as its course is over."""
     length = max(map(len, curves), default=0)
     held = [np.concatenate([curve, np.full(length - len(curve), curve[-1])]) for curve in curves if len(curve)]
     result: NDArray[np.float64] = np.mean(held, axis=0) if held else np.empty(0)
     return result
-
-
-def _curves(axes: Axes, one: Findings, curve: Curve) -> None:
-    for number, name in enumerate(dict.fromkeys(taught.contestant for taught in one.taught)):
-        mean = mean_curve([curve(taught.course) for taught in one.of(name)])
-        width = 2.2 if number == 0 else 1.2
-        axes.plot(np.arange(1, len(mean) + 1), mean, color=COLOURS[number % len(COLOURS)], linewidth=width, label=name)
-
-
-def _dress(axes: Axes, title: str) -> None:
-    axes.set_title(title, color=INK, fontsize=10, loc="left")
-    axes.set_xlabel("question and correction iterations", color=INK, fontsize=9)
-    axes.tick_params(colors=INK, labelsize=8)
-    axes.set_facecolor(PAPER)
-    axes.grid(color=QUIET, alpha=0.25, linewidth=0.6)
-    for side in axes.spines.values():
-        side.set_color(QUIET)

@@ -9,32 +9,31 @@ from typing import Any
 
 import numpy as np
 
-from deixis.experiments.open_ended.run import SPLITS, WAYS, Findings, OpenEnded, Taught, Ways
+from deixis.experiments.open_ended.run import NAMING_METHODS, SPLITS, CourseResult, Findings, OpenEnded, Ways
 from deixis.experiments.open_ended.shown import DESCRIBERS
 from deixis.perception.recognition.learners.teaching import End
 
 
 def to_dict(found: OpenEnded) -> dict[str, Any]:
-    """The measures of every course, and of every split of single views."""
+    """Return the measures of every course, and of every split of single views."""
     plan = found.plan
     return {
         "seeds": list(plan.seeds()),
         "teaching": asdict(plan.teaching),
         "descriptors": [repr(describer) for describer in DESCRIBERS],
         "skipped": list(found.skipped),
-        "sets": [_set_json(one) for one in found.findings],
-    }
-
-
-def _set_json(one: Findings) -> dict[str, Any]:
-    return {
-        "name": one.name,
-        "categories": list(one.kinds),
-        "things": one.things,
-        "views": one.views,
-        "courses": [_course(taught) for taught in one.taught],
-        "single_views": _single_views_json(one.nearest),
-        "single_views_kept_back": _single_views_json(one.kept_back),
+        "sets": [
+            {
+                "name": one.name,
+                "categories": list(one.kinds),
+                "things": one.things,
+                "views": one.views,
+                "courses": [_course(taught) for taught in one.taught],
+                "single_views": _single_views_json(one.nearest),
+                "single_views_kept_back": _single_views_json(one.kept_back),
+            }
+            for one in found.findings
+        ],
     }
 
 
@@ -45,7 +44,7 @@ def _single_views_json(found: Ways) -> list[dict[str, Any]]:
     ]
 
 
-def _course(taught: Taught) -> dict[str, Any]:
+def _course(taught: CourseResult) -> dict[str, Any]:
     course = taught.course
     return {
         "learner": taught.contestant,
@@ -57,7 +56,7 @@ def _course(taught: Taught) -> dict[str, Any]:
 
 
 NAME = 21
-MEASURES: dict[str, Callable[[Taught], float]] = {
+MEASURES: dict[str, Callable[[CourseResult], float]] = {
     "QCI": lambda one: one.course.iterations,
     "ALC": lambda one: one.course.learnt,
     "AIC": lambda one: one.course.instances,
@@ -97,7 +96,11 @@ def _set(found: OpenEnded, one: Findings) -> Iterator[str]:
     yield f"{one.name}: {len(one.kinds)} categories, {one.things} things, {one.views} views"
     yield f"{'':<{NAME}}" + "".join(f" {measure:>11}" for measure in MEASURES) + " least  all"
     for name in dict.fromkeys(taught.contestant for taught in one.taught):
-        yield _row(name, one.of(name))
+        courses = one.of(name)
+        cells = "".join(f" {spread([measure(one) for one in courses]):>11}" for measure in MEASURES.values())
+        least = min(one.course.global_accuracy for one in courses)
+        whole = sum(one.course.end is End.LEARNT for one in courses)
+        yield f"{name:<{NAME}}{cells} {least:>5.2f} {whole:>4}/{len(courses)}"
     yield from _single_views(f"Single views of the {one.name}", one.nearest)
     if one.kept_back:
         half = f"Single views of every second category of the {one.name}, on which nothing was chosen"
@@ -110,17 +113,10 @@ def _single_views(title: str, found: Ways) -> Iterator[str]:
     yield "accuracy and, with categories left out, AUROC of unknown"
     yield f"{'':<{NAME}}" + "".join(f" {title:>27}" for title in SPLITS)
     yield f"{'':<{NAME}}" + f" {'accuracy':>13} {'AUROC':>13}" * len(SPLITS)
-    for way in WAYS:
+    for way in NAMING_METHODS:
         cells = [found[title, way.name] for title in SPLITS]
         texts = [f"{spread([s.accuracy for s in cell]):>13} {spread([s.auroc for s in cell]):>13}" for cell in cells]
         yield f"{way.name:<{NAME}} " + " ".join(texts)
-
-
-def _row(name: str, courses: Sequence[Taught]) -> str:
-    cells = "".join(f" {spread([measure(one) for one in courses]):>11}" for measure in MEASURES.values())
-    least = min(one.course.global_accuracy for one in courses)
-    whole = sum(one.course.end is End.LEARNT for one in courses)
-    return f"{name:<{NAME}}{cells} {least:>5.2f} {whole:>4}/{len(courses)}"
 
 
 def spread(values: Sequence[float]) -> str:

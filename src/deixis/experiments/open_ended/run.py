@@ -9,7 +9,17 @@ from pathlib import Path
 
 import numpy as np
 
-from deixis.experiments.open_ended.comparison import Matrix, Nearest, Scores, compared, d2_distances, view_matrix
+from deixis.experiments.open_ended.comparison import (
+    Matrix,
+    NamingMethod,
+    Scores,
+    Split,
+    by_things,
+    by_views,
+    d2_distances,
+    split_scores,
+    view_matrix,
+)
 from deixis.experiments.open_ended.contestants import (
     D2,
     EQUATIONS,
@@ -21,8 +31,7 @@ from deixis.experiments.open_ended.contestants import (
     Contestants,
     contestants,
 )
-from deixis.experiments.open_ended.shown import Shown, described, kept
-from deixis.experiments.open_ended.splits import Split, by_things, by_views
+from deixis.experiments.open_ended.shown import Shown, cached_views, describe_views
 from deixis.experiments.open_ended.things import FOLDER, from_meshes, rows_of, simulated
 from deixis.perception.recognition.learners.learner import Learner
 from deixis.perception.recognition.learners.naive_bayes import Codebook
@@ -36,24 +45,24 @@ Tick = Callable[[str], None]
 Stage = Callable[[int], AbstractContextManager[Tick]]
 """Opens a stage of so many steps, and gives what is to be told after each."""
 
-WAYS = (
-    Nearest(NEAREST, SPIN, None),
-    Nearest(EQUATIONS, SPIN, PAPER),
-    Nearest(THINGS, SPIN, DEFAULT),
-    Nearest(UPRIGHT, UPRIGHT, DEFAULT),
-    Nearest("D2 and extents", D2, None),
+NAMING_METHODS = (
+    NamingMethod(NEAREST, SPIN, None),
+    NamingMethod(EQUATIONS, SPIN, PAPER),
+    NamingMethod(THINGS, SPIN, DEFAULT),
+    NamingMethod(UPRIGHT, UPRIGHT, DEFAULT),
+    NamingMethod("D2 and extents", D2, None),
 )
 SPLITS = {"new things": by_things, "new views of things taught": by_views}
 
 Ways = dict[tuple[str, str], tuple[Scores, ...]]
 """By (split, way): one for each order."""
 
-FEW = ("Plate", "Bowl", "Mug", "WineGlass", "Fork", "Knife", "Spoon", "Napkin", "Bottle")
+QUICK_KINDS = ("Plate", "Bowl", "Mug", "WineGlass", "Fork", "Knife", "Spoon", "Napkin", "Bottle")
 """The kinds of a quick run."""
 
 
 @dataclass(frozen=True)
-class Plan:
+class OpenEndedPlan:
     """``instances`` of each of the simulator's ``kinds``, in ``views`` views each; ``mesh_views`` views of each
     category of meshes. Each learner is taught in ``orders`` random orders, each with a split of its own."""
 
@@ -68,9 +77,9 @@ class Plan:
     meshes: Path | None = None
     cache: Path | None = None
 
-    def quick(self) -> Plan:
-        """A small part of it, in a minute or two: few of the simulator's kinds, and no meshes."""
-        return replace(self, orders=min(self.orders, 3), kinds=FEW, meshes=None)
+    def quick(self) -> OpenEndedPlan:
+        """Return a smaller plan that takes a minute or two: few of the simulator's kinds, and no meshes."""
+        return replace(self, orders=min(self.orders, 3), kinds=QUICK_KINDS, meshes=None)
 
     def seeds(self) -> range:
         """Those of the orders."""
@@ -78,7 +87,7 @@ class Plan:
 
 
 @dataclass(frozen=True)
-class Taught:
+class CourseResult:
     """A course, and the share of views of things never taught that the learner named rightly after it."""
 
     contestant: str
@@ -97,12 +106,12 @@ class Findings:
     kinds: tuple[str, ...]
     things: int
     views: int
-    taught: tuple[Taught, ...]
+    taught: tuple[CourseResult, ...]
     nearest: Ways
     kept_back: Ways
 
-    def of(self, contestant: str) -> list[Taught]:
-        """The courses of one contestant."""
+    def of(self, contestant: str) -> list[CourseResult]:
+        """Return the courses of one contestant."""
         return [one for one in self.taught if one.contestant == contestant]
 
 
@@ -110,67 +119,68 @@ class Findings:
 class OpenEnded:
     """The plan, what was found over each set of things, and what was left out."""
 
-    plan: Plan
+    plan: OpenEndedPlan
     findings: tuple[Findings, ...]
     skipped: tuple[str, ...]
 
 
 @contextmanager
 def silent(_: int) -> Iterator[Tick]:
-    """A stage that shows nothing."""
+    """Yield a stage that shows nothing."""
     yield lambda _: None
 
 
-def run(plan: Plan, stage: Stage = silent, entered: Sequence[str] | None = None) -> OpenEnded:
-    """Runs everything; ``entered`` are the contestants, all if None.
+def run(plan: OpenEndedPlan, stage: Stage = silent, entered: Sequence[str] | None = None) -> OpenEnded:
+    """Run everything; ``entered`` are the contestants, all if None.
 
     Raises RecognitionError, before any work, where a contestant needs scikit-learn and it is not installed.
     """
     if entered is None or SVDD in entered:
         require_scikit_learn()
-    codebook = Codebook.of(_simulated(plan, 2, plan.seed + 1000, stage).views, seed=plan.seed)
+    codebook = Codebook.of(_simulated_views(plan, 2, plan.seed + 1000, stage).views, seed=plan.seed)
     able = {name: make for name, make in contestants(codebook).items() if entered is None or name in entered}
-    findings = [_found(plan, _simulated(plan, plan.instances, plan.seed, stage), able, stage)]
+    findings = [_evaluate(plan, _simulated_views(plan, plan.instances, plan.seed, stage), able, stage)]
     skipped = []
     if plan.meshes is None:
         skipped.append(f"meshes: a quick run has none, another those that DEIXIS_DATA leads to ({FOLDER}/)")
     else:
-        findings.append(_found(plan, _meshes(plan, plan.meshes, stage), able, stage, keep_back=True))
+        folder = plan.meshes
+
+        def describe() -> Shown:
+            with stage(len(rows_of(folder))) as tick:
+                return describe_views("meshes", from_meshes(folder, plan.mesh_views, plan.seed), tick)
+
+        meshes = cached_views(plan.cache, f"meshes {folder.resolve()} {plan.mesh_views} {plan.seed}", describe)
+        findings.append(_evaluate(plan, meshes, able, stage, keep_back=True))
     return OpenEnded(plan, tuple(findings), tuple(skipped))
 
 
-def _simulated(plan: Plan, instances: int, seed: int, stage: Stage) -> Shown:
+def _simulated_views(plan: OpenEndedPlan, instances: int, seed: int, stage: Stage) -> Shown:
     def make() -> Shown:
         with stage(instances * len(plan.kinds)) as tick:
-            return described("simulator", simulated(plan.kinds, instances, plan.views, seed), tick)
+            return describe_views("simulator", simulated(plan.kinds, instances, plan.views, seed), tick)
 
-    return kept(plan.cache, f"simulator {plan.kinds} {instances} {plan.views} {seed}", make)
-
-
-def _meshes(plan: Plan, folder: Path, stage: Stage) -> Shown:
-    def make() -> Shown:
-        with stage(len(rows_of(folder))) as tick:
-            return described("meshes", from_meshes(folder, plan.mesh_views, plan.seed), tick)
-
-    return kept(plan.cache, f"meshes {folder.resolve()} {plan.mesh_views} {plan.seed}", make)
+    return cached_views(plan.cache, f"simulator {plan.kinds} {instances} {plan.views} {seed}", make)
 
 
-def _found(plan: Plan, shown: Shown, able: Contestants, stage: Stage, keep_back: bool = False) -> Findings:
+def _evaluate(plan: OpenEndedPlan, shown: Shown, able: Contestants, stage: Stage, keep_back: bool = False) -> Findings:
     with stage(len(able) * plan.orders) as tick:
         taught = tuple(
-            _taught(plan, shown, name, make, seed, tick) for name, make in able.items() for seed in plan.seeds()
+            _run_course(plan, shown, name, make, seed, tick) for name, make in able.items() for seed in plan.seeds()
         )
     with stage(2 * len(shown.views)) as tick:
         matrices = {D2: d2_distances(shown), **{name: view_matrix(shown, name, tick) for name in (SPIN, UPRIGHT)}}
-    nearest = _nearest(plan, shown, matrices)
+    nearest = _score_single_views(plan, shown, matrices)
     places = np.concatenate([shown.of(kind) for kind in shown.kinds[1::2]])
     part = {key: matrix[np.ix_(places, places)] for key, matrix in matrices.items()}
-    rest = _nearest(plan, shown.at(places), part) if keep_back else {}
+    rest = _score_single_views(plan, shown.at(places), part) if keep_back else {}
     things = len(np.unique(shown.instances))
     return Findings(shown.name, shown.kinds, things, len(shown.views), taught, nearest, rest)
 
 
-def _taught(plan: Plan, shown: Shown, name: str, make: Callable[[], Learner], seed: int, tick: Tick) -> Taught:
+def _run_course(
+    plan: OpenEndedPlan, shown: Shown, name: str, make: Callable[[], Learner], seed: int, tick: Tick
+) -> CourseResult:
     """One course: everything about it follows from the seed, and is the same for every contestant."""
     split, learner = by_things(shown, seed), make()
     order = [str(kind) for kind in np.random.default_rng(seed).permutation(shown.kinds)]
@@ -179,7 +189,7 @@ def _taught(plan: Plan, shown: Shown, name: str, make: Callable[[], Learner], se
     known = order[: len(course.introduced)]
     right = [learner.predict(view).best == kind for kind in known for view in rest[kind]]
     tick(f"{shown.name}: {name}")
-    return Taught(name, course, float(np.mean(right)))
+    return CourseResult(name, course, float(np.mean(right)))
 
 
 def _views(shown: Shown, split: Split, asked: int | None) -> dict[str, list[ViewFeatures]]:
@@ -190,11 +200,11 @@ def _views(shown: Shown, split: Split, asked: int | None) -> dict[str, list[View
     return {kind: views[:asked] for kind, views in found.items()}
 
 
-def _nearest(plan: Plan, shown: Shown, matrices: dict[str, Matrix]) -> Ways:
+def _score_single_views(plan: OpenEndedPlan, shown: Shown, matrices: dict[str, Matrix]) -> Ways:
     return {
         (title, way.name): tuple(
-            compared(shown, matrices[way.descriptor], cut(shown, seed), way.settings) for seed in plan.seeds()
+            split_scores(shown, matrices[way.descriptor], cut(shown, seed), way.settings) for seed in plan.seeds()
         )
         for title, cut in SPLITS.items()
-        for way in WAYS
+        for way in NAMING_METHODS
     }

@@ -30,7 +30,7 @@ DESCRIBERS: tuple[Describer, ...] = (
 """Settings are the same for all data. Those of the first and the last were chosen beforehand (docs/open_ended.md)."""
 
 
-class Seen(NamedTuple):
+class ThingViews(NamedTuple):
     """A thing and views of it; ``instance`` tells things of a category apart."""
 
     category: str
@@ -53,24 +53,24 @@ class Shown:
         return tuple(sorted(set(self.categories)))
 
     def of(self, category: str, instances: Iterable[int] | None = None) -> NDArray[np.int64]:
-        """The places of a category's views, of some of its instances only if these are given."""
+        """Return the places of a category's views, of some of its instances only if these are given."""
         chosen = np.array(self.categories) == category
         if instances is not None:
             chosen &= np.isin(self.instances, list(instances))
         return np.flatnonzero(chosen)
 
     def at(self, places: NDArray[np.int64]) -> Shown:
-        """The views in these places only."""
+        """Return the views in these places only."""
         categories, views = (tuple(each[place] for place in places) for each in (self.categories, self.views))
         return Shown(self.name, categories, self.instances[places], views)
 
     def instances_of(self, category: str) -> NDArray[np.int64]:
-        """The numbers of a category's instances."""
+        """Return the numbers of a category's instances."""
         return np.unique(self.instances[self.of(category)])
 
 
-def described(name: str, things: Iterable[Seen], tick: Callable[[str], None] = lambda _: None) -> Shown:
-    """Describes all views; those that a describer finds nothing in are left out. ``tick`` is called for each thing."""
+def describe_views(name: str, things: Iterable[ThingViews], tick: Callable[[str], None] = lambda _: None) -> Shown:
+    """Describe all views; those that a describer finds nothing in are left out. ``tick`` is called for each thing."""
     categories: list[str] = []
     instances: list[int] = []
     views: list[ViewFeatures] = []
@@ -88,8 +88,8 @@ class CacheError(DeixisError, OSError):
     """A folder in which views cannot be kept."""
 
 
-def kept(folder: Path | None, key: str, make: Callable[[], Shown]) -> Shown:
-    """What ``make`` gives, or what it gave before: the file is named after ``key`` and the describers' settings.
+def cached_views(folder: Path | None, key: str, make: Callable[[], Shown]) -> Shown:
+    """Return what ``make`` gives, or what it gave before: the file is named after ``key`` and the describers' settings.
 
     A file that cannot be read is made again. Raises CacheError where none can be written.
     """
@@ -103,25 +103,21 @@ def kept(folder: Path | None, key: str, make: Callable[[], Shown]) -> Shown:
         shown = make()
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        _write(shown, file)
+        arrays: dict[str, NDArray[np.generic]] = {
+            "name": np.array(shown.name),
+            "categories": np.array(shown.categories),
+            "instances": shown.instances,
+        }
+        for describer in DESCRIBERS:
+            parts = [view[describer.name] for view in shown.views]
+            arrays[f"{describer.name} lengths"] = np.array([len(part) for part in parts])
+            arrays[describer.name] = np.concatenate(parts)
+        unfinished = file.with_suffix(".part.npz")
+        np.savez(unfinished, allow_pickle=False, **arrays)
+        unfinished.replace(file)
     except OSError as error:
         raise CacheError(f"{folder}: views cannot be kept here ({error.strerror}); choose another folder") from error
     return shown
-
-
-def _write(shown: Shown, file: Path) -> None:
-    arrays: dict[str, NDArray[np.generic]] = {
-        "name": np.array(shown.name),
-        "categories": np.array(shown.categories),
-        "instances": shown.instances,
-    }
-    for describer in DESCRIBERS:
-        parts = [view[describer.name] for view in shown.views]
-        arrays[f"{describer.name} lengths"] = np.array([len(part) for part in parts])
-        arrays[describer.name] = np.concatenate(parts)
-    unfinished = file.with_suffix(".part.npz")
-    np.savez(unfinished, allow_pickle=False, **arrays)
-    unfinished.replace(file)
 
 
 def _read(file: Path) -> Shown:

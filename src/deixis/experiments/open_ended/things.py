@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from deixis.errors import DeixisError
-from deixis.experiments.open_ended.shown import Seen
+from deixis.experiments.open_ended.shown import ThingViews
 from deixis.perception.clouds.mesh import Mesh
 from deixis.perception.clouds.mesh_file import read_mesh
 from deixis.perception.simulator.tableware import make
@@ -21,7 +21,7 @@ FOLDER = "tabletop-meshes"
 SETTING = "place_setting"
 """A whole table, not a thing."""
 
-LARGEST = 0.5
+MAX_EXTENT = 0.5
 """Metres that a thing on a table measures at most."""
 
 Y_UP = "sweethome3d"
@@ -32,16 +32,18 @@ class MeshListError(DeixisError, ValueError):
     """A folder of meshes whose list cannot be read."""
 
 
-def simulated(kinds: Iterable[str], instances: int, views: int, seed: int) -> Iterator[Seen]:
+def simulated(kinds: Iterable[str], instances: int, views: int, seed: int) -> Iterator[ThingViews]:
     """So many instances of each kind, in so many views each."""
     for kind in kinds:
         for number in range(instances):
             one = 10_000 * seed + number
-            yield Seen(kind, f"{kind} {number}", views_of(make(kind, seed=one).mesh, views, seed=one, upright=True))
+            yield ThingViews(
+                kind, f"{kind} {number}", views_of(make(kind, seed=one).mesh, views, seed=one, upright=True)
+            )
 
 
 def meshes_folder() -> Path | None:
-    """Where the meshes are, or None where DEIXIS_DATA does not lead to them."""
+    """Return where the meshes are, or None where DEIXIS_DATA does not lead to them."""
     folder = Path(os.environ.get("DEIXIS_DATA") or ".") / FOLDER
     return folder if os.environ.get("DEIXIS_DATA") and (folder / "index.csv").is_file() else None
 
@@ -60,19 +62,19 @@ def rows_of(folder: Path) -> list[tuple[str, Path, bool]]:
         raise MeshListError(f"{folder / 'index.csv'}: this list of meshes cannot be read; {columns}") from error
 
 
-def from_meshes(folder: Path, views: int, seed: int) -> Iterator[Seen]:
-    """Every thing of each category that has two or more, in as many views as give ``views`` a category."""
+def from_meshes(folder: Path, views: int, seed: int) -> Iterator[ThingViews]:
+    """Yield every thing of each category that has two or more, in as many views as give ``views`` a category."""
     rows = rows_of(folder)
     counts = Counter(category for category, _, _ in rows)
     for number, (category, file, y_up) in enumerate(rows):
         if counts[category] > 1:
             each = -(-views // counts[category])
             mesh = upright(in_metres(read_mesh(file)), y_up)
-            yield Seen(category, file.name, views_of(mesh, each, seed=10_000 * seed + number, upright=True))
+            yield ThingViews(category, file.name, views_of(mesh, each, seed=10_000 * seed + number, upright=True))
 
 
 def in_metres(mesh: Mesh) -> Mesh:
-    """The mesh in metres: its unit is taken for the metre where it is then no larger than ``LARGEST``, and else for
+    """The mesh in metres: its unit is taken for the metre where it is then no larger than ``MAX_EXTENT``, and else for
     the largest decimal part of a metre (decimetre, centimetre, millimetre and so on) in which it is.
 
     >>> cup = Mesh(np.diag([8.0, 8.0, 9.5]), np.array([[0, 1, 2]], np.int32))
@@ -80,10 +82,10 @@ def in_metres(mesh: Mesh) -> Mesh:
     np.float64(0.095)
     """
     largest = float(np.ptp(mesh.vertices, axis=0).max())
-    scale = 1.0 if largest <= LARGEST else 10.0 ** np.floor(np.log10(LARGEST / largest))
+    scale = 1.0 if largest <= MAX_EXTENT else 10.0 ** np.floor(np.log10(MAX_EXTENT / largest))
     return Mesh(mesh.vertices * scale, mesh.faces)
 
 
 def upright(mesh: Mesh, y_up: bool) -> Mesh:
-    """The mesh with z up."""
+    """Return the mesh with z up."""
     return Mesh(mesh.vertices[:, [0, 2, 1]] * [1.0, -1.0, 1.0], mesh.faces) if y_up else mesh

@@ -19,14 +19,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.experiments.generated_tables import GeneratedTable, nearest, neighbours
-from deixis.ontology.relation import Reading, Relations
+from deixis.ontology.relation import Reading
 from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.geometry.rectangle import box_relations
 from deixis.reasoning.grounding.matching.exact import exact, maps_within
 from deixis.reasoning.grounding.matching.problem import Problem
 
-MOST_MAPS = 1_000_000
-IMPOSSIBLE, PLACED = -1e3, -1e6  # worth of a fact that cannot have been said, and of leaving an object out
+MAX_MAPS = 1_000_000
+IMPOSSIBLE_VALUE = -1e3  # value of a fact that cannot have been said
+UNMATCHED_VALUE = -1e6  # value of leaving an object out
 CHUNK = 50_000
 
 Matrix = NDArray[np.float64]
@@ -48,10 +49,14 @@ class Limit:
 
 
 def bayes_limit(table: GeneratedTable, seconds: float = 30.0) -> Limit:
-    """The limit for a table on which nothing is missing or extra; raises ValueError for another."""
+    """Return the limit for a table on which nothing is missing or extra; raises ValueError for another."""
     if len(table.truth) != len(table.boxes) or (table.truth < 0).any():
         raise ValueError("the limit is that of a table on which nothing is missing or extra")
-    said_off = _said_off(default_ontology().relations)
+    relations = default_ontology().relations
+    said_off = np.zeros((len(relations), len(relations)))
+    for relation in relations.of_reading(Reading.EXACT):
+        near = neighbours(relation.index, relations)
+        said_off[relation.index, near] = 1 / len(near)
     names = box_relations(table.boxes, default_ontology().relations).names
     maps, complete = _possible(table, names, said_off, time.perf_counter() + seconds)
     parts = [maps[start : start + CHUNK] for start in range(0, len(maps), CHUNK)]
@@ -60,27 +65,18 @@ def bayes_limit(table: GeneratedTable, seconds: float = 30.0) -> Limit:
     return Limit(_expected(maps, words), _expected(maps, words + pairs), len(maps), complete)
 
 
-def _said_off(relations: Relations) -> Matrix:
-    """How probably a word is said of a pair whose fact is off: shape (relations, relations), the pair's name first."""
-    said = np.zeros((len(relations), len(relations)))
-    for relation in relations.of_reading(Reading.EXACT):
-        near = neighbours(relation.index, relations)
-        said[relation.index, near] = 1 / len(near)
-    return said
-
-
 def _possible(table: GeneratedTable, names: Names, said_off: Matrix, deadline: float) -> tuple[Maps, bool]:
-    """The maps with exactly as many facts off as there are, shape (c, n), and whether these are all."""
+    """Return the maps with exactly as many facts off as there are, shape (c, n), and whether these are all."""
     n, off = len(table.truth), int(table.off.sum())
     words, kinds = np.unique(table.words, return_inverse=True)
-    tables = np.full((len(words), n, n), IMPOSSIBLE, dtype=np.float32)
+    tables = np.full((len(words), n, n), IMPOSSIBLE_VALUE, dtype=np.float32)
     for rows, word in zip(tables, words.tolist(), strict=True):
         rows[said_off[:, word][names] > 0] = -1.0
         rows[names == word] = 0.0
-    problem = Problem(table.ends, kinds.ravel().astype(np.int64), tables, np.zeros((n, n)), np.full(n, PLACED))
+    problem = Problem(table.ends, kinds.ravel().astype(np.int64), tables, np.zeros((n, n)), np.full(n, UNMATCHED_VALUE))
     best = exact(problem, deadline)
     margin = max(0.0, off + best.value)  # from the fewest that can be off to as many as are
-    found = maps_within(problem, margin, deadline, limit=MOST_MAPS)
+    found = maps_within(problem, margin, deadline, limit=MAX_MAPS)
     possible = np.abs(found.values + off) < 0.5
     if not possible.any():  # not one was found in time; the truth is possible for certain
         return table.truth[None], False
@@ -88,7 +84,7 @@ def _possible(table: GeneratedTable, names: Names, said_off: Matrix, deadline: f
 
 
 def _word_likelihood(table: GeneratedTable, names: Names, said_off: Matrix, maps: Maps) -> Matrix:
-    """The logarithm of how probably what is off would have been said, for each of c maps, shape (c,)."""
+    """Return the logarithm of how probably what is off would have been said, for each of c maps, shape (c,)."""
     true = names[maps[:, table.ends[:, 0]], maps[:, table.ends[:, 1]]]
     said = np.where(true == table.words, 1.0, said_off[true, table.words])
     likelihood: Matrix = np.log(said).sum(axis=1)
@@ -96,7 +92,7 @@ def _word_likelihood(table: GeneratedTable, names: Names, said_off: Matrix, maps
 
 
 def _pair_likelihood(table: GeneratedTable, maps: Maps) -> Matrix:
-    """The logarithm of how probably these pairs were drawn, in this order, for each of c maps, shape (c,).
+    """Return the logarithm of how probably these pairs were drawn, in this order, for each of c maps, shape (c,).
 
     A draw takes any subject, and evenly often one of its nearest or any object; it is repeated where the two are the
     same or have been paired before, so that each draw is relative to the pairs that were left.
@@ -115,7 +111,7 @@ def _pair_likelihood(table: GeneratedTable, maps: Maps) -> Matrix:
 
 
 def _expected(maps: Maps, likelihood: Matrix) -> float:
-    """The share right that the best decision can expect under the posterior over these maps."""
+    """Return the share right that the best decision can expect under the posterior over these maps."""
     from scipy.optimize import linear_sum_assignment
 
     weights = np.exp(likelihood - likelihood.max())

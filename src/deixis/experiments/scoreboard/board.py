@@ -13,19 +13,62 @@ from numpy.typing import NDArray
 
 from deixis.experiments.scoreboard.calibration import Forecasts
 from deixis.experiments.scoreboard.cases import Case, Group, Setting
-from deixis.experiments.scoreboard.contestants import Answer, Contestant
-from deixis.experiments.scoreboard.measures import (
-    groups,
-    relative,
-    right,
-    right_up_to_interchangeability,
-    satisfied,
-)
+from deixis.experiments.scoreboard.contestants import Contestant, ContestantAnswer
 from deixis.experiments.scoreboard.statistics import Interval, holm, interval, paired_p
+from deixis.ontology.graph import RelationGraph
+from deixis.reasoning.grounding.evidence.evidence import Evidence
 from deixis.reasoning.grounding.evidence.meaning import SHIPPED
+from deixis.reasoning.grounding.matching.problem import UNMATCHED
+from deixis.reasoning.grounding.symmetry import interchangeable
 
 MEASURES = ("right", "grouped", "facts", "value")
 ALPHA = 0.05
+
+Map = NDArray[np.int64]
+
+
+def right(assignment: Map, truth: Map) -> NDArray[np.bool_]:
+    """Return which objects (n1,) are given their own thing, or left out where they are missing."""
+    same: NDArray[np.bool_] = assignment == truth
+    return same
+
+
+def groups(description: RelationGraph) -> list[NDArray[np.int64]]:
+    """The objects that the description (and their kinds) provably cannot tell apart, each group as node indices."""
+    kinds = description.kinds or (None,) * len(description.nodes)
+    found = interchangeable(description, kinds)
+    return [np.array([description.index(name) for name in group], dtype=np.int64) for group in found]
+
+
+def right_up_to_interchangeability(assignment: Map, truth: Map, groups: Sequence[NDArray[np.int64]]) -> float:
+    """Return the share of objects that are right where the things of a group's objects may be exchanged among them.
+
+    Each thing counts once, and so does each missing object of a group for one that is left out.
+
+    >>> truth, swapped = np.array([0, 1, 2]), np.array([1, 0, UNMATCHED])
+    >>> round(right_up_to_interchangeability(swapped, truth, [np.array([0, 1])]), 2)
+    0.67
+    """
+    if len(truth) == 0:
+        return 1.0
+    count = int(right(assignment, truth).sum())
+    for group in groups:
+        given, own = assignment[group], truth[group]
+        shared = len(np.intersect1d(given[given != UNMATCHED], own[own != UNMATCHED]))
+        absent = min(int((given == UNMATCHED).sum()), int((own == UNMATCHED).sum()))
+        count += shared + absent - int(right(given, own).sum())
+    return count / len(truth)
+
+
+def satisfied(evidence: Evidence, assignment: Map) -> int:
+    """Return how many stated facts hold of the things that their objects are given, at least in the wide reading."""
+    return int((evidence.degrees(assignment) > 0).sum())
+
+
+def relative(figures: Sequence[float]) -> list[float]:
+    """Return each figure over the greatest of them; nan where that is not above 0 (a share of nothing)."""
+    best = max(figures, default=0.0)
+    return [figure / best if best > 0 else float("nan") for figure in figures]
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,7 +89,7 @@ class Score:
 
 
 @dataclass(frozen=True, slots=True)
-class Comparison:
+class EngineComparison:
     """How far the default is ahead of another contestant in a group, with p and p adjusted for all comparisons."""
 
     group: Group
@@ -86,11 +129,11 @@ class Board:
         return found
 
     def of(self, contestant: str, group: Group | Setting) -> list[Score]:
-        """The scores of one contestant in a group, or in one setting of it."""
+        """Return the scores of one contestant in a group, or in one setting of it."""
         return self._by_place.get((contestant, group), [])
 
     def by_unit(self, contestant: str, group: Group | Setting, measure: str) -> dict[tuple[Setting, int], float]:
-        """The measure for every table or image, a mean over the orders in which it was given."""
+        """Return the measure for every table or image, a mean over the orders in which it was given."""
         found: dict[tuple[Setting, int], list[float]] = defaultdict(list)
         for score in self.of(contestant, group):
             found[score.setting, score.unit].append(getattr(score, measure))
@@ -99,7 +142,7 @@ class Board:
     def mean(self, contestant: str, group: Group | Setting, measure: str) -> Interval:
         return interval(list(self.by_unit(contestant, group, measure).values()))
 
-    def comparisons(self, measure: str, seed: int) -> list[Comparison]:
+    def comparisons(self, measure: str, seed: int) -> list[EngineComparison]:
         """The default against each other contestant in each group, over the same cases, adjusted together (Holm)."""
         default, *others = (contestant.name for contestant in self.contestants)
         found = []
@@ -112,7 +155,7 @@ class Board:
                     found.append((group, other, interval(differences), paired_p(differences, seed)))
         adjusted = holm([p for *_, p in found])
         return [
-            Comparison(group, other, measure, difference, p, q)
+            EngineComparison(group, other, measure, difference, p, q)
             for (group, other, difference, p), q in zip(found, adjusted, strict=True)
         ]
 
@@ -122,7 +165,7 @@ def median_seconds(scores: Sequence[Score]) -> float:
     return float(np.median([score.seconds for score in scores]))
 
 
-def play(
+def run_contestants(
     contestants: Sequence[Contestant], cases: Iterable[Case], seconds: float, tick: Callable[[str], None]
 ) -> Board:
     """Every contestant on every case that is not too large for it; ``tick`` is told the group after each case."""
@@ -134,42 +177,38 @@ def play(
         entered = [contestant for contestant in able if contestant.enters(case)]
         for contestant in entered:
             if contestant.name not in warm:  # compiled code is compiled or loaded once, which does not count
-                warm.add(_answered(contestant, case, seconds)[0])
-        answers = [_answered(contestant, case, seconds) for contestant in entered]
-        scores += _scores(case, answers)
+                warm.add(_ask(contestant, case, seconds)[0])
+        answers = [_ask(contestant, case, seconds) for contestant in entered]
+        judge, alike = case.evidence(SHIPPED), groups(case.description)
+        maps: list[NDArray[np.int64]] = [answer.assignment for _, answer, _ in answers]
+        facts = relative([float(satisfied(judge, found)) for found in maps])
+        values = relative([judge.problem.value(found) for found in maps])
+        scores += [
+            Score(
+                setting=case.setting,
+                unit=case.unit,
+                contestant=name,
+                right=float(right(found, case.truth).mean()),
+                grouped=right_up_to_interchangeability(found, case.truth, alike),
+                facts=fact,
+                value=value,
+                seconds=seconds,
+                proved=answer.proved,
+            )
+            for (name, answer, seconds), found, fact, value in zip(answers, maps, facts, values, strict=True)
+        ]
         forecasts += [Forecasts.of(name, case, answer) for name, answer, _ in answers if answer.marginals is not None]
         tick(str(case.setting.group))
     return Board(tuple(able), tuple(scores), tuple(forecasts))
 
 
-_Answered = tuple[str, Answer, float]
+_TimedAnswer = tuple[str, ContestantAnswer, float]
 
 
-def _answered(contestant: Contestant, case: Case, seconds: float) -> _Answered:
+def _ask(contestant: Contestant, case: Case, seconds: float) -> _TimedAnswer:
     """The answer and the time from evidence to answer; each contestant gets evidence of its own, nothing computed."""
     case.scene  # noqa: B018 - what was perceived is there before anybody is asked
     evidence = case.evidence(contestant.meaning, contestant.learned)
     started = time.perf_counter()
     answer = contestant.solve(evidence, started + seconds)
     return contestant.name, answer, time.perf_counter() - started
-
-
-def _scores(case: Case, answers: Sequence[_Answered]) -> list[Score]:
-    judge, alike = case.evidence(SHIPPED), groups(case.description)
-    maps: list[NDArray[np.int64]] = [answer.assignment for _, answer, _ in answers]
-    facts = relative([float(satisfied(judge, found)) for found in maps])
-    values = relative([judge.problem.value(found) for found in maps])
-    return [
-        Score(
-            setting=case.setting,
-            unit=case.unit,
-            contestant=name,
-            right=float(right(found, case.truth).mean()),
-            grouped=right_up_to_interchangeability(found, case.truth, alike),
-            facts=fact,
-            value=value,
-            seconds=seconds,
-            proved=answer.proved,
-        )
-        for (name, answer, seconds), found, fact, value in zip(answers, maps, facts, values, strict=True)
-    ]

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.experiments.scoreboard.cases import Case, Group
-from deixis.experiments.scoreboard.contestants import Answer
+from deixis.experiments.scoreboard.contestants import ContestantAnswer
 from deixis.reasoning.grounding.matching.problem import UNMATCHED
 from deixis.reasoning.grounding.options import is_decided
 
@@ -27,8 +27,8 @@ class Forecasts:
     error: float = 0.0  # by how much the probabilities may be off
 
     @classmethod
-    def of(cls, contestant: str, case: Case, answer: Answer) -> Forecasts:
-        """Raises ValueError where the answer gives no probabilities."""
+    def of(cls, contestant: str, case: Case, answer: ContestantAnswer) -> Forecasts:
+        """Raise ValueError where the answer gives no probabilities."""
         if answer.marginals is None:
             raise ValueError(f"{contestant} gives no probabilities")
         matched = np.flatnonzero(answer.assignment != UNMATCHED)
@@ -49,7 +49,7 @@ class Bin:
 
 
 @dataclass(frozen=True, slots=True)
-class Calibration:
+class Reliability:
     """The reliability of ``count`` matches. ``error`` is the expected calibration error: the mean distance of the
     share right from the mean probability over the bins, by how many they hold (Naeini, Cooper, Hauskrecht 2015).
     """
@@ -61,8 +61,8 @@ class Calibration:
     precision: float  # share of those that are right; nan where there is none
 
 
-def calibration(forecasts: Sequence[Forecasts]) -> Calibration:
-    """All matches together, in bins of equal width.
+def calibration(forecasts: Sequence[Forecasts]) -> Reliability:
+    """Compute the reliability of all matches together, in bins of equal width.
 
     >>> said = np.array([0.65, 0.65, 1.0, 1.0])
     >>> found = calibration([Forecasts("exact", Group(2, 0.0), said, np.array([True, False, True, True]))])
@@ -72,20 +72,19 @@ def calibration(forecasts: Sequence[Forecasts]) -> Calibration:
     said = np.concatenate([np.zeros(0), *(one.probability for one in forecasts)])
     right = np.concatenate([np.zeros(0, bool), *(one.right for one in forecasts)])
     number = np.clip((said * BINS).astype(int), 0, BINS - 1)
-    bins = tuple(_bin(b, said[number == b], right[number == b]) for b in range(BINS))
+    bins = []
+    for b in range(BINS):
+        held = number == b
+        bins.append(Bin(b / BINS, (b + 1) / BINS, int(held.sum()), _mean(said[held]), _mean(right[held])))
     off = sum(b.count * abs(b.right - b.probability) for b in bins if b.count)
     sure = np.concatenate([np.zeros(0, bool), *(is_decided(one.probability, one.error) for one in forecasts)])
-    return Calibration(
-        bins,
+    return Reliability(
+        tuple(bins),
         len(said),
         off / len(said) if len(said) else float("nan"),
         _mean(sure),
         _mean(right[sure]),
     )
-
-
-def _bin(number: int, said: NDArray[np.float64], right: NDArray[np.bool_]) -> Bin:
-    return Bin(number / BINS, (number + 1) / BINS, len(said), _mean(said), _mean(right))
 
 
 def _mean(values: NDArray[np.float64] | NDArray[np.bool_]) -> float:

@@ -76,7 +76,7 @@ class Case:
         return scene_relations(self.things, self.boxes, self.description.vocabulary)
 
     def evidence(self, meaning: Meaning, learned: bool = False) -> Evidence:
-        """What an engine gets to see: facts, and sizes where the description tells kinds; nothing is labelled.
+        """Return what an engine gets to see: facts, and sizes where the description tells kinds; nothing is labelled.
 
         ``learned``: words and sizes are what was learned from other cases, by the weights of the meaning.
         """
@@ -94,7 +94,7 @@ class Case:
         )
 
     def shuffled(self, rng: np.random.Generator) -> Case:
-        """The same case in a random order of objects and of things."""
+        """Return the same case in a random order of objects and of things."""
         rows, columns = rng.permutation(len(self.truth)), rng.permutation(len(self.boxes))
         place = np.append(np.argsort(columns), -1)  # of each thing in the new order; the last is for UNMATCHED
         nodes = [self.description.nodes[i] for i in rows]
@@ -115,7 +115,7 @@ def _names(count: int) -> tuple[str, ...]:
 
 
 def table(setting: Setting, number: int, seed: int) -> GeneratedTable:
-    """The table of that number in a setting. Tables of different settings are drawn independently."""
+    """Return the table of that number in a setting. Tables of different settings are drawn independently."""
     drawn = np.random.SeedSequence(
         [
             seed,

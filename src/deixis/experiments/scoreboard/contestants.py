@@ -21,7 +21,7 @@ DEFAULT = EngineName.EXACT.value
 
 
 @dataclass(frozen=True, eq=False)
-class Answer:
+class ContestantAnswer:
     """What a contestant said: a map (n1,), whether it proved it the best, and its probabilities (n1, n2 + 1)."""
 
     assignment: NDArray[np.int64]
@@ -36,7 +36,7 @@ class Contestant:
 
     name: str
     settings: str
-    solve: Callable[[Evidence, float], Answer]
+    solve: Callable[[Evidence, float], ContestantAnswer]
     most: int = 1000  # objects, beyond which it takes too long or too much memory
     meaning: Meaning = SHIPPED
     ablation: bool = False  # the default engine with something taken away
@@ -44,7 +44,7 @@ class Contestant:
     lacking: str = ""  # why it cannot be run at all
 
     def enters(self, case: Case) -> bool:
-        """Whether the case is one for it."""
+        """Return whether the case is one for it."""
         return case.setting.size <= self.most and (case.learned is not None or not self.learned)
 
 
@@ -58,19 +58,19 @@ def engine(
     ablation: bool = False,
     learned: bool = False,
 ) -> Contestant:
-    """A shipped engine as a contestant, maybe under another name and meaning."""
+    """Return a shipped engine as a contestant, maybe under another name and meaning."""
 
-    def solve(evidence: Evidence, deadline: float) -> Answer:
+    def solve(evidence: Evidence, deadline: float) -> ContestantAnswer:
         found = engine_named(name).align(evidence, deadline)
         if found.posterior is None:
-            return Answer(found.assignment, found.proved_best)
-        return Answer(found.assignment, found.proved_best, found.posterior.marginals, found.posterior.error)
+            return ContestantAnswer(found.assignment, found.proved_best)
+        return ContestantAnswer(found.assignment, found.proved_best, found.posterior.marginals, found.posterior.error)
 
     return Contestant(called or name, settings, solve, most, meaning, ablation, learned)
 
 
 def peer(
-    name: str, settings: str, solve: Callable[[Problem, float], Answer], *, most: int, lacking: str = ""
+    name: str, settings: str, solve: Callable[[Problem, float], ContestantAnswer], *, most: int, lacking: str = ""
 ) -> Contestant:
     """Another solver for the same problem (graded meaning); it gets the seconds that are left."""
     return Contestant(
@@ -83,7 +83,7 @@ def peer(
 
 
 def engines() -> list[Contestant]:
-    """The shipped engines, the default first, and the default with words taken literally."""
+    """Return the shipped engines, the default first, and the default with words taken literally."""
     return [
         engine(EngineName.EXACT, "the default: branch and bound to the time limit, with probabilities"),
         engine(EngineName.SCALABLE, "annealing and belief propagation, with probabilities"),
@@ -95,7 +95,7 @@ def engines() -> list[Contestant]:
 
 
 def ablations() -> list[Contestant]:
-    """The default engine with and without graded meaning and sizes, and, on photographs, with learned ones."""
+    """Return the default engine with and without graded meaning and sizes, and, on photographs, with learned ones."""
     no_sizes = UnaryWeights(labels=1.0, sizes=0.0)
     variants = {
         DEFAULT: SHIPPED,

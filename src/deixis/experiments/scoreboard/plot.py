@@ -22,7 +22,7 @@ COLOURS = (
     "#2a9d9d", "#b5703c", "#d16ba5", "#7fb3d5", "#4d5b1f", "#22313f",
 )  # fmt: skip
 MARKERS = "osD^vPX<>*hd"
-LEAST = -0.25
+MIN_VALUE_SHOWN = -0.25
 """Shares of the best likelihood below that are not shown."""
 
 SHADES = ("#1f4e79", "#6d93b8", "#b9cbdc", "#d9d2c3", "#8a7f5c", "#4f7d4c")
@@ -33,7 +33,7 @@ NOISES = ("#1f4e79", "#e0a02c", "#c0392b")
 
 
 def plot_scoreboard(found: Scoreboard, path: str | Path) -> None:
-    """Draws it as PNG, SVG or PDF by the file's ending; raises DeixisError where the file cannot be written."""
+    """Draw it as PNG, SVG or PDF by the file's ending; raises DeixisError where the file cannot be written."""
     figure, axes = new_figure(12.0, 10.2, nrows=3, ncols=3)
     panels = iter(axes.ravel())
     offs = found.plan.off[:3]
@@ -94,7 +94,7 @@ def _by_size(axes: Axes, board: Board, off: float, measure: str, title: str) -> 
         )
     _sizes(axes, sizes)
     least = min((mean for line in axes.containers for mean in line[0].get_ydata()), default=0.0)
-    axes.set_ylim(max(LEAST, min(0.0, least)), 1.02)
+    axes.set_ylim(max(MIN_VALUE_SHOWN, min(0.0, least)), 1.02)
     _dress(axes, title, "objects")
 
 

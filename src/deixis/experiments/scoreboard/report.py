@@ -8,14 +8,14 @@ from dataclasses import asdict, fields
 from textwrap import wrap
 from typing import Any
 
-from deixis.experiments.scoreboard.board import ALPHA, MEASURES, Board, Comparison, median_seconds
+from deixis.experiments.scoreboard.board import ALPHA, MEASURES, Board, EngineComparison, median_seconds
 from deixis.experiments.scoreboard.cases import PHOTOGRAPHS, Group, Setting
 from deixis.experiments.scoreboard.contestants import DEFAULT
 from deixis.experiments.scoreboard.run import Scoreboard
 
 
 def to_dict(found: Scoreboard) -> dict[str, Any]:
-    """Everything that the text says, and the means of every single setting."""
+    """Return everything that the text says, and the means of every single setting."""
     plan = found.plan
     comparisons = {measure: found.main.comparisons(measure, plan.seed) for measure in ("right", "grouped")}
     data = {
@@ -28,9 +28,11 @@ def to_dict(found: Scoreboard) -> dict[str, Any]:
         "skipped": list(found.skipped),
         "board": _board_json(found.main),
         "ablations": _board_json(found.ablations),
-        "limits": [_limit(asdict(one)) for one in found.limits],
+        "limits": [_flat(asdict(one), "setting") for one in found.limits],
         "calibration": {name: asdict(one) for name, one in found.calibrations().items()},
-        "comparisons": [_comparison(one) for some in comparisons.values() for one in some],
+        "comparisons": [
+            _flat(asdict(one), "group") | {"verdict": one.verdict} for some in comparisons.values() for one in some
+        ],
         "verdicts": {measure: verdict(some) for measure, some in comparisons.items()},
     }
     return {key: _known(value) for key, value in data.items()}
@@ -58,19 +60,14 @@ def _place(board: Board, name: str, place: Group | Setting) -> dict[str, Any]:
     return entry
 
 
-def _limit(entry: dict[str, Any]) -> dict[str, Any]:
-    setting: dict[str, Any] = entry.pop("setting")
-    return setting | entry
-
-
-def _comparison(one: Comparison) -> dict[str, Any]:
-    entry = asdict(one)
-    group: dict[str, Any] = entry.pop("group")
-    return group | entry | {"verdict": one.verdict}
+def _flat(entry: dict[str, Any], part: str) -> dict[str, Any]:
+    """Return the fields of one part of an entry first, then the other fields."""
+    inner: dict[str, Any] = entry.pop(part)
+    return inner | entry
 
 
 def _known(value: Any) -> Any:
-    """The same with null for every number that is none."""
+    """Return the same with null for every number that is none."""
     if isinstance(value, dict):
         return {key: _known(inner) for key, inner in value.items()}
     if isinstance(value, list | tuple):
@@ -112,10 +109,9 @@ def _head(found: Scoreboard) -> Iterator[str]:
     yield f"Scoreboard, seed {plan.seed}, {plan.time_limit:g} s for a case"
     counts = ", ".join(f"{plan.count(size)} of {size}" for size in plan.sizes)
     yield f"Tables of each setting, by objects: {counts}."
-    yield (
-        f"Settings: {_listed(plan.facts_each)} facts an object; {_percent(plan.off)} of them off; "
-        "nothing changed, or a tenth missing and extra."
-    )
+    facts_each = ", ".join(f"{value:g}" for value in plan.facts_each)
+    off = ", ".join(f"{100 * value:.0f}" for value in plan.off) + " %"
+    yield (f"Settings: {facts_each} facts an object; {off} of them off; nothing changed, or a tenth missing and extra.")
     if plan.photographs is not None:
         units = len({score.unit for score in found.main.scores if score.setting.objects == PHOTOGRAPHS})
         yield f"{units} photographs, each in {plan.orders} node order{'s' if plan.orders > 1 else ''}."
@@ -124,31 +120,23 @@ def _head(found: Scoreboard) -> Iterator[str]:
     yield from (f"  skipped: {note}" for note in found.skipped)
 
 
-def _listed(values: Sequence[float]) -> str:
-    return ", ".join(f"{value:g}" for value in values)
-
-
-def _percent(values: Sequence[float]) -> str:
-    return ", ".join(f"{100 * value:.0f}" for value in values) + " %"
-
-
 def _board(board: Board) -> Iterator[str]:
-    """A block for every size, a row for every contestant, four columns for every noise."""
+    """Yield a block for every size, a row for every contestant, four columns for every noise."""
     sizes = list(dict.fromkeys(group.objects for group in board.groups))
     for size in sizes:
         columns = [group for group in board.groups if group.objects == size]
-        title = "photographs" if size == PHOTOGRAPHS else f"{size} objects"
+        counts = [board.mean(DEFAULT, group, "right").count for group in columns]
+        if size == PHOTOGRAPHS:
+            head, titles = "photographs", [f"{count} images" for count in counts]
+        else:
+            head = f"{size} objects"
+            titles = [f"{100 * group.off:.0f} % off, {n} tables" for group, n in zip(columns, counts, strict=True)]
         yield ""
-        yield (f"{title:<{NAME}}" + "".join(f" {_title(board, group):<30}" for group in columns)).rstrip()
+        yield (f"{head:<{NAME}}" + "".join(f" {title:<30}" for title in titles)).rstrip()
         yield f"{'':<{NAME}}" + f" {'right':<9} {'grouped':<9} fact value" * len(columns) + "    time proof"
         for one in board.contestants:
             if any(board.of(one.name, group) for group in columns):
                 yield _row(board, one.name, columns)
-
-
-def _title(board: Board, group: Group) -> str:
-    count = board.mean(DEFAULT, group, "right").count
-    return f"{count} images" if group.objects == PHOTOGRAPHS else f"{100 * group.off:.0f} % off, {count} tables"
 
 
 def _row(board: Board, name: str, columns: Sequence[Group]) -> str:
@@ -158,11 +146,9 @@ def _row(board: Board, name: str, columns: Sequence[Group]) -> str:
         cells += f" {right!s:<9} {grouped!s:<9} {facts.mean:.2f} {value.mean:5.2f}"
     scores = [score for group in columns for score in board.of(name, group)]
     proved = sum(score.proved for score in scores) / len(scores)
-    return f"{name:<{NAME}}{cells} {_time(median_seconds(scores)):>7} {proved:5.2f}"
-
-
-def _time(seconds: float) -> str:
-    return f"{1e3 * seconds:.1f} ms" if seconds < 0.0999 else f"{seconds:.2f} s"
+    seconds = median_seconds(scores)
+    taken = f"{1e3 * seconds:.1f} ms" if seconds < 0.0999 else f"{seconds:.2f} s"
+    return f"{name:<{NAME}}{cells} {taken:>7} {proved:5.2f}"
 
 
 def _limits(found: Scoreboard) -> Iterator[str]:
@@ -204,23 +190,19 @@ def _significance(found: Scoreboard) -> Iterator[str]:
         yield f"{DEFAULT} less each other, {said}: mean difference, p of a paired permutation test"
         yield f"over the cases, and + or - where {DEFAULT} is significantly better or worse (at {ALPHA:g}, by Holm's"
         yield "correction for all of these comparisons)."
-        yield from _comparison_table(found.main, comparisons)
+        cells = {(one.group, one.other): one for one in comparisons}
+        others = [one.name for one in found.main.contestants[1:]]
+        for start in range(0, len(others), ACROSS):
+            shown = others[start : start + ACROSS]
+            yield f"  {'':<22}" + "".join(f"{name:>15}" for name in shown)
+            for group in found.main.groups:
+                row = "".join(f"{_cell(cells.get((group, name))):>15}" for name in shown)
+                yield f"  {group!s:<22}{row}".rstrip()
         yield from wrap(verdict(comparisons), WIDTH)
         yield ""
 
 
-def _comparison_table(board: Board, comparisons: Sequence[Comparison]) -> Iterator[str]:
-    cells = {(one.group, one.other): one for one in comparisons}
-    others = [one.name for one in board.contestants[1:]]
-    for start in range(0, len(others), ACROSS):
-        shown = others[start : start + ACROSS]
-        yield f"  {'':<22}" + "".join(f"{name:>15}" for name in shown)
-        for group in board.groups:
-            row = "".join(f"{_cell(cells.get((group, name))):>15}" for name in shown)
-            yield f"  {group!s:<22}{row}".rstrip()
-
-
-def _cell(one: Comparison | None) -> str:
+def _cell(one: EngineComparison | None) -> str:
     if one is None or math.isnan(one.difference.mean):
         return "-"
     mark = {"better": "+", "worse": "-"}.get(one.verdict, " ")
@@ -229,7 +211,7 @@ def _cell(one: Comparison | None) -> str:
     )
 
 
-def verdict(comparisons: Sequence[Comparison]) -> str:
+def verdict(comparisons: Sequence[EngineComparison]) -> str:
     """In a sentence: where the default is significantly worse than anybody, or that it is nowhere."""
     worse = [one for one in comparisons if one.verdict == "worse"]
     if worse:

@@ -11,8 +11,8 @@ import numpy as np
 
 from deixis.experiments.photographs import FOLDER
 from deixis.experiments.scoreboard.bayes_limit import Limit, bayes_limit
-from deixis.experiments.scoreboard.board import Board, play
-from deixis.experiments.scoreboard.calibration import Calibration, calibration
+from deixis.experiments.scoreboard.board import Board, run_contestants
+from deixis.experiments.scoreboard.calibration import Reliability, calibration
 from deixis.experiments.scoreboard.cases import (
     LARGEST_PHOTOGRAPH,
     PHOTOGRAPHS,
@@ -28,13 +28,13 @@ from deixis.experiments.scoreboard.statistics import Interval, interval
 SHARES = {100: 0.5, 300: 0.2, 1000: 0.1}
 """Of the cases of a setting, how many there are of that many objects: each takes so much longer."""
 
-LEAST_CASES = 2
+MIN_CASES = 2
 SMALL = 30
 """Objects up to which calibration is one pool; larger tables, of which probabilities are sampled, are another."""
 
 
 @dataclass(frozen=True)
-class Plan:
+class ScoreboardPlan:
     """What is run: every combination of sizes, facts an object, share off, and without and with changes.
 
     ``cases`` is the number of tables of a setting (fewer of large ones), ``most_photographs`` None for all of them.
@@ -52,8 +52,8 @@ class Plan:
     most_photographs: int | None = None
     orders: int = 3  # node orders of a photograph
 
-    def quick(self) -> Plan:
-        """A small part of it, in a minute or two."""
+    def quick(self) -> ScoreboardPlan:
+        """Return a smaller plan that takes a minute or two."""
         return replace(
             self,
             cases=min(self.cases, 2),
@@ -65,15 +65,15 @@ class Plan:
             orders=1,
         )
 
-    def only(self, sizes: Sequence[int]) -> Plan:
-        """The same with tables of these sizes alone; the photographs stay."""
+    def only(self, sizes: Sequence[int]) -> ScoreboardPlan:
+        """Return the same with tables of these sizes alone; the photographs stay."""
         chosen = tuple(sorted(set(sizes)))
         ablated = tuple(size for size in self.ablated_sizes if size in chosen)
         return replace(self, sizes=chosen, ablated_sizes=ablated)
 
     def count(self, objects: int) -> int:
         """Tables of each setting of that size."""
-        least = min(self.cases, LEAST_CASES)
+        least = min(self.cases, MIN_CASES)
         share = next((share for size, share in SHARES.items() if objects <= size), min(SHARES.values()))
         return max(least, round(self.cases * (1.0 if objects <= SMALL else share)))
 
@@ -111,13 +111,13 @@ class Limited:
 class Scoreboard:
     """The main board, the ablations (kinds are told), the limits, and what was left out."""
 
-    plan: Plan
+    plan: ScoreboardPlan
     main: Board
     ablations: Board
     limits: tuple[Limited, ...]
     skipped: tuple[str, ...]
 
-    def calibrations(self) -> dict[str, Calibration]:
+    def calibrations(self) -> dict[str, Reliability]:
         """Of the default engine: by noise, small tables and large ones apart, and of photographs."""
         pools = {f"up to {SMALL}, {100 * off:.0f} % off": (off, 1, SMALL) for off in self.plan.off}
         pools |= {f"larger, {100 * off:.0f} % off": (off, SMALL + 1, max(self.plan.sizes)) for off in self.plan.off}
@@ -135,17 +135,17 @@ class Scoreboard:
 
 
 def run(
-    plan: Plan,
+    plan: ScoreboardPlan,
     contestants: Sequence[Contestant] | None = None,
     tick: Callable[[str], None] = lambda _: None,
 ) -> Scoreboard:
-    """Runs everything; ``contestants`` (default: the shipped engines) begin with the default engine.
+    """Run everything; ``contestants`` (default: the shipped engines) begin with the default engine.
 
     ``tick`` is told what has just been done, ``steps(plan)`` times.
     """
     entered = engines() if contestants is None else list(contestants)
-    main = play(entered, chain(plan.generated(plan.sizes), plan.photographed()), plan.time_limit, tick)
-    ablated = play(
+    main = run_contestants(entered, chain(plan.generated(plan.sizes), plan.photographed()), plan.time_limit, tick)
+    ablated = run_contestants(
         ablations(),
         chain(plan.generated(plan.ablated_sizes, kinds=True), plan.photographed(learn=True)),
         plan.time_limit,
@@ -158,17 +158,27 @@ def run(
         for setting in plan.settings(size)
         if not setting.changed
     )
-    return Scoreboard(plan, main, ablated, limits, _skipped(plan, entered))
+    notes = [f"{one.name}: {one.lacking}" for one in entered if one.lacking]
+    for one in entered:
+        larger = [f"{size} objects" for size in plan.sizes if size > one.most]
+        if plan.photographs is not None and one.most < LARGEST_PHOTOGRAPH:
+            larger.append("photographs")
+        if larger and not one.lacking:
+            notes.append(f"{one.name} with {', '.join(larger)}: too large for it (at most {one.most})")
+    if plan.photographs is None:
+        notes.append(f"photographs: set DEIXIS_DATA to the folder that holds {FOLDER}/")
+    skipped = tuple(notes)
+    return Scoreboard(plan, main, ablated, limits, skipped)
 
 
-def steps(plan: Plan) -> int:
-    """How often a run ticks."""
+def steps(plan: ScoreboardPlan) -> int:
+    """Return how often a run ticks."""
     tables = sum(plan.count(size) * len(plan.settings(size)) for size in (*plan.sizes, *plan.ablated_sizes))
     limits = sum(len(plan.settings(size)) // 2 for size in plan.limited_sizes if size in plan.sizes)
     return tables + limits + 2 * sum(1 for _ in plan.photographed())
 
 
-def _limited(plan: Plan, setting: Setting, main: Board, tick: Callable[[str], None]) -> Limited:
+def _limited(plan: ScoreboardPlan, setting: Setting, main: Board, tick: Callable[[str], None]) -> Limited:
     limits: list[Limit] = [bayes_limit(table(setting, n, plan.seed)) for n in range(plan.count(setting.objects))]
     mine = main.by_unit(DEFAULT, setting, "right")
     rights = [mine[setting, number] for number in range(len(limits))]
@@ -183,16 +193,3 @@ def _limited(plan: Plan, setting: Setting, main: Board, tick: Callable[[str], No
         max(limit.maps for limit in limits),
         sum(not limit.complete for limit in limits),
     )
-
-
-def _skipped(plan: Plan, contestants: Sequence[Contestant]) -> tuple[str, ...]:
-    notes = [f"{one.name}: {one.lacking}" for one in contestants if one.lacking]
-    for one in contestants:
-        larger = [f"{size} objects" for size in plan.sizes if size > one.most]
-        if plan.photographs is not None and one.most < LARGEST_PHOTOGRAPH:
-            larger.append("photographs")
-        if larger and not one.lacking:
-            notes.append(f"{one.name} with {', '.join(larger)}: too large for it (at most {one.most})")
-    if plan.photographs is None:
-        notes.append(f"photographs: set DEIXIS_DATA to the folder that holds {FOLDER}/")
-    return tuple(notes)

@@ -25,7 +25,7 @@ class Interval:
 
 
 def interval(values: Sequence[float] | NDArray[np.float64]) -> Interval:
-    """The mean of what is known (not nan), with its 95 per cent interval by Student's t.
+    """Return the mean of what is known (not nan), with its 95 per cent interval by Student's t.
 
     >>> found = interval([0.0, 1.0, 1.0])
     >>> round(found.mean, 3), round(found.half, 3), found.count
@@ -44,7 +44,7 @@ def interval(values: Sequence[float] | NDArray[np.float64]) -> Interval:
 
 
 def paired_p(differences: Sequence[float] | NDArray[np.float64], seed: int) -> float:
-    """The two-sided p of a paired permutation test: how often random signs make a mean as far from 0.
+    """Return the two-sided p of a paired permutation test: how often random signs make a mean as far from 0.
 
     All signs are tried where there are few of them, else 9,999 random ones.
 
@@ -70,7 +70,7 @@ def paired_p(differences: Sequence[float] | NDArray[np.float64], seed: int) -> f
 
 
 def holm(ps: Sequence[float]) -> list[float]:
-    """The p values adjusted for being so many (Holm 1979), in the order given.
+    """Return the p values adjusted for being so many (Holm 1979), in the order given.
 
     >>> [round(p, 3) for p in holm([0.01, 0.04, 0.03])]
     [0.03, 0.06, 0.06]

@@ -18,7 +18,7 @@ from deixis.reasoning.qualitative.calculi.calculus import Calculus, ProductCalcu
 from deixis.reasoning.qualitative.calculi.registry import calculus
 from deixis.reasoning.qualitative.networks.closure import close
 from deixis.reasoning.qualitative.networks.network import Constraint, Network, on_axes
-from deixis.reasoning.qualitative.networks.state import State
+from deixis.reasoning.qualitative.networks.state import NetworkState
 
 ALLEN, POINT, RA = calculus("allen"), calculus("point"), calculus("ra")
 assert isinstance(RA, ProductCalculus)
@@ -204,7 +204,7 @@ def test_what_does_not_fit_is_refused_before_it_is_tried() -> None:
 @pytest.mark.parametrize(("name", "bits"), [("allen", 16), ("ra", 169)])
 def test_memory_grows_with_the_square_and_no_more(name: str, bits: int) -> None:
     tracemalloc.start()
-    kept = State(calculus(name), 1024)
+    kept = NetworkState(calculus(name), 1024)
     _, peak = tracemalloc.get_traced_memory()
     tracemalloc.stop()
     assert kept.size == 1024
@@ -227,11 +227,11 @@ def test_a_choice_between_axes_is_no_product() -> None:
 
 
 def test_undoing_gives_back_what_was_closed_before() -> None:
-    def relations(state: State) -> list[int]:
+    def relations(state: NetworkState) -> list[int]:
         return [state.relation(i, j) for i, j in product(range(6), repeat=2)]
 
     chosen: Calculus = ALLEN
-    state = State(chosen, 6, traced=True)
+    state = NetworkState(chosen, 6, traced=True)
     state.add(Network(chosen, 6, tuple(Constraint(i, i + 1, chosen.relation(["<", "m", "o"])) for i in range(5))))
     assert state.close()
     before, mark = relations(state), state.mark

@@ -11,13 +11,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from deixis.reasoning.qualitative.calculi.calculus import Calculus, ProductCalculus, bits
+from deixis.reasoning.qualitative.calculi.calculus import Calculus, ProductCalculus, atoms_of, bits
 from deixis.reasoning.qualitative.calculi.registry import calculus
-from deixis.reasoning.qualitative.networks.choices import FewestPieces, atoms_of
+from deixis.reasoning.qualitative.networks.choices import FewestPiecesFirst
 from deixis.reasoning.qualitative.networks.closure import close
 from deixis.reasoning.qualitative.networks.network import Constraint, Network
 from deixis.reasoning.qualitative.networks.search import Verdict, scenario, solve
-from deixis.reasoning.qualitative.networks.state import State
+from deixis.reasoning.qualitative.networks.state import NetworkState
 
 ALLEN, RCC8, RA = calculus("allen"), calculus("rcc8"), calculus("ra")
 PAIRS = list(combinations(range(4), 2))
@@ -136,8 +136,8 @@ def test_the_ten_names_are_decided_in_the_rectangle_algebra() -> None:
 @given(st.sampled_from([ALLEN, RCC8, RA]), st.integers(0, 2**32 - 1))
 def test_the_pair_picked_is_that_of_looking_through_all(chosen: Calculus, seed: int) -> None:
     rng = np.random.default_rng(seed)
-    state = State(chosen, 7, traced=True)
-    choices = FewestPieces(state, lambda: None)
+    state = NetworkState(chosen, 7, traced=True)
+    choices = FewestPiecesFirst(state, lambda: None)
     marks: list[int] = []
     for _ in range(25):
         if marks and (state.emptied is not None or rng.random() < 0.3):
