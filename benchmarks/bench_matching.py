@@ -21,6 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 from peers import annealing, cp_sat, faq, graph_matching
 
+from deixis.deadline import Deadline
 from deixis.experiments.generated_tables import GeneratedTable, generate
 from deixis.reasoning.grounding.engines import engine_named
 from deixis.reasoning.grounding.evidence.evidence import no_unary_evidence
@@ -62,8 +63,8 @@ def _proofs(cases: int, centred: bool) -> None:
     for objects in (8, 12, 15, 30):
         out = objects // 10 if centred else 0
         problems = [generate(objects, missing=out, extra=out, seed=s).crisp(centred=centred) for s in range(cases)]
-        ours, found = _timed(lambda p: exact(p, time.perf_counter() + PROOF_LIMIT), problems)
-        listing, maps = _timed(lambda p: maps_within(p, 0.0, time.perf_counter() + PROOF_LIMIT), problems)
+        ours, found = _timed(lambda p: exact(p, Deadline.after(PROOF_LIMIT)), problems)
+        listing, maps = _timed(lambda p: maps_within(p, 0.0, Deadline.after(PROOF_LIMIT)), problems)
         nodes = statistics.median(f.nodes for f in found)
         line = f"{objects:7}  {_span(ours)}  {sum(f.proved for f in found):6}  {nodes:5.0f}"
         try:
@@ -112,7 +113,7 @@ def _in_a_hurry(cases: int) -> None:
             table = generate(objects, missing=out, extra=out, seed=seed)
             evidence = no_unary_evidence(table.description(), table.scene())
             worked, started = time.process_time(), time.perf_counter()
-            ground(evidence, engine_named("scalable"), HURRY)
+            ground(evidence, engine_named("scalable"), Deadline.after(HURRY))
             spent.append(time.process_time() - worked)
             waited.append(time.perf_counter() - started)
         print(f"{objects:7}  {statistics.median(spent):.2f}  {statistics.median(waited):.2f}", flush=True)
@@ -137,7 +138,7 @@ def _engines(n1: int, n2: int) -> dict[str, Callable[[Problem], NDArray[np.int64
         engines["annealing, ten times as long"] = partial(annealing.solve, steps=steps)
         engines["faq, ten starts"] = faq.solve
     if n1 <= 30:
-        engines["exact, two seconds"] = lambda p: exact(p, time.perf_counter() + REFERENCE_LIMIT).assignment
+        engines["exact, two seconds"] = lambda p: exact(p, Deadline.after(REFERENCE_LIMIT)).assignment
     if n1 * n2 <= graph_matching.MOST_CELLS:
         for settings in graph_matching.BEST:
             engines[settings.solver] = partial(graph_matching.solve, settings=settings)

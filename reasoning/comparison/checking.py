@@ -14,7 +14,6 @@ misplaced fork: the fork is missing, and it is extra.
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
@@ -23,6 +22,7 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.deadline import Deadline
 from deixis.ontology.colours import Colour, Colours
 from deixis.ontology.graph import RelationGraph, dispensable
 from deixis.ontology.kinds import Kinds, with_article
@@ -329,10 +329,10 @@ def checked_table(
     colours: Colours | None = None,
 ) -> TableCheck:
     """Ground a layout and read the grounding as :func:`check_table` does, as often as an impostor is found."""
-    deadline = time.perf_counter() + time_limit
+    deadline = Deadline.after(time_limit)
     sure = sure_roles(evidence.description, labels, kinds)
     while True:
-        found = ground(evidence, engine, max(0.0, deadline - time.perf_counter()))
+        found = ground(evidence, engine, deadline)
         table = check_table(evidence, labels, kinds, found, seen, colours)
         said = evidence.sizes.copy()
         for check in table.of(RoleVerdict.MISPLACED):
@@ -342,6 +342,6 @@ def checked_table(
             if evidence.labels[place] <= 0 and evidence.sizes[place] < MIN_SIZE_LOG_RATIO:
                 said[place] = RULED_OUT_LOG_RATIO
         rest = None if np.array_equal(said, evidence.sizes) else replace(evidence, sizes=said)
-        if rest is None or time.perf_counter() > deadline:
+        if rest is None or deadline.passed:
             return table
         evidence = rest

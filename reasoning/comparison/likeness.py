@@ -38,6 +38,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.deadline import Deadline
 from deixis.ontology.allen import Allen, allen_mask
 from deixis.ontology.graph import RelationGraph
 from deixis.ontology.kinds import Kinds
@@ -259,8 +260,8 @@ class Comparison:
         self.closeness = Closeness(ontology.relations)
         self._of_kinds: dict[tuple[str, str], float] = {}
 
-    def likeness(self, layout: Described, scene: Seen, deadline: float = math.inf) -> Likeness:
-        """Return the similarity by the best grounding, until ``deadline`` (``time.perf_counter``)."""
+    def likeness(self, layout: Described, scene: Seen, deadline: Deadline = Deadline.never()) -> Likeness:
+        """Return the similarity by the best grounding, until ``deadline``."""
         from deixis.reasoning.grounding.matching.exact import exact
 
         problem = self.problem(layout, scene)

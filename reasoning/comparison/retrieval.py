@@ -13,6 +13,7 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
+from deixis.deadline import Deadline
 from deixis.reasoning.comparison.likeness import Comparison, Described, Likeness, Seen
 from deixis.reasoning.errors import SettingError
 
@@ -21,21 +22,29 @@ BOUND_TOLERANCE = 1e-5
 
 
 def rank_layouts(
-    scene: Seen, layouts: Iterable[Described], comparison: Comparison, top: int = 10, deadline: float = math.inf
+    scene: Seen,
+    layouts: Iterable[Described],
+    comparison: Comparison,
+    top: int = 10,
+    deadline: Deadline = Deadline.never(),
 ) -> list[Likeness]:
     """The ``top`` layouts most similar to a scene, best first, by name among equals; as if all had been compared."""
     return _ranked([(layout, scene) for layout in layouts], comparison, top, deadline)
 
 
 def rank_scenes(
-    layout: Described, scenes: Iterable[Seen], comparison: Comparison, top: int = 10, deadline: float = math.inf
+    layout: Described,
+    scenes: Iterable[Seen],
+    comparison: Comparison,
+    top: int = 10,
+    deadline: Deadline = Deadline.never(),
 ) -> list[Likeness]:
     """The ``top`` scenes most similar to a layout, best first, by name among equals; as if all had been compared."""
     return _ranked([(layout, scene) for scene in scenes], comparison, top, deadline)
 
 
 def _ranked(
-    pairs: Sequence[tuple[Described, Seen]], comparison: Comparison, top: int, deadline: float
+    pairs: Sequence[tuple[Described, Seen]], comparison: Comparison, top: int, deadline: Deadline
 ) -> list[Likeness]:
     """Compare pair by pair, the one of the largest bound next, until no bound reaches the last of the best."""
     if top < 1:

@@ -9,7 +9,6 @@ what the network says without them.
 
 from __future__ import annotations
 
-import time
 from bisect import bisect_right
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
@@ -19,6 +18,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.deadline import Deadline
 from deixis.reasoning.constraints.difference import Difference, DifferenceNetwork
 from deixis.reasoning.errors import LimitError
 
@@ -101,12 +101,12 @@ class Level:
 class Search:
     """Goes through the solutions of clauses over a network, which it changes: ``network.back(search.base)`` ends it.
 
-    Searches end at ``deadline`` (``time.monotonic``). After REFUTED without a solution, ``core`` has the positions of
-    clauses that have none over the network. With ``keep`` the clauses of one piece that are taken first stay in the
-    network for good, which saves the memory to take them back.
+    Searches end at ``deadline``. After REFUTED without a solution, ``core`` has the positions of clauses that have none
+    over the network. With ``keep`` the clauses of one piece that are taken first stay in the network for good, which
+    saves the memory to take them back.
     """
 
-    def __init__(self, network: DifferenceNetwork, clauses: Clauses, deadline: float, keep: bool = False) -> None:
+    def __init__(self, network: DifferenceNetwork, clauses: Clauses, deadline: Deadline, keep: bool = False) -> None:
         self.network, self.clauses, self.deadline = network, clauses, deadline
         self.base, self._keep, self._kept = len(network), keep, 0
         self.outcome = Outcome.TIMED_OUT
@@ -145,7 +145,7 @@ class Search:
 
     def _run(self, only_forced: bool) -> Outcome:
         while True:
-            if time.monotonic() > self.deadline:
+            if self.deadline.passed:
                 return Outcome.TIMED_OUT
             clause, left = self.clauses.next(self.network, self.taken)
             if clause < 0 or (only_forced and left > 1):
@@ -218,7 +218,7 @@ class Search:
         """Called when a level has no piece left, with the level whose latest piece that refutes; None for all."""
 
 
-def solve(points: int, axes: int, clauses: Iterable[Clause], deadline: float) -> Search:
+def solve(points: int, axes: int, clauses: Iterable[Clause], deadline: Deadline) -> Search:
     """Return a search that has solved clauses over points on some axes, refuted them, or run out of time."""
     search = Search(DifferenceNetwork(points, axes), Clauses(clauses), deadline, keep=True)
     search.advance()
@@ -226,14 +226,14 @@ def solve(points: int, axes: int, clauses: Iterable[Clause], deadline: float) ->
 
 
 def solution(
-    network: DifferenceNetwork, clauses: Clauses, last: NDArray[np.int64], deadline: float
+    network: DifferenceNetwork, clauses: Clauses, last: NDArray[np.int64], deadline: Deadline
 ) -> NDArray[Any] | None:
     """Return the distances in a solution of clauses over a network, which is left as it is; None where there is none.
 
     A single dive comes first, since most solutions are found so. It takes the pieces in ``last`` (clauses,), all -1 to
     begin with, and keeps there what it took. Raises OutOfTimeError at the deadline.
     """
-    if time.monotonic() > deadline:
+    if deadline.passed:
         raise OutOfTimeError("the time limit struck before every choice in the facts was weighed")
     found, distances = clauses.dive(network, last)
     if found != 0:

@@ -9,11 +9,11 @@ tell on which of the items the property rests makes the rest smaller at once.
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from math import inf
 from typing import Generic, TypeVar
+
+from deixis.deadline import Deadline
 
 Item = TypeVar("Item")
 
@@ -40,12 +40,12 @@ class _OutOfTime(Exception):
 
 
 def minimal_subset(
-    items: Sequence[Item], test: Test[Item], deadline: float = inf, keep_last: bool = False
+    items: Sequence[Item], test: Test[Item], deadline: Deadline = Deadline.never(), keep_last: bool = False
 ) -> Minimal[Item]:
     """Return a minimal subset of items that have a property, in their order; it keeps rather the first or last ones.
 
-    ``test`` is asked of ever fewer items until ``deadline`` (``time.monotonic``), at which those left are returned.
-    That ``items`` have the property is taken for granted.
+    ``test`` is asked of ever fewer items until ``deadline``, at which those left are returned. That ``items`` have the
+    property is taken for granted.
 
     >>> minimal_subset([3, 5, 8, 1], lambda chosen: chosen if sum(chosen) >= 9 else None)
     Minimal(items=(3, 8), proved=True)
@@ -55,7 +55,7 @@ def minimal_subset(
 
     def first_of(candidates: Iterable[list[Item]]) -> tuple[int, Sequence[Item]] | None:
         for place, candidate in enumerate(candidates):
-            if time.monotonic() > deadline:
+            if deadline.passed:
                 raise _OutOfTime
             core = test(candidate[::way])
             if core is not None:
@@ -63,7 +63,7 @@ def minimal_subset(
         return None
 
     found = minimal_by(items[::way], first_of)
-    return Minimal(found.items[::way], found.proved and time.monotonic() <= deadline)
+    return Minimal(found.items[::way], found.proved and not deadline.passed)
 
 
 def minimal_by(items: Sequence[Item], first_of: FirstOf[Item], width: int = 1) -> Minimal[Item]:

@@ -7,12 +7,11 @@ classes alone to HermiT, which is where each is good; figures are in ``docs/desc
 
 from __future__ import annotations
 
-import math
-import time
 from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import StrEnum
 
+from deixis.deadline import Deadline
 from deixis.reasoning.description_logic.axioms import Axioms, split_axioms
 from deixis.reasoning.description_logic.justification import Justification, justify
 from deixis.reasoning.description_logic.materialisation import Materialisation
@@ -74,21 +73,17 @@ def entail(ntriples: str, engine: LogicEngine | str = LogicEngine.AUTO, time_lim
     if engine not in list(LogicEngine):
         raise SettingError(f"an engine is one of {', '.join(LogicEngine)}, not '{engine}'")
     engine = LogicEngine(engine)
-    deadline = time.monotonic() + time_limit
+    deadline = Deadline.after(time_limit)
     complete = engine in (LogicEngine.HERMIT, LogicEngine.PELLET)
     try:
-        found = _by_reasoner(ntriples, engine, time_limit) if complete else _by_rules(ntriples, engine, time_limit)
+        found = _by_reasoner(ntriples, engine, time_limit) if complete else _by_rules(ntriples, engine, deadline)
     except InconsistencyError:
-        why = justify(ntriples, None, _left(deadline))
+        why = justify(ntriples, None, deadline)
         return Entailment(engine, complete, (), (), why, ())
     inferred, unsatisfiable = found
     explained = [Triple(f"<{iri}>", SUB_CLASS_OF, NOTHING) for iri in unsatisfiable[:EXPLAINED]]
-    impossible = tuple(justify(ntriples, statement, _left(deadline)) for statement in explained)
+    impossible = tuple(justify(ntriples, statement, deadline) for statement in explained)
     return Entailment(engine, complete, inferred, unsatisfiable, None, impossible)
-
-
-def _left(deadline: float) -> float:
-    return max(0.0, deadline - time.monotonic())
 
 
 Found = tuple[tuple[Triple, ...], tuple[str, ...]]
@@ -99,17 +94,16 @@ def _by_reasoner(ntriples: str, engine: LogicEngine, time_limit: float) -> Found
     return tuple(read_ntriples(found.inferred)), found.unsatisfiable
 
 
-def _by_rules(ntriples: str, engine: LogicEngine, time_limit: float) -> Found:
+def _by_rules(ntriples: str, engine: LogicEngine, deadline: Deadline) -> Found:
     triples = read_ntriples(ntriples)
     parts = split_axioms(triples)
-    deadline = time.monotonic() + time_limit
-    known = Materialisation([*(t for axiom in parts.axioms for t in axiom.triples), *parts.declarations], time_limit)
+    known = Materialisation([*(t for axiom in parts.axioms for t in axiom.triples), *parts.declarations], deadline)
     if known.contradictions:
         raise InconsistencyError("the rules of OWL 2 RL find a contradiction")
     inferred = {triple for triple in known.inferred if _is_telling(triple)}
     if engine is LogicEngine.RL:
-        return tuple(sorted(inferred)), unsatisfiable_by_rules(triples, _left(deadline))
-    classes = classify(write_ntriples(_schema(parts)), Reasoner.HERMIT, _left(deadline), properties=True)
+        return tuple(sorted(inferred)), unsatisfiable_by_rules(triples, deadline)
+    classes = classify(write_ntriples(_schema(parts)), Reasoner.HERMIT, deadline.left, properties=True)
     inferred.update(read_ntriples(classes.inferred))
     return tuple(sorted(inferred.difference(triples))), classes.unsatisfiable
 
@@ -131,17 +125,17 @@ def _schema(parts: Axioms) -> Iterable[Triple]:
     yield from parts.declarations
 
 
-def unsatisfiable_by_rules(triples: Iterable[Triple], time_limit: float = math.inf) -> tuple[str, ...]:
+def unsatisfiable_by_rules(triples: Iterable[Triple], deadline: Deadline = Deadline.never()) -> tuple[str, ...]:
     """The IRIs of the named classes of which the rules see that nothing can belong to them, sorted.
 
     Each class is given a member of its own: a contradiction that needs one of these members only condemns its class.
-    Raises LimitError after about ``time_limit`` seconds.
+    Raises LimitError where the deadline passes.
     """
     triples = list(triples)
     classes = {t.subject for t in triples if t.predicate == TYPE and t.object == CLASS and not is_blank(t.subject)}
     classes |= {t.subject for t in triples if t.predicate == SUB_CLASS_OF and not is_blank(t.subject)}
     members = {Triple(f"_:member{i}", TYPE, name): name for i, name in enumerate(sorted(classes))}
-    known = Materialisation([*triples, *members], time_limit)
+    known = Materialisation([*triples, *members], deadline)
     condemned = set()
     for contradiction in known.contradictions:
         needed = {members[s.triple] for s in known.derivation(contradiction.premises) if s.triple in members}

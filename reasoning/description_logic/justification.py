@@ -17,11 +17,11 @@ expand, then contract).
 
 from __future__ import annotations
 
-import time
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
+from deixis.deadline import Deadline
 from deixis.reasoning.constraints.minimal import FEW, minimal_by
 from deixis.reasoning.description_logic.axioms import Axiom, Axioms, split_axioms
 from deixis.reasoning.description_logic.materialisation import Contradiction, Materialisation
@@ -118,18 +118,18 @@ class Justification:
         return write_ntriples(dict.fromkeys(triple for axiom in self.axioms for triple in axiom.triples))
 
 
-def justify(ntriples: str, entailed: Triple | None = None, time_limit: float = 60.0) -> Justification:
+def justify(ntriples: str, entailed: Triple | None = None, deadline: Deadline = Deadline.never()) -> Justification:
     """Why a statement follows from an ontology, or, without one, why the ontology is inconsistent.
 
     The statement is about named things: ``rdfs:subClassOf`` (of ``owl:Nothing``: why a class is unsatisfiable),
     ``rdfs:subPropertyOf``, ``rdfs:domain``, ``rdfs:range``, ``owl:disjointWith``, ``owl:sameAs``,
     ``owl:differentFrom``, ``rdf:type`` or a property of the ontology's own. Raises NotEntailedError where it does not
-    follow, LimitError where ``time_limit`` (seconds) is up, SettingError for a statement of another kind.
+    follow, LimitError where the deadline passes, SettingError for a statement of another kind.
     """
     parts = split_axioms(read_ntriples(ntriples))
     denied = () if entailed is None else denial(entailed)
-    oracle = _oracle(parts, denied, time.monotonic() + time_limit)
-    seed = _seed(parts, denied, oracle, time_limit)
+    oracle = _oracle(parts, denied, deadline)
+    seed = _seed(parts, denied, oracle, deadline)
     minimal = None if seed is None else _minimal(seed, oracle)
     if minimal is None and (around := _expanded(parts, entailed, oracle)) is not None:
         minimal = _minimal(around, oracle)
@@ -140,14 +140,13 @@ def justify(ntriples: str, entailed: Triple | None = None, time_limit: float = 6
     return Justification(entailed, tuple(sorted(minimal, key=place.__getitem__)))
 
 
-def _oracle(parts: Axioms, denied: Sequence[Triple], deadline: float) -> Oracle:
+def _oracle(parts: Axioms, denied: Sequence[Triple], deadline: Deadline) -> Oracle:
     background = (*parts.declarations, *denied)
 
     def first(candidates: Sequence[Sequence[Axiom]]) -> int | None:
-        left = deadline - time.monotonic()
-        if left <= 0:
+        if deadline.passed:
             raise LimitError("undecided: the time was up before a justification was found to be minimal; allow it more")
-        return first_inconsistent([[*background, *_triples(axioms)] for axioms in candidates], left)
+        return first_inconsistent([[*background, *_triples(axioms)] for axioms in candidates], deadline.left)
 
     return first
 
@@ -156,9 +155,9 @@ def _triples(axioms: Iterable[Axiom]) -> dict[Triple, None]:
     return dict.fromkeys(triple for axiom in axioms for triple in axiom.triples)
 
 
-def _seed(parts: Axioms, denied: Sequence[Triple], oracle: Oracle, time_limit: float) -> list[Axiom] | None:
+def _seed(parts: Axioms, denied: Sequence[Triple], oracle: Oracle, deadline: Deadline) -> list[Axiom] | None:
     """The fewest axioms in the derivation of a contradiction by OWL 2 RL; many of them only if HermiT agrees."""
-    known = Materialisation([*_triples(parts.axioms), *parts.declarations, *denied], time_limit)
+    known = Materialisation([*_triples(parts.axioms), *parts.declarations, *denied], deadline)
     owner: dict[Triple, list[Axiom]] = defaultdict(list)
     for axiom in parts.axioms:
         for triple in axiom.triples:

@@ -11,11 +11,10 @@
 
 from __future__ import annotations
 
-import math
-import time
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+from deixis.deadline import Deadline
 from deixis.reasoning.description_logic.rl_chaining import ForwardChaining
 from deixis.reasoning.description_logic.rl_facts import Fact
 from deixis.reasoning.description_logic.terms import Triple
@@ -46,17 +45,17 @@ class Materialisation:
     costs in proportion to what they entail; to take triples back, materialise what is left anew.
     """
 
-    def __init__(self, triples: Iterable[Triple] = (), time_limit: float = math.inf) -> None:
+    def __init__(self, triples: Iterable[Triple] = (), deadline: Deadline = Deadline.never()) -> None:
         self._chaining = ForwardChaining()
-        self.add(triples, time_limit)
+        self.add(triples, deadline)
 
-    def add(self, triples: Iterable[Triple], time_limit: float = math.inf) -> tuple[Triple, ...]:
+    def add(self, triples: Iterable[Triple], deadline: Deadline = Deadline.never()) -> tuple[Triple, ...]:
         """Adds triples; gives the triples that follow now and did not before, in the order found.
 
-        Raises LimitError after about ``time_limit`` seconds; start anew then.
+        Raises LimitError where the deadline passes; start anew then.
         """
         facts = [self._chaining.terms.fact(triple) for triple in triples]
-        return tuple(map(self._triple, self._chaining.add(facts, time.monotonic() + time_limit)))
+        return tuple(map(self._triple, self._chaining.add(facts, deadline)))
 
     @property
     def inferred(self) -> tuple[Triple, ...]:

@@ -9,13 +9,12 @@ only the rules about its own predicate and class, and adding facts costs in prop
 
 from __future__ import annotations
 
-import math
-import time
 from collections import defaultdict, deque
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
+from deixis.deadline import Deadline
 from deixis.reasoning.description_logic.rl_facts import (
     Atom,
     Binding,
@@ -161,10 +160,10 @@ class ForwardChaining:
         for rule in rules():
             self._learn(rule)
 
-    def add(self, facts: Iterable[Fact], deadline: float = math.inf) -> list[Fact]:
+    def add(self, facts: Iterable[Fact], deadline: Deadline = Deadline.never()) -> list[Fact]:
         """Adds stated facts; gives the facts that follow now and did not before.
 
-        Raises LimitError where the deadline (``time.monotonic``) passes; what was found stays, and is not all.
+        Raises LimitError where the deadline passes; what was found stays, and is not all.
         """
         self._found = []
         for fact in facts:
@@ -174,7 +173,7 @@ class ForwardChaining:
         while self._queue:
             for _ in range(min(len(self._queue), BATCH)):
                 self._process(self._queue.popleft())
-            if time.monotonic() > deadline:
+            if deadline.passed:
                 raise LimitError(f"undecided: the time was up after {len(self.why)} triples; allow it more")
             if not self._queue:
                 self._read_lists()

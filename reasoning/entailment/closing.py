@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.deadline import Deadline
 from deixis.reasoning.constraints.difference import ORDERS, STRICT, ZERO, Difference, DifferenceNetwork
 from deixis.reasoning.constraints.disjunctive import Clauses, Outcome, OutOfTimeError, Search, solution
 from deixis.reasoning.entailment.bounds import AXES, bounds_of, order_differences
@@ -36,8 +37,8 @@ class Closed:
     contradictory: int = -1  # the group whose choices leave nothing, or -1
 
 
-def close(demands: Demands, deadline: float) -> Closed:
-    """Everything that the demands imply; searches end at ``deadline`` (``time.monotonic``)."""
+def close(demands: Demands, deadline: Deadline) -> Closed:
+    """Everything that the demands imply; searches end at ``deadline``."""
     graph, firm = demands.graph, demands.firm
     groups = groups_of(graph.subjects[firm], graph.objects[firm], len(graph.nodes))
     orders = orders_of(demands.bounds, groups)
@@ -83,7 +84,7 @@ class LocalProblem:
         own = np.stack([axis, low + n, low, np.full_like(low, STRICT)], axis=1)
         return network if network.add_all(np.concatenate([own, self.differences])) else None
 
-    def picture(self, deadline: float) -> Codes | None:
+    def picture(self, deadline: Deadline) -> Codes | None:
         """The orders of some picture; None where there is none. Raises OutOfTimeError."""
         network = self.network()
         return None if network is None else solution(network, self.clauses, self._nothing_taken(), deadline)
@@ -91,7 +92,7 @@ class LocalProblem:
     def _nothing_taken(self) -> NDArray[np.int64]:
         return np.full(len(self.clauses), -1, np.int64)
 
-    def shared(self, deadline: float) -> tuple[Codes | None, bool]:
+    def shared(self, deadline: Deadline) -> tuple[Codes | None, bool]:
         """What all pictures share, and whether that is all of it; None where there is no picture.
 
         At the deadline what has been proved so far is given, which is right, and False. Raises OutOfTimeError where not
@@ -167,7 +168,7 @@ def _write(known: Codes, axes: Sequence[AxisRows], groups: Groups, group: int) -
             flat[begin:end] = np.ascontiguousarray(packed).view(np.uint64).ravel()
 
 
-def consistent(demands: Demands, deadline: float) -> bool:
+def consistent(demands: Demands, deadline: Deadline) -> bool:
     """Whether there is a picture of what is demanded. Raises OutOfTimeError."""
     n = len(demands.graph.nodes)
     if order_graph(demands.bounds, n).contradictory:

@@ -6,10 +6,10 @@ and the circle of the fewest facts is reported. Where there are choices, no comb
 
 from __future__ import annotations
 
-import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from deixis.deadline import Deadline
 from deixis.ontology.graph import Fact, RelationGraph
 from deixis.ontology.relation import Relation, Relations
 from deixis.reasoning.constraints.minimal import minimal_subset
@@ -39,11 +39,11 @@ def compatible(a: Relation, b: Relation) -> bool:
     return bool(a.x_atoms & b.x_atoms) and bool(a.y_atoms & b.y_atoms) and height
 
 
-def find_conflict(implied: Implications, deadline: float | None = None) -> Conflict | None:
+def find_conflict(implied: Implications, deadline: Deadline | None = None) -> Conflict | None:
     """A minimal contradiction; None where the facts are consistent, or where the time limit left that open.
 
-    Searches end at ``deadline`` (``time.monotonic``; without one, after the time limit of ``implied``). Raises
-    OutOfTimeError where there is a contradiction among choices, and the time is up before it is minimal.
+    Searches end at ``deadline`` (without one, after the time limit of ``implied``). Raises OutOfTimeError where
+    there is a contradiction among choices, and the time is up before it is minimal.
 
     >>> from deixis.ontology.tbox import default_ontology
     >>> r = default_ontology().relations
@@ -54,7 +54,7 @@ def find_conflict(implied: Implications, deadline: float | None = None) -> Confl
     """
     if implied.consistent:
         return None
-    until = time.monotonic() + implied.time_limit if deadline is None else deadline
+    until = Deadline.after(implied.time_limit) if deadline is None else deadline
     demands = implied.demands
     graph = implied.graph
     circle = order_graph(demands.bounds, len(graph.nodes)).shortest_cycle()
@@ -81,7 +81,7 @@ def _minimal_circle(demands: Demands, edges: Sequence[int]) -> bool:
     return not few.choices and order_graph(few.bounds, len(demands.graph.nodes)).is_single_cycle
 
 
-def _inconsistent(facts: list[Fact], vocabulary: Relations, deadline: float) -> list[Fact] | None:
+def _inconsistent(facts: list[Fact], vocabulary: Relations, deadline: Deadline) -> list[Fact] | None:
     return None if consistent(demands_of_facts(vocabulary, facts), deadline) else facts
 
 

@@ -7,7 +7,6 @@ conjunction. Where facts leave a choice it is derived by cases, each of which le
 
 from __future__ import annotations
 
-import time
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -15,6 +14,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.deadline import Deadline
 from deixis.ontology.graph import Fact, RelationGraph
 from deixis.ontology.relation import Reading, Relation, Relations
 from deixis.reasoning.constraints.disjunctive import OutOfTimeError
@@ -234,7 +234,7 @@ def _widened(step: Derivation, relation: Relation) -> Derivation | None:
 # ---- by cases
 
 
-def follows(facts: Sequence[Fact], goal: Fact, vocabulary: Relations, deadline: float) -> bool:
+def follows(facts: Sequence[Fact], goal: Fact, vocabulary: Relations, deadline: Deadline) -> bool:
     """Whether a plain fact holds in every picture of the facts, of which there is one or none.
 
     Exact for every relation: what the goal denies is a list of choices, and none of them may have a picture. Raises
@@ -243,7 +243,7 @@ def follows(facts: Sequence[Fact], goal: Fact, vocabulary: Relations, deadline: 
     return not consistent(demands_of_facts(vocabulary, [*facts, replace(goal, positive=False)]), deadline)
 
 
-def needed_facts(facts: Sequence[Fact], goal: Fact, vocabulary: Relations, deadline: float) -> list[Fact]:
+def needed_facts(facts: Sequence[Fact], goal: Fact, vocabulary: Relations, deadline: Deadline) -> list[Fact]:
     """Facts from which a goal that follows from all of them follows, and none of which can be spared.
 
     Raises OutOfTimeError.
@@ -252,7 +252,7 @@ def needed_facts(facts: Sequence[Fact], goal: Fact, vocabulary: Relations, deadl
     return list(found.items)
 
 
-def derive_by_cases(facts: Sequence[Fact], goal: Fact, vocabulary: Relations, deadline: float) -> Derivation | None:
+def derive_by_cases(facts: Sequence[Fact], goal: Fact, vocabulary: Relations, deadline: Deadline) -> Derivation | None:
     """A proof of a plain fact from facts, among them choices; None where it does not follow.
 
     It rests on facts of which none can be spared. Raises OutOfTimeError.
@@ -279,7 +279,7 @@ class _Assumption:
 class _Proof:
     """Proves one goal from few facts, splitting choices until every case is settled by orders alone."""
 
-    def __init__(self, demands: Demands, goal: Fact, deadline: float) -> None:
+    def __init__(self, demands: Demands, goal: Fact, deadline: Deadline) -> None:
         self._demands = demands
         self._deadline = deadline
         self._goal = goal
@@ -291,7 +291,7 @@ class _Proof:
         return self._prove([], list(self._demands.choices))
 
     def _prove(self, assumed: list[_Assumption], choices: list[Choice]) -> Derivation:
-        if time.monotonic() > self._deadline:
+        if self._deadline.passed:
             raise OutOfTimeError("the time limit struck before every case was written down")
         orders = self._orders(assumed)
         circle = orders.circle()

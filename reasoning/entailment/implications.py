@@ -9,7 +9,6 @@ on every axis, as every single relation of the TBox is, and with choices too, un
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
@@ -17,6 +16,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.deadline import Deadline
 from deixis.errors import GraphError
 from deixis.ontology.export import node_iris, pairs_to_ntriples
 from deixis.ontology.graph import Fact, RelationGraph
@@ -61,7 +61,7 @@ class Implications:
         self.vocabulary: Relations = graph.vocabulary
         self.time_limit = time_limit
         self.demands: Demands = demands_of(graph)
-        self.closed: Closed = close(self.demands, time.monotonic() + time_limit)
+        self.closed: Closed = close(self.demands, Deadline.after(time_limit))
 
     @property
     def consistent(self) -> bool:
@@ -99,7 +99,7 @@ class Implications:
 
     def _by_cases(self, goal: Fact) -> Derivation | None:
         facts = [self.graph.fact(edge) for edge in self._edges_around(goal.subject)]
-        return derive_by_cases(facts, goal, self.vocabulary, time.monotonic() + self.time_limit)
+        return derive_by_cases(facts, goal, self.vocabulary, Deadline.after(self.time_limit))
 
     def _edges_around(self, name: str) -> list[int]:
         """The firm facts of everything that is connected with an object."""
@@ -179,11 +179,11 @@ class Implications:
         )
         return np.where(costs > len(self.graph), 0, costs)
 
-    def support(self, fact: Fact, deadline: float | None = None) -> Support:
+    def support(self, fact: Fact, deadline: Deadline | None = None) -> Support:
         """By what rule an implied fact follows last, and the edges of the graph that its derivation rests on.
 
-        The same as :meth:`derive` says. A search ends at ``deadline`` (``time.monotonic``; without one, after the time
-        limit). Raises GraphError where the fact does not follow, and OutOfTimeError.
+        The same as :meth:`derive` says. A search ends at ``deadline`` (without one, after the time limit). Raises
+        GraphError where the fact does not follow, and OutOfTimeError.
         """
         relation, subject, object = fact.relations[0], fact.subject, fact.object
         if not self.holds(relation, subject, object):
@@ -192,7 +192,7 @@ class Implications:
         if chains is not None:
             used = dict.fromkeys(edge for path in chains.values() for edge in path)
             return Support(self._derivations.of_chains(chains, relation, subject, object).rule, tuple(used))
-        until = time.monotonic() + self.time_limit if deadline is None else deadline
+        until = Deadline.after(self.time_limit) if deadline is None else deadline
         edges = self._edges_around(subject)
         facts = [self.graph.fact(edge) for edge in edges]
         needed = {id(chosen) for chosen in needed_facts(facts, fact, self.vocabulary, until)}

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import time
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.deadline import Deadline
 from deixis.errors import GraphError
 from deixis.ontology.graph import Fact, RelationGraph
 from deixis.reasoning.entailment.bounds import Order, meaning
@@ -97,6 +97,6 @@ def _counter_example(implied: Implications, fact: Fact) -> CounterExample:
         orders = orders_of(demands.bounds, groups)
         assert orders is not None, "a fact that does not follow has a picture without it"
         return CounterExample(names, picture_of_group(orders, group))
-    picture = local_problem(demands, nodes, choices).picture(time.monotonic() + implied.time_limit)
+    picture = local_problem(demands, nodes, choices).picture(Deadline.after(implied.time_limit))
     assert picture is not None, "a fact that does not follow has a picture without it"
     return CounterExample(names, picture_of(picture))

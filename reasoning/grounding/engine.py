@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.deadline import Deadline
 from deixis.reasoning.grounding.evidence.evidence import Evidence
 from deixis.reasoning.grounding.similarity import (
     graph_similarity,
@@ -42,6 +43,6 @@ class Alignment:
 
 
 class Engine(Protocol):
-    """Aligns the description with the scene until ``deadline`` (``time.perf_counter``)."""
+    """Aligns the description with the scene until ``deadline``."""
 
-    def align(self, evidence: Evidence, deadline: float) -> Alignment: ...
+    def align(self, evidence: Evidence, deadline: Deadline) -> Alignment: ...

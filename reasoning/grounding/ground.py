@@ -9,6 +9,7 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.deadline import Deadline
 from deixis.ontology.lessons.types import Match
 from deixis.reasoning.grounding.alternatives import (
     MIN_LISTED_PROBABILITY,
@@ -36,7 +37,7 @@ NOT_ASKED = "whether it would be so without one of the facts was not looked for"
 
 
 def ground(
-    evidence: Evidence, engine: Engine, time_limit: float = DEFAULT_TIME_LIMIT, notes: tuple[str, ...] = ()
+    evidence: Evidence, engine: Engine, deadline: Deadline = Deadline.never(), notes: tuple[str, ...] = ()
 ) -> Grounding:
     """Aligns, and says what the alignment rests on.
 
@@ -44,11 +45,11 @@ def ground(
     objects and facts were stated or things perceived: where the evidence leaves several answers, names decide, and
     the result says so (``interchangeable``, ``decided``).
     """
-    started = time.perf_counter()
+    started, sensitivity_seconds = time.perf_counter(), SENSITIVITY_SHARE * deadline.left
     rows = np.array(sorted(range(len(evidence.description.nodes)), key=lambda i: evidence.description.nodes[i]), int)
     columns = np.array(sorted(range(len(evidence.scene.nodes)), key=lambda i: evidence.scene.nodes[i]), int)
     in_order, stated = _facts_in_order(evidence.reordered(rows, columns))
-    alignment = engine.align(in_order, started + (1 - SENSITIVITY_SHARE) * time_limit)
+    alignment = engine.align(in_order, deadline.share(1 - SENSITIVITY_SHARE))
     known = zip(in_order.unary, in_order.allowed, strict=True)
     alone = [(row.tobytes(), mask.tobytes()) for row, mask in known]
     groups = tuple(interchangeable(in_order.description, alone))
@@ -56,7 +57,7 @@ def ground(
     matches = _matches(in_order, alignment, outcomes, groups)
     names = evidence.description.nodes
     posterior = alignment.posterior
-    pivotal = _pivotal(in_order, alignment, matches, time.perf_counter() + SENSITIVITY_SHARE * time_limit)
+    pivotal = _pivotal(in_order, alignment, matches, Deadline.after(sensitivity_seconds))
     return Grounding(
         engine=alignment.engine,
         matches=MappingProxyType({name: matches[name] for name in names if name in matches}),
@@ -161,7 +162,7 @@ def _decided(evidence: Evidence, alignment: Alignment, i: int, grouped: bool) ->
 
 
 def _pivotal(
-    evidence: Evidence, alignment: Alignment, matches: dict[str, Match], deadline: float
+    evidence: Evidence, alignment: Alignment, matches: dict[str, Match], deadline: Deadline
 ) -> tuple[Pivotal, ...] | None:
     """The facts without which something would be otherwise; None where there was no time to look at all.
 

@@ -7,13 +7,13 @@ label and size says by how much likelier it makes a match than chance does, and 
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.deadline import Deadline
 from deixis.reasoning.grounding.engine import Alignment
 from deixis.reasoning.grounding.evidence.evidence import Evidence
 from deixis.reasoning.grounding.matching.baselines import NodeSimilarity
@@ -43,9 +43,8 @@ UNRELATED_NOTE = "the description{} fits so little that it is probably of anothe
 class ExactEngine:
     """The likeliest map, proved so as far as the time allows."""
 
-    def align(self, evidence: Evidence, deadline: float) -> Alignment:
-        problem, now = evidence.problem, time.perf_counter()
-        found = exact(problem, now + PROOF_SHARE * (deadline - now))
+    def align(self, evidence: Evidence, deadline: Deadline) -> Alignment:
+        found = exact(evidence.problem, deadline.share(PROOF_SHARE))
         notes = () if found.proved else ("the time limit struck before the alignment was proved the best",)
         gap = 0.0 if found.proved else found.gap
         return _answer("exact", evidence, found.assignment, deadline, notes, gap=gap, finished=found.proved)
@@ -55,9 +54,8 @@ class ExactEngine:
 class ScalableEngine:
     """The likeliest map that annealing and belief propagation find; it proves nothing."""
 
-    def align(self, evidence: Evidence, deadline: float) -> Alignment:
-        now = time.perf_counter()
-        found = scalable(evidence.problem, now + SEARCH_SHARE * (deadline - now))
+    def align(self, evidence: Evidence, deadline: Deadline) -> Alignment:
+        found = scalable(evidence.problem, deadline.share(SEARCH_SHARE))
         notes = () if found.finished else ("the time limit struck before the search came to its end",)
         return _answer("scalable", evidence, found.assignment, deadline, notes, finished=found.finished)
 
@@ -67,9 +65,9 @@ class BaselineEngine:
     """A node similarity from the literature, made a map by the Hungarian method."""
 
     name: str
-    similarity: Callable[[Problem, float], NodeSimilarity]
+    similarity: Callable[[Problem, Deadline], NodeSimilarity]
 
-    def align(self, evidence: Evidence, deadline: float) -> Alignment:
+    def align(self, evidence: Evidence, deadline: Deadline) -> Alignment:
         found = self.similarity(evidence.problem, deadline)
         return Alignment(
             self.name,
@@ -86,15 +84,14 @@ def _answer(
     engine: str,
     evidence: Evidence,
     assignment: NDArray[np.int64],
-    deadline: float,
+    deadline: Deadline,
     notes: tuple[str, ...],
     *,
     finished: bool,
     gap: float = math.inf,
 ) -> Alignment:
     """The map with its probability, where the time sufficed for one, and the paper's similarity for comparison."""
-    now = time.perf_counter()
-    matrix, converged, unknown = _similarity(evidence, now + SIMILARITY_SHARE * (deadline - now))
+    matrix, converged, unknown = _similarity(evidence, deadline.share(SIMILARITY_SHARE))
     unrelated = _of_another_scene(evidence, assignment, deadline)
     probable = posterior(evidence.problem, deadline, start=assignment)
     known = math.isfinite(probable.error)
@@ -124,20 +121,20 @@ def _besides_facts(evidence: Evidence) -> str:
     return f", with {' and '.join(used)}," if used else ""
 
 
-def _of_another_scene(evidence: Evidence, assignment: NDArray[np.int64], deadline: float) -> float:
+def _of_another_scene(evidence: Evidence, assignment: NDArray[np.int64], deadline: Deadline) -> float:
     """How probable it is that the description has nothing to do with the scene; 0 where that is not known.
 
     Labels say themselves what is there, whatever is wrong on the table; and where nothing was found, nothing is to say.
     """
-    if evidence.labels.any() or (assignment == UNMATCHED).all() or time.perf_counter() > deadline:
+    if evidence.labels.any() or (assignment == UNMATCHED).all() or deadline.passed:
         return 0.0
     return UNRELATED_PRIOR / (UNRELATED_PRIOR + math.exp(min(log_marginal_likelihood(evidence.problem), 100.0)))
 
 
-def _similarity(evidence: Evidence, deadline: float) -> tuple[NDArray[np.float64], bool, tuple[str, ...]]:
+def _similarity(evidence: Evidence, deadline: Deadline) -> tuple[NDArray[np.float64], bool, tuple[str, ...]]:
     """The paper's similarity (n1, n2) and whether it converged; zeros and a note where there is no time to begin."""
     cells = len(evidence.description.vocabulary) * len(evidence.scene.nodes) ** 2
-    if cells / SIMILARITY_CELLS_PER_SECOND > deadline - time.perf_counter() + MAX_LATENESS:
+    if cells / SIMILARITY_CELLS_PER_SECOND > deadline.left + MAX_LATENESS:
         return np.zeros(evidence.allowed.shape), False, ("there was no time for the paper's similarity: it says 0",)
     found = paper_similarity(evidence, deadline=deadline)
     return found.matrices[0], bool(found.converged[0]), ()

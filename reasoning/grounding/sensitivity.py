@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.deadline import Deadline
 from deixis.reasoning.grounding.matching.exact import exact
 from deixis.reasoning.grounding.matching.posterior import exact_posterior
 from deixis.reasoning.grounding.matching.problem import UNMATCHED, Problem
@@ -33,9 +33,9 @@ class WithoutFact:
 
 
 def leave_one_out(
-    problem: Problem, assignment: NDArray[np.int64], probable: bool, deadline: float
+    problem: Problem, assignment: NDArray[np.int64], probable: bool, deadline: Deadline
 ) -> Iterator[WithoutFact]:
-    """Find the likeliest map without each fact in turn, until the deadline (``time.perf_counter``).
+    """Find the likeliest map without each fact in turn, until the deadline.
 
     Problems of more than ``MAX_OBJECTS`` objects are not solved. Of several maps as good it is one like the present
     ``assignment``. Probabilities are worked out where they are ``probable`` to be had exactly. The iterator ends early
@@ -43,7 +43,7 @@ def leave_one_out(
 
     >>> tables = np.array([[[0, 1], [0, 0]]], np.float32)
     >>> problem = Problem(np.array([[0, 1]]), np.array([0]), tables, np.array([[0, 0.5], [0, 0]]), np.full(2, -1.0))
-    >>> [d.assignment.tolist() for d in leave_one_out(problem, np.array([0, 1]), True, float("inf"))]
+    >>> [d.assignment.tolist() for d in leave_one_out(problem, np.array([0, 1]), True, Deadline.never())]
     [[1, 0]]
     """
     if len(problem.absent) > MAX_OBJECTS:
@@ -55,7 +55,7 @@ def leave_one_out(
         kept = np.arange(len(problem.ends)) != fact
         rest = replace(problem, ends=problem.ends[kept], kinds=problem.kinds[kept])
         found = exact(replace(rest, unary=rest.unary + stay), deadline)
-        if not found.proved or time.perf_counter() > deadline:
+        if not found.proved or deadline.passed:
             return
         better = rest.value(found.assignment) > rest.value(assignment) + TIE_BREAK_BONUS
         known = exact_posterior(rest, deadline) if probable else None

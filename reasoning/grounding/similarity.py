@@ -12,8 +12,6 @@ collapses to zero, which it does where the graphs share no label.
 
 from __future__ import annotations
 
-import math
-import time
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
@@ -21,6 +19,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.deadline import Deadline
 from deixis.ontology.graph import PaperGraph, RelationGraph
 from deixis.ontology.relation import Relation
 from deixis.reasoning.entailment.implications import Implications
@@ -130,12 +129,12 @@ def node_similarity(
     prior: NDArray[np.float64] | None = None,
     tolerance: float = TOLERANCE,
     iterations: int = ITERATIONS,
-    deadline: float = math.inf,
+    deadline: Deadline = Deadline.never(),
 ) -> NodeSimilarity:
     """Iterates equations 5 to 9 for induced sub-graphs of ``first`` against the whole of ``second``.
 
     ``members`` (b, n1) says which nodes each sub-graph has (default: one, of all nodes). ``prior`` (n1, n2), at least
-    0, multiplies equation 5: 0 forbids a pair, 1 leaves it. At the ``deadline`` (``time.perf_counter``) it stops.
+    0, multiplies equation 5: 0 forbids a pair, 1 leaves it. At the ``deadline`` it stops.
 
     >>> import numpy as np
     >>> graph = PaperGraph(("a", "b"), ("a", "b"), np.array([[0, 1]], np.int32), np.zeros(1, np.int8), ("left",))
@@ -149,7 +148,7 @@ def node_similarity(
     matrices = _normalised(base)
     converged = np.zeros(len(kept), dtype=bool)
     done = 0
-    while done < iterations and not converged.all() and time.perf_counter() < deadline:
+    while done < iterations and not converged.all() and not deadline.passed:
         following = _normalised(step.neighbourhood(matrices) * base)
         converged = np.abs(following - matrices).max(axis=(0, 2), initial=0.0) <= tolerance
         matrices = following

@@ -7,7 +7,6 @@ heuristic chooses; the result says which.
 from __future__ import annotations
 
 import math
-import time
 from dataclasses import dataclass, replace
 from itertools import combinations, islice
 from typing import TYPE_CHECKING
@@ -15,6 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.deadline import Deadline
 from deixis.ontology.graph import PaperGraph, RelationGraph
 from deixis.reasoning.grounding.engine import Alignment
 from deixis.reasoning.grounding.evidence.evidence import Evidence
@@ -52,7 +52,7 @@ def described(description: RelationGraph, consistent: bool | None = None) -> Pap
 
 
 def paper_similarity(
-    evidence: Evidence, members: NDArray[np.bool_] | None = None, deadline: float = math.inf
+    evidence: Evidence, members: NDArray[np.bool_] | None = None, deadline: Deadline = Deadline.never()
 ) -> NodeSimilarity:
     """Equations 5 to 9 for the evidence: certain labels forbid pairs, uncertain ones multiply equation 5."""
     first, second = described(evidence.description, evidence.consistent), evidence.scene.paper_view()
@@ -81,7 +81,7 @@ class SimilarityEngine:
 
     select: Select = Select.FACTS
 
-    def align(self, evidence: Evidence, deadline: float) -> Alignment:
+    def align(self, evidence: Evidence, deadline: Deadline) -> Alignment:
         n1, n2 = evidence.allowed.shape
         if n1 == n2 or not n1 or not n2:
             found = paper_similarity(evidence, deadline=deadline)
@@ -92,14 +92,14 @@ class SimilarityEngine:
             return self._narrowed(evidence, count, deadline)
         return self._all_subgraphs(evidence, larger, smaller, deadline)
 
-    def _all_subgraphs(self, evidence: Evidence, larger: int, smaller: int, deadline: float) -> Alignment:
+    def _all_subgraphs(self, evidence: Evidence, larger: int, smaller: int, deadline: Deadline) -> Alignment:
         """The best of all sub-graphs of the larger side that have as many objects as the smaller one."""
         flipped = len(evidence.description.nodes) == smaller
         prior = _prior(evidence)
         first, second = described(evidence.description, evidence.consistent), evidence.scene.paper_view()
         best: tuple[tuple[float, ...], Alignment] | None = None
         for members in _blocks(larger, smaller):
-            if best is not None and time.perf_counter() > deadline:
+            if best is not None and deadline.passed:
                 return _cut_short(best[1])
             if flipped:
                 found = node_similarity(second, first, members, prior.T, deadline=deadline).transposed()
@@ -114,7 +114,7 @@ class SimilarityEngine:
         assert best is not None
         return _in_time(best[1], deadline)
 
-    def _narrowed(self, evidence: Evidence, count: int, deadline: float) -> Alignment:
+    def _narrowed(self, evidence: Evidence, count: int, deadline: Deadline) -> Alignment:
         """Too many sub-graphs: the assignment on the whole chooses one, and is repeated on it until it stays."""
         found = paper_similarity(evidence, deadline=deadline)
         assignment = assign(found.matrices[0], evidence.allowed)
@@ -153,9 +153,9 @@ class SimilarityEngine:
         )
 
 
-def _in_time(aligned: Alignment, deadline: float) -> Alignment:
+def _in_time(aligned: Alignment, deadline: Deadline) -> Alignment:
     """The same, said to be cut short where the iteration was still under way at the deadline."""
-    return aligned if aligned.converged or time.perf_counter() <= deadline else _cut_short(aligned)
+    return aligned if aligned.converged or not deadline.passed else _cut_short(aligned)
 
 
 def _cut_short(aligned: Alignment) -> Alignment:

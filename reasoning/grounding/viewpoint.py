@@ -19,13 +19,13 @@ doubtful is no more probable than the side.
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.deadline import Deadline
 from deixis.reasoning.geometry.rectangle import require_boxes
 from deixis.reasoning.grounding.engine import Alignment, Engine
 from deixis.reasoning.grounding.evidence.evidence import Evidence
@@ -133,9 +133,9 @@ def recover_viewpoint(
     *,
     any_angle: bool = False,
     mirror: bool = True,
-    deadline: float = math.inf,
+    deadline: Deadline = Deadline.never(),
 ) -> Viewpoints:
-    """The posterior over viewpoints, quarter turns or (``any_angle``) any, until ``deadline`` (``time.perf_counter``).
+    """The posterior over viewpoints, quarter turns or (``any_angle``) any, until ``deadline``.
 
     The scene is first looked at as it stands, deadline or not, then quarter turned, then from the other sides. Sides
     for which there was no time are taken to be as likely, but for the prior, as the best that was looked from.
@@ -186,7 +186,7 @@ class _AngleEvidence:
 class _AngleSearch:
     boxes: Array
     problem_of: Callable[[Array], Problem]
-    deadline: float
+    deadline: Deadline
 
     def at(self, tried: Sequence[_Angle]) -> list[_AngleEvidence]:
         """The best map of each until the deadline; where that is not hopeless, the evidence of all maps.
@@ -195,30 +195,25 @@ class _AngleSearch:
         """
         found: list[tuple[_AngleEvidence, Problem]] = []
         for one in tried:
-            if found and self.left <= 0:
+            if found and self.deadline.passed:
                 break
             problem = self.problem_of(turned(self.boxes, one.angle, one.mirrored))
-            found.append((self._best(one, problem, self.left / (len(tried) - len(found))), problem))
+            found.append((self._best(one, problem, self.deadline.share(1 / (len(tried) - len(found)))), problem))
         most = max(one.log_evidence for one, _ in found)
         return [
             self._listed(one, problem) if one.log_evidence >= most - VIEWPOINT_MARGIN else one for one, problem in found
         ]
 
-    @property
-    def left(self) -> float:
-        """Seconds to the deadline."""
-        return self.deadline - time.perf_counter()
-
-    def _best(self, one: _Angle, problem: Problem, seconds: float) -> _AngleEvidence:
+    def _best(self, one: _Angle, problem: Problem, deadline: Deadline) -> _AngleEvidence:
         from deixis.reasoning.grounding.matching.exact import exact
 
-        best = exact(problem, time.perf_counter() + seconds)
+        best = exact(problem, deadline)
         return _AngleEvidence(one, best.value, best.assignment, best.proved)
 
     def _listed(self, one: _AngleEvidence, problem: Problem) -> _AngleEvidence:
         from deixis.reasoning.grounding.matching.exact import maps_within
 
-        if self.left <= 0:
+        if self.deadline.passed:
             return replace(one, complete=False)
         maps = maps_within(problem, MAP_MARGIN, self.deadline, limit=MAX_LISTED_MAPS)
         return _AngleEvidence(one.tried, _log_sum(maps.values.tolist()), maps.assignments[0], maps.complete)
@@ -227,7 +222,7 @@ class _AngleSearch:
         """Every angle that is worth it replaced by finer ones over the same arc, and whether there was time for all."""
         best = max(one.log_evidence for one in looked)
         worth = [one.tried for one in looked if one.log_evidence >= best - REFINEMENT_MARGIN]
-        if self.left <= 0:
+        if self.deadline.passed:
             return list(looked), False
         fine = [finer for one in worth for finer in _finer(one)]
         seen = self.at(fine)
@@ -323,9 +318,8 @@ class FromSides:
     probability: float
     others: tuple[OtherSide, ...]
 
-    def align(self, evidence: Evidence, deadline: float) -> Alignment:
-        now = time.perf_counter()
-        found = self.engine.align(evidence, now + FIRST_VIEWPOINT_SHARE * (deadline - now))
+    def align(self, evidence: Evidence, deadline: Deadline) -> Alignment:
+        found = self.engine.align(evidence, deadline.share(FIRST_VIEWPOINT_SHARE))
         if found.posterior is None or not self.others:
             return found
         parts = [(self.probability, found.posterior), *self._others(evidence, deadline)]
@@ -333,15 +327,14 @@ class FromSides:
         note = f"a match is as probable as from all sides looked from: {len(parts)}, together {looked:.2f} probable"
         return replace(found, posterior=_mixed(parts), sides=len(parts), notes=(*found.notes, note))
 
-    def _others(self, evidence: Evidence, deadline: float) -> list[tuple[float, Posterior]]:
+    def _others(self, evidence: Evidence, deadline: Deadline) -> list[tuple[float, Posterior]]:
         """From each other side, as far as the time allows: its probability, and what it makes of the matches."""
         found = []
         for number, side in enumerate(self.others):
-            now = time.perf_counter()
-            if now > deadline:
+            if deadline.passed:
                 break
             seen = side.evidence.reordered(*_as_in(evidence, side.evidence)).problem
-            there = posterior(seen, now + (deadline - now) / (len(self.others) - number))
+            there = posterior(seen, deadline.share(1 / (len(self.others) - number)))
             if np.isfinite(there.error):
                 found.append((side.probability, there))
         return found

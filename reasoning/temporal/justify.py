@@ -8,6 +8,7 @@ from typing import Protocol
 
 import numpy as np
 
+from deixis.deadline import Deadline
 from deixis.ontology.allen import ALL_ALLEN, Allen, members
 from deixis.reasoning.constraints.disjunctive import Outcome
 from deixis.reasoning.constraints.proof import Proof, Rule
@@ -123,7 +124,7 @@ def justify(
     question: Question,
     network: SimpleTemporalNetwork,
     disjunctions: Sequence[Disjunction],
-    deadline: float,
+    deadline: Deadline,
     most: int,
 ) -> Proof[str] | None:
     """Why the answer to a question is what it is; None where there is nothing to say, or the disjunctions conflict.

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
+from deixis.deadline import Deadline
 from deixis.reasoning.constraints.difference import Difference
 from deixis.reasoning.constraints.disjunctive import Clause, Clauses, Level, Outcome, Search
 from deixis.reasoning.constraints.minimal import minimal_subset
@@ -32,7 +33,7 @@ class ScenarioSearch(Search):
         self,
         network: SimpleTemporalNetwork,
         disjunctions: Sequence[Disjunction],
-        deadline: float,
+        deadline: Deadline,
         explain: bool = False,
     ) -> None:
         super().__init__(network.differences, Clauses(_clause(network, d) for d in disjunctions), deadline)
@@ -108,7 +109,7 @@ def _clause(network: SimpleTemporalNetwork, disjunction: Disjunction) -> Clause:
     )
 
 
-def refuted(claims: Sequence[Claim], deadline: float) -> Proof[str] | None:
+def refuted(claims: Sequence[Claim], deadline: Deadline) -> Proof[str] | None:
     """The proof that claims cannot all hold; None where they can, or where the deadline comes first."""
     network = network_of(dict.fromkeys(fluent for claim in claims for fluent in claim.fluents))
     for claim in claims:
@@ -118,11 +119,11 @@ def refuted(claims: Sequence[Claim], deadline: float) -> Proof[str] | None:
     return search.proof if search.advance() is Outcome.REFUTED else None
 
 
-def minimal_conflict(claims: Sequence[Claim], proof: Proof[str], deadline: float) -> TemporalConflictError:
+def minimal_conflict(claims: Sequence[Claim], proof: Proof[str], deadline: Deadline) -> TemporalConflictError:
     """The error for claims that a proof refutes, with every claim dropped that the contradiction does without.
 
-    Only what the proof rests on is looked at. At the deadline (of ``time.monotonic``) dropping stops, and the error
-    says that it may not be minimal.
+    Only what the proof rests on is looked at. At the deadline dropping stops, and the error says that
+    it may not be minimal.
     """
 
     def resting(chosen: Sequence[Claim]) -> list[Claim]:

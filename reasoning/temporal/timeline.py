@@ -6,11 +6,11 @@ that are a matter of choice (before or after) wait until the timeline is asked.
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterable
 
 import numpy as np
 
+from deixis.deadline import Deadline
 from deixis.reasoning.constraints.disjunctive import Outcome
 from deixis.reasoning.constraints.proof import Proof, Rule
 from deixis.reasoning.temporal.chronology import Chronology, Status
@@ -77,7 +77,7 @@ class Timeline:
         constraints = [constraint for claim in claims for constraint in claim.constraints]
         if not self._network.try_add(constraints):
             proof = self._network.refutation(constraints)
-            raise minimal_conflict([*self._all_claims(), *claims], proof, time.monotonic() + time_limit)
+            raise minimal_conflict([*self._all_claims(), *claims], proof, Deadline.after(time_limit))
         self._network.keep()
         self._claims[item] = claims
         if isinstance(item, Fluent):
@@ -120,7 +120,7 @@ class Timeline:
         statements as can be may take as long again. Where the time limit, in seconds, comes before that is known, the
         status is UNDECIDED, and the chronology holds what is certain without the disjunctions that are left open.
         """
-        deadline = time.monotonic() + time_limit
+        deadline = Deadline.after(time_limit)
         claims = self._all_claims()
         network = self._network.copy()
         forced = ScenarioSearch(network, list(disjunctions(claims)), deadline)
@@ -142,7 +142,7 @@ class Timeline:
 
     def _conflict(self, claims: list[Claim], time_limit: float) -> TemporalConflictError:
         """The conflict between disjunctions: proved again with its reasons, then made minimal, as time allows."""
-        deadline = time.monotonic() + time_limit
+        deadline = Deadline.after(time_limit)
         proof = refuted(claims, deadline)
         if proof is None:
             statements = tuple(claim.why for claim in claims)
@@ -164,7 +164,7 @@ class Timeline:
         return self._justify(BoundQuestion(tail, head), time_limit)
 
     def _justify(self, question: Question, time_limit: float) -> Proof[str] | None:
-        deadline = time.monotonic() + time_limit
+        deadline = Deadline.after(time_limit)
         return justify(question, self._network.copy(), list(disjunctions(self._all_claims())), deadline, MAX_SCENARIOS)
 
 

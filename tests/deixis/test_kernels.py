@@ -16,6 +16,7 @@ SOURCE = Path(deixis.__file__).parents[1]
 LOADED_LATER = """
 import json, sys
 from numba.core.dispatcher import Dispatcher
+from deixis.deadline import Deadline
 from deixis.learning.scene_evidence import evidence_of
 from deixis.workflows.read import load_scene, read_script
 from deixis.reasoning.grounding.engines import engine_named
@@ -40,7 +41,7 @@ later = {}
 for engine in ("similarity", "scalable", "exact"):
     ready_to_ground(engine)
     before = kernels()
-    answer = ground(evidence_of(script, scene), engine_named(engine), 60.0)
+    answer = ground(evidence_of(script, scene), engine_named(engine), Deadline.after(60.0))
     assert answer.matches
     later[engine] = sorted(kernels() - before)
     of_ground = sorted({name for _, name, _ in before})

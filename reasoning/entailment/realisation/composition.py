@@ -6,13 +6,13 @@ line, what lies on a thing in its middle, and a small table. All of it is soft; 
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.deadline import Deadline
 from deixis.reasoning.constraints.difference import ZERO, DifferenceNetwork
 from deixis.reasoning.entailment.realisation.demands import at_most, high, low
 from deixis.reasoning.entailment.realisation.things import Things
@@ -61,7 +61,7 @@ class _Program:
         self.costs.append(cost)
         return len(self.costs) - 1
 
-    def solution(self, deadline: float) -> NDArray[np.float64] | None:
+    def solution(self, deadline: Deadline) -> NDArray[np.float64] | None:
         from scipy.optimize import linprog
         from scipy.sparse import csr_array
 
@@ -69,23 +69,23 @@ class _Program:
         rows, columns, values = (np.array(part) for part in zip(*entries, strict=True))
         matrix = csr_array((values, (rows, columns)), shape=(len(self.rows), len(self.costs)))
         bounds = np.array([bound for _, bound in self.rows])
-        seconds = max(deadline - time.monotonic(), 0.01)
+        seconds = max(deadline.left, 0.01)
         found = linprog(self.costs, matrix, bounds, method="highs", options={"time_limit": seconds})
         return None if found.x is None else np.asarray(found.x, dtype=np.float64)
 
 
-def compose(network: DifferenceNetwork, wishes: Wishes, deadline: float) -> NDArray[np.int64]:
+def compose(network: DifferenceNetwork, wishes: Wishes, deadline: Deadline) -> NDArray[np.int64]:
     """Places of all edges in millimetres, shape (2, 2 n), which satisfy every constraint exactly.
 
     What the program finds is rounded, and then moved to the nearest solution of the constraints, so that nothing
-    rests on its arithmetic. Where it finds nothing before the deadline, of ``time.monotonic()``, the things stand where
+    rests on its arithmetic. Where it finds nothing before the deadline, the things stand where
     they can.
     Round things are made as long as wide where that can be; ``network`` has these constraints afterwards.
     """
     points = 2 * len(wishes.things)
     if not points:
         return np.zeros((2, 0), dtype=np.int64)
-    found = _program(network, wishes, points).solution(deadline) if time.monotonic() < deadline else None
+    found = _program(network, wishes, points).solution(deadline) if not deadline.passed else None
     if found is None:
         return network.nearest(np.zeros((2, points), dtype=np.int64))
     return _made_round(network, wishes.things, _whole(found[: 2 * points].reshape(2, points)))

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.deadline import Deadline
 from deixis.ontology.graph import RelationGraph
 from deixis.ontology.sizes import SizeRange
 from deixis.reasoning.constraints.difference import DifferenceNetwork
@@ -94,19 +94,18 @@ def realise(
     *,
     lying: Sequence[bool] | None = None,
     any_size: bool = False,
-    time_limit: float = 10.0,
+    deadline: Deadline = Deadline.never(),
     rng: np.random.Generator | None = None,
 ) -> Picture | Impossible | Undecided:
     """Boxes that satisfy every firm fact of a graph, in the stated reading; or the proof that there are none.
 
     ``sizes`` has one range a node; with ``any_size`` they are only liked. ``lying`` says which things rather lie
     along x. ``rng`` draws sizes, gaps and arrangements; without it the picture is the same each time. Facts that are
-    optional or hedged hold where they can, the heavier ones first. The answer comes within about ``time_limit``
-    seconds. Raises LimitError for more than ``MOST`` objects, whose edges cannot all be related in bounded memory.
+    optional or hedged hold where they can, the heavier ones first. The answer comes at about the ``deadline`` at the
+    latest. Raises LimitError for more than ``MOST`` objects, whose edges cannot all be related in bounded memory.
     """
     if len(graph.nodes) > MOST:
         raise LimitError(f"a picture of {len(graph.nodes)} objects is more than can be worked out; {MOST} are the most")
-    deadline = time.monotonic() + time_limit
     things = things_of(sizes, lying if lying is not None else [False] * len(graph.nodes), rng)
     task = _Task(graph, things, any_size, rng)
     impossible = task.impossible(deadline)
@@ -124,7 +123,7 @@ class _Task:
         self.sizes = () if any_size else size_demands(things)
         self.gap = 12.0 if rng is None else float(rng.uniform(8, 25))
 
-    def impossible(self, deadline: float) -> Impossible | Undecided | None:
+    def impossible(self, deadline: Deadline) -> Impossible | Undecided | None:
         """The proof that there is no picture: with whatever sizes if it can be, else with those that are usual."""
         found = satisfy(self.points, self.base, [*self.firm, *self.sizes], deadline)
         if found is None:
@@ -137,7 +136,7 @@ class _Task:
             found = without if isinstance(without, tuple) else found
         return _impossible(minimised(self.points, self.base, found, deadline))
 
-    def picture(self, deadline: float) -> Picture:
+    def picture(self, deadline: Deadline) -> Picture:
         """Boxes, made better in rounds: what overlaps is told apart, and all is put in its place again."""
         named = name_demands(self.graph, [d.key[0] for d in self.firm])
         best = self._liked([*self.soft, *named], deadline)
@@ -156,21 +155,21 @@ class _Task:
                 break
             best = closer
             dropped += closer.dropped
-            edges, finished = self._composed(best, apart, deadline), closer.finished and time.monotonic() < deadline
+            edges, finished = self._composed(best, apart, deadline), closer.finished and not deadline.passed
         return self._checked(edges, dropped, finished)
 
-    def _liked(self, soft: Sequence[Demand], deadline: float) -> Relaxed:
+    def _liked(self, soft: Sequence[Demand], deadline: Deadline) -> Relaxed:
         """What of all that is liked holds; what is known to be possible where there is nothing more or no time."""
         found = self._relaxed(soft, deadline) if soft else Relaxed(self.solved, (), ())
         return Relaxed(self.solved, (), (), finished=False) if found is None else found
 
-    def _relaxed(self, soft: Sequence[Demand], deadline: float) -> Relaxed | None:
+    def _relaxed(self, soft: Sequence[Demand], deadline: Deadline) -> Relaxed | None:
         found = relaxed(self.points, self.base, [*self.firm, *self.sizes], soft, deadline)
         if isinstance(found, tuple):
             raise AssertionError("firm demands that were seen to be possible are not any more")
         return found
 
-    def _composed(self, best: Relaxed, apart: Sequence[Demand], deadline: float) -> NDArray[np.int64]:
+    def _composed(self, best: Relaxed, apart: Sequence[Demand], deadline: Deadline) -> NDArray[np.int64]:
         network = best.network
         kept = {demand.key[0] for demand in (*self.firm, *best.kept) if demand.about is About.FACT}
         related = [

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
+from deixis.deadline import Deadline
 from deixis.reasoning.constraints.difference import DifferenceNetwork
 from deixis.reasoning.constraints.disjunctive import Clause, Outcome, solve
 from deixis.reasoning.constraints.minimal import Minimal, minimal_subset
@@ -32,7 +32,7 @@ class Relaxed:
 
 
 def satisfy(
-    points: int, base: Sequence[Clause], demands: Sequence[Demand], deadline: float
+    points: int, base: Sequence[Clause], demands: Sequence[Demand], deadline: Deadline
 ) -> DifferenceNetwork | tuple[Demand, ...] | None:
     """A solution of the base and all demands; or demands that have none; or None where the time was up."""
     clauses = [*base, *(clause for demand in demands for clause in demand.clauses)]
@@ -43,7 +43,7 @@ def satisfy(
     return found.network if found.outcome is Outcome.SOLVED else None
 
 
-def minimised(points: int, base: Sequence[Clause], demands: Sequence[Demand], deadline: float) -> Minimal[Demand]:
+def minimised(points: int, base: Sequence[Clause], demands: Sequence[Demand], deadline: Deadline) -> Minimal[Demand]:
     """Demands that cannot all hold, made minimal as far as there is time."""
 
     def refuted(chosen: Sequence[Demand]) -> tuple[Demand, ...] | None:
@@ -54,7 +54,7 @@ def minimised(points: int, base: Sequence[Clause], demands: Sequence[Demand], de
 
 
 def relaxed(
-    points: int, base: Sequence[Clause], firm: Sequence[Demand], soft: Sequence[Demand], deadline: float
+    points: int, base: Sequence[Clause], firm: Sequence[Demand], soft: Sequence[Demand], deadline: Deadline
 ) -> Relaxed | tuple[Demand, ...] | None:
     """A solution of all firm demands and of as many soft ones as can be kept, the first ones rather than the last.
 
@@ -77,11 +77,11 @@ def relaxed(
     return _retried(points, base, firm, Relaxed(found, tuple(kept), tuple(dropped)), deadline)
 
 
-def _retried(points: int, base: Sequence[Clause], firm: Sequence[Demand], best: Relaxed, deadline: float) -> Relaxed:
+def _retried(points: int, base: Sequence[Clause], firm: Sequence[Demand], best: Relaxed, deadline: Deadline) -> Relaxed:
     """Takes back in what was given up for the sake of something that was itself given up later."""
     for dropped in _worth_trying(best):
         demands = [*firm, *best.kept, dropped.demand]
-        found = satisfy(points, base, demands, deadline) if time.monotonic() < deadline else None
+        found = satisfy(points, base, demands, deadline) if not deadline.passed else None
         if found is None:
             return Relaxed(best.network, best.kept, best.dropped, finished=False)
         if isinstance(found, DifferenceNetwork):

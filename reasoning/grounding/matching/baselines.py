@@ -3,20 +3,19 @@
 Both see graphs with weights: the description has an edge for every fact, the scene one for every pair that a fact's
 table says something for (the table over its largest entry; what speaks against a pair counts as nothing). Facts of
 several kinds are several such pairs of graphs, whose updates are added. Neither knows of unary terms but those that
-rule a match out. An iteration ends at a deadline (``time.perf_counter``) where there is one. As engines, with the
-Hungarian method: :class:`deixis.reasoning.grounding.map_engines.BaselineEngine`.
+rule a match out. An iteration ends at a deadline where there is one. As engines, with the Hungarian method:
+:class:`deixis.reasoning.grounding.map_engines.BaselineEngine`.
 """
 
 from __future__ import annotations
 
-import math
-import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.deadline import Deadline
 from deixis.reasoning.grounding.matching.problem import Problem
 
 Matrix = NDArray[np.float64]
@@ -33,7 +32,7 @@ class NodeSimilarity:
     finished: bool
 
 
-def blondel_similarity(problem: Problem, deadline: float = math.inf) -> NodeSimilarity:
+def blondel_similarity(problem: Problem, deadline: Deadline = Deadline.never()) -> NodeSimilarity:
     """Frobenius norm 1: the limit of the even iterates of S <- B S A' + B' S A from ones.
 
     Blondel, Gajardo, Heymans, Senellart and Van Dooren, "A measure of similarity between graph vertices", SIAM Review
@@ -49,7 +48,7 @@ def blondel_similarity(problem: Problem, deadline: float = math.inf) -> NodeSimi
     return _iterate(lambda s: _normalised(update(_normalised(update(s)))), problem, deadline)
 
 
-def heymans_singh_similarity(problem: Problem, deadline: float = math.inf) -> NodeSimilarity:
+def heymans_singh_similarity(problem: Problem, deadline: Deadline = Deadline.never()) -> NodeSimilarity:
     """Frobenius norm 1: what neighbours have in common, less what sets them apart.
 
     Heymans and Singh, "Deriving phylogenetic trees from the similarity analysis of metabolic pathways",
@@ -102,11 +101,11 @@ def _alike(one: Matrix, s: Matrix, two: Matrix) -> Matrix:
     return alike
 
 
-def _iterate(step: Callable[[Matrix], Matrix], problem: Problem, deadline: float) -> NodeSimilarity:
+def _iterate(step: Callable[[Matrix], Matrix], problem: Problem, deadline: Deadline) -> NodeSimilarity:
     """Repeats a step from a matrix of ones, where nothing is ruled out, until nothing changes, or it is too late."""
     s = _normalised(problem.allowed.astype(np.float64))
     for _ in range(ITERATIONS):
-        if time.perf_counter() > deadline:
+        if deadline.passed:
             return NodeSimilarity(s, finished=False)
         following = _normalised(step(s) * problem.allowed) if s.size else s
         if np.abs(following - s).max(initial=0.0) <= TOLERANCE:

@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_matrix
 
+from deixis.deadline import Deadline
 from deixis.reasoning.grounding.matching.assignment import solve_assignment
 from deixis.reasoning.grounding.matching.problem import Compiled
 
@@ -45,7 +46,7 @@ class _Wiring(NamedTuple):
 
 
 def propagate(
-    problem: Compiled, scale: float, deadline: float = math.inf, *, effort: float = 1.0, seed: int = 0
+    problem: Compiled, scale: float, deadline: Deadline = Deadline.never(), *, effort: float = 1.0, seed: int = 0
 ) -> NDArray[np.int64] | None:
     """Each object's thing (n1,), n2 for what is left out; None where ``deadline`` or ``effort`` leave too few steps.
 
@@ -55,7 +56,7 @@ def propagate(
     slots, width, now = len(problem.kind), problem.unary.shape[1], time.perf_counter()
     cells = 1.0 + slots * width**2
     levels = effort * min(LEVELS, MAX_CELLS / cells)
-    if levels < MIN_LEVELS or MIN_LEVELS * cells > CELLS_PER_SECOND * (deadline - now):
+    if levels < MIN_LEVELS or MIN_LEVELS * cells > CELLS_PER_SECOND * deadline.left:
         return None
     wiring, costs = _wire(problem), _costs(problem)
     unary = np.where(problem.allowed, np.maximum(problem.unary, RULED_OUT), RULED_OUT).astype(np.float32)
@@ -70,9 +71,10 @@ def propagate(
         belief = _normalised(known + demand)
         _update_facts(facts, belief, weights, wiring)
         before, now = now, time.perf_counter()
-        if (deadline - now) < MIN_LEVELS * (now - before) * (1.0 - done):
+        left = deadline.left
+        if left <= MIN_LEVELS * (now - before) * (1.0 - done):
             return None
-        done += max(1.0 / levels, (now - before) / (deadline - now))
+        done += max(1.0 / levels, (now - before) / left)
     return _one_to_one(belief, problem)
 
 

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import math
-import time
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.deadline import Deadline
 from deixis.reasoning.grounding.matching.branch_and_bound import (
     BUDGET,
     DONE,
@@ -72,8 +71,8 @@ class Maps:
     limited: bool
 
 
-def exact(problem: Problem, deadline: float = math.inf, *, seed: int = 0) -> Optimum:
-    """The best map, proved as far as the time until ``deadline`` (``time.perf_counter``) allows.
+def exact(problem: Problem, deadline: Deadline = Deadline.never(), *, seed: int = 0) -> Optimum:
+    """The best map, proved as far as the time until ``deadline`` allows.
 
     >>> tables = np.array([[[0, 1], [0, 0]]], np.float32)
     >>> problem = Problem(np.array([[0, 1]]), np.array([0]), tables, np.zeros((2, 2)), np.full(2, -1.0))
@@ -99,8 +98,10 @@ def exact(problem: Problem, deadline: float = math.inf, *, seed: int = 0) -> Opt
     return Optimum(assignment, value, value if bound < record.sought[0] else bound, int(record.nodes[0]))
 
 
-def maps_within(problem: Problem, margin: float = 0.0, deadline: float = math.inf, *, limit: int = 10_000) -> Maps:
-    """All maps worth at most ``margin`` less than the best, up to a limit and a deadline (``time.perf_counter``).
+def maps_within(
+    problem: Problem, margin: float = 0.0, deadline: Deadline = Deadline.never(), *, limit: int = 10_000
+) -> Maps:
+    """All maps worth at most ``margin`` less than the best, up to a limit and a deadline.
 
     A margin of 0 gives all optima. Raises MatchingError for a margin below 0 or a limit below 1.
 
@@ -150,27 +151,27 @@ def _record(limit: int, n1: int, sought: float, step: float) -> Record:
     )
 
 
-def _run(compiled: Compiled, record: Record, deadline: float, bound: float) -> tuple[float, int]:
+def _run(compiled: Compiled, record: Record, deadline: Deadline, bound: float) -> tuple[float, int]:
     """Searches until it is over or has to stop; returns an upper bound on what was not found, and how it ended."""
     work = len(compiled.kind) * compiled.unary.shape[1] ** 2
-    if work > MAX_PASS_CELLS or time.perf_counter() > deadline:
+    if work > MAX_PASS_CELLS or deadline.passed:
         return bound, BUDGET
     stack = new_stack(compiled, MAX_STACK_CELLS)
     _tighten_root(compiled, stack, record, deadline)
     state = BUDGET
-    while state == BUDGET and time.perf_counter() <= deadline:
+    while state == BUDGET and not deadline.passed:
         state = search(compiled, stack, record, max(1, int(2e6 / (work + 1000))))
     return min(bound, _open_bound(stack)), state
 
 
-def _tighten_root(compiled: Compiled, stack: Stack, record: Record, deadline: float) -> None:
+def _tighten_root(compiled: Compiled, stack: Stack, record: Record, deadline: Deadline) -> None:
     """More passes than a node gets: what they drop at the root is dropped everywhere."""
     root, column_of = node_at(0, stack), np.empty(len(compiled.unary), dtype=np.int64)
     for _ in range(ROOT_PASSES):
         before = stack.bound[0]
         stack.bound[0] = tighten(root, compiled, record.sought[0], before, 2, 0, column_of)
         left = stack.bound[0] - record.sought[0]
-        if left < 0 or (before - stack.bound[0]) * ROOT_PATIENCE < left or time.perf_counter() > deadline:
+        if left < 0 or (before - stack.bound[0]) * ROOT_PATIENCE < left or deadline.passed:
             return
 
 

@@ -11,7 +11,6 @@ all of their orders.
 from __future__ import annotations
 
 import math
-import time
 from collections import Counter, defaultdict
 from dataclasses import dataclass, replace
 
@@ -19,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import gammaln
 
+from deixis.deadline import Deadline
 from deixis.reasoning.grounding.matching.enumeration import add_up, factors
 from deixis.reasoning.grounding.matching.problem import Compiled, MatchingError, Problem, to_assignment, to_labels
 from deixis.reasoning.grounding.matching.sampling import Ladder, ladder, most_said_twice, sample
@@ -127,13 +127,13 @@ class Posterior:
 
 def posterior(
     problem: Problem,
-    deadline: float = math.inf,
+    deadline: Deadline = Deadline.never(),
     *,
     mass: float = 1e-3,
     seed: int = 0,
     start: NDArray[np.int64] | None = None,
 ) -> Posterior:
-    """The posterior over maps by its marginals, until ``deadline`` (``time.perf_counter``).
+    """The posterior over maps by its marginals, until ``deadline``.
 
     It is exact but for ``mass`` where that can be shown by adding up maps in little time, and sampled otherwise. Chains
     begin at maps of their own; of more than ``MAX_OBJECTS_WITH_OWN_START`` objects at ``start`` (n1,), a map of high
@@ -153,7 +153,7 @@ def posterior(
     if exact is not None:
         return exact
     n1, n2 = problem.unary.shape
-    if time.perf_counter() > deadline:
+    if deadline.passed:
         labels = np.full(n1, n2) if start is None else to_labels(start, n2)
         return Posterior((labels[:, None] == np.arange(n2 + 1)).astype(np.float64), False, math.inf)
     begin = None if start is None or n1 <= MAX_OBJECTS_WITH_OWN_START else to_labels(start, n2)
@@ -161,7 +161,7 @@ def posterior(
 
 
 def exact_posterior(
-    problem: Problem, deadline: float = math.inf, *, mass: float = 1e-3, seed: int = 0
+    problem: Problem, deadline: Deadline = Deadline.never(), *, mass: float = 1e-3, seed: int = 0
 ) -> Posterior | None:
     """The exact posterior but for ``mass``, or None where that would take long, or longer than until the deadline.
 
@@ -173,14 +173,14 @@ def exact_posterior(
     if n1 == 0 or n2 == 0:
         return Posterior(np.ones((n1, 1)) if n2 == 0 else np.zeros((0, n2 + 1)), True, 0.0)
     compiled, width = problem.compiled, n2 + 1
-    if len(compiled.kind) * width * width > FACTOR_CELLS or time.perf_counter() > deadline:
+    if len(compiled.kind) * width * width > FACTOR_CELLS or deadline.passed:
         return None
     best, _ = search_from(np.full(n1, width - 1), compiled, deadline, seed, START_EFFORT, 2)
     parts = factors(compiled)
     top = math.exp(problem.value(to_assignment(best, width - 1)) - parts.log_scale)
     nodes = int(SUM_CELLS / (n1 * width))
     for threshold in THRESHOLDS:
-        if time.perf_counter() > deadline:
+        if deadline.passed:
             return None
         marginals, (total, missing, looked_at) = add_up(compiled, parts, threshold * top, nodes)
         if missing == math.inf or total <= 0:
@@ -197,7 +197,7 @@ def exact_posterior(
 
 
 def _sampled(
-    problem: Problem, compiled: Compiled, deadline: float, seed: int, start: NDArray[np.int64] | None
+    problem: Problem, compiled: Compiled, deadline: Deadline, seed: int, start: NDArray[np.int64] | None
 ) -> Posterior:
     """A short run of ladders, then one as long as the first one's error shows to be needed, and so on.
 
@@ -213,7 +213,7 @@ def _sampled(
         if labels is None:
             labels, _ = search_from(np.full(n1, width - 1), compiled, deadline, seed + number, START_EFFORT, 1)
         ladders.append(ladder(labels, compiled, coldness))
-        if time.perf_counter() > deadline:
+        if deadline.passed:
             break
     left = int(min(PROPOSALS * n1, MAX_PROPOSALS) / (LADDERS * PARTS * ROUNDS * n1 * len(coldness)))
     sweeps = int(np.clip(left / 4, *FIRST_SWEEPS))
@@ -236,18 +236,18 @@ def _run(
     ladders: list[Ladder],
     compiled: Compiled,
     sweeps: int,
-    deadline: float,
+    deadline: Deadline,
     thresholds: NDArray[np.float64],
     rng: np.random.Generator,
 ) -> NDArray[np.float64] | None:
     """Counts by half, ladder and match (2, LADDERS, n1, n2 + 1); None where the deadline struck."""
-    if len(ladders) < LADDERS or time.perf_counter() > deadline:
+    if len(ladders) < LADDERS or deadline.passed:
         return None
     counts, most = np.zeros((2, LADDERS, *compiled.unary.shape)), most_said_twice(compiled)
     for part in range(PARTS):
         for chains, count in zip(ladders, counts[2 * part // PARTS], strict=True):
             sample(chains, count, compiled, sweeps, ROUNDS, thresholds, most, int(rng.integers(1 << 31)))
-            if time.perf_counter() > deadline:
+            if deadline.passed:
                 return None
     return counts / (PARTS // 2)
 

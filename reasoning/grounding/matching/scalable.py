@@ -9,7 +9,6 @@ the order of the objects.
 from __future__ import annotations
 
 import math
-import time
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
@@ -17,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
+from deixis.deadline import Deadline
 from deixis.reasoning.grounding.matching.belief_propagation import propagate
 from deixis.reasoning.grounding.matching.local_search import NOISE_TABLE_SIZE, anneal, climb, combine, keep, reassign
 from deixis.reasoning.grounding.matching.problem import Compiled, Problem, to_assignment, to_labels
@@ -59,13 +59,13 @@ class Found:
 
 def scalable(
     problem: Problem,
-    deadline: float = math.inf,
+    deadline: Deadline = Deadline.never(),
     *,
     seed: int = 0,
     effort: float = 1.0,
     start: NDArray[np.int64] | None = None,
 ) -> Found:
-    """A map of high value until ``deadline`` (``time.perf_counter``), never worse than ``start`` (default: nobody).
+    """A map of high value until ``deadline``, never worse than ``start`` (default: nobody).
 
     ``effort`` multiplies the steps. Raises MatchingError where ``start`` is no map of the problem.
 
@@ -87,7 +87,7 @@ def scalable(
 
 
 def search_from(
-    labels: NDArray[np.int64], compiled: Compiled, deadline: float, seed: int, effort: float, most: int
+    labels: NDArray[np.int64], compiled: Compiled, deadline: Deadline, seed: int, effort: float, most: int
 ) -> tuple[NDArray[np.int64], bool]:
     """The best map found from ``labels`` (n1,) on, and whether the search came to its end.
 
@@ -108,7 +108,7 @@ def search_from(
 
 
 def _annealed(
-    labels: NDArray[np.int64], compiled: Compiled, deadline: float, seed: int, effort: float, most: int
+    labels: NDArray[np.int64], compiled: Compiled, deadline: Deadline, seed: int, effort: float, most: int
 ) -> tuple[NDArray[np.int64], bool]:
     """At most ``most`` turns, the first from ``labels`` (n1,)."""
     rng = np.random.default_rng(seed)
@@ -132,11 +132,10 @@ def _annealed(
 
 
 def _propagated(
-    labels: NDArray[np.int64], compiled: Compiled, deadline: float, seed: int, effort: float, most: int
+    labels: NDArray[np.int64], compiled: Compiled, deadline: Deadline, seed: int, effort: float, most: int
 ) -> tuple[NDArray[np.int64], bool]:
     """A shorter annealing of what belief propagation finds, where there is time for it, else a whole one."""
-    half = time.perf_counter() + (deadline - time.perf_counter()) / 2
-    found = propagate(compiled, mean_range(compiled), half, effort=effort, seed=seed)
+    found = propagate(compiled, mean_range(compiled), deadline.share(0.5), effort=effort, seed=seed)
     if found is None:
         return _annealed(labels, compiled, deadline, seed + 1, effort, most)
     climb(found, compiled)
@@ -160,7 +159,7 @@ def turns_and_sweeps(objects: int, width: int) -> tuple[list[tuple[float, int]],
 def _cool(
     best: NDArray[np.int64],
     compiled: Compiled,
-    deadline: float,
+    deadline: Deadline,
     schedule: NDArray[np.float64],
     sweeps: int,
     noise: NDArray[np.float32],
@@ -174,12 +173,11 @@ def _cool(
     state, ahead, finished = keep(best, compiled), 0.0, True
     part = max(1, int(CELLS_PER_CLOCK_CHECK / state.gains.size))
     for level, temperature in enumerate(schedule):
-        now = time.perf_counter()
-        if now > deadline:
+        if deadline.passed:
             return False
-        next_level = now + MAX_TIME_SHARE * (deadline - now) / (len(schedule) - level)
+        next_level = deadline.share(min(1.0, MAX_TIME_SHARE / (len(schedule) - level)))
         for done in range(0, sweeps, part):
-            if time.perf_counter() > next_level:
+            if next_level.passed:
                 finished = False
                 break
             count, seed = min(part, sweeps - done), int(rng.integers(1 << 31))

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.deadline import Deadline
 from deixis.reasoning.errors import SettingError
 from deixis.reasoning.grounding.matching.posterior import exchangeable
 from deixis.reasoning.grounding.matching.problem import UNMATCHED, Problem
@@ -149,12 +150,12 @@ class Candidates:
 
 
 def candidates_of(
-    problem: Problem, deadline: float = math.inf, *, margin: float = 0.0, limit: int = MAX_LISTED_MAPS
+    problem: Problem, deadline: Deadline = Deadline.never(), *, margin: float = 0.0, limit: int = MAX_LISTED_MAPS
 ) -> Candidates:
     """The maps worth at most ``margin`` less than the best, weighted by the exponential of their values.
 
     Where there are more than ``limit``, the things of interchangeable objects are taken as those of the best map, and
-    held as groups; ``complete`` is then False, as it is where the deadline (``time.perf_counter``) struck.
+    held as groups; ``complete`` is then False, as it is where the deadline struck.
 
     >>> none = np.zeros((0, 2), np.int64)
     >>> alike = Problem(none, none[:, 0], np.zeros((0, 9, 9), np.float32), np.ones((9, 9)), np.zeros(9))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass, replace
@@ -11,6 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.deadline import Deadline
 from deixis.reasoning.entailment.implications import Implications
 from deixis.reasoning.grounding.evidence.evidence import PRESENT_LOG_ODDS, Evidence
 from deixis.reasoning.grounding.matching.problem import UNMATCHED
@@ -40,7 +40,7 @@ class Refinement:
 
     evidence: Evidence
     inquiry: Inquiry
-    seconds_left: float
+    deadline: Deadline
 
 
 def refine(
@@ -53,24 +53,22 @@ def refine(
     situation. The time limit is not for the person: half of it is for what to ask, each time, and the whole for
     grounding after the last answer; together they keep to it where nothing was answered.
     """
-    started = time.perf_counter()
+    deadline = Deadline.after(time_limit)
     situation = situation_of(evidence.description, evidence.scene, implied)
-    inquiry = begin(situation, considered(evidence, time_limit / 2))
-    left = max(0.0, time_limit - (time.perf_counter() - started))
+    inquiry = begin(situation, considered(evidence, Deadline.after(time_limit / 2)))
+    left = deadline.left
     hold = start(situation)
     done, most = hold(inquiry, math.inf), question_limit(inquiry)
-    replied = time.perf_counter()
+    deadline = Deadline.after(time_limit if done.exchanges else left)
     while len(done.exchanges) > len(inquiry.exchanges):
         evidence = narrowed(evidence, done)
         if done.exchanges[-1].outcome is not Outcome.SURPRISING and done.next_question() is not None:
             break  # the person ended the dialogue
-        inquiry = _relisted(evidence, done, time_limit / 2)
+        inquiry = _relisted(evidence, done, Deadline.after(time_limit / 2))
         most = question_limit(inquiry) if done.exchanges[-1].outcome is Outcome.SURPRISING else most
         done = hold(inquiry, most)
-        replied = time.perf_counter()
-    if done.exchanges:
-        left = max(0.0, time_limit - (time.perf_counter() - replied))
-    return Refinement(evidence, done, left)
+        deadline = Deadline.after(time_limit)
+    return Refinement(evidence, done, deadline)
 
 
 def question_limit(inquiry: Inquiry) -> int:
@@ -78,9 +76,9 @@ def question_limit(inquiry: Inquiry) -> int:
     return len(inquiry.exchanges) + math.ceil(math.log2(inquiry.candidates.count)) + 1
 
 
-def _relisted(evidence: Evidence, done: Inquiry, time_limit: float) -> Inquiry:
+def _relisted(evidence: Evidence, done: Inquiry, deadline: Deadline) -> Inquiry:
     """The dialogue over what the answers have made likely; over one grounding where that leaves nothing in doubt."""
-    candidates = considered(evidence, time_limit)
+    candidates = considered(evidence, deadline)
     for exchange in done.exchanges:
         if exchange.believed:
             with suppress(ContradictionError):  # what is likeliest now need not agree with every answer
@@ -90,11 +88,10 @@ def _relisted(evidence: Evidence, done: Inquiry, time_limit: float) -> Inquiry:
     return replace(done, start=candidates, candidates=candidates)
 
 
-def considered(evidence: Evidence, time_limit: float) -> Candidates:
-    """The groundings within the widest margin of which all can be listed; half of the time is for each."""
-    started = time.perf_counter()
-    wide = candidates_of(evidence.problem, started + time_limit / 2, margin=MARGINS[0])
-    return wide if wide.complete else candidates_of(evidence.problem, started + time_limit, margin=MARGINS[1])
+def considered(evidence: Evidence, deadline: Deadline) -> Candidates:
+    """The groundings within the widest margin of which all can be listed; half of the time is for the first."""
+    wide = candidates_of(evidence.problem, deadline.share(0.5), margin=MARGINS[0])
+    return wide if wide.complete else candidates_of(evidence.problem, deadline, margin=MARGINS[1])
 
 
 def narrowed(evidence: Evidence, done: Inquiry) -> Evidence:

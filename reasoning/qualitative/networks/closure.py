@@ -15,6 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.deadline import Deadline
 from deixis.reasoning.qualitative.calculi.calculus import Calculus, ProductCalculus
 from deixis.reasoning.qualitative.networks.network import Network, on_axes
 from deixis.reasoning.qualitative.networks.state import NetworkState, Progress
@@ -58,9 +59,9 @@ class Closure:
 
 
 def close(
-    network: Network, deadline: float | None = None, progress: Progress | None = None, joint: bool = False
+    network: Network, deadline: Deadline = Deadline.never(), progress: Progress | None = None, joint: bool = False
 ) -> Closure:
-    """Return the algebraic closure of a network, until ``deadline`` on the clock of ``time.monotonic``.
+    """Return the algebraic closure of a network, until ``deadline``.
 
     Products close axis by axis; ``joint`` closes the whole calculus at once all the same. Raises LimitError where the
     network would not fit in memory.
@@ -101,14 +102,14 @@ def opened_states(network: Network, joint: bool = False, traced: bool = False) -
 
 
 def closed_states(
-    network: Network, deadline: float | None = None, progress: Progress | None = None, traced: bool = False
+    network: Network, deadline: Deadline = Deadline.never(), progress: Progress | None = None, traced: bool = False
 ) -> tuple[tuple[NetworkState, ...], bool]:
     """The states of a network's axes, or of the whole, closed up to the first contradiction; and whether in time."""
     states = opened_states(network, traced=traced)
     return states, _close_all(states, deadline, progress)
 
 
-def _close_all(states: Sequence[NetworkState], deadline: float | None, progress: Progress | None) -> bool:
+def _close_all(states: Sequence[NetworkState], deadline: Deadline, progress: Progress | None) -> bool:
     for state in states:
         if any(each.emptied is not None for each in states):
             return True

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.deadline import Deadline
 from deixis.reasoning.constraints.minimal import minimal_subset
 from deixis.reasoning.errors import NetworkError
 from deixis.reasoning.qualitative.calculi.bridges import Link
@@ -61,7 +62,7 @@ class JointClosure:
 def close_jointly(
     networks: Sequence[Network],
     bridges: Sequence[Link],
-    deadline: float | None = None,
+    deadline: Deadline = Deadline.never(),
     progress: Progress | None = None,
 ) -> JointClosure:
     """Return the joint fixpoint of closing each network and crossing each bridge.
@@ -108,14 +109,14 @@ def close_jointly(
     )
 
 
-Propagator = Callable[[float | None, Progress | None], bool]
+Propagator = Callable[[Deadline, Progress | None], bool]
 """Narrows one state until a deadline, and returns whether it finished in time."""
 
 
 def _crossing(source: NetworkState, target: NetworkState, translate: Callable[[int], int]) -> Propagator:
     known: dict[int, int] = {}
 
-    def cross(deadline: float | None, progress: Progress | None) -> bool:
+    def cross(deadline: Deadline, progress: Progress | None) -> bool:
         relations, ids = source.distinct()
         for relation in relations:
             known.setdefault(relation, translate(relation))
@@ -123,7 +124,7 @@ def _crossing(source: NetworkState, target: NetworkState, translate: Callable[[i
         telling = np.array([mask != target.calculus.universal for mask in masks])
         firsts, seconds = np.nonzero(np.triu(telling[ids], 1))
         target.restrict(firsts, seconds, ids[firsts, seconds], masks)
-        return deadline is None or time.monotonic() <= deadline
+        return not deadline.passed
 
     return cross
 
@@ -158,11 +159,10 @@ class JointSolution:
 def solve_jointly(
     networks: Sequence[Network],
     bridges: Sequence[Link],
-    time_limit: float | None = None,
+    deadline: Deadline = Deadline.never(),
     progress: Progress | None = None,
 ) -> JointSolution:
     """Decide several networks together, where closure and each part can."""
-    deadline = None if time_limit is None else time.monotonic() + time_limit
     closure = close_jointly(networks, bridges, deadline, progress)
     if closure.emptied is not None:
         return JointSolution(Verdict.INCONSISTENT, closure)
@@ -170,8 +170,7 @@ def solve_jointly(
         return JointSolution(Verdict.UNDECIDED, closure, "the time limit was reached")
     speaking = [network for network in networks if network.constraints]
     for network in speaking:
-        left = None if deadline is None else max(0.0, deadline - time.monotonic())
-        solution = solve(network, left, progress)
+        solution = solve(network, deadline, progress)
         if solution.verdict is Verdict.INCONSISTENT or len(speaking) == 1:
             return JointSolution(solution.verdict, closure, solution.reason)
     if not speaking:
@@ -192,10 +191,9 @@ class JointConflict:
 
 
 def joint_conflict(
-    networks: Sequence[Network], bridges: Sequence[Link], time_limit: float = 10.0
+    networks: Sequence[Network], bridges: Sequence[Link], deadline: Deadline = Deadline.never()
 ) -> JointConflict | None:
     """Return a deletion-minimal set of constraints that joint closure refutes; None where it refutes none in time."""
-    deadline = time.monotonic() + time_limit
     stated = [(n.calculus.name, c) for n in networks for c in n.constraints]
 
     def refuted(kept: list[tuple[str, Constraint]]) -> list[tuple[str, Constraint]] | None:

@@ -6,12 +6,12 @@ Closure does this fast, and where it does not decide, search goes on with what i
 
 from __future__ import annotations
 
-import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from deixis.deadline import Deadline
 from deixis.reasoning.constraints.minimal import minimal_subset
 from deixis.reasoning.errors import LimitError
 from deixis.reasoning.qualitative.networks.closure import close, closed_states
@@ -34,8 +34,10 @@ class Conflict:
     minimal: bool
 
 
-def minimal_conflict(network: Network, time_limit: float = 10.0, inconsistent: bool = False) -> Conflict | None:
-    """A deletion-minimal set of inconsistent constraints; None where none was found within ``time_limit`` seconds.
+def minimal_conflict(
+    network: Network, deadline: Deadline = Deadline.never(), inconsistent: bool = False
+) -> Conflict | None:
+    """A deletion-minimal set of inconsistent constraints; None where none was found in time.
 
     ``inconsistent`` says that the whole is known to be so: there is a conflict then, however little time there is.
 
@@ -47,7 +49,6 @@ def minimal_conflict(network: Network, time_limit: float = 10.0, inconsistent: b
     >>> [(c.first, c.second) for c in found.constraints], found.minimal
     ([(0, 1), (1, 2), (2, 0)], True)
     """
-    deadline = time.monotonic() + time_limit
 
     def by_closure(stated: Sequence[Constraint]) -> Core | None:
         return refuting(network.only(stated), deadline)
@@ -80,7 +81,7 @@ def closure_decides(network: Network) -> bool:
     return all(len(chosen.pieces(relation)) <= 1 for relation in network.arrays.relations)
 
 
-def refuting(network: Network, deadline: float) -> Core | None:
+def refuting(network: Network, deadline: Deadline) -> Core | None:
     """The constraints on which a failed closure rests, in their order; None where closure does not fail in time."""
     network = network.only(without_leaves(network))
     if not network.constraints:
@@ -127,9 +128,8 @@ def resting(network: Network, small: Network, state: NetworkState, first: int, s
     return tuple(network.constraints[k] for k in np.flatnonzero(chosen))
 
 
-def _searched(network: Network, deadline: float) -> Core | None:
-    left = deadline - time.monotonic()
-    if not network.constraints or left <= 0:
+def _searched(network: Network, deadline: Deadline) -> Core | None:
+    if not network.constraints or deadline.passed:
         return None
     small, _ = network.compact()
-    return network.constraints if solve(small, left).verdict is Verdict.INCONSISTENT else None
+    return network.constraints if solve(small, deadline).verdict is Verdict.INCONSISTENT else None

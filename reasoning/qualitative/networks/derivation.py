@@ -6,12 +6,12 @@ so that each relation is derived by as few compositions on top of one another as
 
 from __future__ import annotations
 
-import time
 from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
+from deixis.deadline import Deadline
 from deixis.reasoning.constraints.minimal import minimal_subset
 from deixis.reasoning.errors import NetworkError
 from deixis.reasoning.qualitative.networks.closure import close, closed_states, whole_relation
@@ -22,10 +22,9 @@ from deixis.reasoning.qualitative.networks.rounds import PairRelation, Rounds, S
 FEW = 40  # things among which the shortest way is looked for right away
 
 
-def explain(network: Network, first: int, second: int, time_limit: float = 10.0) -> Step | None:
+def explain(network: Network, first: int, second: int, deadline: Deadline = Deadline.never()) -> Step | None:
     """Why closure leaves of a pair what it does; None where it leaves everything, or time ran out."""
     require_pair(network, first, second)
-    deadline = time.monotonic() + time_limit
     small, things = network.compact()
     if first not in things or second not in things:
         return None
@@ -33,11 +32,11 @@ def explain(network: Network, first: int, second: int, time_limit: float = 10.0)
     closure = close(small, deadline)
     if not closure.complete or not closure.consistent:
         return None
-    step = derive(small, i, j, closure.relation(i, j), deadline - time.monotonic())
+    step = derive(small, i, j, closure.relation(i, j), deadline)
     return None if step is None else _renumbered(step, things.tolist())
 
 
-def derive(network: Network, first: int, second: int, goal: int, time_limit: float = 10.0) -> Step | None:
+def derive(network: Network, first: int, second: int, goal: int, deadline: Deadline = Deadline.never()) -> Step | None:
     """The shortest derivation found of a relation no wider than ``goal``; None where closure does not give that.
 
     >>> from deixis.reasoning.qualitative.calculi.registry import calculus
@@ -54,7 +53,6 @@ def derive(network: Network, first: int, second: int, goal: int, time_limit: flo
     require_pair(network, first, second)
     if first == second or not network.calculus.universal & ~goal:
         return None
-    deadline = time.monotonic() + time_limit
 
     def narrow(stated: Sequence[Constraint]) -> Core | None:
         return _supporting(network.only(stated), first, second, goal, deadline)
@@ -70,7 +68,7 @@ def derive(network: Network, first: int, second: int, goal: int, time_limit: flo
     return _in_rounds(network.only(needed), first, second, goal, deadline)
 
 
-def _in_rounds(network: Network, first: int, second: int, goal: int, deadline: float) -> Step | None:
+def _in_rounds(network: Network, first: int, second: int, goal: int, deadline: Deadline) -> Step | None:
     """The derivation that closing breadth first finds; of any pair's empty relation where ``first`` is -1."""
     small, things = network.compact()
     place = {int(thing): k for k, thing in enumerate(things)} | {-1: -1}
@@ -78,12 +76,11 @@ def _in_rounds(network: Network, first: int, second: int, goal: int, deadline: f
     return None if found is None else _renumbered(found, things.tolist())
 
 
-def contradiction(network: Network, time_limit: float = 10.0) -> Step | None:
+def contradiction(network: Network, deadline: Deadline = Deadline.never()) -> Step | None:
     """The derivation of the empty relation from constraints that closure refutes, best from a minimal conflict.
 
     None where closure finds no contradiction, or not in time.
     """
-    deadline = time.monotonic() + time_limit
     if refuting(network, deadline) is None:
         return None
     return _in_rounds(network, -1, -1, 0, deadline)
@@ -96,7 +93,7 @@ def require_pair(network: Network, first: int, second: int) -> None:
             raise NetworkError(f"there is no thing {thing}; the network has {network.size}, numbered from 0")
 
 
-def _supporting(network: Network, first: int, second: int, goal: int, deadline: float) -> Core | None:
+def _supporting(network: Network, first: int, second: int, goal: int, deadline: Deadline) -> Core | None:
     """Constraints from which closure gives a relation within ``goal``, read off its trail; None where it does not."""
     small, things = network.compact() if network.constraints else (network, np.zeros(0, dtype=np.int64))
     if first not in things or second not in things:

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from deixis.deadline import Deadline
 from deixis.reasoning.constraints.proof import Proof, Rule
 from deixis.reasoning.qualitative.calculi.calculus import Calculus, ProductCalculus
 from deixis.reasoning.qualitative.networks.network import Network
@@ -77,10 +77,10 @@ class Rounds:
             table[c.second][c.first] &= self._calculus.converse(c.relation)
         self._tables: list[RelationTable] = [table]
 
-    def derive(self, first: int, second: int, goal: int, deadline: float) -> Step | None:
+    def derive(self, first: int, second: int, goal: int, deadline: Deadline) -> Step | None:
         """Return the derivation of a relation within ``goal``; of any pair's empty relation where ``first`` is -1.
 
-        None where the rounds end, or ``deadline`` (time.monotonic) comes, before that.
+        None where the rounds end, or ``deadline`` comes, before that.
         """
         while True:
             pair: tuple[int, int] | None = (first, second)
@@ -112,12 +112,12 @@ class Rounds:
                     between[k] = relation
         return between
 
-    def _next_round(self, deadline: float) -> bool:
+    def _next_round(self, deadline: Deadline) -> bool:
         """Return whether there is another round, and was time for it."""
         last, changed = len(self._tables) - 1, False
         table = [list(row) for row in self._tables[last]]
         for i in range(len(table)):
-            if time.monotonic() > deadline:
+            if deadline.passed:
                 return False
             for j in range(i + 1, len(table)):
                 relation = table[i][j]

@@ -15,6 +15,7 @@ from enum import StrEnum
 
 import numpy as np
 
+from deixis.deadline import Deadline
 from deixis.reasoning.qualitative.calculi.bridges import Link
 from deixis.reasoning.qualitative.calculi.calculus import Calculus
 from deixis.reasoning.qualitative.networks.choices import FewestPiecesFirst, FirstOpenPair, PairSelector
@@ -65,20 +66,20 @@ class _Choice:
 
 @dataclass
 class _Tally:
-    deadline: float | None
+    deadline: Deadline
     progress: Progress | None
     choices: int = 0
     dead_ends: int = 0
 
     def check_clock(self) -> None:
-        if self.deadline is not None and time.monotonic() > self.deadline:
+        if self.deadline.passed:
             raise _OutOfTime
 
 
 def solve(
-    network: Network, time_limit: float | None = None, progress: Progress | None = None, scenario: bool = False
+    network: Network, deadline: Deadline = Deadline.never(), progress: Progress | None = None, scenario: bool = False
 ) -> Solution:
-    """Decide whether a network is consistent, within ``time_limit`` seconds; ``scenario`` asks for one as well.
+    """Decide whether a network is consistent, until ``deadline``; ``scenario`` asks for one as well.
 
     Raises LimitError where the network would not fit in memory.
 
@@ -91,13 +92,13 @@ def solve(
     """
     bridge = decider(network.calculus)
     if bridge is not None:
-        solution = solve(translated(network, bridge), time_limit, progress, scenario)
+        solution = solve(translated(network, bridge), deadline, progress, scenario)
         if solution.scenario is None:
             return solution
         atoms = (replace(c, relation=bridge.backward(c.relation)) for c in solution.scenario.constraints)
         return replace(solution, scenario=network.only(atoms))
     started = time.perf_counter()
-    tally = _Tally(None if time_limit is None else time.monotonic() + time_limit, progress)
+    tally = _Tally(deadline, progress)
     verdict, reason, found, refuted = _decide(network, tally, scenario)
     return Solution(verdict, tally.choices, tally.dead_ends, time.perf_counter() - started, found, refuted, reason)
 
@@ -117,9 +118,9 @@ def translated(network: Network, bridge: Link) -> Network:
     return Network(bridge.target, network.size, tuple(constraints), network.names)
 
 
-def scenario(network: Network, time_limit: float | None = None) -> Network | None:
+def scenario(network: Network, deadline: Deadline = Deadline.never()) -> Network | None:
     """A consistent network with one atom for each pair, all of them as stated; None where none was found in time."""
-    solution = solve(network, time_limit, scenario=True)
+    solution = solve(network, deadline, scenario=True)
     return solution.scenario if solution.verdict is Verdict.CONSISTENT else None
 
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.deadline import Deadline
 from deixis.reasoning.errors import LimitError
 from deixis.reasoning.qualitative.calculi.calculus import Calculus
 from deixis.reasoning.qualitative.networks.cells import Cells, Masks, Planes
@@ -84,8 +84,8 @@ class NetworkState:
         one = np.zeros(1, dtype=np.int64)
         return self.restrict(one + first, one + second, one, (relation,))
 
-    def close(self, deadline: float | None = None, progress: Progress | None = None) -> bool:
-        """Closes the network, as far as it is consistent; False where ``deadline`` (time.monotonic) came first."""
+    def close(self, deadline: Deadline = Deadline.never(), progress: Progress | None = None) -> bool:
+        """Closes the network, as far as it is consistent; False where ``deadline`` came first."""
         from deixis.reasoning.qualitative.networks.kernels import CLOSED, EMPTIED, FULL
 
         if self.emptied is not None or not self.size:
@@ -99,7 +99,7 @@ class NetworkState:
                 self._lengthen(self.size * self._cells.atoms_a_row)
             if progress is not None:
                 progress(self.passes, self.passes + int(self._waiting.sum()))
-            if deadline is not None and time.monotonic() > deadline:
+            if deadline.passed:
                 return False
 
     def undo(self, mark: int) -> None:

@@ -113,12 +113,12 @@ def progress_bar(what: str) -> Iterator[Callable[[int, int], None] | None]:
     from rich.console import Console
     from rich.progress import Progress as Bar
 
-    started = time.monotonic()
+    started = time.perf_counter()
     with Bar(console=Console(stderr=True), transient=True) as bar:
         task = bar.add_task(what, total=None, visible=False)
 
         def progress(done: int, total: int) -> None:
-            bar.update(task, completed=done, total=total, visible=time.monotonic() - started > PATIENCE)
+            bar.update(task, completed=done, total=total, visible=time.perf_counter() - started > PATIENCE)
 
         yield progress
 

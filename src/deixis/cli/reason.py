@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from deixis.cli.common import NO, UNDECIDED, AsJson, MemoryDir, TimeLimit, print_json, print_lines
+from deixis.deadline import Deadline
 
 if TYPE_CHECKING:
     from deixis.reasoning.description_logic.justification import Justification
@@ -90,7 +91,7 @@ def _explain(stated: list[Triple], asked: Triple, turtle: bool, time_limit: floa
     from deixis.reasoning.description_logic.verbalisation import Words, labels_of
     from deixis.report.reason import explanation_lines, justification_to_dict
 
-    found = justify(write_ntriples(stated), asked, time_limit)
+    found = justify(write_ntriples(stated), asked, Deadline.after(time_limit))
     words, steps = Words(labels_of(stated)), _steps(found)
     if turtle:
         _print_turtle(found)

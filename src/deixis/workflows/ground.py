@@ -7,7 +7,6 @@ Python (:func:`deixis.ground`, ``Session.ground``) and the command line (``deixi
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Callable, Mapping
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, replace
@@ -15,6 +14,7 @@ from functools import cache, cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from deixis.deadline import Deadline
 from deixis.grammar.script import Script
 from deixis.learning.scene_evidence import conflict_notes, graph_evidence, viewpoint_notes
 from deixis.ontology.graph import RelationGraph
@@ -180,23 +180,23 @@ def answer(request: GroundingRequest, stage: Stage = lambda _: nullcontext()) ->
 
     ready_to_ground(request.engine)
     contradiction = conflict_notes(request.conflict)
-    started = time.perf_counter()
+    deadline = Deadline.after(request.time_limit)
     side, notes = None, viewpoint_notes(request.script.viewpoint, request.scene)
     if request.viewpoint != ViewpointName.STATED:
         any_angle = request.viewpoint == ViewpointName.UNKNOWN
         with stage("looking from other sides"):
-            side = recover_scene(request.evidence, request.scene, any_angle, request.time_limit / 2)
-    left = request.time_limit if side is None else max(0.0, request.time_limit - (time.perf_counter() - started))
+            side = recover_scene(request.evidence, request.scene, any_angle, deadline.share(0.5))
     if request.ask is not None:
-        found = _answer_with_questions(request, request.ask, request.scene if side is None else side.scene, left)
+        seen = request.scene if side is None else side.scene
+        found = _answer_with_questions(request, request.ask, seen, deadline.left)
         before = notes if side is None else side.notes + side.doubt
     else:
         engine = engine_named(request.engine, Select(request.select))
         with stage("grounding"):
             if side is None:
-                found, before = ground_evidence(request.evidence(request.scene), engine, left, contradiction), notes
+                found, before = ground_evidence(request.evidence(request.scene), engine, deadline, contradiction), notes
             else:
-                found = ground_from_sides(request.evidence, side, engine, left, contradiction)
+                found = ground_from_sides(request.evidence, side, engine, deadline, contradiction)
                 before = side.notes
     viewpoints = None if side is None else side.viewpoints.viewpoints if side.viewpoints else ()
     return replace(found.noting(before), viewpoints=viewpoints)
@@ -223,7 +223,7 @@ def _answer_with_questions(request: GroundingRequest, ask: Ask, scene: Scene, ti
     refined = refine(request.evidence(scene), request.implied, start, time_limit)
     print(*closing_lines(refined.inquiry), sep="\n", file=dialogue.out)
     notes = conflict_notes(request.conflict)
-    found = ground_evidence(refined.evidence, engine_named(request.engine), refined.seconds_left, notes)
+    found = ground_evidence(refined.evidence, engine_named(request.engine), refined.deadline, notes)
     return replace(found, exchanges=refined.inquiry.exchanges)
 
 
@@ -243,7 +243,8 @@ def ready_to_ground(engine: str) -> None:
     find_conflict(Implications(script.graph()))
     scene = as_scene({"frame": "table", "viewpoint": "chair", "unit": "m", "objects": boxes})
     known, seen = script.ontology, scene.relations(script.ontology.relations)
-    ground_evidence(evidence_from(script.graph(), seen, [None] * len(boxes), known.kinds, known.sizes), chosen, 3600.0)
+    evidence = evidence_from(script.graph(), seen, [None] * len(boxes), known.kinds, known.sizes)
+    ground_evidence(evidence, chosen, Deadline.after(3600.0))
     # Asks for less mass to be missing than a sum over maps can promise, which leaves sampling.
     import numpy as np
 
@@ -252,4 +253,4 @@ def ready_to_ground(engine: str) -> None:
 
     unary, tables = np.array([[0.0, -60.0], [0.0, 0.0]]), np.zeros((1, 2, 2), np.float32)
     problem = Problem(np.array([[0, 1]]), np.array([0]), tables, unary, np.full(2, -80.0))
-    posterior(problem, time.perf_counter() + MEANWHILE, mass=1e-30)
+    posterior(problem, Deadline.after(MEANWHILE), mass=1e-30)

@@ -8,6 +8,7 @@ from functools import cache
 
 import numpy as np
 
+from deixis.deadline import Deadline
 from deixis.grammar.script import Script
 from deixis.ontology.graph import Fact, RelationGraph
 from deixis.ontology.kinds import Kind, Kinds, plain_name, with_article
@@ -131,7 +132,7 @@ def _pictures(
         for attempt in range(MAX_ATTEMPTS):
             plain = seed == number == attempt == 0
             rng = None if plain else np.random.default_rng([seed, number, attempt])
-            found = realise(graph, sizes, lying=lying, any_size=any_size, time_limit=time_limit, rng=rng)
+            found = realise(graph, sizes, lying=lying, any_size=any_size, deadline=Deadline.after(time_limit), rng=rng)
             if not isinstance(found, Picture):
                 yield found
                 return

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
+from deixis.deadline import Deadline
 from deixis.grammar.script import Script
 from deixis.ontology.graph import Fact
 from deixis.reasoning.constraints.disjunctive import OutOfTimeError
@@ -45,7 +45,7 @@ class Inference:
     implications: Implications
     conflict: Conflict | None
     decided: bool
-    deadline: float  # time.monotonic: searches for what facts rest on end then
+    deadline: Deadline  # searches for what facts rest on end then
 
     @property
     def consistent(self) -> bool:
@@ -82,7 +82,7 @@ def inference_of(script: Script, time_limit: float = TIME_LIMIT) -> Inference:
 
     Only facts that leave a choice take a search, and so need a limit.
     """
-    deadline = time.monotonic() + time_limit
+    deadline = Deadline.after(time_limit)
     implications = Implications(script.graph(), time_limit)
     try:
         conflict = find_conflict(implications, deadline)

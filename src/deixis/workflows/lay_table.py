@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, replace
 from numbers import Integral
@@ -11,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.deadline import Deadline
 from deixis.errors import DeixisError
 from deixis.grammar.script import Script
 from deixis.ontology.graph import Fact, RelationGraph
@@ -187,7 +187,7 @@ def _plan_boxes(
     lying = lying_cutlery(graph, objects, ontology.kinds)
     tables = tuple(is_table(thing, ontology) for thing in objects)
     graphs = (*all_on_it(graph, tables), graph)
-    deadline = time.monotonic() + time_limit
+    deadline = Deadline.after(time_limit)
     draws = MAX_DRAWS if any(form_of(thing.kind, ontology).handle for thing in objects) else 1
     for draw in range(draws):
         sizes = [
@@ -197,8 +197,8 @@ def _plan_boxes(
         # The graphs share the time that is left; the first that has a picture decides.
         found: Picture | Impossible | Undecided | None = None
         for number, one in enumerate(graphs):
-            left = max(0.0, deadline - time.monotonic()) / (len(graphs) - number)
-            found = realise(one, sizes, lying=lying, time_limit=left, rng=np.random.default_rng([seed, draw]))
+            part = deadline.share(1 / (len(graphs) - number))
+            found = realise(one, sizes, lying=lying, deadline=part, rng=np.random.default_rng([seed, draw]))
             if isinstance(found, Picture):
                 break
         if isinstance(found, Picture):

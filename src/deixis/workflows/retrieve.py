@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import os
-import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
+from deixis.deadline import Deadline
 from deixis.errors import DeixisError
 from deixis.grammar.parser import read_script
 from deixis.grammar.script import Script
@@ -82,7 +82,7 @@ def retrieve(
     Raises DeixisError where nothing is known, or a file cannot be read.
     """
     ready_to_ground("exact")
-    deadline, folder = time.perf_counter() + time_limit, None if among is None else Path(among)
+    deadline, folder = Deadline.after(time_limit), None if among is None else Path(among)
     comparison = Comparison(default_ontology(), memory.meaning().sizes if memory else None)
     if isinstance(query, str | Path):
         query = read_script(str(query)) if _is_script_file(str(query)) else read_scene(query)

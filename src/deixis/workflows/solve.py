@@ -9,6 +9,7 @@ from functools import cache
 from itertools import combinations
 from typing import TYPE_CHECKING
 
+from deixis.deadline import Deadline
 from deixis.errors import DeixisError
 from deixis.reasoning.qualitative.calculi.bridges import Link, links_between
 from deixis.reasoning.qualitative.networks.closure import close
@@ -39,9 +40,9 @@ class Wish:
     explain: tuple[int, int] | None = None
     time_limit: float = 60.0
 
-    def left(self, deadline: float) -> float:
-        """Seconds for saying why, when there is that verdict."""
-        return max(deadline - time.monotonic(), LAST_SHARE * self.time_limit)
+    def extended(self, deadline: Deadline) -> Deadline:
+        """The deadline for saying why, when there is that verdict."""
+        return max(deadline, Deadline.after(LAST_SHARE * self.time_limit))
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,15 +87,15 @@ def solve_text(text: NetworkText, wish: Wish, progress: Progress | None = None) 
 
 
 def _solve_single(text: NetworkText, wish: Wish, progress: Progress | None) -> SolvedNetwork:
-    started, deadline = time.perf_counter(), time.monotonic() + wish.time_limit
+    started, deadline = time.perf_counter(), Deadline.after(wish.time_limit)
     if wish.explain is not None:
         require_pair(text.network, *wish.explain)
     small, things = text.network.compact()
     closure = close(small, deadline, progress)
-    found = solve(small, max(0.0, deadline - time.monotonic()), progress, wish.scenario)
+    found = solve(small, deadline, progress, wish.scenario)
     solved = SolvedNetwork(text, found.verdict, found.reason, closure.narrowed, 0.0, asked=wish.explain)
     if found.verdict is Verdict.INCONSISTENT:
-        conflict = minimal_conflict(text.network, wish.left(deadline), inconsistent=True)
+        conflict = minimal_conflict(text.network, wish.extended(deadline), inconsistent=True)
         if conflict is not None:
             stated = tuple((text.network, c) for c in conflict.constraints)
             solved = replace(solved, conflict=stated, minimal=conflict.minimal)
@@ -104,24 +105,24 @@ def _solve_single(text: NetworkText, wish: Wish, progress: Progress | None) -> S
         relations = (Constraint(i, j, closure.relation(i, j)) for i, j in closure.known_pairs().tolist())
         solved = replace(solved, shown=(_renumbered(text.network, relations, things.tolist()),))
     if wish.explain is not None and found.verdict is not Verdict.INCONSISTENT:
-        ending = time.monotonic() + wish.left(deadline)
-        step = explain(text.network, *wish.explain, ending - time.monotonic())
-        solved = replace(solved, step=step, explained=step is not None or time.monotonic() <= ending)
+        deadline = wish.extended(deadline)
+        step = explain(text.network, *wish.explain, deadline)
+        solved = replace(solved, step=step, explained=step is not None or not deadline.passed)
     return replace(solved, seconds=time.perf_counter() - started)
 
 
 def _solve_joint(text: NetworkText, wish: Wish, progress: Progress | None) -> SolvedNetwork:
-    started, deadline = time.perf_counter(), time.monotonic() + wish.time_limit
+    started, deadline = time.perf_counter(), Deadline.after(wish.time_limit)
     if wish.scenario or wish.explain is not None:
         raise DeixisError("--scenario and --explain are for one calculus at a time")
     links: Sequence[Link] = links_between([network.calculus for network in text.networks])
     networks, things = compacted(text.networks)
-    found = solve_jointly(networks, links, wish.time_limit, progress)
+    found = solve_jointly(networks, links, deadline, progress)
     contributions = found.closure.contributions
     narrowed = sum(each.pairs for each in contributions)
     solved = SolvedNetwork(text, found.verdict, found.reason, narrowed, 0.0, contributions=contributions)
     if found.verdict is Verdict.INCONSISTENT:
-        solved = _with_conflict(solved, links, wish.left(deadline))
+        solved = _with_conflict(solved, links, wish.extended(deadline))
     elif wish.closure:
         pairs = zip(text.networks, found.closure.states, strict=True)
         solved = replace(
@@ -138,16 +139,16 @@ def _solve_joint(text: NetworkText, wish: Wish, progress: Progress | None) -> So
     return replace(solved, seconds=time.perf_counter() - started)
 
 
-def _with_conflict(solved: SolvedNetwork, links: Sequence[Link], seconds: float) -> SolvedNetwork:
+def _with_conflict(solved: SolvedNetwork, links: Sequence[Link], deadline: Deadline) -> SolvedNetwork:
     """With the conflict that joint closure finds, else with that of a network which is inconsistent by itself."""
-    deadline, networks = time.monotonic() + seconds, solved.text.networks
-    joint = joint_conflict(networks, links, seconds / 2)
+    networks = solved.text.networks
+    joint = joint_conflict(networks, links, deadline.share(0.5))
     if joint is not None:
         by_name = {network.calculus.name: network for network in networks}
         stated = tuple((by_name[name], c) for name, c in joint.constraints)
         return replace(solved, conflict=stated, minimal=joint.minimal)
     for network in networks:
-        own = minimal_conflict(network, deadline - time.monotonic())
+        own = minimal_conflict(network, deadline)
         if own is not None:
             return replace(solved, conflict=tuple((network, c) for c in own.constraints), minimal=own.minimal)
     return solved

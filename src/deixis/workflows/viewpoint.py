@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.deadline import Deadline
 from deixis.perception.scene import Scene
 from deixis.reasoning.grounding.answer import Grounding
 from deixis.reasoning.grounding.engine import Engine
@@ -48,7 +48,7 @@ class ViewpointScene:
 
 
 def recover_scene(
-    evidence_of: Callable[[Scene], Evidence], scene: Scene, any_angle: bool, time_limit: float
+    evidence_of: Callable[[Scene], Evidence], scene: Scene, any_angle: bool, deadline: Deadline
 ) -> ViewpointScene:
     """Return the scene as seen from the side from which a script most probably speaks, and notes that say which.
 
@@ -56,7 +56,6 @@ def recover_scene(
     Turned by quarters only, unless ``any_angle``; mirrored where that explains it better. Where no fact compares two
     things that were found, or most of the circle does as well, nothing tells a side, and the scene stays as it is.
     """
-    deadline = time.perf_counter() + time_limit
     evidence = evidence_of(scene)
     indifferent = ViewpointScene(scene, notes=(f"{_NO_VIEWPOINT_NOTE}, and it makes no difference",), evidence=evidence)
     if not len(evidence.facts) or len(scene.objects) < 2:
@@ -96,7 +95,7 @@ def ground_from_sides(
     evidence_of: Callable[[Scene], Evidence],
     side: ViewpointScene,
     engine: Engine,
-    time_limit: float,
+    deadline: Deadline,
     notes: tuple[str, ...],
 ) -> Grounding:
     """Ground as seen from the likeliest side, with the probabilities of matches over all sides that are worth a look.
@@ -105,7 +104,7 @@ def ground_from_sides(
     """
     others = tuple(OtherSide(share, evidence_of(scene)) for share, scene in side.others)
     aligning = FromSides(engine, side.share, others) if others else engine
-    return ground_evidence(side.evidence or evidence_of(side.scene), aligning, time_limit, notes)
+    return ground_evidence(side.evidence or evidence_of(side.scene), aligning, deadline, notes)
 
 
 def scene_from(scene: Scene, view: Viewpoint) -> Scene:

@@ -15,6 +15,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from deixis.cli.app import main
+from deixis.deadline import Deadline
 from deixis.experiments.scoreboard.board import Board, groups, relative, right_up_to_interchangeability, run_contestants
 from deixis.experiments.scoreboard.calibration import Forecasts, calibration
 from deixis.experiments.scoreboard.cases import Group, Setting, generated_cases
@@ -44,7 +45,7 @@ def _knowing(name: str) -> Contestant:
     """Knows who is who by the boxes of the things, and is sure of it."""
     truths = {tuple(case.description.nodes): case.truth for case in generated_cases([SETTING], 8, seed=1)}
 
-    def solve(evidence: Evidence, deadline: float) -> ContestantAnswer:
+    def solve(evidence: Evidence, deadline: Deadline) -> ContestantAnswer:
         truth = truths[evidence.description.nodes]
         marginals = np.zeros((len(truth), len(evidence.scene.nodes) + 1))
         marginals[np.arange(len(truth)), truth] = 1.0  # UNMATCHED is the last column

@@ -15,6 +15,7 @@ import pytest
 from commands import deixis
 
 import deixis as deixis_package
+from deixis.deadline import Deadline
 from deixis.examples_data import example
 from deixis.experiments.generated_tables import generate
 from deixis.learning.scene_evidence import evidence_of
@@ -159,9 +160,9 @@ def test_both_searches_together_keep_to_the_time_limit_where_nothing_was_answere
     scene = boxes_file(tmp_path, [[0.0, 0.0]] * 30)
     limits: list[float] = []
 
-    def recorded(evidence: Evidence, engine: ExactEngine, time_limit: float, notes: tuple[str, ...]) -> Grounding:
-        limits.append(time_limit)
-        return ground(evidence, engine, time_limit, notes)
+    def recorded(evidence: Evidence, engine: ExactEngine, deadline: Deadline, notes: tuple[str, ...]) -> Grounding:
+        limits.append(deadline.left)
+        return ground(evidence, engine, deadline, notes)
 
     monkeypatch.setattr("deixis.workflows.ground.ground_evidence", recorded)
     monkeypatch.setattr("sys.stdin", io.StringIO(""))

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Iterable
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from deixis.deadline import Deadline
 from deixis.reasoning.constraints.minimal import Minimal, minimal_by, minimal_subset
 
 CORES = st.lists(st.sets(st.integers(0, 39), min_size=1, max_size=6), min_size=1, max_size=5)
@@ -78,4 +78,4 @@ def test_what_holds_of_nothing_needs_nothing() -> None:
 
 
 def test_when_time_is_up_what_is_left_is_given() -> None:
-    assert minimal_subset(range(20), lambda chosen: chosen, time.monotonic() - 1) == Minimal(tuple(range(20)), False)
+    assert minimal_subset(range(20), lambda chosen: chosen, Deadline.after(-1.0)) == Minimal(tuple(range(20)), False)

@@ -6,6 +6,7 @@ import pytest
 import rdflib
 from ontologies import CUTLERY, core, ntriples, triple, triples
 
+from deixis.deadline import Deadline
 from deixis.reasoning.description_logic.axioms import split_axioms
 from deixis.reasoning.description_logic.justification import Justification, denial, justify
 from deixis.reasoning.description_logic.reasoners import first_inconsistent
@@ -81,7 +82,7 @@ def test_what_does_not_follow_is_told_apart_from_what_is_not_known_in_time() -> 
     with pytest.raises(NotEntailedError, match="consistent"):
         justify(text)
     with pytest.raises(LimitError, match="undecided"):
-        justify(text, triple(":DessertFork rdfs:subClassOf :Cutlery"), time_limit=0.01)
+        justify(text, triple(":DessertFork rdfs:subClassOf :Cutlery"), deadline=Deadline.after(0.01))
 
 
 @pytest.mark.parametrize("statement", [":Fork a owl:Class", ":p owl:inverseOf :q", ":a :p []"])

@@ -13,6 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from ontologies import PREFIXES, core, ntriples, triple, triples
 
+from deixis.deadline import Deadline
 from deixis.reasoning.description_logic.materialisation import Materialisation
 from deixis.reasoning.description_logic.reasoners import classify
 from deixis.reasoning.description_logic.rl_rules import rules
@@ -217,7 +218,7 @@ def test_a_list_that_never_ends_is_no_list() -> None:
 def test_a_time_limit_that_strikes_is_told() -> None:
     links = "".join(f":x{i} :p :x{i + 1} ." for i in range(300))
     with pytest.raises(LimitError, match="undecided: the time was up"):
-        Materialisation(triples(":p a owl:TransitiveProperty . " + links), time_limit=0.0)
+        Materialisation(triples(":p a owl:TransitiveProperty . " + links), deadline=Deadline.after(0.0))
 
 
 # ---- against owlrl

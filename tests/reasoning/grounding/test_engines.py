@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Callable
 
 import numpy as np
@@ -12,6 +11,7 @@ from groundings import R, answer, evidence
 from numpy.typing import NDArray
 
 import deixis.reasoning.grounding.similarity_engine as similarity_engine
+from deixis.deadline import Deadline
 from deixis.errors import UnknownTermError
 from deixis.experiments.place_settings import formal_setting
 from deixis.ontology.graph import RelationGraph
@@ -101,7 +101,7 @@ def test_select_similarity_takes_the_most_similar_subgraph_and_facts_the_one_tha
 def test_the_exact_value_is_never_below_that_of_the_similarity(graph_of: MakeGraph, full_script: list[str]) -> None:
     for seed in range(5):
         question = evidence(graph_of(*full_script), formal_setting(seed, displacement=0.05))
-        exact, similar = (engine_named(engine).align(question, time.perf_counter() + 10) for engine in ENGINES)
+        exact, similar = (engine_named(engine).align(question, Deadline.after(10.0)) for engine in ENGINES)
         assert question.problem.value(exact.assignment) >= question.problem.value(similar.assignment) - 1e-6
 
 
@@ -118,8 +118,8 @@ def test_the_similarity_answers_at_its_deadline_and_says_that_it_was_cut_short(
     monkeypatch.setattr(similarity_engine, "MAX_SUBGRAPHS", most)
     monkeypatch.setattr(similarity_engine, "_SUBGRAPHS_PER_BLOCK", 10)
     question = evidence(graph_of(*full_script, *(absent_glasses if absent else [])), formal_setting())
-    found = engine_named("similarity").align(question, time.perf_counter())
+    found = engine_named("similarity").align(question, Deadline.after(0.0))
     assert np.count_nonzero(found.assignment >= 0) == 12
     assert not found.finished
     assert found.notes[-1] == CUT_SHORT
-    assert engine_named("similarity").align(question, math.inf).finished
+    assert engine_named("similarity").align(question, Deadline.never()).finished

@@ -13,6 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from deixis.deadline import Deadline
 from deixis.experiments.generated_tables import generate
 from deixis.experiments.place_settings import formal_setting
 from deixis.ontology.graph import Fact, RelationGraph
@@ -87,7 +88,7 @@ def test_a_scene_without_boxes_is_taken_literally(graph_of: MakeGraph, boxes_of:
 def test_past_the_deadline_there_is_an_answer_that_is_not_called_proved(seconds: float) -> None:
     evidence = knotty(60)
     started = time.perf_counter()
-    found = ground(evidence, EXACT, time_limit=seconds)
+    found = ground(evidence, EXACT, deadline=Deadline.after(seconds))
     assert time.perf_counter() - started < seconds + 5
     assert not found.proved_best
     assert found.pivotal is None
@@ -97,7 +98,7 @@ def test_past_the_deadline_there_is_an_answer_that_is_not_called_proved(seconds:
 def test_where_no_time_is_left_nothing_is_called_decided(
     relations: Relations, graph_of: MakeGraph, figure_7: list[str]
 ) -> None:
-    found = ground(no_unary_evidence(graph_of(*figure_7), setting(relations)), EXACT, time_limit=0.0)
+    found = ground(no_unary_evidence(graph_of(*figure_7), setting(relations)), EXACT, deadline=Deadline.after(0.0))
     assert not any(match.decided for match in found.matches.values())
 
 
@@ -127,7 +128,7 @@ def knotty(n: int) -> Evidence:
 
 
 def align(evidence: Evidence, engine: str = "exact") -> Alignment:
-    return engine_named(engine).align(evidence, time.perf_counter() + 10)
+    return engine_named(engine).align(evidence, Deadline.after(10.0))
 
 
 @st.composite
@@ -277,7 +278,7 @@ def test_without_time_for_probabilities_none_is_told_and_nothing_is_decided() ->
     seen, words = scene(boxes), ("left", "right", "top")
     facts = [Fact(f"a{i}", (R[words[i % 3]],), f"a{(7 * i + 1) % 60}") for i in range(60) if i != (7 * i + 1) % 60]
     described = RelationGraph.from_facts(R, [f"a{i}" for i in range(60)], facts)
-    found = ground(no_unary_evidence(described, seen), engine_named("scalable"), time_limit=0.0)
+    found = ground(no_unary_evidence(described, seen), engine_named("scalable"), deadline=Deadline.after(0.0))
     assert found.probabilities is Standing.NONE
     assert all(match.probability is None and not match.decided for match in found.matches.values())
     assert any("how probable" in note for note in found.notes)
@@ -295,7 +296,7 @@ def test_many_objects_are_answered_soon_after_a_short_time_limit() -> None:
     table = generate(400, seed=5)
     evidence = no_unary_evidence(table.description(), table.scene())
     started = time.process_time()
-    found = ground(evidence, engine_named("scalable"), time_limit=0.1)
+    found = ground(evidence, engine_named("scalable"), deadline=Deadline.after(0.1))
     assert time.process_time() - started < 2.0
     assert len(found.matches) > 300
     assert found.graph_similarity == 0.0

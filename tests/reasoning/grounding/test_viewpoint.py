@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import time
 from pathlib import Path
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -13,6 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from deixis.deadline import Deadline
 from deixis.errors import GraphError
 from deixis.experiments.place_settings import formal_setting
 from deixis.grammar.parser import parse_script, read_script
@@ -179,10 +179,13 @@ def test_boxes_that_are_none_are_refused() -> None:
 
 def looked_until(monkeypatch: pytest.MonkeyPatch, most: int) -> tuple[Viewpoints, list[Boxes]]:
     """What is recovered from a formal dinner where the deadline passes with so many problems built, and what was."""
-    scene, built, deadline = formal_setting(0, 0.01), list[Boxes](), time.perf_counter() + 1000
-    real = time.perf_counter
-    clock = SimpleNamespace(perf_counter=lambda: real() + (2000 if len(built) >= most else 0))
-    monkeypatch.setattr("deixis.reasoning.grounding.viewpoint.time", clock)
+    scene, built, deadline = formal_setting(0, 0.01), list[Boxes](), Deadline.after(1000.0)
+    real = time.monotonic
+
+    def now() -> float:
+        return real() + (2000 if len(built) >= most else 0)
+
+    monkeypatch.setattr("deixis.deadline.time.monotonic", now)
 
     def noted(seen: Boxes) -> Problem:
         built.append(seen)
@@ -203,7 +206,9 @@ def test_no_problem_is_built_after_the_deadline_and_quarter_turns_come_first(mon
 
 
 def test_the_scene_as_it_stands_is_looked_at_where_there_is_no_time_at_all() -> None:
-    found = recover_viewpoint(formal_setting(0, 0.01).boxes, lambda seen: problem(FORMAL, seen), deadline=0.0)
+    found = recover_viewpoint(
+        formal_setting(0, 0.01).boxes, lambda seen: problem(FORMAL, seen), deadline=Deadline.after(0.0)
+    )
     assert [view.angle for view in found.viewpoints] == [0.0]
     assert not found.exact
 

@@ -10,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from deixis.deadline import Deadline
 from deixis.ontology.allen import ALL_ALLEN, Allen, allen_mask
 from deixis.reasoning.constraints.proof import Rule
 from deixis.reasoning.geometry.allen import allen_relations
@@ -88,9 +89,9 @@ def test_a_conflict_is_a_contradiction_and_needs_all_of_it(
     assert conflict.minimal
     claims = {claim.why: claim for item in items for claim in claims_of(item)}
     core = [claims[stated] for stated in conflict.statements]
-    assert refuted(core, FOREVER) is not None
+    assert refuted(core, Deadline.never()) is not None
     for left_out in core:
-        assert refuted([claim for claim in core if claim is not left_out], FOREVER) is None
+        assert refuted([claim for claim in core if claim is not left_out], Deadline.never()) is None
 
 
 def test_a_conflict_names_each_place_once_and_needs_all_of_it() -> None:

@@ -12,12 +12,12 @@ said tells something too. Both limits are given.
 
 from __future__ import annotations
 
-import time
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.deadline import Deadline
 from deixis.experiments.generated_tables import GeneratedTable, nearest, neighbours
 from deixis.ontology.relation import Reading
 from deixis.ontology.tbox import default_ontology
@@ -58,14 +58,14 @@ def bayes_limit(table: GeneratedTable, seconds: float = 30.0) -> Limit:
         near = neighbours(relation.index, relations)
         said_off[relation.index, near] = 1 / len(near)
     names = box_relations(table.boxes, default_ontology().relations).names
-    maps, complete = _possible(table, names, said_off, time.perf_counter() + seconds)
+    maps, complete = _possible(table, names, said_off, Deadline.after(seconds))
     parts = [maps[start : start + CHUNK] for start in range(0, len(maps), CHUNK)]
     words = np.concatenate([_word_likelihood(table, names, said_off, part) for part in parts])
     pairs = np.concatenate([_pair_likelihood(table, part) for part in parts])
     return Limit(_expected(maps, words), _expected(maps, words + pairs), len(maps), complete)
 
 
-def _possible(table: GeneratedTable, names: Names, said_off: Matrix, deadline: float) -> tuple[Maps, bool]:
+def _possible(table: GeneratedTable, names: Names, said_off: Matrix, deadline: Deadline) -> tuple[Maps, bool]:
     """Return the maps with exactly as many facts off as there are, shape (c, n), and whether these are all."""
     n, off = len(table.truth), int(table.off.sum())
     words, kinds = np.unique(table.words, return_inverse=True)

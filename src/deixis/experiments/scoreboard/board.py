@@ -11,6 +11,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.deadline import Deadline
 from deixis.experiments.scoreboard.calibration import Forecasts
 from deixis.experiments.scoreboard.cases import Case, Group, Setting
 from deixis.experiments.scoreboard.contestants import Contestant, ContestantAnswer
@@ -210,5 +211,5 @@ def _ask(contestant: Contestant, case: Case, seconds: float) -> _TimedAnswer:
     case.scene  # noqa: B018 - what was perceived is there before anybody is asked
     evidence = case.evidence(contestant.meaning, contestant.learned)
     started = time.perf_counter()
-    answer = contestant.solve(evidence, started + seconds)
+    answer = contestant.solve(evidence, Deadline.after(seconds))
     return contestant.name, answer, time.perf_counter() - started

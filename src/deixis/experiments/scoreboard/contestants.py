@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.deadline import Deadline
 from deixis.experiments.scoreboard.cases import Case
 from deixis.reasoning.grounding.engines import engine_named
 from deixis.reasoning.grounding.evidence.evidence import Evidence
@@ -32,11 +32,11 @@ class ContestantAnswer:
 
 @dataclass(frozen=True)
 class Contestant:
-    """A way to ground: ``solve`` gets the evidence and a deadline (``time.perf_counter``)."""
+    """A way to ground: ``solve`` gets the evidence and a deadline."""
 
     name: str
     settings: str
-    solve: Callable[[Evidence, float], ContestantAnswer]
+    solve: Callable[[Evidence, Deadline], ContestantAnswer]
     most: int = 1000  # objects, beyond which it takes too long or too much memory
     meaning: Meaning = SHIPPED
     ablation: bool = False  # the default engine with something taken away
@@ -60,7 +60,7 @@ def engine(
 ) -> Contestant:
     """Return a shipped engine as a contestant, maybe under another name and meaning."""
 
-    def solve(evidence: Evidence, deadline: float) -> ContestantAnswer:
+    def solve(evidence: Evidence, deadline: Deadline) -> ContestantAnswer:
         found = engine_named(name).align(evidence, deadline)
         if found.posterior is None:
             return ContestantAnswer(found.assignment, found.proved_best)
@@ -76,7 +76,7 @@ def peer(
     return Contestant(
         name,
         settings,
-        lambda evidence, deadline: solve(evidence.problem, max(0.0, deadline - time.perf_counter())),
+        lambda evidence, deadline: solve(evidence.problem, deadline.left),
         most,
         lacking=lacking,
     )

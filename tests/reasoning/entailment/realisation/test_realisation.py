@@ -12,6 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from deixis.deadline import Deadline
 from deixis.ontology.graph import Fact, RelationGraph
 from deixis.ontology.sizes import Extent, Outline, SizeRange
 from deixis.ontology.tbox import default_ontology
@@ -252,7 +253,7 @@ def test_fifty_things_of_a_table_that_there_is_are_laid_apart_in_a_few_seconds()
         facts.append(fact(names[a], "|".join(dict.fromkeys([rng.choice(true), rng.choice(words)])), names[b]))
     spoon = ONTOLOGY.sizes.of(ONTOLOGY.kinds.of_word("teaspoon").iri)  # type: ignore[union-attr]
     g = RelationGraph.from_facts(R, names, facts)
-    found = realise(g, [spoon] * 50, time_limit=60)
+    found = realise(g, [spoon] * 50, deadline=Deadline.after(60.0))
     assert isinstance(found, Picture)
     assert (found.finished, found.overlapping) == (True, ())
 
@@ -312,4 +313,4 @@ def test_an_oblong_thing_is_turned_where_that_is_the_only_way() -> None:
 
 
 def test_where_the_time_is_up_before_anything_is_known_nothing_is_claimed() -> None:
-    assert isinstance(realise(graph(fact("a", "left", "b")), [ANY] * 3, time_limit=0.0), Undecided)
+    assert isinstance(realise(graph(fact("a", "left", "b")), [ANY] * 3, deadline=Deadline.after(0.0)), Undecided)

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import time
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from matching_problems import problems
 
+from deixis.deadline import Deadline
 from deixis.experiments.generated_tables import generate
 from deixis.reasoning.grounding.matching import scalable as module
 from deixis.reasoning.grounding.matching.belief_propagation import LEVELS, MIN_LEVELS, propagate
@@ -67,7 +66,7 @@ def test_the_same_seed_gives_the_same_map() -> None:
 @pytest.mark.parametrize(("seconds", "effort"), [(-1.0, 1.0), (1e-7, 1.0), (np.inf, (MIN_LEVELS - 1) / LEVELS)])
 def test_with_too_few_steps_there_is_no_map(seconds: float, effort: float) -> None:
     problem = generate(60, seed=1).crisp()
-    deadline = time.perf_counter() + seconds
+    deadline = Deadline.after(seconds)
     assert propagate(problem.compiled, mean_range(problem.compiled), deadline, effort=effort) is None
 
 

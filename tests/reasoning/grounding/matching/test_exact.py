@@ -10,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from matching_problems import every_map, problems, reordered
 
+from deixis.deadline import Deadline
 from deixis.reasoning.grounding.matching.exact import exact, loose_bound, maps_within, warm
 from deixis.reasoning.grounding.matching.problem import UNMATCHED, MatchingError, Problem
 
@@ -113,7 +114,7 @@ def test_a_list_that_is_cut_off_says_so() -> None:
 def test_a_thousand_identical_objects_are_answered_within_the_time_limit() -> None:
     warm()
     started = time.perf_counter()
-    found = exact(blank(1000, 1000), started + 5.0)
+    found = exact(blank(1000, 1000), Deadline.after(5.0))
     assert time.perf_counter() - started < 10.0
     assert found.value == 0.0
     assert found.proved
@@ -124,13 +125,13 @@ def test_past_the_deadline_the_answer_is_a_map_with_an_honest_bound(seconds: flo
     warm()
     problem = knotty(25, 150)
     started = time.perf_counter()
-    found = exact(problem, started + seconds)
+    found = exact(problem, Deadline.after(seconds))
     assert time.perf_counter() - started < seconds + 3.0
     problem.require_map(found.assignment)
     assert not found.proved
     assert found.gap > 0
     assert found.bound == found.value + found.gap
-    maps = maps_within(problem, 0.0, started + seconds)
+    maps = maps_within(problem, 0.0, Deadline.after(seconds))
     assert not maps.complete and not maps.limited
 
 

@@ -11,6 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from matching_problems import every_map, problems
 
+from deixis.deadline import Deadline
 from deixis.reasoning.grounding.matching import posterior as module
 from deixis.reasoning.grounding.matching.posterior import exchangeable, posterior
 from deixis.reasoning.grounding.matching.problem import UNMATCHED, MatchingError, Problem
@@ -117,7 +118,7 @@ def test_the_deadline_is_kept_and_nothing_is_claimed(seconds: float) -> None:
     problem = large(300)
     posterior(large(4))  # compiled or loaded
     started = time.perf_counter()
-    found = posterior(problem, started + seconds)
+    found = posterior(problem, Deadline.after(seconds))
     assert time.perf_counter() - started < seconds + 2.0
     assert not found.exact
     assert found.error == math.inf
@@ -127,7 +128,7 @@ def test_the_deadline_is_kept_and_nothing_is_claimed(seconds: float) -> None:
 def test_past_the_deadline_the_start_is_all_that_is_said() -> None:
     problem, start = large(40), np.arange(40)[::-1].copy()
     start[3] = UNMATCHED
-    found = posterior(problem, time.perf_counter() - 1.0, start=start)
+    found = posterior(problem, Deadline.after(-1.0), start=start)
     assert (found.exact, found.error) == (False, math.inf)
     assert found.marginals.argmax(axis=1).tolist() == np.where(start == UNMATCHED, 40, start).tolist()
     assert set(np.unique(found.marginals)) == {0.0, 1.0}

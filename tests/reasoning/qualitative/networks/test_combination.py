@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from deixis.deadline import Deadline
 from deixis.reasoning.errors import NetworkError
 from deixis.reasoning.qualitative.calculi.bridges import links_between
 from deixis.reasoning.qualitative.calculi.registry import calculus
@@ -83,5 +84,7 @@ def test_networks_that_do_not_fit_together_are_refused() -> None:
 
 
 def test_time_runs_out_honestly() -> None:
-    solution = solve_jointly([BOXES, network("rcc8", 3, (0, 1, "DC"))], links_between([RA, RCC8]), time_limit=-1.0)
+    solution = solve_jointly(
+        [BOXES, network("rcc8", 3, (0, 1, "DC"))], links_between([RA, RCC8]), deadline=Deadline.after(-1.0)
+    )
     assert solution.verdict is Verdict.UNDECIDED

@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from deixis.deadline import Deadline
 from deixis.reasoning.qualitative.calculi.registry import calculus
 from deixis.reasoning.qualitative.networks.conflict import Conflict, minimal_conflict, without_leaves
 from deixis.reasoning.qualitative.networks.network import Constraint, Network
@@ -69,7 +70,7 @@ def test_conflicts_around_one_that_closure_misses_are_minimal_by_search(more: li
 
 
 def test_a_conflict_that_is_known_to_be_there_is_named_however_little_time_there_is() -> None:
-    conflict = minimal_conflict(Network(ALLEN, 4, STATED), time_limit=0.0, inconsistent=True)
+    conflict = minimal_conflict(Network(ALLEN, 4, STATED), deadline=Deadline.after(0.0), inconsistent=True)
     assert conflict == Conflict(STATED, False)
 
 
@@ -103,7 +104,7 @@ def test_a_constraint_can_contradict_itself() -> None:
 
 def test_when_time_runs_out_it_does_not_claim_to_be_minimal() -> None:
     circle = tuple(Constraint(i, (i + 1) % 3, 1) for i in range(3))
-    conflict = minimal_conflict(Network(POINT, 3, circle), time_limit=-1.0)
+    conflict = minimal_conflict(Network(POINT, 3, circle), deadline=Deadline.after(-1.0))
     assert conflict is None or not conflict.minimal
 
 

@@ -11,6 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from deixis.deadline import Deadline
 from deixis.reasoning.qualitative.calculi.calculus import Calculus, ProductCalculus, atoms_of, bits
 from deixis.reasoning.qualitative.calculi.registry import calculus
 from deixis.reasoning.qualitative.networks.choices import FewestPiecesFirst
@@ -169,10 +170,10 @@ def test_a_large_network_keeps_to_its_time_limit(scenario: bool) -> None:
     stated = tuple(Constraint(i, j, int(rng.integers(1, ALLEN.universal)) | 0x111) for i, j in pairs)
     solve(FIGURE_5)  # compiles
     started = time.perf_counter()
-    solve(Network(ALLEN, 1500, stated), time_limit=1.0, scenario=scenario)
+    solve(Network(ALLEN, 1500, stated), deadline=Deadline.after(1.0), scenario=scenario)
     assert time.perf_counter() - started < 3.0
 
 
 def test_a_time_limit_of_nothing_leaves_it_undecided() -> None:
-    solution = solve(FIGURE_5, time_limit=0.0)
+    solution = solve(FIGURE_5, deadline=Deadline.after(0.0))
     assert solution.verdict is Verdict.UNDECIDED and "time" in solution.reason
