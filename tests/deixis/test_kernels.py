@@ -27,6 +27,7 @@ from deixis.workflows.imagine import imagine, ready_to_imagine
 from deixis.workflows.infer import inference_of, ready_to_infer
 from deixis.reasoning.qualitative.calculi.registry import calculus
 from deixis.workflows.solve import Wish, ready_to_solve, solve_text
+from deixis.workflows.ground import ground as ask_ground
 from deixis.workflows.ground import ready_to_ground
 
 CHOICES = parse_script("a left of or above b; b left or right of c; c above or below d; e is not left of a")
@@ -45,7 +46,9 @@ for engine in ("similarity", "scalable", "exact"):
     assert answer.matches
     later[engine] = sorted(kernels() - before)
     of_ground = sorted({name for _, name, _ in before})
+truth = {thing.label: thing.id for thing in load_scene(sys.argv[4]).objects}
 commands = {
+    "ask": (lambda: None, lambda: ask_ground(script, scene, ask=truth, sizes=False)),
     "infer": (ready_to_infer, lambda: inference_of(CHOICES)),
     "solve": (ready_to_solve, lambda: solve_text(read_networks(sys.argv[3], [calculus("ra")])[0], Wish(scenario=True))),
     "imagine": (ready_to_imagine, lambda: imagine(script)),
@@ -60,11 +63,12 @@ print(json.dumps([later, of_ground]))
 
 
 def test_no_kernel_is_compiled_or_loaded_once_the_clock_runs() -> None:
-    files = [str(example(name)) for name in ("script1.layout", "place_setting.scene.json", "place_setting.csp")]
+    names = ("script1.layout", "place_setting.scene.json", "place_setting.csp", "place_setting.labelled.scene.json")
+    files = [str(example(name)) for name in names]
     run = [sys.executable, "-c", LOADED_LATER, *files]
     paths = [str(SOURCE), *filter(None, [os.environ.get("PYTHONPATH")])]
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(paths)}
     done = subprocess.run(run, env=environment, capture_output=True, encoding="utf-8", timeout=300, check=True)
     later, ready = json.loads(done.stdout)
-    assert later == {name: [] for name in ("similarity", "scalable", "exact", "infer", "solve", "imagine")}
+    assert later == {name: [] for name in ("similarity", "scalable", "exact", "ask", "infer", "solve", "imagine")}
     assert {"search", "sample", "_search"} <= set(ready)  # the proof, the chains, and the sum

@@ -117,7 +117,10 @@ class Compiled(NamedTuple):
 
 
 def compile_problem(problem: Problem) -> Compiled:
-    """The problem as compiled loops read it."""
+    """Return the problem as compiled loops read it.
+
+    All arrays are in C order, whatever the order of the problem's: loops are compiled anew for another one.
+    """
     k, n2, _ = problem.tables.shape
     m, n1 = len(problem.ends), len(problem.absent)
     tables = np.zeros((2 * k, n2 + 1, n2 + 1), dtype=np.float32)
@@ -130,8 +133,8 @@ def compile_problem(problem: Problem) -> Compiled:
     position[order] = np.arange(2 * m)
     return Compiled(
         tables=tables,
-        unary=np.concatenate([problem.unary, problem.absent[:, None]], axis=1).astype(np.float64),
-        allowed=np.concatenate([problem.allowed, np.ones((n1, 1), dtype=bool)], axis=1),
+        unary=np.ascontiguousarray(np.concatenate([problem.unary, problem.absent[:, None]], axis=1), dtype=np.float64),
+        allowed=np.ascontiguousarray(np.concatenate([problem.allowed, np.ones((n1, 1), dtype=bool)], axis=1)),
         first=np.concatenate([[0], np.cumsum(np.bincount(owner, minlength=n1))]).astype(np.int64),
         other=problem.ends[:, ::-1].T.ravel()[order].astype(np.int64),
         kind=np.concatenate([problem.kinds, problem.kinds + k])[order].astype(np.int64),
