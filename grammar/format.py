@@ -13,7 +13,7 @@ from deixis.grammar.script import (
     Include,
     Mention,
     Modifiers,
-    Placement,
+    RelationStatement,
     Script,
     Statement,
 )
@@ -113,7 +113,7 @@ class StatementWriter:
                 inverse = self._ontology.relations[relation.inverse]
                 head = f"{relation.word} to {inverse.word}".replace("_", " ")
                 return f"{_front(modifiers)}{head}: {self._list(objects)}"
-            case Placement(subjects, relations, objects, modifiers):
+            case RelationStatement(subjects, relations, objects, modifiers):
                 denied = "" if modifiers.positive else "not "
                 phrases = " or ".join(relation.phrase for relation in relations)
                 said = f"{denied}{phrases}"
@@ -191,7 +191,7 @@ def _statements(layout: LayoutConcept, ontology: Ontology, lines: _Lines) -> Ite
         hedge = None if fact.weight >= 1 else _hedge(fact.weight, ontology)
         modifiers = Modifiers(fact.positive, fact.optional, hedge, fact.weight)
         ends = [(_mention(name, source),) for name in (fact.subject, fact.object)]
-        yield Placement(ends[0], fact.relations, ends[1], modifiers, source)
+        yield RelationStatement(ends[0], fact.relations, ends[1], modifiers, source)
         gap = False
 
 

@@ -76,7 +76,7 @@ class Declaration:
 
 
 @dataclass(frozen=True, slots=True)
-class Placement:
+class RelationStatement:
     """Every subject stands in one of the relations to every object: ``fork left of plate``, ``left(fork, plate)``."""
 
     subjects: tuple[Mention, ...]
@@ -107,14 +107,14 @@ class Chain:
             yield _fact(subject, relations, thing, self)
 
 
-Statement = Header | Include | Declaration | Placement | Chain
+Statement = Header | Include | Declaration | RelationStatement | Chain
 
 
 def _names(mentions: tuple[Mention, ...]) -> Iterator[str]:
     return chain.from_iterable(mention.names for mention in mentions)
 
 
-def _fact(subject: str, relations: tuple[Relation, ...], thing: str, statement: Placement | Chain) -> Fact:
+def _fact(subject: str, relations: tuple[Relation, ...], thing: str, statement: RelationStatement | Chain) -> Fact:
     how = statement.modifiers
     return Fact(subject, relations, thing, how.positive, how.optional, how.weight, statement.source)
 
@@ -155,7 +155,7 @@ class Script:
     @cached_property
     def facts(self) -> tuple[Fact, ...]:
         """All stated facts in order, each with its source."""
-        stating = (s for s in self.all_statements() if isinstance(s, Placement | Chain))
+        stating = (s for s in self.all_statements() if isinstance(s, RelationStatement | Chain))
         return tuple(chain.from_iterable(statement.facts() for statement in stating))
 
     @cached_property
@@ -217,7 +217,7 @@ def _mentions(statement: Statement) -> tuple[Mention, ...]:
     match statement:
         case Declaration(subjects=subjects):
             return subjects
-        case Placement(subjects=subjects, objects=objects):
+        case RelationStatement(subjects=subjects, objects=objects):
             return subjects + objects
         case Chain(objects=objects):
             return objects

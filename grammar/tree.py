@@ -7,7 +7,7 @@ from lark import Token, Transformer, v_args
 from deixis.grammar.draft import place
 from deixis.grammar.errors import Refusal, shortened
 from deixis.grammar.names import unquote
-from deixis.grammar.script import Chain, Declaration, Header, Include, Mention, Modifiers, Placement, Statement
+from deixis.grammar.script import Chain, Declaration, Header, Include, Mention, Modifiers, RelationStatement, Statement
 from deixis.grammar.words import NUMBERS, VERBS_OR_NOUNS
 from deixis.ontology.graph import Source
 from deixis.ontology.relation import Relation, plain_phrase
@@ -77,7 +77,7 @@ class TreeBuilder(Transformer[Token, Statement]):
         link: tuple[Modifiers, Token | None] | None,
         relations: tuple[Relation, ...],
         objects: tuple[Mention, ...],
-    ) -> Placement:
+    ) -> RelationStatement:
         here = place.get()
         how, noun = link or (None, None)
         if noun is not None and _size(subjects) == 1:
@@ -102,9 +102,9 @@ class TreeBuilder(Transformer[Token, Statement]):
                 raise _twice("OPTIONAL", "optional", where)
             hedge, weight = (modifiers.hedge, modifiers.weight) if modifiers.hedge else (how.hedge, how.weight)
             merged = Modifiers(modifiers.positive and how.positive, modifiers.optional or how.optional, hedge, weight)
-        return Placement(subjects, relations, objects, merged, here.statement)
+        return RelationStatement(subjects, relations, objects, merged, here.statement)
 
-    def pairs(self, modifiers: Modifiers | None, first: Pair, *others: Pair) -> Placement:
+    def pairs(self, modifiers: Modifiers | None, first: Pair, *others: Pair) -> RelationStatement:
         relations, subject, thing = first
         how = modifiers or Modifiers()
         for more, other_subject, other_thing in others:

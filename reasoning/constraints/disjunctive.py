@@ -77,7 +77,7 @@ class OutOfTimeError(LimitError, TimeoutError):
     """The time limit struck before a search was done; nothing was decided."""
 
 
-class Outcome(Enum):
+class SearchOutcome(Enum):
     """How a search ended."""
 
     SOLVED = "solved"  # the network holds a solution
@@ -109,17 +109,17 @@ class Search:
     def __init__(self, network: DifferenceNetwork, clauses: Clauses, deadline: Deadline, keep: bool = False) -> None:
         self.network, self.clauses, self.deadline = network, clauses, deadline
         self.base, self._keep, self._kept = len(network), keep, 0
-        self.outcome = Outcome.TIMED_OUT
+        self.outcome = SearchOutcome.TIMED_OUT
         self.levels: list[Level] = []
         self.taken = np.full(len(clauses), -1, np.int64)  # the piece of each decided clause
         self.core: frozenset[int] = frozenset()
         self._solved = False
 
-    def propagate(self) -> Outcome:
+    def propagate(self) -> SearchOutcome:
         """Take the pieces that are the only ones left, until a choice is; SOLVED says that nothing contradicts them."""
         return self._run(only_forced=True)
 
-    def advance(self) -> Outcome:
+    def advance(self) -> SearchOutcome:
         """Go to the first solution, or from one to the next; earlier pieces of a clause are preferred."""
         if self._solved:
             self._solved = False
@@ -129,10 +129,10 @@ class Search:
                 self.levels[-1].reasons |= {level.clause for level in self.levels[:-1]}
                 self._release(self.levels[-1])
             if not self.levels or not self._decide():
-                self.outcome = Outcome.REFUTED
+                self.outcome = SearchOutcome.REFUTED
                 return self.outcome
         self.outcome = self._run(only_forced=False)
-        self._solved = self.outcome is Outcome.SOLVED
+        self._solved = self.outcome is SearchOutcome.SOLVED
         return self.outcome
 
     def open(self) -> list[int]:
@@ -143,16 +143,16 @@ class Search:
             taken[clause] = 0
         return sorted(found)
 
-    def _run(self, only_forced: bool) -> Outcome:
+    def _run(self, only_forced: bool) -> SearchOutcome:
         while True:
             if self.deadline.passed:
-                return Outcome.TIMED_OUT
+                return SearchOutcome.TIMED_OUT
             clause, left = self.clauses.next(self.network, self.taken)
             if clause < 0 or (only_forced and left > 1):
-                return Outcome.SOLVED
+                return SearchOutcome.SOLVED
             self.levels.append(self._level(clause, left))
             if not self._decide():
-                return Outcome.REFUTED
+                return SearchOutcome.REFUTED
             if self._keep and self._kept == len(self.levels) - 1 and len(self.clauses[clause].pieces) == 1:
                 self._kept += 1
                 self.network.keep()
@@ -242,6 +242,6 @@ def solution(
     search.advance()
     distances = network.distances.copy()
     network.back(search.base)
-    if search.outcome is Outcome.TIMED_OUT:
+    if search.outcome is SearchOutcome.TIMED_OUT:
         raise OutOfTimeError("the time limit struck before every choice in the facts was weighed")
-    return distances if search.outcome is Outcome.SOLVED else None
+    return distances if search.outcome is SearchOutcome.SOLVED else None

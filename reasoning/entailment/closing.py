@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from deixis.deadline import Deadline
 from deixis.reasoning.constraints.difference import ORDERS, STRICT, ZERO, Difference, DifferenceNetwork
-from deixis.reasoning.constraints.disjunctive import Clauses, Outcome, OutOfTimeError, Search, solution
+from deixis.reasoning.constraints.disjunctive import Clauses, OutOfTimeError, Search, SearchOutcome, solution
 from deixis.reasoning.entailment.bounds import AXES, bounds_of, order_differences
 from deixis.reasoning.entailment.closed import AxisRows, Groups, Orders, groups_of, order_graph, orders_of
 from deixis.reasoning.entailment.demands import Choice, Demands
@@ -102,7 +102,7 @@ class LocalProblem:
         common = None if known is None else solution(known, self.clauses, last, deadline)
         if known is None or common is None:
             return None, True
-        if Search(known, self.clauses, deadline).propagate() is not Outcome.SOLVED:
+        if Search(known, self.clauses, deadline).propagate() is not SearchOutcome.SOLVED:
             return known.distances, False
         try:
             while (shared := _candidate(known.distances, common)) is not None:

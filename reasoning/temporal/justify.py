@@ -10,7 +10,7 @@ import numpy as np
 
 from deixis.deadline import Deadline
 from deixis.ontology.allen import ALL_ALLEN, Allen, members
-from deixis.reasoning.constraints.disjunctive import Outcome
+from deixis.reasoning.constraints.disjunctive import SearchOutcome
 from deixis.reasoning.constraints.proof import Proof, Rule
 from deixis.reasoning.geometry.allen import convex_hull
 from deixis.reasoning.temporal.bounds import bound_text
@@ -133,7 +133,7 @@ def justify(
     the cases agree on more than the network alone says, they are the explanation. The network is changed.
     """
     forced = ScenarioSearch(network, disjunctions, deadline, explain=True)
-    if forced.propagate() is Outcome.REFUTED:
+    if forced.propagate() is SearchOutcome.REFUTED:
         return None
     open = forced.still_open()
     answers: list[int] = []

@@ -12,7 +12,7 @@ from collections.abc import Callable, Sequence
 
 from deixis.deadline import Deadline
 from deixis.reasoning.constraints.difference import Difference
-from deixis.reasoning.constraints.disjunctive import Clause, Clauses, Level, Outcome, Search
+from deixis.reasoning.constraints.disjunctive import Clause, Clauses, Level, Search, SearchOutcome
 from deixis.reasoning.constraints.minimal import minimal_subset
 from deixis.reasoning.constraints.proof import Proof, Rule
 from deixis.reasoning.temporal.claims import Claim, Disjunction, allen_constraints, disjunctions, network_of
@@ -51,11 +51,11 @@ class ScenarioSearch(Search):
         Returns how many there were, and whether these are all. The network is as before in the end.
         """
         found = 0
-        while self.advance() is Outcome.SOLVED and found < most:
+        while self.advance() is SearchOutcome.SOLVED and found < most:
             look()
             found += 1
         self._temporal.back(self.base)
-        return found, self.outcome is Outcome.REFUTED
+        return found, self.outcome is SearchOutcome.REFUTED
 
     def _level(self, clause: int, left: int) -> Level:
         level = super()._level(clause, left)
@@ -116,7 +116,7 @@ def refuted(claims: Sequence[Claim], deadline: Deadline) -> Proof[str] | None:
         if not network.try_add(claim.constraints):
             return network.refutation(claim.constraints)
     search = ScenarioSearch(network, list(disjunctions(claims)), deadline, explain=True)
-    return search.proof if search.advance() is Outcome.REFUTED else None
+    return search.proof if search.advance() is SearchOutcome.REFUTED else None
 
 
 def minimal_conflict(claims: Sequence[Claim], proof: Proof[str], deadline: Deadline) -> TemporalConflictError:

@@ -11,7 +11,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from deixis.deadline import Deadline
-from deixis.reasoning.constraints.disjunctive import Outcome
+from deixis.reasoning.constraints.disjunctive import SearchOutcome
 from deixis.reasoning.constraints.proof import Proof, Rule
 from deixis.reasoning.temporal.chronology import Chronology, Status
 from deixis.reasoning.temporal.claims import Claim, Disjunction, add_fluent, claims_of, disjunctions, ends, network_of
@@ -124,7 +124,7 @@ class Timeline:
         claims = self._all_claims()
         network = self._network.copy()
         forced = ScenarioSearch(network, list(disjunctions(claims)), deadline)
-        if forced.propagate() is Outcome.REFUTED:
+        if forced.propagate() is SearchOutcome.REFUTED:
             raise self._conflict(claims, time_limit)
         open = forced.still_open()
         views = _Views(self.fluents, network)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from deixis.deadline import Deadline
 from deixis.reasoning.constraints.difference import DifferenceNetwork
-from deixis.reasoning.constraints.disjunctive import Clause, Outcome, solve
+from deixis.reasoning.constraints.disjunctive import Clause, SearchOutcome, solve
 from deixis.reasoning.constraints.minimal import Minimal, minimal_subset
 from deixis.reasoning.entailment.realisation.demands import Demand
 
@@ -38,9 +38,9 @@ def satisfy(
     clauses = [*base, *(clause for demand in demands for clause in demand.clauses)]
     owners = [-1] * len(base) + [position for position, demand in enumerate(demands) for _ in demand.clauses]
     found = solve(points, 2, clauses, deadline)
-    if found.outcome is Outcome.REFUTED:
+    if found.outcome is SearchOutcome.REFUTED:
         return tuple(demands[p] for p in sorted({owners[clause] for clause in found.core} - {-1}))
-    return found.network if found.outcome is Outcome.SOLVED else None
+    return found.network if found.outcome is SearchOutcome.SOLVED else None
 
 
 def minimised(points: int, base: Sequence[Clause], demands: Sequence[Demand], deadline: Deadline) -> Minimal[Demand]:

@@ -23,7 +23,7 @@ Core = tuple[Constraint, ...]
 
 
 @dataclass(frozen=True)
-class Conflict:
+class NetworkConflict:
     """Constraints that cannot all hold.
 
     ``minimal`` says that after leaving out any one of them no contradiction is left; it is False where time ran out
@@ -36,7 +36,7 @@ class Conflict:
 
 def minimal_conflict(
     network: Network, deadline: Deadline = Deadline.never(), inconsistent: bool = False
-) -> Conflict | None:
+) -> NetworkConflict | None:
     """A deletion-minimal set of inconsistent constraints; None where none was found in time.
 
     ``inconsistent`` says that the whole is known to be so: there is a conflict then, however little time there is.
@@ -61,16 +61,16 @@ def minimal_conflict(
         found = minimal_subset(core, by_closure, deadline, keep_last=True)
         core = found.items
         if closure_decides(network.only(core)):
-            return Conflict(core, found.proved)
+            return NetworkConflict(core, found.proved)
     else:
         core = network.constraints if inconsistent else by_search(network.constraints)
     if core is None:
         return None
     try:
         found = minimal_subset(core, by_search, deadline, keep_last=True)
-        return Conflict(found.items, found.proved)
+        return NetworkConflict(found.items, found.proved)
     except LimitError:  # too long a search
-        return Conflict(core, False)
+        return NetworkConflict(core, False)
 
 
 def closure_decides(network: Network) -> bool:

@@ -69,7 +69,7 @@ class Box(NamedTuple):
         return common
 
 
-class Place(NamedTuple):
+class NamePlace(NamedTuple):
     """Where a name may stand, at what rotation and cost, and whether that is on its thing."""
 
     box: Box
@@ -140,7 +140,7 @@ def _measured(figure: Figure, text: str) -> tuple[float, float]:
     return extent.width + 5, extent.height + 4
 
 
-def _places(outline: Box, width: float, height: float, most: float) -> Iterator[Place]:
+def _places(outline: Box, width: float, height: float, most: float) -> Iterator[NamePlace]:
     """Yield places for a name: on its thing, at several heights, level or upright; then around it, ever farther."""
 
     def around(x: float, y: float, width: float, height: float) -> Box:
@@ -152,7 +152,7 @@ def _places(outline: Box, width: float, height: float, most: float) -> Iterator[
         if room_x >= -3 and room_y >= -3:
             for share in (0.5, 0.85, 0.15, 0.97, 0.03):
                 y = outline.low + h / 2 + share * max(room_y, 0)
-                yield Place(around(centre_x, y, w, h), rotation, 20.0 * rotation / 90 + abs(share - 0.5), True)
+                yield NamePlace(around(centre_x, y, w, h), rotation, 20.0 * rotation / 90 + abs(share - 0.5), True)
     for ring in range(RINGS):
         cost = 60.0 + 25.0 * ring
         if cost >= most:
@@ -161,17 +161,17 @@ def _places(outline: Box, width: float, height: float, most: float) -> Iterator[
         for dx, dy in ((0, 1), (0, -1), (1, 0), (-1, 0), (1, 1), (-1, 1), (1, -1), (-1, -1)):
             x = centre_x + dx * ((outline.right - outline.left + width) / 2 + away)
             y = centre_y + dy * ((outline.high - outline.low + height) / 2 + away)
-            yield Place(around(x, y, width, height), 0, cost + 10.0 * abs(dx * dy), False)
+            yield NamePlace(around(x, y, width, height), 0, cost + 10.0 * abs(dx * dy), False)
 
 
 def _cheapest(
-    places: Sequence[Place],
+    places: Sequence[NamePlace],
     outline: Box,
     others: NDArray[np.float64],
     names: NDArray[np.float64],
     points: NDArray[np.float64],
     most: float,
-) -> Place | None:
+) -> NamePlace | None:
     """Return the cheapest place that covers no name; what it covers of other things and points costs too.
 
     ``outline`` is that of the thing itself; other things, names and points are boxes in pixels of shape (n, 4).
@@ -191,7 +191,7 @@ def _cheapest(
     return best
 
 
-def _write(axes: Axes, name: str, place: Place, outline: Box, quiet: bool) -> None:
+def _write(axes: Axes, name: str, place: NamePlace, outline: Box, quiet: bool) -> None:
     from matplotlib import patheffects
 
     box, inverse = place.box, axes.transData.inverted()

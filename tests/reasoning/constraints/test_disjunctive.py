@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from deixis.deadline import Deadline
 from deixis.reasoning.constraints.difference import Difference, DifferenceNetwork
-from deixis.reasoning.constraints.disjunctive import Clause, Clauses, Outcome, Search, solution, solve
+from deixis.reasoning.constraints.disjunctive import Clause, Clauses, Search, SearchOutcome, solution, solve
 
 
 def in_time() -> Deadline:
@@ -43,12 +43,12 @@ def satisfiable(clauses: list[Clause]) -> bool:
 def test_a_choice_is_found_just_where_there_is_one(clauses: list[Clause]) -> None:
     found = solve(POINTS, AXES, clauses, in_time())
     if satisfiable(clauses):
-        assert found.outcome is Outcome.SOLVED
+        assert found.outcome is SearchOutcome.SOLVED
         assert all(holds(clause, found.network) for clause in clauses)
         for clause, number in zip(clauses, found.taken.tolist(), strict=True):
             assert number < 0 or holds(Clause((clause.pieces[number],)), found.network)
     else:
-        assert found.outcome is Outcome.REFUTED
+        assert found.outcome is SearchOutcome.REFUTED
         assert not satisfiable([clauses[position] for position in found.core])
 
 
@@ -63,10 +63,10 @@ def test_every_solution_is_visited_and_the_network_given_back(base: list[Differe
     stated = [difference for difference in base if network.add(difference)]
     before = network.distances.copy()
     search, visited = Search(network, Clauses(clauses), in_time()), list[NDArray[np.int64]]()
-    while search.advance() is Outcome.SOLVED:
+    while search.advance() is SearchOutcome.SOLVED:
         assert all(holds(clause, network) for clause in clauses)
         visited.append(network.distances.copy())
-    assert search.outcome is Outcome.REFUTED
+    assert search.outcome is SearchOutcome.REFUTED
     network.back(search.base)
     assert (network.distances == before).all()
     choices = product(*(clause.pieces for clause in clauses))
@@ -89,11 +89,11 @@ def test_what_is_forced_holds_in_every_solution(clauses: list[Clause]) -> None:
     network = DifferenceNetwork(POINTS, AXES)
     search = Search(network, Clauses(clauses), in_time())
     outcome, forced, left = search.propagate(), network.distances.copy(), search.open()
-    assert outcome is Outcome.REFUTED or all(not holds(clauses[position], network) for position in left)
+    assert outcome is SearchOutcome.REFUTED or all(not holds(clauses[position], network) for position in left)
     other = DifferenceNetwork(POINTS, AXES)
     going = Search(other, Clauses(clauses), in_time())
-    while going.advance() is Outcome.SOLVED:
-        assert outcome is Outcome.SOLVED
+    while going.advance() is SearchOutcome.SOLVED:
+        assert outcome is SearchOutcome.SOLVED
         assert (other.distances <= forced).all()
 
 
@@ -101,7 +101,7 @@ def test_the_first_piece_is_preferred() -> None:
     left, right = (at_most(0, 1, -1),), (at_most(1, 0, -1),)
     for pieces in ((left, right), (right, left)):
         found = solve(2, 1, [Clause(pieces)], in_time())
-        assert (found.outcome, found.taken.tolist()) == (Outcome.SOLVED, [0])
+        assert (found.outcome, found.taken.tolist()) == (SearchOutcome.SOLVED, [0])
 
 
 @pytest.mark.parametrize("size", [4, 5])
@@ -109,9 +109,9 @@ def test_a_proof_by_exhaustion_of_more_things_than_places(size: int) -> None:
     """So many points in a row, a step apart in any order, do not fit where there is a step too little."""
     apart = [Clause(((at_most(i, j, -1),), (at_most(j, i, -1),))) for i in range(size) for j in range(i)]
     room = [Clause(((at_most(i, j, size - 2),),)) for i in range(size) for j in range(size) if i != j]
-    assert solve(size, 1, apart + room, in_time()).outcome is Outcome.REFUTED
+    assert solve(size, 1, apart + room, in_time()).outcome is SearchOutcome.REFUTED
     enough = [Clause(((at_most(i, j, size - 1),),)) for i in range(size) for j in range(size) if i != j]
-    assert solve(size, 1, apart + enough, in_time()).outcome is Outcome.SOLVED
+    assert solve(size, 1, apart + enough, in_time()).outcome is SearchOutcome.SOLVED
 
 
 def test_a_search_ends_when_its_time_is_up() -> None:
@@ -119,5 +119,5 @@ def test_a_search_ends_when_its_time_is_up() -> None:
     apart = [Clause(((at_most(i, j, -1),), (at_most(j, i, -1),))) for i in range(size) for j in range(i)]
     room = [Clause(((at_most(i, j, size - 2),),)) for i in range(size) for j in range(size) if i != j]
     started = time.perf_counter()
-    assert solve(size, 1, apart + room, Deadline.after(0.3)).outcome is Outcome.TIMED_OUT
+    assert solve(size, 1, apart + room, Deadline.after(0.3)).outcome is SearchOutcome.TIMED_OUT
     assert time.perf_counter() - started < 2

@@ -11,14 +11,14 @@ from hypothesis import strategies as st
 
 from deixis.deadline import Deadline
 from deixis.reasoning.qualitative.calculi.registry import calculus
-from deixis.reasoning.qualitative.networks.conflict import Conflict, minimal_conflict, without_leaves
+from deixis.reasoning.qualitative.networks.conflict import NetworkConflict, minimal_conflict, without_leaves
 from deixis.reasoning.qualitative.networks.network import Constraint, Network
 from deixis.reasoning.qualitative.networks.search import Verdict, solve
 
 ALLEN, POINT = calculus("allen"), calculus("point")
 
 
-def assert_minimal(network: Network, conflict: Conflict | None) -> None:
+def assert_minimal(network: Network, conflict: NetworkConflict | None) -> None:
     assert conflict is not None and conflict.minimal
     assert set(conflict.constraints) <= set(network.constraints)
     assert solve(network.only(conflict.constraints)).verdict is Verdict.INCONSISTENT
@@ -58,7 +58,7 @@ def test_what_closure_refutes_is_thinned_out_by_search() -> None:
     network = Network(ALLEN, 4, (*STATED, Constraint(0, 1, ALLEN.relation(["o", "di"]))))
     assert solve(network).refuted
     conflict = minimal_conflict(network)
-    assert conflict == Conflict(STATED, True)
+    assert conflict == NetworkConflict(STATED, True)
     assert_minimal(network, conflict)
 
 
@@ -71,7 +71,7 @@ def test_conflicts_around_one_that_closure_misses_are_minimal_by_search(more: li
 
 def test_a_conflict_that_is_known_to_be_there_is_named_however_little_time_there_is() -> None:
     conflict = minimal_conflict(Network(ALLEN, 4, STATED), deadline=Deadline.after(0.0), inconsistent=True)
-    assert conflict == Conflict(STATED, False)
+    assert conflict == NetworkConflict(STATED, False)
 
 
 def test_the_ten_names_are_thinned_out_in_the_calculus_that_decides_them() -> None:
@@ -99,7 +99,7 @@ def test_a_constraint_can_contradict_itself() -> None:
     empty, self_related = Constraint(0, 1, 0), Constraint(1, 1, POINT.relation(["<"]))
     for wrong in (empty, self_related):
         conflict = minimal_conflict(Network(POINT, 3, (Constraint(1, 2, 1), wrong)))
-        assert conflict == Conflict((wrong,), True)
+        assert conflict == NetworkConflict((wrong,), True)
 
 
 def test_when_time_runs_out_it_does_not_claim_to_be_minimal() -> None:
