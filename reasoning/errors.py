@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from numbers import Real
+
 from deixis.errors import DeixisError
 
 
@@ -19,7 +21,7 @@ class SettingError(DeixisError, ValueError):
 
 def require_time_limit(seconds: float) -> None:
     """Raises SettingError for what is no time limit, not a number among them."""
-    if not seconds >= 0:
+    if not isinstance(seconds, Real) or not seconds >= 0:
         raise SettingError(f"a time limit is 0 or more seconds, not {seconds}")
 
 

@@ -68,7 +68,7 @@ class Answers:
         text = self.answers(question, situation)
         if text is None:
             return None
-        found = parse_answer(text, _allowed(question, situation))
+        found = parse_answer(text, _allowed(question, situation)) if isinstance(text, str) else None
         if found is None:
             raise OracleError(f"the answer to '{question.text}' must be one of its answers, got '{text}'")
         return found

@@ -11,6 +11,7 @@ from collections.abc import Callable, Mapping
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, replace
 from functools import cache, cached_property
+from numbers import Integral
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -101,8 +102,20 @@ class GroundingRequest:
                 raise SettingError(f"{what} is one of {', '.join(choices)}, not '{value}'")
         if self.ask is not None and self.engine != EngineName.EXACT:
             raise SettingError(f"only the engine 'exact' asks, not '{self.engine}': leave out --engine (engine=)")
-        if self.max_questions is not None and self.max_questions < 1:
-            raise SettingError(f"`max_questions` must be at least 1, got {self.max_questions}")
+        if self.ask is not None:
+            from deixis.workflows.dialogue import Dialogue
+
+            if not (isinstance(self.ask, Dialogue | Mapping) or callable(self.ask)):
+                raise SettingError(f"`ask` must be a mapping, a function or a Dialogue, got {self.ask!r:.60}")
+        if self.max_questions is not None:
+            if not isinstance(self.max_questions, Integral):
+                raise SettingError(f"`max_questions` must be a whole number, got {self.max_questions!r:.60}")
+            if self.max_questions < 1:
+                raise SettingError(f"`max_questions` must be at least 1, got {self.max_questions}")
+            if self.ask is None:
+                raise SettingError("nobody is asked `max_questions`: add --ask or --oracle (ask=), or leave it out")
+        if not isinstance(self.meaning, Meaning):
+            raise SettingError(f"`meaning` must be a Meaning, as of Session.meaning(), got {self.meaning!r:.60}")
 
     @cached_property
     def graph(self) -> RelationGraph:
