@@ -19,6 +19,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, fields
+from numbers import Integral, Real
 
 from deixis.perception.errors import CloudError
 
@@ -487,15 +488,19 @@ class DetectionSettings:
     def __post_init__(self) -> None:
         for name in ("height", "reach", "least_length", "concavity", "step"):
             value = getattr(self, name)
-            if not (math.isfinite(value) and value > 0):
-                raise CloudError(f"detection's {name} is a number above 0, not {value:g}")
-        if self.table < 1:
+            if not (_is_finite(value) and value > 0):
+                raise CloudError(f"detection's {name} is a number above 0, not {value}")
+        if not _is_whole(self.seed) or self.seed < 0:
+            raise CloudError(f"detection's seed is a whole number of 0 or more, not {self.seed}")
+        if not _is_whole(self.table) or self.table < 1:
             raise CloudError(f"tables are numbered from 1, not from {self.table}")
-        if self.least_points < 1:
+        if not _is_whole(self.least_points) or self.least_points < 1:
             raise CloudError(f"a thing has 1 point or more, not {self.least_points}")
         for name in ("viewer", "up"):
             vector = getattr(self, name)
-            if vector is not None and not (len(vector) == 3 and all(map(math.isfinite, vector))):
+            if vector is not None and not (
+                hasattr(vector, "__len__") and len(vector) == 3 and all(map(_is_finite, vector))
+            ):
                 raise CloudError(f"detection's {name} is three finite numbers, not {vector}")
         if self.up is not None and not any(self.up):
             raise CloudError("detection's up is a direction, not (0, 0, 0)")
@@ -503,3 +508,11 @@ class DetectionSettings:
             group = each.default_factory
             if isinstance(group, type) and not isinstance(getattr(self, each.name), group):
                 raise CloudError(f"detection's {each.name} must be {group.__name__}, got {getattr(self, each.name)!r}")
+
+
+def _is_finite(value: object) -> bool:
+    return isinstance(value, Real) and not isinstance(value, bool) and math.isfinite(value)
+
+
+def _is_whole(value: object) -> bool:
+    return isinstance(value, Integral) and not isinstance(value, bool)

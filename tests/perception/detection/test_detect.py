@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import fields, replace
 
 import numpy as np
 import pytest
@@ -192,6 +192,13 @@ def test_other_thresholds_give_other_things(boxes_seen: Look) -> None:
 def test_settings_that_cannot_be_are_refused(wrong: dict[str, float]) -> None:
     with pytest.raises(CloudError, match=r"detection's|a thing has"):
         DetectionSettings(**wrong)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("value", ["x", True, (), float("nan"), (1.0, 2.0, "z"), -1])
+@pytest.mark.parametrize("name", [field.name for field in fields(DetectionSettings)])
+def test_a_setting_of_another_type_is_refused(name: str, value: object) -> None:
+    with pytest.raises(CloudError, match=r"detection's|a thing has|tables are numbered"):
+        DetectionSettings(**{name: value})  # type: ignore[arg-type]
 
 
 def test_a_table_too_small_for_one_is_noted() -> None:
