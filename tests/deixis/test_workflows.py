@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import json
+import os
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -91,6 +94,52 @@ def test_a_scene_that_cannot_be_written_leaves_nothing(seen: Scene, tmp_path: Pa
         with pytest.raises(DeixisError, match=str(place)):
             deixis.write_scene(seen, place)
     assert [path.name for path in tmp_path.iterdir()] == ["file"]
+
+
+def test_a_scene_takes_the_place_of_no_device(seen: Scene, tmp_path: Path) -> None:
+    pipe = tmp_path / "pipe.scene.json"
+    os.mkfifo(pipe)
+    with pytest.raises(DeixisError, match="this is a device or a pipe"):
+        deixis.write_scene(seen, pipe)
+    assert (pipe.is_fifo(), list(tmp_path.iterdir())) == (True, [pipe])
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda wrong: deixis.perceive(wrong), "`cloud` must be a PointCloud or a file, got"),
+        (lambda wrong: deixis.perceive("x.pcd", settings=wrong), "`settings` must be DetectionSettings, got"),
+        (lambda wrong: deixis.perceive("x.pcd", viewpoint=wrong), "a viewpoint is a word such as 'chair', not"),
+        (lambda wrong: deixis.write_scene(wrong, "x.scene.json"), "`scene` must be a Scene, got"),
+        (lambda wrong: deixis.write_scene(Scene(()), wrong), "`file` must be the name of a file, got"),
+        (lambda wrong: deixis.check(wrong, {"objects": []}), "`layout` must be a script, its file or"),
+    ],
+)
+@pytest.mark.parametrize("wrong", [3, {}, b"x"])
+def test_what_is_of_another_type_is_told(call: Callable[[Any], object], message: str, wrong: object) -> None:
+    with pytest.raises(DeixisError, match=message):
+        call(wrong)
+
+
+@pytest.mark.parametrize("examples", [["script", "scene"], [("script",)], [{"a": 1, "b": 2}], ("ab", "cd"), [3]])
+def test_what_is_no_pair_of_script_and_scene_is_told(examples: Any, tmp_path: Path) -> None:
+    with deixis.Session(tmp_path / "memory") as session, pytest.raises(SettingError, match="must be pairs"):
+        session.learn_all(examples)
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_lesson_that_is_refused_makes_no_memory(tmp_path: Path) -> None:
+    (tmp_path / "bad.layout").write_text("cup left of jug; jug left of cup")
+    memory, scene = tmp_path / "memory", example("place_setting.scene.json")
+    code, out, err = command(
+        "learn", example("script1.layout"), scene, tmp_path / "bad.layout", scene, "--memory", memory
+    )
+    assert (code, out, "the script contradicts itself" in err, memory.exists()) == (2, "", True, False)
+
+
+def test_a_missing_folder_of_lessons_is_told(tmp_path: Path) -> None:
+    code, _, err = command("learn", tmp_path / "none", "--memory", tmp_path / "memory")
+    assert (code, err) == (2, f"deixis: {tmp_path / 'none'}: there is no such file or folder\n")
 
 
 def test_errors_name_the_cloud_that_was_perceived(tmp_path: Path) -> None:

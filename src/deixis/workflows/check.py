@@ -51,6 +51,8 @@ def check(
     from deixis.reasoning.comparison.checking import checked_table
     from deixis.workflows.shacl_report import shacl_report
 
+    if not isinstance(layout, str | Path | Script):
+        raise SettingError(f"`layout` must be a script, its file or the name of a layout, got {layout!r:.60}")
     known = default_ontology() if knowledge is None else knowledge.ontology
     if isinstance(layout, Script) or is_script_file(layout):
         concept = layout_concept(as_script(layout, known), "script")

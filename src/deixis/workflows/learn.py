@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from deixis.grammar.script import Script
 from deixis.knowledge_store import KnowledgeStore
 from deixis.perception.scene import Scene
-from deixis.reasoning.errors import InconsistencyError, NothingFoundError
+from deixis.reasoning.errors import InconsistencyError, NothingFoundError, SettingError
 from deixis.reasoning.grounding.answer import Grounding
 from deixis.reasoning.grounding.ground import DEFAULT_TIME_LIMIT
 from deixis.version import VERSION
@@ -59,8 +59,12 @@ def learn(
     :meth:`KnowledgeStore.learn_relations`. Sizes are learned at once. What a teacher named stays of that name. Raises
     DeixisError, having changed nothing, where a script contradicts itself or what was learned before.
     """
+    pairs = list(examples)
+    for pair in pairs:
+        if isinstance(pair, str | Mapping) or not isinstance(pair, Sequence) or len(pair) != 2:
+            raise SettingError(f"`examples` must be pairs of a script and its scene, got {pair!r:.60} among them")
     taken: set[str] = set()
-    learned = [_lesson(script, scene, knowledge, engine, time_limit, taken) for script, scene in examples]
+    learned = [_lesson(script, scene, knowledge, engine, time_limit, taken) for script, scene in pairs]
     if not learned:
         return ()
     groups = [views.but_for_taught(seen) for _, seen in learned]
@@ -96,7 +100,7 @@ def _lesson(
     if not found.matches:
         where = f"the script {script.file} names was found in the scene {scene.file}"
         raise NothingFoundError(f"nothing that {where}, so nothing was learned")
-    knows = knowledge.memory(create=True).knows
+    knows = knowledge.memory().knows if knowledge.exists() else lambda name: False
     lesson_id = next_lesson_id(layout_name(script), lambda name: name in taken or knows(name))
     taken.add(lesson_id)
     lesson = lesson_of(script, scene, found, lesson_id, Occasion(started, datetime.now(UTC), VERSION))

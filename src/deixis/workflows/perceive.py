@@ -36,7 +36,13 @@ def perceive(
     was not as one would expect. Raises CloudError for a file that is no cloud, or one without a point; SceneError for a
     viewpoint that is no word.
     """
-    if not viewpoint.strip() or not viewpoint.isprintable():
+    if settings is not None and not isinstance(settings, DetectionSettings):
+        raise CloudError(f"`settings` must be DetectionSettings, got {settings!r:.60}")
+    if not isinstance(cloud, PointCloud | str | Path):
+        raise CloudError(
+            f"`cloud` must be a PointCloud or a file, got {type(cloud).__name__}; PointCloud(points) makes one"
+        )
+    if not isinstance(viewpoint, str) or not viewpoint.strip() or not viewpoint.isprintable():
         raise SceneError(f"a viewpoint is a word such as 'chair', not {viewpoint!r}")
     if isinstance(cloud, PointCloud):
         return detect(cloud, settings).scene(viewpoint)
@@ -54,9 +60,15 @@ def write_scene(scene: Scene, file: str | Path) -> Scene:
     stay until the new scene is in its place, in one step, and then go: each cloud bears a name of its content, so that
     at any moment there is a whole scene, the old one or the new. Raises DeixisError where the place cannot be written.
     """
+    if not isinstance(scene, Scene):
+        raise SceneError(f"`scene` must be a Scene, got {type(scene).__name__}; read_scene makes one")
+    if not isinstance(file, str | Path):
+        raise SceneError(f"`file` must be the name of a file, got {file!r:.60}")
     file = Path(file)
     if not file.name or file.is_dir():
         raise DeixisError(f"{file}: this is a folder; name a file")
+    if file.exists() and not file.is_file():
+        raise DeixisError(f"{file}: this is a device or a pipe, which a scene would take the place of; name a file")
     folder, base = clouds_folder(file), Path(scene.file).parent
     perceived = scene.detection is not None or any(isinstance(thing.cloud, PointCloud) for thing in scene.objects)
     before: set[str] = set()

@@ -53,11 +53,14 @@ def is_script_file(layout: str | Path) -> bool:
 def example_pairs(inputs: Sequence[Path]) -> list[tuple[Path, Path]]:
     """Each script with its scene: files come in turn, of a folder every ``NAME.layout`` goes with ``NAME.scene.json``.
 
-    Raises DeixisError for a script without a scene, a scene in a folder without a script, and a folder without either.
+    Raises DeixisError for what does not exist, a script without a scene, a scene in a folder without a script, and a
+    folder without either.
     """
     pairs: list[tuple[Path, Path]] = []
     script: Path | None = None
     for given in inputs:
+        if not given.exists():
+            raise DeixisError(f"{given}: there is no such file or folder")
         if given.is_dir():
             if script is not None:
                 break
