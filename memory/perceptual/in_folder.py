@@ -101,14 +101,15 @@ def restored_on_failure(memory: PerceptualMemory, views: Sequence[View]) -> Iter
     """
     with memory.exclusive():
         there = set(memory.categories())
-        before = [view for view in (_view(memory, view.id) for view in views) if view is not None]
+        ids = dict.fromkeys(view.id for view in views)
+        before = [view for view in (_view(memory, id) for id in ids) if view is not None]
         names = {view.category for view in (*views, *before)} & there
         records = [record for record in (_record(memory, name) for name in sorted(names)) if record is not None]
         try:
             yield
         except BaseException as failure:
             old = {view.id for view in before}
-            new = [view.id for view in views if view.id not in old and _view(memory, view.id) is not None]
+            new = [id for id in ids if id not in old and _view(memory, id) is not None]
             try:
                 memory.write(Batch(before, records, new))
                 for name in {view.category for view in views} & set(memory.categories()) - there:

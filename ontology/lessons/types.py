@@ -64,7 +64,7 @@ class Match:
     ``score`` is the share of what is said of the object and can be compared that holds (by degree and weight; 1 where
     there is nothing), ``similarity`` the paper's (NaN in a lesson, which does not keep it), ``probability`` that of the
     match given all the evidence (None where the engine gives none). ``decided`` says that it is high enough
-    (:func:`deixis.reasoning.grounding.answer.is_decided`), or that nothing else is as similar.
+    (:func:`deixis.reasoning.grounding.options.is_decided`), or that nothing else is as similar.
     """
 
     object: str

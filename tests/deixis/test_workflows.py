@@ -63,6 +63,32 @@ def test_taught_learned_and_recognised_without_a_file(seen: Scene, tmp_path: Pat
     assert sorted(path.name for path in tmp_path.iterdir()) == ["memory"]
 
 
+def test_one_scene_twice_in_a_call_is_as_call_after_call(seen: Scene, tmp_path: Path) -> None:
+    examples = [(deixis.read_script(text=text), seen) for text in (TEA, TEA, TEA.replace("fork", "cake_fork"))]
+    kept = []
+    for place in ("at once", "in turn"):
+        with deixis.Session(tmp_path / place) as session:
+            batches = [examples] if place == "at once" else [[example] for example in examples]
+            seen_as = [one.seen for batch in batches for one in session.learn_all(batch)]
+            kept.append((seen_as, session.categories()))
+    assert kept[0] == kept[1]
+    assert kept[0][1] == {"cake_fork": 1, "knife": 1, "plate": 1}
+
+
+def test_one_scene_twice_is_taken_back_where_a_call_fails(
+    seen: Scene, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refuse(*args: object) -> None:
+        raise DeixisError("refused")
+
+    script = deixis.read_script(text=TEA)
+    with deixis.Session(tmp_path / "memory") as session:
+        monkeypatch.setattr(session.knowledge_store, "keep", refuse)
+        with pytest.raises(DeixisError, match=r"^refused$"):
+            session.learn_all([(script, seen), (script, seen)])
+        assert session.categories() == {}
+
+
 def test_from_memory_and_from_files_the_same_is_kept(seen: Scene, tmp_path: Path) -> None:
     written = deixis.write_scene(seen, tmp_path / "tea.scene.json")
     read = deixis.read_scene(tmp_path / "tea.scene.json")

@@ -148,7 +148,7 @@ def thing_of(view: View) -> str | None:
 
 
 def keep_views(memory: PerceptualMemory, views: Sequence[View]) -> tuple[Taught, ...]:
-    """Keeps views, all or none; the same points kept again under another word correct it."""
+    """Keeps views, all or none, in turn; the same points kept again under another word correct it."""
     with memory.exclusive():
         place = {key.id: key.category for key in memory.listing()}
         kept = {name: list(memory.views(name)) for name in _involved(memory, views, place)}
@@ -168,9 +168,10 @@ def keep_views(memory: PerceptualMemory, views: Sequence[View]) -> tuple[Taught,
             again = before == view.category
             taught.append(Taught(view.id, view.category, len(known[view.category]), corrected, again))
         records = [record_of(category, chosen[name]) for name, category in known.items() if len(category)]
-        memory.write(Batch(views, records))
+        memory.write(Batch(list({view.id: view for view in views}.values()), records))
+        there = set(memory.categories())
         for name, category in known.items():
-            if not len(category):
+            if not len(category) and name in there:
                 memory.forget(name)  # nothing is left of it
     return tuple(taught)
 
