@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,6 +14,7 @@ from deixis.ontology.kinds import Kind, Kinds, plain_name
 from deixis.ontology.relation import Relation, Relations, relation_from_triples
 from deixis.ontology.sizes import Sizes, sizes_from_triples
 from deixis.ontology.triple_index import TripleIndex
+from deixis.ontology.triples import content_key
 from deixis.ontology.vocabulary import DX, W3C
 
 if TYPE_CHECKING:
@@ -32,6 +33,11 @@ class Ontology:
     hedges: dict[str, float]
     sizes: Sizes
     colours: Colours
+
+    @cached_property
+    def kinds_key(self) -> str:
+        """A short name for what is said of kinds: their words, what they are, and their usual sizes."""
+        return content_key(repr([(kind.iri, kind.words, kind.broader, self.sizes.of(kind.iri)) for kind in self.kinds]))
 
     def quality(self, words: str) -> tuple[Kind | None, Colour | None]:
         """The kind, the colour, or the kind in a colour that words stand for; a colour too where the rest is no kind.

@@ -11,6 +11,7 @@ import hashlib
 from collections.abc import Iterable, Iterator
 from datetime import datetime
 from decimal import Decimal
+from functools import lru_cache
 from typing import TypeVar
 from urllib.parse import quote, unquote
 
@@ -25,7 +26,12 @@ def learned_iri(*parts: str | int) -> str:
     >>> learned_iri("category", "fish knife>")
     'https://w3id.org/deixis/learned/category/fish%20knife%3E'
     """
-    return LEARNED + "/".join(quote(str(part), safe="") for part in parts)
+    return LEARNED + "/".join(map(_encoded, map(str, parts)))
+
+
+@lru_cache(maxsize=4096)
+def _encoded(part: str) -> str:
+    return quote(part, safe="")
 
 
 def category_iri(name: str) -> str:

@@ -59,7 +59,7 @@ def import_dump(file: str | Path, target: str | Path) -> None:
         return
     with SemanticMemory.open(target) as memory:
         change = _merged(memory, dump, file)
-        if change.statements:
+        if change.operations:
             memory.commit(change)
 
 
@@ -77,9 +77,7 @@ def _fill(store: ox.Store, dump: Dump) -> None:
     from deixis.memory.semantic.validation.validate import check_store
 
     store.bulk_extend(dump.quads())
-    statements = list(ledger.package_update(store, packaged()))
-    if statements:
-        store.update(" ;\n".join(statements))
+    ledger.update(store, ledger.package_update(store, packaged()))
     merge_if_overlapping(store)
     check_store(store)
 
@@ -88,7 +86,7 @@ def _merged(memory: SemanticMemory, dump: Dump, file: Path) -> Change:
     """The change that brings a dump into a memory."""
     store, known = memory.store, set(memory.lessons())
     added: dict[GraphName, set[ox.Triple]] = {name: set() for name in GraphName}
-    statements: list[str] = []
+    operations: list[ledger.Operation] = []
     for lesson, graphs in dump.lessons.items():
         said = {name: sorted(triples, key=str) for name, triples in graphs.items() if triples}
         if lesson in known:
@@ -98,17 +96,18 @@ def _merged(memory: SemanticMemory, dump: Dump, file: Path) -> Change:
                     "one first, or import into another memory"
                 )
             continue
-        statements += ledger.arrival(store, lesson, said)
+        held = {name: ledger.held(store, graph_iri(name), triples) for name, triples in said.items()}
+        operations += ledger.arrival(store, lesson, said, held)
         for name, triples in said.items():
             added[name].update(triples)
     for name, graph, loose in _loose(store, dump):
-        statements += ledger.insertion(graph, sorted(loose, key=str))
+        operations += ledger.insertion(graph, sorted(loose, key=str))
         added[name].update(loose)
     new_ones = {
         name: {triple for triple in triples if ledger.quad_of(triple, graph_iri(name)) not in store}
         for name, triples in added.items()
     }
-    lessons = Change({name: frozenset(triples) for name, triples in new_ones.items()}, {}, tuple(statements))
+    lessons = Change({name: frozenset(triples) for name, triples in new_ones.items()}, {}, tuple(operations))
     new = {which: sorted(triples, key=str) for which, triples in dump.models.items() if not memory.models(which)}
     return together(lessons, modelling(store, new))
 

@@ -132,8 +132,8 @@ def _update_package(opened: Opened) -> None:
     if mark.get("package") == digest:
         return
     with committed(opened.folder):
-        statements = list(ledger.package_update(opened.store, packaged()))
-        if statements:
-            opened.store.update(" ;\n".join([*statements, *ledger.keeping_up(opened.store, None)]))
+        operations = list(ledger.package_update(opened.store, packaged()))
+        if operations:
+            ledger.update(opened.store, [*operations, *ledger.keeping_up(opened.store, None)])
             opened.store.flush()
         files.write_mark(opened.folder, {**mark, "package": digest})

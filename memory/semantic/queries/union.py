@@ -7,14 +7,15 @@ do not, which is so for what is loaded in bulk, nothing is written twice.
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Iterator
 
 import pyoxigraph as ox
 
 from deixis.memory.semantic.rdf.graphs import MERGED, UNION, GraphName, graph_iri
-from deixis.memory.semantic.rdf.ledger import Triples, deletion, insertion, quad_of
+from deixis.memory.semantic.rdf.ledger import Operation, Triples, deletion, insertion, quad_of
 
-_BUILD = (
+BUILD = (
     f"INSERT {{ GRAPH {MERGED} {{ ?s ?p ?o }} }} WHERE {{ VALUES ?g {{ "
     f"{' '.join(str(graph_iri(name)) for name in UNION)} }} GRAPH ?g {{ ?s ?p ?o }} }}"
 )
@@ -28,20 +29,35 @@ def default_graph(store: ox.Store) -> list[ox.NamedNode]:
     return [graph for graph in graphs if any(store.quads_for_pattern(None, None, None, graph))] or graphs
 
 
-def merging(store: ox.Store, added: Triples, removed: Triples) -> Iterator[str]:
-    """The operations that keep the union right under a change; they come after those of the change itself."""
+def merging(store: ox.Store, added: Triples, removed: Triples) -> Iterator[Operation]:
+    """The operations that keep the union right under a change, where there is one; they come after those of the change
+    itself."""
     if store.contains_named_graph(MERGED):
         gone = {triple for name in UNION for triple in removed.get(name, ())}
         yield from deletion(MERGED, [t for t in gone if not any(_after(store, n, t, added, removed) for n in UNION)])
         yield from insertion(MERGED, {triple for name in UNION for triple in added.get(name, ())})
-    elif any(
-        _after(store, other, triple, added, removed)
-        for name in UNION
-        for triple in added.get(name, ())
-        for other in UNION
-        if other is not name
-    ):
-        yield _BUILD
+
+
+def building(store: ox.Store, added: Triples, removed: Triples) -> Iterator[str]:
+    """The operation in SPARQL that builds the union where there is none and a change makes the graphs overlap."""
+    if not store.contains_named_graph(MERGED) and overlapping(store, added, removed):
+        yield BUILD
+
+
+def overlapping(store: ox.Store, added: Triples, removed: Triples) -> bool:
+    """Whether what a change adds to a graph another graph holds after it."""
+    by_subject: dict[GraphName, dict[object, list[ox.Triple]]] = {name: defaultdict(list) for name in UNION}
+    for name in UNION:
+        for triple in added.get(name, ()):
+            by_subject[name][triple.subject].append(triple)
+    for name in UNION:
+        for other in UNION:
+            graph = graph_iri(other)
+            for subject, triples in by_subject[name].items() if other is not name else ():
+                spoken_of = subject in by_subject[other] or any(store.quads_for_pattern(subject, None, None, graph))  # type: ignore[arg-type]
+                if spoken_of and any(_after(store, other, triple, added, removed) for triple in triples):
+                    return True
+    return False
 
 
 def _after(store: ox.Store, name: GraphName, triple: ox.Triple, added: Triples, removed: Triples) -> bool:
@@ -59,7 +75,7 @@ def merge_if_overlapping(store: ox.Store) -> None:
     for position, small in enumerate(by_size[:-1]):
         for quad in store.quads_for_pattern(None, None, None, graph_iri(small)):
             if any(quad_of(quad.triple, graph_iri(large)) in store for large in by_size[position + 1 :]):
-                store.update(_BUILD)
+                store.update(BUILD)
                 return
 
 

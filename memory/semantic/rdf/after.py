@@ -23,12 +23,7 @@ class After:
         self.store, self.change = store, change or Change()
         self._graphs = {name: graph_iri(name) for name in GraphName}
         self._data: dict[object, GraphName] = {graph_iri(name): name for name in DATA}
-        self._of: dict[tuple[GraphName, Node], list[ox.Triple]] = defaultdict(list)
-        self._to: dict[tuple[GraphName, Node], list[ox.Triple]] = defaultdict(list)
-        for name, triples in self.change.added.items():
-            for triple in triples:
-                self._of[name, triple.subject].append(triple)
-                self._to[name, triple.object].append(triple)
+        self._indexes: dict[tuple[GraphName, str], dict[object, list[ox.Triple]]] = {}
 
     def holds(self, name: GraphName, triple: ox.Triple) -> bool:
         """Return whether a graph holds a triple after the change."""
@@ -44,7 +39,7 @@ class After:
         predicate: ox.NamedNode | None = None,
         object: Node | None = None,
     ) -> Iterator[ox.Triple]:
-        """Yield the triples of a graph with that subject, predicate and object; one of the three must be given.
+        """Yield the triples of a graph with that subject, predicate and object; one of the three must be given, or none.
 
         What the change adds comes last.
         """
@@ -57,18 +52,34 @@ class After:
             yield from (triple for triple in self.coming(name, subject, predicate) if object in (None, triple.object))
         elif object is not None:
             yield from self.arriving(name, predicate, object)
+        elif predicate is not None:
+            yield from self._index(name, "predicate").get(predicate, ())
         else:
-            come = self.change.added.get(name, ())
-            yield from (triple for triple in come if predicate in (None, triple.predicate))
+            yield from self.change.added.get(name, ())
 
     def coming(self, name: GraphName, subject: Node, predicate: ox.NamedNode | None = None) -> Iterator[ox.Triple]:
         """Yield what the change adds about a subject."""
-        triples = self._of.get((name, subject), ())
+        triples = self._index(name, "subject").get(subject, ())
         return (triple for triple in triples if predicate in (None, triple.predicate))
 
     def arriving(self, name: GraphName, predicate: ox.NamedNode | None, object: Node) -> Iterator[ox.Triple]:
         """Yield what the change adds that leads to an object."""
-        return (triple for triple in self._to.get((name, object), ()) if predicate in (None, triple.predicate))
+        triples = self._index(name, "object").get(object, ())
+        return (triple for triple in triples if predicate in (None, triple.predicate))
+
+    def _index(self, name: GraphName, by: str) -> dict[object, list[ox.Triple]]:
+        """Return what the change adds to a graph by subject, predicate or object; made when it is first asked for."""
+        found = self._indexes.get((name, by))
+        if found is None:
+            found = self._indexes[name, by] = defaultdict(list)
+            for triple in self.change.added.get(name, ()):
+                found[getattr(triple, by)].append(triple)
+        return found
+
+    def says(self, subject: Node, predicate: ox.NamedNode) -> bool:
+        """Return whether a predicate may be used of a subject in any graph; where not, none has to be looked at."""
+        stored = self.store.quads_for_pattern(subject, predicate, None, None)  # type: ignore[arg-type]
+        return any(True for _ in stored) or any(True for name in DATA for _ in self.coming(name, subject, predicate))
 
     def of_data(self, quads: Iterable[ox.Quad]) -> Iterator[ox.Triple]:
         """Yield the triples of those stored quads that are in a graph of data and stay there."""

@@ -26,7 +26,7 @@ class Change:
 
     added: ledger.Triples = field(default_factory=dict)
     removed: ledger.Triples = field(default_factory=dict)
-    statements: tuple[str, ...] = ()
+    operations: tuple[ledger.Operation, ...] = ()
 
 
 def together(*changes: Change) -> Change:
@@ -38,38 +38,34 @@ def together(*changes: Change) -> Change:
             added[name] = added.get(name, frozenset()) | triples
         for name, triples in change.removed.items():
             removed[name] = removed.get(name, frozenset()) | triples
-    return Change(added, removed, tuple(chain.from_iterable(change.statements for change in changes)))
+    return Change(added, removed, tuple(chain.from_iterable(change.operations for change in changes)))
 
 
 def arriving(store: ox.Store, lesson: str, said: Mapping[GraphName, Sequence[ox.Triple]]) -> Change:
     """The change that a new lesson makes, but for what follows from it."""
-    added = {name: frozenset(_new(store, graph_iri(name), triples)) for name, triples in said.items()}
-    return Change(added=added, statements=tuple(ledger.arrival(store, lesson, said)))
-
-
-def _new(store: ox.Store, graph: ox.NamedNode, triples: Iterable[ox.Triple]) -> Iterator[ox.Triple]:
-    """Those that a graph does not hold yet."""
-    return (triple for triple in triples if ledger.quad_of(triple, graph) not in store)
+    held = {name: ledger.held(store, graph_iri(name), triples) for name, triples in said.items()}
+    added = {name: frozenset(triples).difference(held[name]) for name, triples in said.items()}
+    return Change(added=added, operations=tuple(ledger.arrival(store, lesson, said, held)))
 
 
 def departing(store: ox.Store, lesson: str) -> Change:
     """The change that forgetting a lesson makes, but for what followed from it."""
     removed: dict[GraphName, frozenset[ox.Triple]] = {}
-    statements: list[str] = []
+    operations: list[ledger.Operation] = []
     for name, triples in ledger.copies(store, lesson).items():
         copy = lesson_graph(lesson, name)
         only = ledger.only_of(store, copy, name, triples)
         removed[name] = frozenset(only)
-        statements += [*ledger.deletion(graph_iri(name), only), f"DROP SILENT GRAPH {copy}"]
-    return Change({}, removed, tuple(statements))
+        operations += [*ledger.deletion(graph_iri(name), only), ledger.drop(copy)]
+    return Change({}, removed, tuple(operations))
 
 
 def concluding(store: ox.Store, inferred: Iterable[ox.Triple]) -> Change:
     """The change that replaces the inferred graph."""
     graph = graph_iri(GraphName.INFERRED)
     gone, come = ledger.difference(store, graph, named("inferred", inferred))
-    statements = (*ledger.deletion(graph, gone), *ledger.insertion(graph, come))
-    return Change({GraphName.INFERRED: frozenset(come)}, {GraphName.INFERRED: frozenset(gone)}, statements)
+    operations = (*ledger.deletion(graph, gone), *ledger.insertion(graph, come))
+    return Change({GraphName.INFERRED: frozenset(come)}, {GraphName.INFERRED: frozenset(gone)}, operations)
 
 
 def modelling(store: ox.Store, models: Models) -> Change:
@@ -85,7 +81,7 @@ def remodelling(store: ox.Store, copy: ox.NamedNode, gone: Sequence[ox.Triple], 
     """The change that takes triples out of a copy of learned models and puts others in."""
     only = ledger.only_of(store, copy, GraphName.LEARNED, gone)
     return Change(
-        {GraphName.LEARNED: frozenset(_new(store, graph_iri(GraphName.LEARNED), come))},
+        {GraphName.LEARNED: frozenset(come).difference(ledger.held(store, graph_iri(GraphName.LEARNED), come))},
         {GraphName.LEARNED: frozenset(only)},
         tuple(ledger.replacement(store, copy, GraphName.LEARNED, gone, come)),
     )
@@ -94,8 +90,8 @@ def remodelling(store: ox.Store, copy: ox.NamedNode, gone: Sequence[ox.Triple], 
 def reconcluding(gone: Iterable[ox.Triple], come: Iterable[ox.Triple]) -> Change:
     """The change that takes triples out of the inferred graph and puts others in; those go that are there."""
     graph, gone, come = graph_iri(GraphName.INFERRED), frozenset(gone), frozenset(come)
-    statements = (*ledger.deletion(graph, sorted(gone, key=str)), *ledger.insertion(graph, sorted(come, key=str)))
-    return Change({GraphName.INFERRED: come}, {GraphName.INFERRED: gone}, statements)
+    operations = (*ledger.deletion(graph, sorted(gone, key=str)), *ledger.insertion(graph, sorted(come, key=str)))
+    return Change({GraphName.INFERRED: come}, {GraphName.INFERRED: gone}, operations)
 
 
 def incoming(lesson: str, contributions: Mapping[GraphName, Iterable[ox.Triple]]) -> dict[GraphName, list[ox.Triple]]:

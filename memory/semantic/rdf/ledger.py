@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from datetime import UTC, datetime
 from itertools import islice
+from typing import Literal
 
 import pyoxigraph as ox
 
@@ -26,6 +28,27 @@ from deixis.ontology.vocabulary import PROV
 Contributions = Mapping[GraphName, Sequence[ox.Triple]]
 
 Triples = Mapping[GraphName, frozenset[ox.Triple]]
+
+
+@dataclass(frozen=True, slots=True)
+class Operation:
+    """One operation of an update: a graph gains triples, loses triples, or goes as a whole."""
+
+    verb: Literal["INSERT", "DELETE", "DROP"]
+    graph: ox.NamedNode
+    triples: tuple[ox.Triple, ...] = ()
+
+    def texts(self) -> Iterator[str]:
+        """Yield the operation in SPARQL, in parts of 10,000 triples.
+
+        Terms write themselves as N-Triples, escapes and all; an IRI that could break out of ``<>`` cannot be made.
+        """
+        if self.verb == "DROP":
+            yield f"DROP SILENT GRAPH {self.graph}"
+        rest = iter(self.triples)
+        while chunk := list(islice(rest, 10_000)):
+            yield f"{self.verb} DATA {{ GRAPH {self.graph} {{ {' '.join(f'{triple} .' for triple in chunk)} }} }}"
+
 
 _STARTED = ox.NamedNode(PROV.STARTED_AT_TIME)
 
@@ -91,20 +114,26 @@ def _held_elsewhere(store: ox.Store, copy: ox.NamedNode, name: GraphName, triple
     return any(quad.graph_name != copy and _copies(quad.graph_name, name) for quad in quads)
 
 
-def arrival(store: ox.Store, lesson: str, contributions: Contributions) -> Iterator[str]:
-    """The operations that write a lesson: its contributions, and the copies of them."""
+def held(store: ox.Store, graph: ox.NamedNode, triples: Iterable[ox.Triple]) -> list[ox.Triple]:
+    """Those of the triples that a graph holds."""
+    return [triple for triple in triples if quad_of(triple, graph) in store]
+
+
+def arrival(store: ox.Store, lesson: str, contributions: Contributions, known: Contributions) -> Iterator[Operation]:
+    """The operations that write a lesson: its contributions, and the copies of them.
+
+    ``known`` are those of the contributions that the canonical graphs hold already.
+    """
     for name, triples in contributions.items():
-        yield from insertion(loaded_graph(name), _unowned(store, name, triples))
+        yield from insertion(loaded_graph(name), _unowned(store, name, known[name]))
         yield from insertion(graph_iri(name), triples)
         yield from insertion(lesson_graph(lesson, name), triples)
 
 
 def _unowned(store: ox.Store, name: GraphName, triples: Iterable[ox.Triple]) -> Iterator[ox.Triple]:
-    """Those that were loaded in bulk: the canonical graph has them, and no copy does."""
+    """Those of a canonical graph's triples that were loaded in bulk: no copy has them."""
     for triple in triples:
-        if quad_of(triple, graph_iri(name)) in store and not any(
-            _copies(quad.graph_name, name) for quad in quads_of(store, triple)
-        ):
+        if not any(_copies(quad.graph_name, name) for quad in quads_of(store, triple)):
             yield triple
 
 
@@ -112,7 +141,7 @@ def _copies(graph: ox.NamedNode | ox.BlankNode | ox.DefaultGraph, name: GraphNam
     return isinstance(graph, ox.NamedNode) and copied_graph(graph.value) is name
 
 
-def package_update(store: ox.Store, packaged: Contributions) -> Iterator[str]:
+def package_update(store: ox.Store, packaged: Contributions) -> Iterator[Operation]:
     """The operations that bring the packaged ontology and shapes up to date; none where they are."""
     for name, triples in packaged.items():
         copy = package_graph(name)
@@ -130,7 +159,7 @@ def difference(
 
 def replacement(
     store: ox.Store, copy: ox.NamedNode, name: GraphName, gone: Sequence[ox.Triple], come: Sequence[ox.Triple]
-) -> Iterator[str]:
+) -> Iterator[Operation]:
     """The operations that exchange triples of a copy and of the canonical graph that it contributes to."""
     yield from deletion(graph_iri(name), only_of(store, copy, name, gone))
     yield from deletion(copy, gone)
@@ -151,7 +180,7 @@ def kept_up(store: ox.Store) -> str | None:
     return found[0].object.value if len(found) == 1 and isinstance(found[0].object, ox.Literal) else None
 
 
-def keeping_up(store: ox.Store, rules: str | None) -> Iterator[str]:
+def keeping_up(store: ox.Store, rules: str | None) -> Iterator[Operation]:
     """The operations that say by which rules they are right from now on; None: by none."""
     old = {quad.triple for quad in store.quads_for_pattern(COUNTED, KEPT_UP, None, COUNTED)}
     new = {ox.Triple(COUNTED, KEPT_UP, ox.Literal(rules))} if rules is not None else set()
@@ -159,18 +188,41 @@ def keeping_up(store: ox.Store, rules: str | None) -> Iterator[str]:
     yield from insertion(COUNTED, new - old)
 
 
-def insertion(graph: ox.NamedNode, triples: Iterable[ox.Triple]) -> Iterator[str]:
-    """INSERT DATA for these triples, none where there are none."""
-    yield from _data("INSERT", graph, triples)
+def insertion(graph: ox.NamedNode, triples: Iterable[ox.Triple]) -> Iterator[Operation]:
+    """The operation that puts triples into a graph, none where there are none."""
+    if some := tuple(triples):
+        yield Operation("INSERT", graph, some)
 
 
-def deletion(graph: ox.NamedNode, triples: Iterable[ox.Triple]) -> Iterator[str]:
-    """DELETE DATA for these triples, none where there are none."""
-    yield from _data("DELETE", graph, triples)
+def deletion(graph: ox.NamedNode, triples: Iterable[ox.Triple]) -> Iterator[Operation]:
+    """The operation that takes triples out of a graph, none where there are none."""
+    if some := tuple(triples):
+        yield Operation("DELETE", graph, some)
 
 
-def _data(verb: str, graph: ox.NamedNode, triples: Iterable[ox.Triple]) -> Iterator[str]:
-    """Terms write themselves as N-Triples, escapes and all; an IRI that could break out of ``<>`` cannot be made."""
-    rest = iter(triples)
-    while chunk := list(islice(rest, 10_000)):
-        yield f"{verb} DATA {{ GRAPH {graph} {{ {' '.join(f'{triple} .' for triple in chunk)} }} }}"
+def drop(graph: ox.NamedNode) -> Operation:
+    """The operation that takes a graph away, where there is one."""
+    return Operation("DROP", graph)
+
+
+def update(store: ox.Store, operations: Iterable[Operation], last: Iterable[str] = ()) -> None:
+    """Carry out operations, and after them some in SPARQL, in one step."""
+    texts = [*(text for operation in operations for text in operation.texts()), *last]
+    if texts:
+        store.update(" ;\n".join(texts))
+
+
+def update_in_bulk(store: ox.Store, operations: Iterable[Operation]) -> None:
+    """Carry out operations several times as fast, and not in one step: on a store that is thrown away where it fails.
+
+    What goes is taken away before anything comes.
+    """
+    come = []
+    for operation in operations:
+        if operation.verb == "INSERT":
+            come.append(operation)
+        elif operation.verb == "DROP":
+            store.remove_graph(operation.graph)
+        for triple in operation.triples if operation.verb == "DELETE" else ():
+            store.remove(quad_of(triple, operation.graph))
+    store.bulk_extend(quad_of(triple, operation.graph) for operation in come for triple in operation.triples)

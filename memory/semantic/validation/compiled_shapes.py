@@ -52,7 +52,7 @@ class Shape:
     def targets(self, view: View, node: Node) -> bool:
         """Whether a node is one of its focus nodes."""
         return (
-            any(view.is_a(node, kind) for kind in self.classes)
+            not view.classes(node).isdisjoint(self.classes)
             or any(view.some(node, predicate, 1) for predicate in self.subjects_of)
             or any(view.leads_here(predicate, node) for predicate in self.objects_of)
         )

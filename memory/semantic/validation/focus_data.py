@@ -32,6 +32,7 @@ class View:
         self._about: dict[Node, dict[ox.NamedNode, set[Node]] | None] = {}
         self._values: dict[tuple[Node, ox.NamedNode], set[Node]] = {}
         self._broader: dict[Node, frozenset[Node]] = {}
+        self._classes: dict[Node, frozenset[Node]] = {}
 
     @cached_property
     def before(self) -> View:
@@ -78,7 +79,7 @@ class View:
             return few.get(predicate, ())
         known = self._values.get((node, predicate))
         if known is None:
-            known = {triple.object for name in DATA for triple in self._after.triples(name, node, predicate)}
+            known = set(self._objects(node, predicate))
             self._values[node, predicate] = known
         return known
 
@@ -87,11 +88,18 @@ class View:
         few = self._few(node)
         if few is not None:
             return list(few.get(predicate, ()))[:number]
-        each = (triple.object for name in DATA for triple in self._after.triples(name, node, predicate))
+        each = self._objects(node, predicate)
         found: set[Node] = set()
         while len(found) < number and (value := next(each, None)) is not None:
             found.add(value)
         return found
+
+    def _objects(self, node: Node, predicate: ox.NamedNode) -> Iterator[Node]:
+        """The objects of a node of which much is said, graph by graph; one may come twice."""
+        if self._after.says(node, predicate):
+            for name in DATA:
+                for triple in self._after.triples(name, node, predicate):
+                    yield triple.object
 
     def fresh(self, node: Node, predicate: ox.NamedNode) -> Iterable[Node]:
         """The objects of a node under a predicate whose class the change may have altered: new ones, and changed ones.
@@ -133,7 +141,14 @@ class View:
 
     def is_a(self, node: Node, kind: Node) -> bool:
         """Whether a node is an instance of a class, or of a narrower one."""
-        return any(kind in self.broader(type) for type in self.values(node, TYPE))
+        return kind in self.classes(node)
+
+    def classes(self, node: Node) -> frozenset[Node]:
+        """The classes that a node is an instance of, the broader ones too."""
+        known = self._classes.get(node)
+        if known is None:
+            known = self._classes[node] = frozenset[Node]().union(*map(self.broader, self.values(node, TYPE)))
+        return known
 
     def broader(self, kind: Node) -> frozenset[Node]:
         """A class and all that it is a sub-class of."""

@@ -35,7 +35,7 @@ from deixis.ontology.models.relation_triples import model_triples, models_from_t
 from deixis.ontology.models.relations import RelationModel
 from deixis.ontology.models.sizes import SIZE_PROPERTIES, size_iri, size_triples
 from deixis.ontology.tbox import Ontology
-from deixis.ontology.triples import content_key, iri, text
+from deixis.ontology.triples import iri, text
 from deixis.ontology.vocabulary import PROV
 from deixis.reasoning.description_logic.subsumption import BeyondLessonsError
 from deixis.reasoning.errors import NothingFoundError
@@ -45,6 +45,12 @@ RULES = 1
 
 BY_HERMIT = " by HermiT"
 """What is said beside the rules where more is said of classes than lessons say."""
+
+AT_ONCE = 50
+"""Maximum number of lessons in one change of the store; a change takes about 2 MB of memory a lesson.
+
+More lessons are written to a copy of the store, part by part.
+"""
 
 SEEN = iri(STATISTICS + "seen")
 """What a lesson's share says of a place in the counts: the view that the lesson has of it."""
@@ -56,7 +62,19 @@ def remembered(memory: SemanticMemory, ontology: Ontology) -> Recollection:
 
 
 def keep(memory: SemanticMemory, ontology: Ontology, lessons: Sequence[Lesson]) -> None:
-    """Writes lessons."""
+    """Writes lessons: all of them, or none."""
+    if len(lessons) <= AT_ONCE:
+        _keep(memory, ontology, lessons)
+        return
+
+    def write(copy: SemanticMemory) -> None:
+        for start in range(0, len(lessons), AT_ONCE):
+            _keep(copy, ontology, lessons[start : start + AT_ONCE])
+
+    memory.commit_in_bulk(write)
+
+
+def _keep(memory: SemanticMemory, ontology: Ontology, lessons: Sequence[Lesson]) -> None:
     change = memory.arrival({lesson.id: _contributions(lesson, ontology) for lesson in lessons})
     change, rules = _followed(memory, ontology, change, [remembered_lesson(lesson, ontology) for lesson in lessons])
     memory.commit(change, rules)
@@ -175,10 +193,7 @@ def _followed(
 
 def kept_up_rules(ontology: Ontology) -> str:
     """The rules by which a memory is kept up with an ontology, as a memory says them."""
-    words = content_key(
-        repr([(kind.iri, kind.words, kind.broader, ontology.sizes.of(kind.iri)) for kind in ontology.kinds])
-    )
-    return f"{RULES} {package_digest()[:16]} {words}"
+    return f"{RULES} {package_digest()[:16]} {ontology.kinds_key}"
 
 
 def _inferred(after: After, ontology: Ontology, stepwise: bool) -> tuple[Change, bool]:
@@ -195,15 +210,15 @@ def _recounted(store: ox.Store, ontology: Ontology, come: Sequence[Remembered], 
     """The change of the statistics and models of sizes when lessons come and go."""
     counts = Counts(lambda row, key: _value(store, row, key), lambda row: _row(store, row))
     statistics = SizeStatistics(counts, ontology.sizes)
-    statements: list[str] = []
+    operations: list[ledger.Operation] = []
     for lesson in gone:
         share = share_graph(lesson)
         for quad in list(store.quads_for_pattern(None, SEEN, None, share)):
             same_box = store.quads_for_pattern(quad.subject, SEEN, None, None)
             others = (_view(other) for other in same_box if other.graph_name != share)
             statistics.remove(_view(quad), others)
-        statements.append(f"DROP SILENT GRAPH {share}")
-    statements += _shares(statistics, come, ontology)
+        operations.append(ledger.drop(share))
+    operations += _shares(statistics, come, ontology)
     statistics.settle()
     copy = models_graph(ModelSet.SIZES)
     old: list[ox.Triple] = []
@@ -217,19 +232,19 @@ def _recounted(store: ox.Store, ontology: Ontology, come: Sequence[Remembered], 
     come_now = [triple for triple in ledger.as_stored(new) if ledger.quad_of(triple, copy) not in store]
     stay = set(ledger.as_stored(new))
     left = [triple for triple in old if triple not in stay]
-    return together(remodelling(store, copy, left, come_now), Change(statements=(*statements, *_rows(counts))))
+    return together(remodelling(store, copy, left, come_now), Change(operations=(*operations, *_rows(counts))))
 
 
 def _counted_anew(store: ox.Store, ontology: Ontology, recollection: Recollection) -> Change:
     """The same from all lessons, whatever was counted before."""
     counts, shares, triples = _counted(recollection, ontology)
-    statements = [f"DROP SILENT GRAPH {graph}" for graph in _share_graphs(store)]
-    statements += ledger.deletion(COUNTED, sorted(_kept_rows(store), key=str))
+    operations = [ledger.drop(graph) for graph in _share_graphs(store)]
+    operations += ledger.deletion(COUNTED, sorted(_kept_rows(store), key=str))
     models = modelling(store, {ModelSet.SIZES: triples})
-    return together(models, Change(statements=(*statements, *shares, *_rows(counts))))
+    return together(models, Change(operations=(*operations, *shares, *_rows(counts))))
 
 
-def _counted(recollection: Recollection, ontology: Ontology) -> tuple[Counts, list[str], list[ox.Triple]]:
+def _counted(recollection: Recollection, ontology: Ontology) -> tuple[Counts, list[ledger.Operation], list[ox.Triple]]:
     """The counts of all lessons, the operations that write the share of each, and the models."""
     counts = Counts()
     statistics = SizeStatistics(counts, ontology.sizes)
@@ -264,8 +279,7 @@ def stale(store: ox.Store, ontology: Ontology) -> Iterator[str]:
     inferred = set(ledger.as_stored(follows(after, ontology.relations)))
     counts, shares, sizes = _counted(_recollected(after, ontology), ontology)
     scratch = ox.Store()
-    if shares:
-        scratch.update(" ;\n".join(shares))
+    ledger.update(scratch, shares)
     kept_shares = {quad for graph in _share_graphs(store) for quad in store.quads_for_pattern(None, None, None, graph)}
     rows = {ox.Triple(_node(row), _node(key), text(value)) for row, key, value in counts.difference()[1]}
     pairs: list[tuple[str, Set[object], Set[object]]] = [
@@ -283,16 +297,16 @@ def stale(store: ox.Store, ontology: Ontology) -> Iterator[str]:
             yield f"{what} are not what the lessons come to: {len(kept - right)} too many, {len(right - kept)} missing"
 
 
-def _shares(statistics: SizeStatistics, lessons: Iterable[Remembered], ontology: Ontology) -> list[str]:
+def _shares(statistics: SizeStatistics, lessons: Iterable[Remembered], ontology: Ontology) -> list[ledger.Operation]:
     """Adds what lessons show to the statistics; returns the operations that write their shares."""
-    statements: list[str] = []
+    operations: list[ledger.Operation] = []
     for lesson in lessons:
         views = size_views(lesson, ontology.kinds)
         for view in views:
             statistics.add(view)
         seen = {ox.Triple(_node(view.place), SEEN, text(view.written())) for view in views}
-        statements += ledger.insertion(share_graph(lesson.lesson), sorted(seen, key=str))
-    return statements
+        operations += ledger.insertion(share_graph(lesson.lesson), sorted(seen, key=str))
+    return operations
 
 
 def _view(quad: ox.Quad) -> SizeView:
@@ -317,7 +331,7 @@ def _row(store: ox.Store, row: str) -> Row:
     return {unquote(q.predicate.value.removeprefix(STATISTICS)): str(getattr(q.object, "value", "")) for q in quads}
 
 
-def _rows(counts: Counts) -> list[str]:
+def _rows(counts: Counts) -> list[ledger.Operation]:
     """The operations that bring the rows up to date."""
     gone, come = (
         [ox.Triple(_node(row), _node(key), text(value)) for row, key, value in side] for side in counts.difference()
