@@ -11,11 +11,12 @@ from __future__ import annotations
 
 import argparse
 import random
+import resource
 import statistics
 import tempfile
 import time
 from collections import defaultdict
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
@@ -23,7 +24,9 @@ from pathlib import Path
 import deixis.workflows.learn as learning
 from deixis.experiments.place_settings import formal_setting
 from deixis.grammar.script import Script
+from deixis.knowledge_store import KnowledgeStore
 from deixis.memory.folder import size
+from deixis.ontology.lessons.types import Lesson
 from deixis.ontology.tbox import default_ontology
 from deixis.perception.scene import Scene
 from deixis.session import Session
@@ -32,9 +35,6 @@ from deixis.workflows.read import read_script
 THINGS = 7
 UNKNOWN = [first + last for first in ("zor", "mil", "tef", "gau", "pim") for last in ("ble", "cket", "dril", "nop")]
 """Words that the ontology does not know."""
-
-AT_ONCE = 500
-"""Lessons of a batch that are committed together: a commit holds some 4 MB a lesson."""
 
 Times = dict[str, list[float]]
 
@@ -125,14 +125,30 @@ def singly(path: Path, numbers: list[int], runs: int) -> Times:
 
 
 def as_batch(path: Path, number: int, runs: int, base: Times) -> None:
-    """Learns a batch, so many lessons a call, and measures there."""
+    """Learns a batch in one call, and measures there."""
     examples = [generated(new) for new in range(number)]
+    keep, kept = KnowledgeStore.keep, []
+
+    def timed_keep(store: KnowledgeStore, lessons: Sequence[Lesson]) -> None:
+        started = time.perf_counter(), time.process_time()
+        keep(store, lessons)
+        kept.append((time.perf_counter() - started[0], time.process_time() - started[1]))
+
     with Session(path) as session:
+        KnowledgeStore.keep = timed_keep  # type: ignore[method-assign]
         started = time.perf_counter()
-        for start in range(0, number, AT_ONCE):
-            session.learn_all(examples[start : start + AT_ONCE])
+        try:
+            session.learn_all(examples)
+        finally:
+            KnowledgeStore.keep = keep  # type: ignore[method-assign]
         taken = time.perf_counter() - started
-        print(f"a batch of {number:,}: {taken:.1f} s, {taken / number * 1e3:.1f} ms a lesson", flush=True)
+        behind, busy = (value / number * 1e3 for value in kept[0])
+        most = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6
+        print(
+            f"a batch of {number:,}: {taken:.1f} s, {taken / number * 1e3:.1f} ms a lesson, of which behind the "
+            f"grounding {behind:.1f} ms ({busy:.1f} ms of processor time); {most:.2f} GB of memory at the most",
+            flush=True,
+        )
         print(told(number, measure(session, 1_000_000, runs), base), flush=True)
     print(f"        on disk: {size(path) / 1e6:.1f} MB", flush=True)
 

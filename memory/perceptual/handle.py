@@ -160,6 +160,11 @@ class Handle:
         """Return the key of a view, or None, as far as keys can be read."""
         return (self._places or self._read_places()).by_id.get(id)
 
+    def lacks(self, id: str) -> bool:
+        """Return whether there is surely no view of that id now."""
+        found = self._places or self._read_places()
+        return found.damage is None and id not in found.by_id
+
     def _read_places(self) -> Places:
         with self.writing, self as db:
             if self._places is None:

@@ -32,7 +32,7 @@ from deixis.memory.perceptual import keys
 from deixis.memory.perceptual.codec import read_about, write_category
 from deixis.memory.perceptual.handle import Change, Handle, acquire, closed, release
 from deixis.memory.perceptual.protocol import Finding, PerceptualStats, Progress, ViewKey
-from deixis.memory.perceptual.reading import Snapshot, glance
+from deixis.memory.perceptual.reading import Snapshot, glance, unknown_view
 from deixis.memory.perceptual.records import Batch, CategoryRecord, View, check_merging, check_name, name_taken
 
 
@@ -80,6 +80,8 @@ class LevelMemory(Closing):
                 found = glance(db, place)
             if found is not None:
                 return found
+        elif self.handle.lacks(id):
+            raise unknown_view(id)
         with self.snapshot() as now:
             return now.view(id)
 

@@ -122,7 +122,7 @@ class Snapshot(Closing):
         """See :class:`deixis.memory.perceptual.protocol.PerceptualReading`, here and below."""
         said = self.about(id)
         if said is None:
-            raise UnknownViewError(f"no view '{id}' in this memory")
+            raise unknown_view(id)
         return self.view_of(said)
 
     def view_of(self, said: About) -> View:
@@ -240,6 +240,11 @@ def stored_arrays(source: Any, said: About) -> View:
 
 def _same(item: Any) -> Any:
     return item
+
+
+def unknown_view(id: str) -> UnknownViewError:
+    """The error that says that no view has this id."""
+    return UnknownViewError(f"no view '{id}' in this memory")
 
 
 def unknown_category(name: str, known: tuple[str, ...]) -> UnknownCategoryError:

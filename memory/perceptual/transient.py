@@ -20,7 +20,7 @@ from deixis.memory.owner import Closing
 from deixis.memory.perceptual.handle import closed
 from deixis.memory.perceptual.layout import VERSION
 from deixis.memory.perceptual.protocol import Finding, PerceptualStats, Progress, ViewKey
-from deixis.memory.perceptual.reading import unknown_category
+from deixis.memory.perceptual.reading import unknown_category, unknown_view
 from deixis.memory.perceptual.records import Batch, CategoryRecord, View, check_merging, check_name, name_taken
 
 
@@ -53,7 +53,7 @@ class TransientReading(Closing):
         """Return one view."""
         check_name("a view's id", id)
         if id not in self._content.views:
-            raise UnknownViewError(f"no view '{id}' in this memory")
+            raise unknown_view(id)
         return self._content.views[id]
 
     def views(self, category: str | None = None) -> Iterator[View]:

@@ -408,10 +408,14 @@ class _Copy(SemanticMemory):
         ledger.update_in_bulk(self.store, [*operations, *ledger.keeping_up(self.store, kept_up)])
 
     def finish(self) -> None:
-        """Write what is to be written once, when all is in."""
+        """Write what is to be written once, when all is in.
+
+        Each commit leaves files of its own; until they are put in order a look-up may have to try many of them.
+        """
         if self._overlapping:
             self.store.update(BUILD)
         self.store.flush()
+        self.store.optimize()
 
 
 def _give_back(opened: Opened, forgotten: int) -> None:

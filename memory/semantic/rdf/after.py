@@ -39,7 +39,7 @@ class After:
         predicate: ox.NamedNode | None = None,
         object: Node | None = None,
     ) -> Iterator[ox.Triple]:
-        """Yield the triples of a graph with that subject, predicate and object; one of the three must be given, or none.
+        """Yield the triples of a graph with that subject, predicate and object; all where none of the three is given.
 
         What the change adds comes last.
         """

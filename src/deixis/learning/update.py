@@ -46,8 +46,8 @@ RULES = 1
 BY_HERMIT = " by HermiT"
 """What is said beside the rules where more is said of classes than lessons say."""
 
-AT_ONCE = 50
-"""Maximum number of lessons in one change of the store; a change takes about 2 MB of memory a lesson.
+AT_ONCE = 100
+"""Maximum number of lessons in one change of the store; a change takes 1 to 2 MB of memory a lesson.
 
 More lessons are written to a copy of the store, part by part.
 """

@@ -150,7 +150,7 @@ def thing_of(view: View) -> str | None:
 def keep_views(memory: PerceptualMemory, views: Sequence[View]) -> tuple[Taught, ...]:
     """Keeps views, all or none, in turn; the same points kept again under another word correct it."""
     with memory.exclusive():
-        place = {key.id: key.category for key in memory.listing()}
+        place = {id: view.category for id, view in _kept(memory, views).items()}
         kept = {name: list(memory.views(name)) for name in _involved(memory, views, place)}
         grown = {name: [*kept.get(name, ()), *_of(views, name)] for name in (*kept, *(view.category for view in views))}
         chosen = {name: descriptor_of(together, (UPRIGHT, SPIN_IMAGE_ROOTS)) for name, together in grown.items()}
@@ -178,11 +178,16 @@ def keep_views(memory: PerceptualMemory, views: Sequence[View]) -> tuple[Taught,
 
 def taught_by_hand(memory: PerceptualReading, views: Sequence[View]) -> dict[str, View]:
     """Those of some views that a teacher named already, as they are kept, by id; what is damaged says nothing."""
+    return {id: view for id, view in _kept(memory, views).items() if view.metadata.get("teacher") != GROUNDING}
+
+
+def _kept(memory: PerceptualReading, views: Sequence[View]) -> dict[str, View]:
+    """Those of some views that a memory has already, as they are kept, by id; what is damaged counts as missing."""
     kept = {}
     for view in views:
         with contextlib.suppress(UnknownViewError, DamagedMemoryError):
             kept[view.id] = memory.view(view.id)
-    return {id: view for id, view in kept.items() if view.metadata.get("teacher") != GROUNDING}
+    return kept
 
 
 def _involved(memory: PerceptualReading, views: Sequence[View], place: Mapping[str, str]) -> list[str]:

@@ -19,6 +19,7 @@ from deixis.learning import update as keeping
 from deixis.learning.inferred_graph import everything_by_hermit, everything_that_follows
 from deixis.learning.sizes import Counts, SizeStatistics, SizeView
 from deixis.memory import owner as disk
+from deixis.memory.errors import RejectedWriteError
 from deixis.memory.folder import size
 from deixis.memory.semantic.exchange import export_memory
 from deixis.memory.semantic.rdf.after import After
@@ -258,6 +259,37 @@ def test_of_a_batch_all_lessons_are_kept_or_none(tmp_path: Path) -> None:
             session.learn_all([good, nothing])
         assert session.memory(create=True).lessons() == ()
         assert session.learn_all([]) == ()
+
+
+def test_many_lessons_come_part_by_part_to_the_same(
+    lessons: list[Lesson], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with SemanticMemory.open(tmp_path / "single", create=True) as memory:
+        keeping.keep(memory, ONTOLOGY, [lessons[0]])
+        keeping.keep(memory, ONTOLOGY, lessons[1:])
+        expected = kept(memory)
+    monkeypatch.setattr(keeping, "AT_ONCE", 2)
+    with SemanticMemory.open(tmp_path / "many", create=True) as memory:
+        keeping.keep(memory, ONTOLOGY, [lessons[0]])
+        keeping.keep(memory, ONTOLOGY, lessons[1:])
+        assert kept(memory) == expected and right(memory)
+        keeping.forget(memory, ONTOLOGY, lessons[1].id)
+        assert right(memory)
+
+
+def test_of_many_lessons_all_are_kept_or_none(
+    lessons: list[Lesson], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(keeping, "AT_ONCE", 2)
+    with SemanticMemory.open(tmp_path / "memory", create=True) as memory:
+        keeping.keep(memory, ONTOLOGY, [lessons[0]])
+        before = kept(memory)
+        with pytest.raises(RejectedWriteError, match="is known already"):
+            keeping.keep(memory, ONTOLOGY, [*lessons[1:5], lessons[0]])
+        assert kept(memory) == before and right(memory)
+        assert not (tmp_path / "memory" / "semantic.new").exists()
+    with SemanticMemory.open(tmp_path / "memory") as memory:
+        assert kept(memory) == before
 
 
 @pytest.mark.parametrize(
