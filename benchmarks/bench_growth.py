@@ -129,9 +129,9 @@ def as_batch(path: Path, number: int, runs: int, base: Times) -> None:
     examples = [generated(new) for new in range(number)]
     keep, kept = KnowledgeStore.keep, []
 
-    def timed_keep(store: KnowledgeStore, lessons: Sequence[Lesson]) -> None:
+    def timed_keep(self: KnowledgeStore, lessons: Sequence[Lesson]) -> None:
         started = time.perf_counter(), time.process_time()
-        keep(store, lessons)
+        keep(self, lessons)
         kept.append((time.perf_counter() - started[0], time.process_time() - started[1]))
 
     with Session(path) as session:
