@@ -15,7 +15,7 @@ from scipy.sparse.csgraph import floyd_warshall
 
 from deixis.reasoning.constraints.difference import UNBOUNDED
 from deixis.reasoning.temporal.bounds import Bounds
-from deixis.reasoning.temporal.fluent import Difference, Fluent, Statement
+from deixis.reasoning.temporal.fluent import EndDifference, Fluent, Statement
 from deixis.reasoning.temporal.network import DifferenceConstraint, SimpleTemporalNetwork, difference
 from deixis.reasoning.temporal.timeline import Timeline
 
@@ -23,7 +23,7 @@ SIZES = {100: 7, 500: 3}
 ADDED = 20
 
 
-def story(n: int) -> tuple[list[Fluent], list[Difference]]:
+def story(n: int) -> tuple[list[Fluent], list[EndDifference]]:
     """Fluents with true times, known to some seconds, and four times as many differences known to a second or so."""
     rng = np.random.default_rng(4)
     starts = rng.uniform(0, 10 * n, n).round(3)
@@ -39,11 +39,11 @@ def story(n: int) -> tuple[list[Fluent], list[Difference]]:
         end, other = rng.choice(["start", "finish"], 2).tolist()
         between = float(truth[other][j] - truth[end][i])
         slack = float(rng.uniform(1, 15))
-        differences.append(Difference(f"f{i}.{end}", f"f{j}.{other}", Bounds(between - slack, between + slack)))
+        differences.append(EndDifference(f"f{i}.{end}", f"f{j}.{other}", Bounds(between - slack, between + slack)))
     return fluents, differences
 
 
-def constraints_of(differences: list[Difference]) -> list[tuple[DifferenceConstraint, ...]]:
+def constraints_of(differences: list[EndDifference]) -> list[tuple[DifferenceConstraint, ...]]:
     return [difference(d.tail, d.head, d.bounds) for d in differences]
 
 

@@ -34,7 +34,7 @@ Migration = Callable[[ox.Store, ox.Store], None]
 """Fills a new store from one of an older format."""
 
 
-class State(Enum):
+class FolderState(Enum):
     """What is at a path."""
 
     ABSENT = auto()
@@ -43,23 +43,25 @@ class State(Enum):
     MEMORY = auto()
 
 
-def inspect(folder: Path) -> State:
-    """What is there, by looking only. Raises MemoryFormatError for what is no memory, or a damaged one."""
+def inspect(folder: Path) -> FolderState:
+    """Return what is there, by looking only. Raises MemoryFormatError for what is no memory, or a damaged one."""
     if not folder.exists():
         if folder.is_symlink():
             raise MemoryFormatError(f"{folder} is a link that leads nowhere; remove it or mend it")
-        _refuse_within_file(folder)
-        return State.ABSENT
+        nearest = next(parent for parent in folder.absolute().parents if parent.exists())
+        if not nearest.is_dir():
+            raise MemoryFormatError(f"{folder} cannot be: {nearest} is a file; name another path")
+        return FolderState.ABSENT
     if not folder.is_dir():
         raise MemoryFormatError(f"{folder} is a file: a memory is a folder; name another path")
     names = set(os.listdir(folder))
     if MARK in names:
         read_mark(folder)
-        return State.MEMORY
+        return FolderState.MEMORY
     if STORE in names and NEW_MARK in names:
-        return State.UNFINISHED
+        return FolderState.UNFINISHED
     if names <= {LOCK_FILE, NEW, NEW_MARK, PERCEPTUAL}:
-        return State.EMPTY
+        return FolderState.EMPTY
     if STORE in names and (folder / STORE / "CURRENT").is_file():
         raise MemoryFormatError(
             f"the memory at {folder} is damaged: {MARK} is missing; put it back from a copy of the folder"
@@ -70,14 +72,8 @@ def inspect(folder: Path) -> State:
     )
 
 
-def _refuse_within_file(folder: Path) -> None:
-    nearest = next(parent for parent in folder.absolute().parents if parent.exists())
-    if not nearest.is_dir():
-        raise MemoryFormatError(f"{folder} cannot be: {nearest} is a file; name another path")
-
-
 def read_mark(folder: Path) -> dict[str, Any]:
-    """What ``memory.json`` says. Raises MemoryFormatError where it cannot be believed."""
+    """Return what ``memory.json`` says. Raises MemoryFormatError where it cannot be believed."""
     file = folder / MARK
     try:
         mark = json.loads(file.read_text(encoding="utf-8"))
@@ -99,12 +95,17 @@ def read_mark(folder: Path) -> dict[str, Any]:
 
 
 def store_in(folder: Path) -> Path:
-    """Where the store is: after a swap that was cut short, and until :func:`finish` puts it back, beside its place."""
+    """Return where the store is: after a swap that was cut short, and until :func:`finish` puts it back, beside its
+    place."""
     aside = not (folder / STORE).is_dir() and (folder / OLD).is_dir()
     return folder / (OLD if aside else STORE)
 
 
-def _check_current(folder: Path) -> None:
+def check_store_opens(folder: Path) -> None:
+    """Open the store for reading only, which changes nothing, and let go. Raises MemoryFormatError.
+
+    To be called by the owner: another process may be about to replace the files.
+    """
     store = store_in(folder)
     current = store / "CURRENT"
     try:
@@ -117,14 +118,6 @@ def _check_current(folder: Path) -> None:
         raise MemoryFormatError(
             f"the memory at {folder} is damaged: {STORE}/{manifest[:40]} is missing; restore the folder from a copy"
         )
-
-
-def check_store_opens(folder: Path) -> None:
-    """Opens the store for reading only, which changes nothing, and lets go. Raises MemoryFormatError.
-
-    To be called by the owner: another process may be about to replace the files.
-    """
-    _check_current(folder)
     if not (folder / STORE).is_dir():
         return
     try:
@@ -137,7 +130,7 @@ def check_store_opens(folder: Path) -> None:
 
 
 def create(folder: Path, fill: Callable[[ox.Store], None], digest: str) -> None:
-    """Makes a memory in an empty folder: a store that ``fill`` fills, then the mark."""
+    """Make a memory in an empty folder: a store that ``fill`` fills, then the mark."""
     disk.remove(folder / NEW)
     (folder / NEW_MARK).unlink(missing_ok=True)
     try:
@@ -154,7 +147,7 @@ def create(folder: Path, fill: Callable[[ox.Store], None], digest: str) -> None:
 
 
 def finish(folder: Path) -> None:
-    """Ends or undoes what a crash cut short."""
+    """End or undo what a crash cut short."""
     if not (folder / MARK).exists():
         disk.rename(folder / NEW_MARK, folder / MARK)
     if (folder / OLD).is_dir():
@@ -168,7 +161,7 @@ def finish(folder: Path) -> None:
 
 
 def swap(folder: Path, mark: dict[str, Any]) -> None:
-    """Puts ``semantic.new`` in the place of ``semantic``, with the mark that goes with it; nobody has either open."""
+    """Put ``semantic.new`` in the place of ``semantic``, with the mark that goes with it; nobody has either open."""
     _write(folder / NEW_MARK, mark)
     disk.rename(folder / STORE, folder / OLD)
     disk.rename(folder / NEW, folder / STORE)
@@ -191,18 +184,18 @@ def migrate(folder: Path, steps: Mapping[int, Migration]) -> None:
 
 
 def write_mark(folder: Path, mark: dict[str, Any]) -> None:
-    """Replaces ``memory.json`` in one step."""
+    """Replace ``memory.json`` in one step."""
     _write(folder / NEW_MARK, mark)
     disk.rename(folder / NEW_MARK, folder / MARK)
 
 
 def size(folder: Path) -> int:
-    """The bytes of all files under a folder."""
+    """Return the bytes of all files under a folder."""
     return sum(file.stat().st_size for file in folder.rglob("*") if file.is_file())
 
 
 def one_line(error: BaseException) -> str:
-    """An error's text without line ends."""
+    """Return an error's text without line ends."""
     return " ".join(str(error).split())
 
 
@@ -215,7 +208,7 @@ def _write(file: Path, mark: dict[str, Any]) -> None:
 
 @contextmanager
 def committed(folder: Path) -> Iterator[None]:
-    """Turns what a failed write raises into MemoryWriteError."""
+    """Turn what a failed write raises into MemoryWriteError."""
     advice = (
         "see that the disk has room and the folder is writable, then try again: what was kept before is still there"
     )
@@ -225,7 +218,7 @@ def committed(folder: Path) -> Iterator[None]:
 
 @contextmanager
 def reading(folder: Path) -> Iterator[None]:
-    """Turns what a failed read raises into MemoryWriteError."""
+    """Turn what a failed read raises into MemoryWriteError."""
     with wrap_storage_errors(folder, "read", "restore the folder from a copy"):
         yield
 

@@ -52,13 +52,13 @@ class OnDemand(Generic[Held]):
         self.release()
 
     def require_usable(self) -> None:
-        """Raises MemoryFormatError where this was closed."""
+        """Raise MemoryFormatError where this was closed."""
         if self._closed:
             raise MemoryFormatError(f"{self.path}: this session is closed, and holds no memory; open another")
 
 
 def default_memory() -> Path:
-    """``$DEIXIS_MEMORY``, else a folder for the user's data."""
+    """Return ``$DEIXIS_MEMORY``, else a folder for the user's data."""
     named = os.environ.get("DEIXIS_MEMORY")
     if named:
         return Path(named)

@@ -40,11 +40,11 @@ class Closing(ABC):
 
     @abstractmethod
     def close(self) -> None:
-        """Lets go of what is held; a second time does nothing."""
+        """Let go of what is held; a second time does nothing."""
 
 
 def rename(old: Path, new: Path) -> None:
-    """Gives a file or folder another name, safely on the disk."""
+    """Give a file or folder another name, safely on the disk."""
     os.replace(old, new)
     descriptor = os.open(new.parent, os.O_RDONLY)
     try:
@@ -54,7 +54,7 @@ def rename(old: Path, new: Path) -> None:
 
 
 def remove(path: Path) -> None:
-    """Removes a folder with all in it, where there is one."""
+    """Remove a folder with all in it, where there is one."""
     if path.is_dir():
         shutil.rmtree(path)
 
@@ -74,7 +74,7 @@ class OwnerLock:
 
     @classmethod
     def acquire(cls, folder: Path) -> OwnerLock:
-        """Takes the lock, without saying so in the file yet: see :meth:`sign`.
+        """Take the lock, without saying so in the file yet: see :meth:`sign`.
 
         Raises MemoryBusyError, naming the owner, where somebody has it; MemoryWriteError where no lock can be made.
         """
@@ -89,7 +89,7 @@ class OwnerLock:
         return cls(real, descriptor, made)
 
     def sign(self) -> None:
-        """Writes who the owner is."""
+        """Write who the owner is."""
         command = " ".join([Path(sys.argv[0]).name, *sys.argv[1:]])[:200]
         owner = {"pid": os.getpid(), "command": command, "since": datetime.now(UTC).isoformat(timespec="seconds")}
         try:
@@ -99,7 +99,7 @@ class OwnerLock:
             raise MemoryWriteError(f"{self._folder / LOCK_FILE}: cannot be written: {error.strerror}") from error
 
     def release(self, undo: bool = False) -> None:
-        """Lets go and takes the owner's name away; with ``undo`` the folder is left as it was found."""
+        """Let go and take the owner's name away; with ``undo`` the folder is left as it was found."""
         with _guard:
             with contextlib.suppress(OSError):
                 if undo and self._made:
@@ -123,7 +123,13 @@ def _locked(folder: Path, file: Path) -> tuple[int, bool]:
         try:
             fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError as error:
-            message = _busy(folder, os.pread(descriptor, 4096, 0))
+            advice = "wait until it is done, or close it there"
+            try:
+                owner = json.loads(os.pread(descriptor, 4096, 0))
+                who = f"process {owner['pid']} ({owner['command']}) since {owner['since']}"
+            except (ValueError, KeyError, TypeError):
+                who = "another process"
+            message = f"the memory at {folder} is in use by {who}; {advice}"
             os.close(descriptor)
             raise MemoryBusyError(message) from error
         if _same_file(descriptor, file):
@@ -136,13 +142,3 @@ def _same_file(descriptor: int, file: Path) -> bool:
         return os.path.samestat(os.fstat(descriptor), os.stat(file))
     except FileNotFoundError:
         return False
-
-
-def _busy(folder: Path, content: bytes) -> str:
-    advice = "wait until it is done, or close it there"
-    try:
-        owner = json.loads(content)
-        who = f"process {owner['pid']} ({owner['command']}) since {owner['since']}"
-    except (ValueError, KeyError, TypeError):
-        who = "another process"
-    return f"the memory at {folder} is in use by {who}; {advice}"

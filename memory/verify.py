@@ -21,7 +21,7 @@ import pyoxigraph as ox
 
 from deixis.memory import folder as files
 from deixis.memory.errors import DamagedMemoryError, MemoryFormatError
-from deixis.memory.folder import State
+from deixis.memory.folder import FolderState
 from deixis.memory.owner import OwnerLock
 from deixis.memory.perceptual.in_folder import has_views, verify_views
 from deixis.memory.perceptual.protocol import Finding, Progress
@@ -51,19 +51,20 @@ class Verified:
 
 
 def verify(memory: Path, progress: Progress | None = None, stale: Stale | None = None) -> Verified:
-    """Reads both stores of a memory to their end; changes neither's content.
+    """Read both stores of a memory to their end; change neither's content.
 
     ``stale`` says of a semantic store that could be read, a line each, what in it does not follow from its lessons.
     Raises MemoryFormatError for a folder that is no memory, MemoryBusyError where another process has it.
     """
-    semantic = files.inspect(memory) not in (State.ABSENT, State.EMPTY)
+    semantic = files.inspect(memory) not in (FolderState.ABSENT, FolderState.EMPTY)
     perceptual = has_views(memory)
     findings = verify_semantic(memory, progress, stale) if semantic else ()
     return Verified(semantic, perceptual, (*findings, *_verify_perceptual(memory, progress)))
 
 
 def verify_semantic(memory: Path, progress: Progress | None = None, stale: Stale | None = None) -> tuple[Finding, ...]:
-    """What in the semantic store is not as it was written; ``progress`` is told of indexes done, and of their number.
+    """Return what in the semantic store is not as it was written; ``progress`` is told of indexes done, and of their
+    number.
 
     Raises MemoryBusyError where another process has it.
     """
@@ -110,7 +111,7 @@ def _findings(store: ox.Store, progress: Progress | None) -> Iterator[Finding]:
 
 
 def _read_through(store: ox.Store, quads: list[ox.Quad], places: tuple[int, ...]) -> int:
-    """Looks up everything that there is at those places, and counts what comes of it.
+    """Look up everything that there is at those places, and count what comes of it.
 
     What comes beside it is not counted: Oxigraph 0.5 reads on behind a term of which all bytes are ones, such as -1.
     """

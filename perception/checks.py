@@ -14,14 +14,14 @@ MAX_SHOWN = 60
 
 
 def mapping(data: Any, where: str) -> Mapping[str, Any]:
-    """A JSON object."""
+    """Return a JSON object."""
     if not isinstance(data, Mapping):
         raise SceneError(f"{where}: an object {{…}} is expected here, not {kind(data)}")
     return data
 
 
 def number(data: Any, where: str) -> float:
-    """A number, not a truth value, and finite."""
+    """Return a number, not a truth value, and finite."""
     if isinstance(data, bool) or not isinstance(data, int | float):
         raise SceneError(f"{where}: a number is expected, not {kind(data)}")
     try:
@@ -34,7 +34,7 @@ def number(data: Any, where: str) -> float:
 
 
 def text(data: Any, where: str) -> str:
-    """A text that is not blank and can be written as UTF-8."""
+    """Return a text that is not blank and can be written as UTF-8."""
     if not isinstance(data, str):
         raise SceneError(f"{where}: a text is expected, not {kind(data)}")
     if not data.strip():
@@ -45,7 +45,7 @@ def text(data: Any, where: str) -> str:
 
 
 def score(entry: Mapping[str, Any], where: str) -> float:
-    """The ``score`` that a detector gave, a probability; 1 where there is none."""
+    """Return the ``score`` that a detector gave, a probability; 1 where there is none."""
     found = entry.get("score")
     value = 1.0 if found is None else number(found, f"{where}: 'score'")
     if not 0 <= value <= 1:
@@ -54,7 +54,7 @@ def score(entry: Mapping[str, Any], where: str) -> float:
 
 
 def pixels(data: Any, where: str) -> float | None:
-    """An image's height or width, or None where it is not given."""
+    """Return an image's height or width, or None where it is not given."""
     if data is None:
         return None
     value = number(data, where)
@@ -64,7 +64,7 @@ def pixels(data: Any, where: str) -> float | None:
 
 
 def items(entry: Mapping[str, Any], key: str, where: str) -> list[Any]:
-    """The list under ``key``."""
+    """Return the list under ``key``."""
     if key not in entry:
         raise SceneError(f"{where}: '{key}' is missing")
     if not isinstance(entry[key], list):
@@ -73,7 +73,7 @@ def items(entry: Mapping[str, Any], key: str, where: str) -> list[Any]:
 
 
 def kind(data: Any) -> str:
-    """What a JSON value is, in words.
+    """Return what a JSON value is, in words.
 
     >>> kind(None), kind(1.5), kind([])
     ('null', 'a number', 'a list')
@@ -86,7 +86,7 @@ def kind(data: Any) -> str:
 
 
 def shown(value: object) -> str:
-    """A value as a message repeats it: on one line, never longer than :data:`MAX_SHOWN`, whatever a file holds.
+    """Return a value as a message repeats it: on one line, never longer than :data:`MAX_SHOWN`, whatever a file holds.
 
     >>> shown("a.jpg"), len(shown("a" * 1000))
     ('a.jpg', 60)

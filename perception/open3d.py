@@ -14,7 +14,8 @@ _NAME = "open3d.cpu.pybind"
 
 @cache
 def open3d() -> ModuleType:
-    """``open3d`` with ``core``, ``geometry``, ``pipelines``, ``t`` and ``utility``; whole where it is imported already.
+    """Return ``open3d`` with ``core``, ``geometry``, ``pipelines``, ``t`` and ``utility``; whole where it is imported
+    already.
 
     ``import open3d`` after this finds the same module, and brings the rest: what is made with this one is what the
     drawing functions of the whole take. A build for CUDA chooses its compiled part itself, and is imported whole.

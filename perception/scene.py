@@ -37,7 +37,7 @@ class OrientedBox:
     extents: tuple[float, float, float]
 
     def rounded(self, digits: int) -> OrientedBox:
-        """The same to so many digits after the point."""
+        """Return the same to so many digits after the point."""
         x, y, z, length, width, height = (round(value, digits) for value in (*self.centre, *self.extents))
         return OrientedBox((x, y, z), round(self.yaw, digits), (length, width, height))
 
@@ -54,7 +54,7 @@ class OrientedBox:
 
 
 def turned_axes(yaw: float) -> NDArray[np.float64]:
-    """The axes (3, 3), in rows, turned about the vertical."""
+    """Return the axes (3, 3), in rows, turned about the vertical."""
     cosine, sine = np.cos(yaw), np.sin(yaw)
     return np.array([[cosine, sine, 0.0], [-sine, cosine, 0.0], [0.0, 0.0, 1.0]])
 
@@ -212,11 +212,11 @@ class Scene:
         return self.relations(vocabulary, tolerance).graph()
 
     def without_labels(self) -> Scene:
-        """The same scene with nothing named."""
+        """Return the same scene with nothing named."""
         return replace(self, objects=tuple(replace(thing, label=None, confidence=1.0) for thing in self.objects))
 
     def reordered(self, order: Sequence[int]) -> Scene:
-        """The same scene with its objects listed in another order."""
+        """Return the same scene with its objects listed in another order."""
         return replace(self, objects=tuple(self.objects[i] for i in order), detection=None)
 
 
@@ -234,24 +234,20 @@ def _require_box(thing: PerceivedObject, file: str) -> None:
         if low > high:
             raise SceneError(f"{where}: on {axis} its min {low:g} is above its max {high:g}; swap them")
     if thing.oriented is not None:
-        _require_oriented(thing.oriented, len(thing.minimum), where)
+        numbers = (*thing.oriented.centre, thing.oriented.yaw, *thing.oriented.extents)
+        if len(thing.minimum) != 3:
+            raise SceneError(
+                f"{where}: an oriented box has heights, and 'min' and 'max' have none; give them 3 coordinates"
+            )
+        if len(thing.oriented.centre) != 3 or len(thing.oriented.extents) != 3 or not np.isfinite(numbers).all():
+            raise SceneError(
+                f"{where}: an oriented box has a centre and extents of 3 finite numbers each, and a finite yaw"
+            )
+        if max(map(abs, numbers)) > MAX_COORDINATE or min(thing.oriented.extents) < 0:
+            raise SceneError(
+                f"{where}: an oriented box's extents are 0 or more, and nothing of it beyond {MAX_COORDINATE:g}"
+            )
     if not 0 <= thing.confidence <= 1:
         raise SceneError(f"{where}: a confidence lies between 0 and 1, not at {thing.confidence:g}")
     if thing.colour is not None and (len(thing.colour) != 3 or not all(0 <= part <= 255 for part in thing.colour)):
         raise SceneError(f"{where}: a colour is red, green and blue, each from 0 to 255, not {thing.colour}")
-
-
-def _require_oriented(box: OrientedBox, axes: int, where: str) -> None:
-    numbers = (*box.centre, box.yaw, *box.extents)
-    if axes != 3:
-        raise SceneError(
-            f"{where}: an oriented box has heights, and 'min' and 'max' have none; give them 3 coordinates"
-        )
-    if len(box.centre) != 3 or len(box.extents) != 3 or not np.isfinite(numbers).all():
-        raise SceneError(
-            f"{where}: an oriented box has a centre and extents of 3 finite numbers each, and a finite yaw"
-        )
-    if max(map(abs, numbers)) > MAX_COORDINATE or min(box.extents) < 0:
-        raise SceneError(
-            f"{where}: an oriented box's extents are 0 or more, and nothing of it beyond {MAX_COORDINATE:g}"
-        )

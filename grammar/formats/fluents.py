@@ -20,11 +20,11 @@ from deixis.grammar.files import read_text
 from deixis.ontology.allen import SYMBOLS, Allen, allen_mask, members
 from deixis.ontology.strict_json import parse_json
 from deixis.reasoning.errors import SettingError
-from deixis.reasoning.temporal.bounds import FARTHEST, UNKNOWN, Bounds
+from deixis.reasoning.temporal.bounds import MAX_SECONDS, UNKNOWN, Bounds
 from deixis.reasoning.temporal.fluent import (
     ORIGIN,
     AllenStatement,
-    Difference,
+    EndDifference,
     Fluent,
     Statement,
     TemporalRelation,
@@ -116,7 +116,7 @@ def _relation(
         return AllenStatement(a, allen_mask(relations), b, where)
     entry = _object(data, where, ("from", "to", "bounds"), ("from", "to", "bounds"))
     tail, head = (_known(entry[end], f"{where}.{end}", points, "point") for end in ("from", "to"))
-    return Difference(tail, head, _bounds(entry["bounds"], f"{where}.bounds", scale), where)
+    return EndDifference(tail, head, _bounds(entry["bounds"], f"{where}.bounds", scale), where)
 
 
 def _bounds(data: Any, where: str, scale: float) -> Bounds:
@@ -148,8 +148,8 @@ def _flag(entry: dict[str, Any], key: str, where: str) -> bool:
 def _number(data: Any, where: str, scale: float) -> float:
     if isinstance(data, bool) or not isinstance(data, int | float):
         raise FluentFileError(f"{where}: a number or null is expected, not {_kind(data)}")
-    if not abs(data) <= FARTHEST / scale:
-        raise FluentFileError(f"{where}: the time is beyond {FARTHEST:g} s; is the unit or the origin right?")
+    if not abs(data) <= MAX_SECONDS / scale:
+        raise FluentFileError(f"{where}: the time is beyond {MAX_SECONDS:g} s; is the unit or the origin right?")
     return data * scale
 
 

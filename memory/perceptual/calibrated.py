@@ -6,10 +6,10 @@ compared in another way, is as good as none.
 >>> import tempfile
 >>> from deixis.perception.recognition.calibration import SHIPPED
 >>> folder, views = Path(tempfile.mkdtemp()), {("mug", "v1"), ("mug", "v2")}
->>> keep_calibration(folder, SHIPPED, views, "spin images")
->>> kept_calibration(folder, views, "spin images") == SHIPPED
+>>> write_calibration(folder, SHIPPED, views, "spin images")
+>>> read_calibration(folder, views, "spin images") == SHIPPED
 True
->>> kept_calibration(folder, {("mug", "v1")}, "spin images"), kept_calibration(folder, views, "colours")
+>>> read_calibration(folder, {("mug", "v1")}, "spin images"), read_calibration(folder, views, "colours")
 (None, None)
 """
 
@@ -29,12 +29,12 @@ from deixis.perception.recognition.calibration import Calibration
 ViewPlace = tuple[str, str]
 """A view's category and id."""
 
-FRESH = 0.1
-"""A calibration stays while no larger share of the views has come, gone, or changed its category."""
+MAX_CHANGED_SHARE = 0.1
+"""Maximum share of the views that may come, go or change their category while a calibration stays valid."""
 
 
-def keep_calibration(folder: Path, calibration: Calibration, views: Set[ViewPlace], compared: str) -> None:
-    """Writes it, in one step, with how views were compared; where that cannot be, nothing is kept."""
+def write_calibration(folder: Path, calibration: Calibration, views: Set[ViewPlace], compared: str) -> None:
+    """Write it, in one step, with how views were compared; where that cannot be, nothing is kept."""
     content = {"calibration": asdict(calibration), "compared": compared, "views": sorted(views)}
     new = folder / (CALIBRATION + ".new")
     with contextlib.suppress(OSError):
@@ -42,17 +42,17 @@ def keep_calibration(folder: Path, calibration: Calibration, views: Set[ViewPlac
         new.replace(folder / CALIBRATION)
 
 
-def kept_calibration(folder: Path, views: Set[ViewPlace], compared: str) -> Calibration | None:
-    """What was kept, if it was worked out from about these views, compared in this way."""
+def read_calibration(folder: Path, views: Set[ViewPlace], compared: str) -> Calibration | None:
+    """Return what was kept, if it was worked out from about these views, compared in this way."""
     try:
         content = json.loads((folder / CALIBRATION).read_text(encoding="utf-8"))
         if content.pop("sum") != _sum(content) or content["compared"] != compared:
             return None
-        before = {(category, id) for category, id in content["views"]}
+        before = {(category, view_id) for category, view_id in content["views"]}
         kept = Calibration(**content["calibration"])
     except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
         return None
-    return kept if len(before ^ views) <= FRESH * len(views) else None
+    return kept if len(before ^ views) <= MAX_CHANGED_SHARE * len(views) else None
 
 
 def _sum(content: dict[str, Any]) -> str:

@@ -67,7 +67,7 @@ def unpack(data: bytes) -> tuple[dict[str, NDArray[Any]], str]:
     return arrays, header["__metadata__"][_NOTE]
 
 
-class About(NamedTuple):
+class ViewHeader(NamedTuple):
     """All of a view but its arrays.
 
     ``key`` is its place in the order of all views. The arrays lie under a key of their own, in the category under which
@@ -83,7 +83,7 @@ class About(NamedTuple):
     sum: bytes
     metadata: str  # JSON
 
-    def moved(self, category: str) -> About:
+    def moved(self, category: str) -> ViewHeader:
         """Return the same view in another category; its arrays stay where they are."""
         return self._replace(category=category, key=keys.view_key(keys.VIEW, category, self.id, self.time))
 
@@ -97,14 +97,14 @@ def write_view(view: View) -> tuple[tuple[bytes, bytes], tuple[bytes, bytes]]:
     return (key, seal(key, said)), (arrays_key, arrays)
 
 
-def write_about(said: About) -> tuple[bytes, bytes]:
+def write_about(said: ViewHeader) -> tuple[bytes, bytes]:
     """Return key and value of what is said of a view: checksum of its arrays; their category, if another; JSON."""
     place = keys.split_view_key(said.arrays_key)[0]
     ended = keys.ended("" if place == said.category else place)
     return said.key, seal(said.key, said.sum + ended + said.metadata.encode())
 
 
-def read_about(key: bytes, sealed: bytes) -> About:
+def read_about(key: bytes, sealed: bytes) -> ViewHeader:
     """Return what is said of a view again."""
     value = unseal(key, sealed)
     if value is None:
@@ -117,24 +117,24 @@ def read_about(key: bytes, sealed: bytes) -> About:
         ) from error
 
 
-def parse_about(key: bytes, value: bytes) -> About:
+def parse_about(key: bytes, value: bytes) -> ViewHeader:
     """Return what an unsealed value says of a view. Raises ValueError for other data."""
-    category, id, time = keys.split_view_key(key)
+    category, view_id, time = keys.split_view_key(key)
     place, metadata = keys.split_ended(value[_CHECKSUM:])
-    arrays_key = keys.view_key(keys.ARRAYS, place, id, time) if place else keys.ARRAYS + key[1:]
-    return About(category, id, time, key, arrays_key, value[:_CHECKSUM], metadata.decode())
+    arrays_key = keys.view_key(keys.ARRAYS, place, view_id, time) if place else keys.ARRAYS + key[1:]
+    return ViewHeader(category, view_id, time, key, arrays_key, value[:_CHECKSUM], metadata.decode())
 
 
 def named(key: bytes) -> str:
     """Name the view that a key is of, whatever the key is like."""
     try:
-        category, id, _ = keys.split_view_key(key)
+        category, view_id, _ = keys.split_view_key(key)
     except ValueError:
         return f"a view with the key {key[:60]!r}"
-    return f"view '{id}' of '{category}'"
+    return f"view '{view_id}' of '{category}'"
 
 
-def read_view(said: About, arrays: bytes | None) -> View:
+def read_view(said: ViewHeader, arrays: bytes | None) -> View:
     """Return a view again, of what is said of it and the value of its arrays."""
     if arrays is None:
         raise DamagedMemoryError(f"view '{said.id}' of '{said.category}': its arrays are missing")
@@ -169,7 +169,7 @@ def read_category(name: str, sealed: bytes) -> CategoryRecord:
     return CategoryRecord(name, state, json.loads(note))
 
 
-class Counts(NamedTuple):
+class StoreCounts(NamedTuple):
     """What is counted in every batch: batches so far, views there are, and batches that were lost."""
 
     batches: int = 0
@@ -177,16 +177,16 @@ class Counts(NamedTuple):
     lost: int = 0
 
 
-def write_counts(counts: Counts) -> bytes:
+def write_counts(counts: StoreCounts) -> bytes:
     """Return the value of the key :data:`deixis.memory.perceptual.keys.COUNT`."""
     return seal(keys.COUNT, _COUNTS.pack(counts.batches, counts.views, counts.lost))
 
 
-def read_counts(sealed: bytes | None) -> Counts:
+def read_counts(sealed: bytes | None) -> StoreCounts:
     """Return the counts again."""
     if sealed is None:
-        return Counts()
+        return StoreCounts()
     value = unseal(keys.COUNT, sealed)
     if value is None or len(value) != _COUNTS.size:
         raise DamagedMemoryError("the counts are not what was written")
-    return Counts(*_COUNTS.unpack(value))
+    return StoreCounts(*_COUNTS.unpack(value))

@@ -31,7 +31,7 @@ from safetensors import SafetensorError
 from deixis.memory.errors import ImportFormatError, MemoryWriteError, RecordError, RejectedWriteError
 from deixis.memory.owner import Closing
 from deixis.memory.perceptual.codec import pack, unpack
-from deixis.memory.perceptual.protocol import PerceptualMemory, PerceptualReading, Progress
+from deixis.memory.perceptual.protocol import PerceptualMemory, Progress
 from deixis.memory.perceptual.records import Batch, CategoryRecord, View, arrays_by_name, arrays_by_use
 
 FORMAT, VERSION = "deixis-perceptual-memory", 1
@@ -54,11 +54,29 @@ class Imported:
 def export_views(memory: PerceptualMemory, file: str | Path, progress: Progress | None = None) -> None:
     """Write everything as it is now into one file, the same bytes for the same content. Raises MemoryWriteError."""
     with memory.snapshot() as now:
-        _write_archive(now, Path(file), progress)
+        path = Path(file)
+        new = path.with_name(path.name + ".new")
+        try:
+            with new.open("wb") as out, zipfile.ZipFile(out, "w", zipfile.ZIP_STORED) as archive:
+                names = now.categories()
+                views = sum(1 for _ in now.listing())
+                head = {"format": FORMAT, "version": VERSION, "categories": len(names), "views": views}
+                _add(archive, _HEAD, json.dumps(head, indent=2).encode() + b"\n")
+                for number, name in enumerate(names):
+                    _add(archive, f"categories/{number:09}.safetensors", category_file(now.category(name)))
+                for number, view in enumerate(counted(now.views(), views, progress)):
+                    _add(archive, f"views/{number:09}.safetensors", view_file(view))
+            os.replace(new, path)
+        except OSError as error:
+            if isinstance(error, MemoryWriteError):
+                raise
+            raise MemoryWriteError(f"{path}: cannot be written: {error.strerror or error}") from error
+        finally:
+            new.unlink(missing_ok=True)
 
 
 def import_views(file: str | Path, memory: PerceptualMemory, progress: Progress | None = None) -> Imported:
-    """Takes in what :func:`export_views` wrote; what is there stays.
+    """Take in what :func:`export_views` wrote; what is there stays.
 
     All is read and compared before anything is written. Up to 64 MB go in in one step; a larger file in several, and
     if the disk is full before the last one, importing again goes on from there. A category's learned state is kept
@@ -78,7 +96,22 @@ def import_views(file: str | Path, memory: PerceptualMemory, progress: Progress 
             coming[view.category].add(view.id)
         records, relearn = _records(archive, memory, there, coming)
         views = counted(archive.views(), 2 * len(archive), progress, len(archive))
-        new = _write(views, memory, set(there), records)
+        known = set(there)
+        waiting: list[View] = []
+        size = written = 0
+        for new_view in views:
+            if new_view.id in known:
+                continue
+            waiting.append(new_view)
+            size += sum(array.nbytes for array in new_view.descriptors.values()) + (
+                0 if new_view.points is None else new_view.points.nbytes
+            )
+            if size >= _STEP:
+                memory.write(Batch(waiting))
+                waiting, size, written = [], 0, written + len(waiting)
+        if waiting or records:
+            memory.write(Batch(waiting, records), sync=True)
+        new = written + len(waiting)
     return Imported(new, len(records), relearn)
 
 
@@ -88,8 +121,8 @@ def _records(
     """Return the records to write, and the names of those that lose their state."""
     theirs = {record.name: record for record in archive.records()}
     held: dict[str, set[str]] = defaultdict(set)
-    for id, category in there.items():
-        held[category].add(id)
+    for view_id, category in there.items():
+        held[category].add(view_id)
     records, relearn = [], []
     for name in sorted({*theirs, *coming}):
         if name not in memory.categories():
@@ -104,25 +137,6 @@ def _records(
     return records, tuple(relearn)
 
 
-def _write(views: Iterable[View], memory: PerceptualMemory, known: set[str], records: list[CategoryRecord]) -> int:
-    """Write the views that are new, and the records with the last of them; return how many views were new."""
-    waiting: list[View] = []
-    size = written = 0
-    for view in views:
-        if view.id in known:
-            continue
-        waiting.append(view)
-        size += sum(array.nbytes for array in view.descriptors.values()) + (
-            0 if view.points is None else view.points.nbytes
-        )
-        if size >= _STEP:
-            memory.write(Batch(waiting))
-            waiting, size, written = [], 0, written + len(waiting)
-    if waiting or records:
-        memory.write(Batch(waiting, records), sync=True)
-    return written + len(waiting)
-
-
 def is_archive(file: Path) -> bool:
     """Return whether a file is an archive of views, by looking at its beginning only."""
     try:
@@ -130,32 +144,6 @@ def is_archive(file: Path) -> bool:
             return opened.read(len(_BEGINNING)) == _BEGINNING
     except OSError:
         return False
-
-
-def _write_archive(memory: PerceptualReading, file: Path, progress: Progress | None = None) -> None:
-    """Write all that a memory keeps; the file is there whole, or not at all. Raises MemoryWriteError."""
-    new = file.with_name(file.name + ".new")
-    try:
-        with new.open("wb") as out, zipfile.ZipFile(out, "w", zipfile.ZIP_STORED) as archive:
-            _fill(archive, memory, progress)
-        os.replace(new, file)
-    except OSError as error:
-        if isinstance(error, MemoryWriteError):
-            raise
-        raise MemoryWriteError(f"{file}: cannot be written: {error.strerror or error}") from error
-    finally:
-        new.unlink(missing_ok=True)
-
-
-def _fill(archive: zipfile.ZipFile, memory: PerceptualReading, progress: Progress | None) -> None:
-    names = memory.categories()
-    views = sum(1 for _ in memory.listing())
-    head = {"format": FORMAT, "version": VERSION, "categories": len(names), "views": views}
-    _add(archive, _HEAD, json.dumps(head, indent=2).encode() + b"\n")
-    for number, name in enumerate(names):
-        _add(archive, f"categories/{number:09}.safetensors", category_file(memory.category(name)))
-    for number, view in enumerate(counted(memory.views(), views, progress)):
-        _add(archive, f"views/{number:09}.safetensors", view_file(view))
 
 
 def counted(views: Iterable[View], total: int, progress: Progress | None, before: int = 0) -> Iterator[View]:
@@ -215,20 +203,20 @@ class Archive(Closing):
     def records(self) -> Iterator[CategoryRecord]:
         """Iterate over what learners left about categories."""
         for name, said, arrays in self._entries("categories/"):
-            with _told(self.file, name):
+            with _entry_errors(self.file, name):
                 yield CategoryRecord(said["name"], arrays, said["metadata"])
 
     def views(self) -> Iterator[View]:
         """Iterate over the views."""
         for name, said, arrays in self._entries("views/"):
-            with _told(self.file, name):
+            with _entry_errors(self.file, name):
                 time = datetime.fromisoformat(said["time"])
                 yield View(said["id"], said["category"], time, *arrays_by_use(arrays), said["metadata"])
 
     def _check_head(self) -> None:
         if _HEAD not in self._zip.namelist():
             raise ImportFormatError(f"{self.file}: this is no export of a memory: it has no '{_HEAD}'")
-        with _told(self.file, _HEAD):
+        with _entry_errors(self.file, _HEAD):
             head = json.loads(self._read(_HEAD))
             if head["format"] != FORMAT:
                 raise ValueError(f"it does not say {FORMAT}")
@@ -244,7 +232,7 @@ class Archive(Closing):
 
     def _entries(self, folder: str) -> Iterator[tuple[str, dict[str, Any], dict[str, NDArray[Any]]]]:
         for name in sorted(name for name in self._zip.namelist() if name.startswith(folder)):
-            with _told(self.file, name):
+            with _entry_errors(self.file, name):
                 arrays, note = unpack(self._read(name))
                 said = json.loads(note)
             yield name, said, arrays
@@ -256,7 +244,7 @@ class Archive(Closing):
         return self._zip.read(info)
 
 
-class _told:
+class _entry_errors:
     """Turn whatever goes wrong with an entry into ImportFormatError."""
 
     def __init__(self, file: Path, entry: str) -> None:

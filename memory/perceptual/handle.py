@@ -23,7 +23,7 @@ from deixis.memory.errors import DamagedMemoryError, MemoryFormatError, MemoryWr
 from deixis.memory.folder import one_line
 from deixis.memory.owner import LOCK_FILE, OwnerLock
 from deixis.memory.perceptual import keys, layout
-from deixis.memory.perceptual.codec import About, Counts, read_counts, write_about, write_counts, write_view
+from deixis.memory.perceptual.codec import StoreCounts, ViewHeader, read_counts, write_about, write_counts, write_view
 from deixis.memory.perceptual.records import View
 
 OPTIONS = {
@@ -33,8 +33,8 @@ OPTIONS = {
     "max_file_size": 32 << 20,
 }
 
-KEPT = 64
-"""Keys up to which a batch is written from memory that the one before was written from: the system gives new memory
+MAX_REUSED_BATCH = 64
+"""Maximum number of keys of a batch that reuses the memory of the one before: the system gives new memory
 page by page, which for 60 KB takes as long as all else that is done here."""
 
 _handles: dict[Path, Handle] = {}
@@ -65,7 +65,7 @@ def read_places(source: Any) -> Places:
 
 
 @dataclass(slots=True)
-class Change:
+class WriteBatch:
     """What a write comes to: keys with their values, None to delete, to be written in one step.
 
     ``places`` is where views are then, by id, None for a view that is gone; ``views``, how many more there are.
@@ -82,7 +82,7 @@ class Change:
         self.places[view.id] = said[0]
         self.views += 1
 
-    def move(self, said: About, category: str) -> None:
+    def move(self, said: ViewHeader, category: str) -> None:
         """Move a view that is there to another category; its arrays stay where they are."""
         moved = write_about(said.moved(category))
         self.pairs += ((said.key, None), moved)
@@ -102,7 +102,9 @@ class Handle:
     MemoryFormatError.
     """
 
-    def __init__(self, folder: Path, lock: OwnerLock, tally: layout.Tally, db: Any, counts: Counts) -> None:
+    def __init__(
+        self, folder: Path, lock: OwnerLock, tally: layout.AcknowledgedCounts, db: Any, counts: StoreCounts
+    ) -> None:
         self.folder, self.counts = folder, counts
         self.writing = threading.RLock()
         self.users = 1
@@ -132,7 +134,7 @@ class Handle:
             raise_level_error(self.folder, error)
 
     def keep(self, source: Any) -> Any:
-        """A snapshot or an iterator that outlives a call, until it is let go.
+        """Return a snapshot or an iterator that outlives a call, until it is let go.
 
         LevelDB must not be asked to free one while it is being closed, which ends the process: one that nobody has
         any more by then is freed after it.
@@ -147,7 +149,7 @@ class Handle:
             self._sources.discard(source)
 
     def places(self) -> dict[str, bytes]:
-        """The key of each view by its id; to be called with :attr:`writing` held, and not to be changed.
+        """Return the key of each view by its id; to be called with :attr:`writing` held, and not to be changed.
 
         Raises DamagedMemoryError where not all can be read: then nobody knows what a new view would replace.
         """
@@ -156,9 +158,9 @@ class Handle:
             raise_level_error(self.folder, found.damage)
         return found.by_id
 
-    def place_of(self, id: str) -> bytes | None:
+    def place_of(self, view_id: str) -> bytes | None:
         """Return the key of a view, or None, as far as keys can be read."""
-        return (self._places or self._read_places()).by_id.get(id)
+        return (self._places or self._read_places()).by_id.get(view_id)
 
     def lacks(self, id: str) -> bool:
         """Return whether there is surely no view of that id now."""
@@ -171,20 +173,20 @@ class Handle:
                 self._places = read_places(db)
             return self._places
 
-    def write(self, change: Change, sync: bool) -> None:
-        """Writes all of a change in one step; to be called with :attr:`writing` held.
+    def write(self, change: WriteBatch, sync: bool) -> None:
+        """Write all of a change in one step; to be called with :attr:`writing` held.
 
         After a failure the log may end in half a batch, behind which nothing would be found again: then nothing more is
         written until the memory is opened anew.
         """
         there, before = self.places(), self.counts
-        counts = Counts(before.batches + 1, before.views + change.views, before.lost)
+        counts = StoreCounts(before.batches + 1, before.views + change.views, before.lost)
         sealed = write_counts(counts)
         with self as db:
             if self._failed is not None:
                 raise MemoryWriteError(f"{self._failed}; close the memory, mend what is wrong, and open it again")
             try:
-                batch = db.write_batch(sync=sync) if sync or len(change.pairs) > KEPT else self._batch
+                batch = db.write_batch(sync=sync) if sync or len(change.pairs) > MAX_REUSED_BATCH else self._batch
                 batch.clear()
                 batch.put(keys.COUNT, sealed)  # first: after arrays it would have them copied once more
                 for key, value in change.pairs:
@@ -195,11 +197,11 @@ class Handle:
                 self._failed = f"an earlier write to the memory at {self.folder} failed ({one_line(error)})"
                 raise
         self.counts = counts
-        for id, place in change.places.items():
+        for view_id, place in change.places.items():
             if place is None:
-                there.pop(id, None)
+                there.pop(view_id, None)
             else:
-                there[id] = place
+                there[view_id] = place
 
     def disowned(self) -> Any:
         """Take the database away from here without closing it."""
@@ -224,7 +226,7 @@ class Handle:
 
 
 def _disown() -> None:
-    """A forked child must not touch its parent's databases: it finds them closed. They are not freed there either."""
+    """Take the databases away from a forked child, which must not touch its parent's, without freeing them there."""
     for handle in _handles.values():
         _inherited.append(handle.disowned())
     _handles.clear()
@@ -293,29 +295,25 @@ def _opened(folder: Path, real: Path, create: bool) -> Handle:
     except OSError as error:
         raise MemoryWriteError(f"the folder {folder} cannot be made: {error.strerror}") from error
     try:
-        return _locked(real, made)
+        with contextlib.ExitStack() as undo, wrap_level_errors(real):
+            lock = OwnerLock.acquire(real)
+            undo.callback(lock.release, undo=True)
+            if made and layout.version_in(real) is None:  # looked at by the owner only: two may have found no folder
+                undo.callback(_emptied, real)
+            lock.sign()
+            layout.prepare(real)
+            tally = layout.AcknowledgedCounts(real)
+            undo.callback(tally.close)
+            db = plyvel.DB(str(layout.store(real)), **OPTIONS)
+            undo.callback(db.close)
+            counts = _counted(real, db, tally)
+            undo.pop_all()
+        return Handle(real, lock, tally, db, counts)
     except BaseException:
         if made:
             with contextlib.suppress(OSError):  # not empty: somebody else has it by now
                 real.rmdir()
         raise
-
-
-def _locked(folder: Path, made: bool) -> Handle:
-    with contextlib.ExitStack() as undo, wrap_level_errors(folder):
-        lock = OwnerLock.acquire(folder)
-        undo.callback(lock.release, undo=True)
-        if made and layout.version_in(folder) is None:  # looked at by the owner only: two may have found no folder
-            undo.callback(_emptied, folder)
-        lock.sign()
-        layout.prepare(folder)
-        tally = layout.Tally(folder)
-        undo.callback(tally.close)
-        db = plyvel.DB(str(layout.store(folder)), **OPTIONS)
-        undo.callback(db.close)
-        counts = _counted(folder, db, tally)
-        undo.pop_all()
-    return Handle(folder, lock, tally, db, counts)
 
 
 def _emptied(folder: Path) -> None:
@@ -327,7 +325,7 @@ def _emptied(folder: Path) -> None:
             entry.unlink()
 
 
-def _counted(folder: Path, db: Any, tally: layout.Tally) -> Counts:
+def _counted(folder: Path, db: Any, tally: layout.AcknowledgedCounts) -> StoreCounts:
     """Return the counts, with what is missing of the acknowledged batches counted as lost."""
     try:
         counts = read_counts(db.get(keys.COUNT, verify_checksums=True))
@@ -336,7 +334,7 @@ def _counted(folder: Path, db: Any, tally: layout.Tally) -> Counts:
     missing = tally.found.batches - counts.batches
     if missing > 0:
         views = sum(1 for _ in db.iterator(prefix=keys.VIEW, include_value=False, verify_checksums=True))
-        counts = Counts(tally.found.batches, views, counts.lost + missing)
+        counts = StoreCounts(tally.found.batches, views, counts.lost + missing)
         db.put(keys.COUNT, write_counts(counts), sync=True)
     tally.write(write_counts(counts))
     return counts

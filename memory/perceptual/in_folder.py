@@ -94,7 +94,7 @@ def import_all(file: Path, memory: Path, progress: Progress | None = None) -> Im
 
 @contextlib.contextmanager
 def restored_on_failure(memory: PerceptualMemory, views: Sequence[View]) -> Iterator[None]:
-    """Puts views that are kept within, and their categories, back as they were where something within fails.
+    """Put views that are kept within, and their categories, back as they were where something within fails.
 
     Other threads cannot write meanwhile. A view that was damaged before is gone then. Raises MemoryWriteError, with
     what had failed, where the memory cannot be put back.
@@ -120,9 +120,9 @@ def restored_on_failure(memory: PerceptualMemory, views: Sequence[View]) -> Iter
             raise
 
 
-def _view(memory: PerceptualMemory, id: str) -> View | None:
+def _view(memory: PerceptualMemory, view_id: str) -> View | None:
     with contextlib.suppress(DeixisError):
-        return memory.view(id)
+        return memory.view(view_id)
     return None
 
 

@@ -21,26 +21,26 @@ _END, _ZERO = b"\x00\x00", b"\x00\xff"
 _MIDDLE = 1 << 63
 
 
-def view_key(kind: bytes, category: str, id: str, time: int) -> bytes:
+def view_key(kind: bytes, category: str, view_id: str, time: int) -> bytes:
     """Return the key of a view; ``time`` in microseconds since 1970."""
-    if "\0" in category or "\0" in id:
-        texts = ended(category) + ended(id)
+    if "\0" in category or "\0" in view_id:
+        texts = ended(category) + ended(view_id)
     else:
-        texts = f"{category}\0\0{id}\0\0".encode()
+        texts = f"{category}\0\0{view_id}\0\0".encode()
     return kind + texts + (time + _MIDDLE).to_bytes(8, "big")
 
 
 def split_view_key(key: bytes) -> tuple[str, str, int]:
     """Return category, id and time of a view's key. Raises ValueError for a key that :func:`view_key` did not make."""
     try:
-        category, id, end = key[1:-8].decode().split("\0\0")
+        category, view_id, end = key[1:-8].decode().split("\0\0")
     except ValueError:  # a zero in a name comes with a 255, which is in no UTF-8
         category, rest = split_ended(key[1:-8])
-        id, left = split_ended(rest)
+        view_id, left = split_ended(rest)
         end = left.decode()
     if end:
         raise ValueError("a time has eight bytes")
-    return category, id, int.from_bytes(key[-8:], "big") - _MIDDLE
+    return category, view_id, int.from_bytes(key[-8:], "big") - _MIDDLE
 
 
 def category_prefix(category: str) -> bytes:

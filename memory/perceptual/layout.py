@@ -31,7 +31,7 @@ import plyvel
 from deixis.memory import owner as disk
 from deixis.memory.errors import DamagedMemoryError, MemoryFormatError
 from deixis.memory.owner import LOCK_FILE
-from deixis.memory.perceptual.codec import Counts, read_counts
+from deixis.memory.perceptual.codec import StoreCounts, read_counts
 from deixis.memory.perceptual.migrations import MIGRATIONS
 
 FOLDER = "perceptual"
@@ -52,7 +52,7 @@ def store(folder: Path, version: int | None = None) -> Path:
 
 
 def version_in(folder: Path) -> int | None:
-    """The version of what is in a folder, by looking only; None where there is no memory yet.
+    """Return the version of what is in a folder, by looking only; None where there is no memory yet.
 
     Raises MemoryFormatError for a folder of other things, and for a version that this program does not know;
     DamagedMemoryError where a store was closed and is not there.
@@ -165,7 +165,7 @@ def _files(store: Path) -> dict[str, list[int]]:
     return looks
 
 
-class Tally:
+class AcknowledgedCounts:
     """The file ``acknowledged``, open for writing.
 
     The counts, as the database has them too, are written here after each batch, before its writer is told that it is
@@ -174,7 +174,7 @@ class Tally:
 
     def __init__(self, folder: Path) -> None:
         self._descriptor = os.open(folder / TALLY, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o644)
-        self.found = Counts()  # promises nothing, where the file is new or not what was written
+        self.found = StoreCounts()  # promises nothing, where the file is new or not what was written
         with contextlib.suppress(DamagedMemoryError):
             self.found = read_counts(os.pread(self._descriptor, 64, 0))
 

@@ -30,7 +30,7 @@ from deixis.memory.errors import DamagedMemoryError, UnknownViewError
 from deixis.memory.owner import Closing
 from deixis.memory.perceptual import keys
 from deixis.memory.perceptual.codec import read_about, write_category
-from deixis.memory.perceptual.handle import Change, Handle, acquire, closed, release
+from deixis.memory.perceptual.handle import Handle, WriteBatch, acquire, closed, release
 from deixis.memory.perceptual.protocol import Finding, PerceptualStats, Progress, ViewKey
 from deixis.memory.perceptual.reading import Snapshot, glance, unknown_view
 from deixis.memory.perceptual.records import Batch, CategoryRecord, View, check_merging, check_name, name_taken
@@ -47,7 +47,7 @@ class LevelMemory(Closing):
 
     @classmethod
     def open(cls, path: str | Path, create: bool = False) -> Self:
-        """Opens a memory, or makes one with ``create``; a folder that this process has open is shared.
+        """Open a memory, or make one with ``create``; a folder that this process has open is shared.
 
         Raises MemoryBusyError where another process has it, MemoryFormatError where there is none or it cannot be
         believed, MemoryWriteError where the folder cannot be written.
@@ -125,7 +125,17 @@ class LevelMemory(Closing):
         """Write a batch in one step."""
         handle = self.handle
         with handle.writing:
-            handle.write(_of_batch(handle, batch), sync)
+            there, change = handle.places(), WriteBatch()
+            for view_id in batch.forgotten:
+                if check_name("a view's id", view_id) not in there:
+                    raise UnknownViewError(f"no view '{view_id}' to forget; nothing was written")
+                change.drop(view_id, there[view_id], _arrays_of(handle, view_id, there[view_id]))
+            for view in batch.views:
+                if view.id in there:
+                    change.drop(view.id, there[view.id], _arrays_of(handle, view.id, there[view.id]))
+                change.add(view)
+            change.pairs += [write_category(record) for record in batch.categories]
+            handle.write(change, sync)
 
     def rename(self, old: str, new: str) -> None:
         """Give a category another name."""
@@ -148,7 +158,12 @@ class LevelMemory(Closing):
         """Forget a category with its views."""
         with self.exclusive(), self.snapshot() as now:
             now.require(category)
-            self.handle.write(_of_forgetting(self.handle, category), sync=True)
+            change = WriteBatch()
+            for key in [key for key in self.handle.places().values() if key.startswith(keys.category_prefix(category))]:
+                view_id = keys.split_view_key(key)[1]
+                change.drop(view_id, key, _arrays_of(self.handle, view_id, key))
+            change.pairs.append((keys.name_key(keys.CATEGORY, category), None))
+            self.handle.write(change, sync=True)
 
 
 class UndamagedMemory(LevelMemory):
@@ -197,51 +212,26 @@ class UndamagedMemory(LevelMemory):
             self.left_out.append(str(error))
 
 
-def _arrays_of(handle: Handle, id: str, key: bytes) -> list[bytes]:
+def _arrays_of(handle: Handle, view_id: str, key: bytes) -> list[bytes]:
     """Return the keys of a view's arrays; all that can be its, where what says so is damaged."""
     with Snapshot(handle) as now:
         try:
             said = now.about_at(key)
             return [] if said is None else [said.arrays_key]
         except DamagedMemoryError:
-            return [other for other in now.bare_keys(keys.ARRAYS) if keys.split_view_key(other)[1] == id]
+            return [other for other in now.bare_keys(keys.ARRAYS) if keys.split_view_key(other)[1] == view_id]
 
 
-def _of_batch(handle: Handle, batch: Batch) -> Change:
-    """Return the change of a batch. Raises UnknownViewError for a view to forget that is not there."""
-    there, change = handle.places(), Change()
-    for id in batch.forgotten:
-        if check_name("a view's id", id) not in there:
-            raise UnknownViewError(f"no view '{id}' to forget; nothing was written")
-        change.drop(id, there[id], _arrays_of(handle, id, there[id]))
-    for view in batch.views:
-        if view.id in there:
-            change.drop(view.id, there[view.id], _arrays_of(handle, view.id, there[view.id]))
-        change.add(view)
-    change.pairs += [write_category(record) for record in batch.categories]
-    return change
-
-
-def _of_moving(now: Snapshot, category: str, record: CategoryRecord) -> Change:
+def _of_moving(now: Snapshot, category: str, record: CategoryRecord) -> WriteBatch:
     """Return the change that gives all views of a category to that of the record; their arrays stay where they are.
 
     Raises DamagedMemoryError where something is said of a view that was not written.
     """
-    change = Change()
+    change = WriteBatch()
     try:
         for key, sealed in now.pairs(keys.category_prefix(category)):
             change.move(read_about(key, sealed), record.name)
     except DamagedMemoryError as error:
         raise DamagedMemoryError(f"{error}; teach it again, or forget the category; nothing was changed") from error
     change.pairs += [(keys.name_key(keys.CATEGORY, category), None), write_category(record)]
-    return change
-
-
-def _of_forgetting(handle: Handle, category: str) -> Change:
-    """Return the change that takes a category's views and its record away."""
-    change = Change()
-    for key in [key for key in handle.places().values() if key.startswith(keys.category_prefix(category))]:
-        view_id = keys.split_view_key(key)[1]
-        change.drop(view_id, key, _arrays_of(handle, view_id, key))
-    change.pairs.append((keys.name_key(keys.CATEGORY, category), None))
     return change

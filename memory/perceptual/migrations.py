@@ -47,7 +47,7 @@ def reseal(old: plyvel.DB, new: plyvel.DB) -> None:
 
 
 def _nh_fits(key: bytes, sealed: bytes) -> bool:
-    """Whether a value of version 1 is what was sealed with NH under a key."""
+    """Return whether a value of version 1 is what was sealed with NH under a key."""
     length = len(sealed) - 8
     if length < 0:
         return False

@@ -53,7 +53,7 @@ class PerceptualReading(Protocol):
         """Return one view. Raises UnknownViewError; DamagedMemoryError where it is not what was written."""
 
     def views(self, category: str | None = None) -> Iterator[View]:
-        """All views, or those of a category, as they were when this was called.
+        """Return all views, or those of a category, as they were when this was called.
 
         Raises UnknownCategoryError; DamagedMemoryError at the view that is not what was written.
         """
@@ -87,7 +87,7 @@ class PerceptualMemory(PerceptualReading, Protocol):
     """A memory that can be written too: each call is one step, all or nothing. Threads may share it."""
 
     def write(self, batch: Batch, sync: bool = False) -> None:
-        """Writes a batch, and returns once it is safe from the death of this process; with ``sync``, of the machine.
+        """Write a batch, and return once it is safe from the death of this process; with ``sync``, of the machine.
 
         Raises UnknownViewError where a view to forget is not there, MemoryWriteError where it cannot be written;
         nothing is changed then.
@@ -97,7 +97,7 @@ class PerceptualMemory(PerceptualReading, Protocol):
         """Give a category another name. Raises UnknownCategoryError; RejectedWriteError for a name that is taken."""
 
     def merge(self, source: str, into: str, record: CategoryRecord | None = None) -> None:
-        """Moves the views of one category to another, and gives that ``record``.
+        """Move the views of one category to another, and give that ``record``.
 
         Without one the category is left without a learned state, as neither old one describes these views. Raises
         UnknownCategoryError; RecordError where the record is another category's.

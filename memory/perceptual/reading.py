@@ -16,15 +16,23 @@ from deixis.memory.errors import (
 from deixis.memory.folder import size
 from deixis.memory.owner import Closing
 from deixis.memory.perceptual import keys
-from deixis.memory.perceptual.codec import About, Counts, named, read_about, read_category, read_counts, read_view
+from deixis.memory.perceptual.codec import (
+    StoreCounts,
+    ViewHeader,
+    named,
+    read_about,
+    read_category,
+    read_counts,
+    read_view,
+)
 from deixis.memory.perceptual.handle import Handle, Places, closed, read_places
 from deixis.memory.perceptual.layout import VERSION
 from deixis.memory.perceptual.protocol import Finding, PerceptualStats, Progress, ViewKey
 from deixis.memory.perceptual.records import CategoryRecord, View, check_name
 from deixis.ontology.relation import nearest
 
-MOST_LISTED = 5
-"""Categories that a message names."""
+MAX_LISTED = 5
+"""Maximum number of categories that a message lists."""
 
 _WRONG = (MemoryFormatError, MemoryWriteError, ValueError)
 
@@ -95,16 +103,16 @@ class Snapshot(Closing):
             pair: tuple[bytes, bytes] | None = next(found, None)
             return pair
 
-    def about(self, id: str) -> About | None:
+    def about(self, view_id: str) -> ViewHeader | None:
         """Return all of a view but its arrays, or None."""
-        place = self._handle.place_of(check_name("a view's id", id))
+        place = self._handle.place_of(check_name("a view's id", view_id))
         said = None if place is None else self.about_at(place)
         if said is None:  # at this moment it was elsewhere, or nowhere
-            place = self._places().get(id)
+            place = self._places().get(view_id)
             said = None if place is None else self.about_at(place)
         return said
 
-    def about_at(self, key: bytes) -> About | None:
+    def about_at(self, key: bytes) -> ViewHeader | None:
         """Return all but the arrays of the view with this key, or None."""
         sealed = self.get(key)
         return None if sealed is None else read_about(key, sealed)
@@ -125,7 +133,7 @@ class Snapshot(Closing):
             raise unknown_view(id)
         return self.view_of(said)
 
-    def view_of(self, said: About) -> View:
+    def view_of(self, said: ViewHeader) -> View:
         """Return a view of which all is known but the arrays."""
         with self._handle:
             return stored_arrays(self._open, said)
@@ -193,7 +201,7 @@ class Snapshot(Closing):
         if not self.has(category):
             raise unknown_category(category, self.categories())
 
-    def counts(self) -> Counts:
+    def counts(self) -> StoreCounts:
         """Return the counts at this moment."""
         return read_counts(self.get(keys.COUNT))
 
@@ -215,7 +223,7 @@ class Snapshot(Closing):
 
 
 def glance(db: Any, place: bytes) -> View | None:
-    """A view by the key of what is said of it, without a snapshot.
+    """Return a view by the key of what is said of it, without a snapshot.
 
     None where it is not there, or damaged, or another thread has written in between: then the checksum of the arrays is
     not the one that is known of them.
@@ -230,8 +238,8 @@ def glance(db: Any, place: bytes) -> View | None:
         return None
 
 
-def stored_arrays(source: Any, said: About) -> View:
-    """A view of which all is known but the arrays, from a database or a snapshot of one.
+def stored_arrays(source: Any, said: ViewHeader) -> View:
+    """Return a view of which all is known but the arrays, from a database or a snapshot of one.
 
     These alone are read without LevelDB's checksums: ours is stronger, covers the key, and is known beforehand.
     """
@@ -250,7 +258,7 @@ def unknown_view(id: str) -> UnknownViewError:
 def unknown_category(name: str, known: tuple[str, ...]) -> UnknownCategoryError:
     """Return the error for an unknown category."""
     near = nearest(name, known)
-    listed = ", ".join(known[:MOST_LISTED]) + (", among others" if len(known) > MOST_LISTED else "")
+    listed = ", ".join(known[:MAX_LISTED]) + (", among others" if len(known) > MAX_LISTED else "")
     others = f"known are: {listed}" if known else "none is known yet"
     hint = f"did you mean '{near}'?" if near else others
     return UnknownCategoryError(f"no category '{name}'; {hint}")
@@ -258,7 +266,7 @@ def unknown_category(name: str, known: tuple[str, ...]) -> UnknownCategoryError:
 
 def _findings(now: Snapshot, progress: Progress | None = None) -> Iterator[Finding]:
     """Find what is wrong in the counts, the categories, the views, and the arrays that belong to no view."""
-    counts = Counts(views=-1)
+    counts = StoreCounts(views=-1)
     try:
         counts = now.counts()
     except _WRONG as error:

@@ -93,7 +93,7 @@ class View:
 
     @classmethod
     def stored(cls, **values: Any) -> View:
-        """A view of values that were checked when they were written."""
+        """Return a view of values that were checked when they were written."""
         view = object.__new__(cls)
         object.__setattr__(view, "__dict__", values)
         return view
@@ -145,13 +145,14 @@ class Batch:
 def arrays_by_name(
     descriptors: Mapping[str, NDArray[np.float32]], points: NDArray[np.float32] | None
 ) -> dict[str, NDArray[np.float32]]:
-    """A view's arrays by the names under which they are kept."""
+    """Return a view's arrays by the names under which they are kept."""
     arrays = {_DESCRIPTOR + name: array for name, array in descriptors.items()}
     return arrays if points is None else {**arrays, _POINTS: points}
 
 
 def arrays_by_use(arrays: dict[str, NDArray[Any]]) -> tuple[dict[str, NDArray[Any]], NDArray[Any] | None]:
-    """Descriptors and points, of arrays by the names under which they are kept. Raises ValueError for another name."""
+    """Return descriptors and points, of arrays by the names under which they are kept. Raises ValueError for another
+    name."""
     names = _uses(tuple(arrays))
     descriptors = {name: array for name, array in zip(names, arrays.values(), strict=True) if name}
     return descriptors, None if len(descriptors) == len(names) else arrays[_POINTS]
@@ -159,19 +160,19 @@ def arrays_by_use(arrays: dict[str, NDArray[Any]]) -> tuple[dict[str, NDArray[An
 
 @lru_cache(256)
 def _uses(names: tuple[str, ...]) -> tuple[str, ...]:
-    """The descriptors' names, and nothing for the points; views of one layout have the same."""
+    """Return the descriptors' names, and nothing for the points; views of one layout have the same."""
     if any(name != _POINTS and not name.startswith(_DESCRIPTOR) for name in names):
         raise ValueError(f"a view has {_POINTS} and {_DESCRIPTOR}…, and no other arrays")
     return tuple("" if name == _POINTS else name.removeprefix(_DESCRIPTOR) for name in names)
 
 
 def json_text(metadata: Json) -> str:
-    """The metadata of a view or a category as JSON."""
+    """Return the metadata of a view or a category as JSON."""
     return metadata.text if isinstance(metadata, JsonObject) else json.dumps(dict(metadata))
 
 
 def check_name(what: str, name: object) -> str:
-    """The name; raises RecordError for what cannot be one: one or more characters that UTF-8 can write."""
+    """Return the name; raises RecordError for what cannot be one: one or more characters that UTF-8 can write."""
     if not isinstance(name, str) or not name:
         raise RecordError(f"{what} is a text of one or more characters, not {name!r}")
     try:
@@ -184,7 +185,7 @@ def check_name(what: str, name: object) -> str:
 
 
 def check_merging(source: str, into: str, record: CategoryRecord | None) -> None:
-    """Raises RecordError for a category and itself, and for a record of another category."""
+    """Raise RecordError for a category and itself, and for a record of another category."""
     if source == into:
         raise RecordError(f"'{source}' cannot be merged into itself; name two categories")
     if record is not None and record.name != into:
@@ -192,7 +193,7 @@ def check_merging(source: str, into: str, record: CategoryRecord | None) -> None
 
 
 def name_taken(old: str, new: str) -> RejectedWriteError:
-    """The error for a new name that a category has already."""
+    """Return the error for a new name that a category has already."""
     if old == new:
         return RejectedWriteError(f"'{old}' is the category's name already")
     return RejectedWriteError(f"there is a category '{new}' already: merge '{old}' into it")

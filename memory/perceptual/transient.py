@@ -25,7 +25,7 @@ from deixis.memory.perceptual.records import Batch, CategoryRecord, View, check_
 
 
 @dataclass(frozen=True)
-class _Content:
+class _StoredViews:
     """All that is kept; a write makes another one, so that whoever reads this one is not disturbed."""
 
     views: dict[str, View]
@@ -36,15 +36,15 @@ class _Content:
 class TransientReading(Closing):
     """Reading what is kept at one moment; the methods are those of ``PerceptualReading``."""
 
-    def __init__(self, content: _Content) -> None:
-        self._kept: _Content | None = content
+    def __init__(self, content: _StoredViews) -> None:
+        self._kept: _StoredViews | None = content
 
     def close(self) -> None:
         """Release what is kept."""
         self._kept = None
 
     @property
-    def _content(self) -> _Content:
+    def _content(self) -> _StoredViews:
         if self._kept is None:
             raise closed()
         return self._kept
@@ -108,7 +108,7 @@ class TransientMemory(TransientReading):
     """A memory that ends with the process; the methods are those of ``PerceptualMemory``."""
 
     def __init__(self) -> None:
-        super().__init__(_Content({}, {}, 0))
+        super().__init__(_StoredViews({}, {}, 0))
         self._writing = threading.RLock()
 
     def snapshot(self) -> TransientReading:
@@ -123,10 +123,10 @@ class TransientMemory(TransientReading):
         """Write a batch in one step."""
         with self._writing:
             views, records = dict(self._content.views), dict(self._content.records)
-            for id in batch.forgotten:
-                if id not in views:
-                    raise UnknownViewError(f"no view '{id}' to forget; nothing was written")
-                del views[id]
+            for view_id in batch.forgotten:
+                if view_id not in views:
+                    raise UnknownViewError(f"no view '{view_id}' to forget; nothing was written")
+                del views[view_id]
             views.update({view.id: view for view in batch.views})
             records.update({record.name: record for record in batch.categories})
             self._keep(views, records)
@@ -152,16 +152,16 @@ class TransientMemory(TransientReading):
         """Forget a category with its views."""
         with self._writing:
             self._require(category)
-            views = {id: view for id, view in self._content.views.items() if view.category != category}
+            views = {view_id: view for view_id, view in self._content.views.items() if view.category != category}
             self._keep(views, {name: kept for name, kept in self._content.records.items() if name != category})
 
     def _move(self, category: str, record: CategoryRecord) -> None:
         views = {
-            id: replace(view, category=record.name) if view.category == category else view
-            for id, view in self._content.views.items()
+            view_id: replace(view, category=record.name) if view.category == category else view
+            for view_id, view in self._content.views.items()
         }
         records = {name: kept for name, kept in self._content.records.items() if name != category}
         self._keep(views, {**records, record.name: record})
 
     def _keep(self, views: dict[str, View], records: dict[str, CategoryRecord]) -> None:
-        self._kept = _Content(views, records, self._content.batches + 1)
+        self._kept = _StoredViews(views, records, self._content.batches + 1)

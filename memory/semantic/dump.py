@@ -53,7 +53,7 @@ class Dump:
     models: dict[ModelSet, set[ox.Triple]] = field(default_factory=lambda: defaultdict(set))
 
     def quads(self) -> Iterator[ox.Quad]:
-        """Everything, as a new memory stores it."""
+        """Yield everything, as a new memory stores it."""
         for name, triples in self.canonical.items():
             yield from _in(graph_iri(name), triples)
         for lesson, graphs in self.lessons.items():
@@ -69,14 +69,14 @@ class Dump:
                 yield from _in(graph_iri(name), triples)
 
     def loose(self, name: GraphName) -> set[ox.Triple]:
-        """What a canonical graph holds that no lesson, no learned model and not the package contributed."""
+        """Return what a canonical graph holds that no lesson, no learned model and not the package contributed."""
         held = [self.package[name], *(graphs[name] for graphs in self.lessons.values())]
         held += self.models.values() if name is GraphName.LEARNED else ()
         return self.canonical[name].difference(*held) | self.loaded[name]
 
 
 def read_dump(file: Path) -> Dump:
-    """Reads a file. Plain triples become a lesson, named after the file, about the asserted graph.
+    """Read a file. Plain triples become a lesson, named after the file, about the asserted graph.
 
     Raises ImportFormatError for what cannot be read, or speaks of a graph that no memory has.
     """
@@ -94,12 +94,23 @@ def read_dump(file: Path) -> Dump:
     for graph, triples in found.items():
         _place(dump, file, graph).update(ledger.as_stored(with_names(triples)))
     if plain:
-        _add_plain(dump, file, plain)
+        lesson = file.stem
+        if lesson in dump.lessons:
+            raise ImportFormatError(f"{file}: holds a lesson '{lesson}' and triples without a graph; rename the file")
+        about = iri(learned_iri("lesson", lesson))
+        told = [
+            ox.Triple(about, iri(W3C.RDF_TYPE), iri(_ACTIVITY)),
+            ox.Triple(about, iri(W3C.RDFS_LABEL), text(lesson)),
+            ox.Triple(about, iri(PROV.STARTED_AT_TIME), typed(datetime.now(UTC))),
+        ]
+        key = content_key(lesson)
+        dump.lessons[lesson][GraphName.ASSERTED].update(ledger.as_stored(named(key, plain)))
+        dump.lessons[lesson][GraphName.EPISODES].update(ledger.as_stored(told))
     return dump
 
 
 def _place(dump: Dump, file: Path, graph: str) -> set[ox.Triple]:
-    """Where the triples of a graph belong."""
+    """Return where the triples of a graph belong."""
     name = copied_graph(graph) or CANONICAL.get(ox.NamedNode(graph))
     if name is None:
         raise ImportFormatError(f"{file}: the graph <{graph}> is none of a memory's; those begin with {GRAPHS}")
@@ -111,21 +122,6 @@ def _place(dump: Dump, file: Path, graph: str) -> set[ox.Triple]:
         return dump.models[models]
     kept = dump.package if graph.startswith(PACKAGE) else dump.loaded if graph.startswith(LOADED) else dump.canonical
     return kept[name]
-
-
-def _add_plain(dump: Dump, file: Path, triples: list[ox.Triple]) -> None:
-    lesson = file.stem
-    if lesson in dump.lessons:
-        raise ImportFormatError(f"{file}: holds a lesson '{lesson}' and triples without a graph; rename the file")
-    about = iri(learned_iri("lesson", lesson))
-    told = [
-        ox.Triple(about, iri(W3C.RDF_TYPE), iri(_ACTIVITY)),
-        ox.Triple(about, iri(W3C.RDFS_LABEL), text(lesson)),
-        ox.Triple(about, iri(PROV.STARTED_AT_TIME), typed(datetime.now(UTC))),
-    ]
-    key = content_key(lesson)
-    dump.lessons[lesson][GraphName.ASSERTED].update(ledger.as_stored(named(key, triples)))
-    dump.lessons[lesson][GraphName.EPISODES].update(ledger.as_stored(told))
 
 
 def _in(graph: ox.NamedNode, triples: set[ox.Triple]) -> Iterator[ox.Quad]:

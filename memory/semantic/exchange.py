@@ -8,7 +8,7 @@ from pathlib import Path
 import pyoxigraph as ox
 
 from deixis.memory.errors import ImportFormatError, RejectedWriteError
-from deixis.memory.folder import State, inspect, reading
+from deixis.memory.folder import FolderState, inspect, reading
 from deixis.memory.semantic.dump import Dump, read_dump
 from deixis.memory.semantic.opening import open_memory
 from deixis.memory.semantic.queries.union import merge_if_overlapping
@@ -24,28 +24,24 @@ TURTLE_GRAPHS = (GraphName.ONTOLOGY, GraphName.ASSERTED, GraphName.INFERRED, Gra
 
 
 def export_memory(memory: SemanticMemory, format: str = "trig") -> str:
-    """Everything that a memory keeps, the same text for the same content.
+    """Return everything that a memory keeps, the same text for the same content.
 
     ``trig`` is exact: every graph, and which lesson contributed what. ``turtle`` merges the ontology with what was
     asserted, inferred and learned, and when, into one graph, for tools such as Protégé. Raises ImportFormatError for
     others.
     """
     with reading(memory.path):
-        return _exported(memory, format)
-
-
-def _exported(memory: SemanticMemory, format: str) -> str:
-    if format == "turtle":
-        return turtle(triple for name in TURTLE_GRAPHS for triple in memory.triples(name))
-    if format != "trig":
-        raise ImportFormatError(f"no export as '{format}': it is trig or turtle")
-    graphs = [graph for graph in memory.store.named_graphs() if isinstance(graph, ox.NamedNode)]
-    copies = sorted((graph for graph in graphs if copied_graph(graph.value)), key=lambda graph: graph.value)
-    return trig((graph, ledger.triples_in(memory.store, graph)) for graph in [*CANONICAL, *copies])
+        if format == "turtle":
+            return turtle(triple for name in TURTLE_GRAPHS for triple in memory.triples(name))
+        if format != "trig":
+            raise ImportFormatError(f"no export as '{format}': it is trig or turtle")
+        graphs = [graph for graph in memory.store.named_graphs() if isinstance(graph, ox.NamedNode)]
+        copies = sorted((graph for graph in graphs if copied_graph(graph.value)), key=lambda graph: graph.value)
+        return trig((graph, ledger.triples_in(memory.store, graph)) for graph in [*CANONICAL, *copies])
 
 
 def import_dump(file: str | Path, target: str | Path) -> None:
-    """Takes a file into a memory, all of it or nothing.
+    """Take a file into a memory, all of it or nothing.
 
     A TriG or N-Quads file that export wrote gives the same graphs back; into a memory that holds something it is
     merged, lesson by lesson; learned models are taken where it has none. Plain triples (Turtle, N-Triples, RDF/XML)
@@ -54,7 +50,7 @@ def import_dump(file: str | Path, target: str | Path) -> None:
     """
     file, target = Path(file), Path(target)
     dump = read_dump(file)
-    if inspect(target) in (State.ABSENT, State.EMPTY):
+    if inspect(target) in (FolderState.ABSENT, FolderState.EMPTY):
         open_memory(target, create=True, fill=lambda store: _fill(store, dump)).close()
         return
     with SemanticMemory.open(target) as memory:
@@ -64,7 +60,7 @@ def import_dump(file: str | Path, target: str | Path) -> None:
 
 
 def merging_dump(memory: SemanticMemory, file: Path) -> Change:
-    """The change that takes a file into an open memory, to be committed with what follows from both.
+    """Return the change that takes a file into an open memory, to be committed with what follows from both.
 
     What the file says follows is left out. Raises as :func:`import_dump`.
     """
@@ -83,14 +79,16 @@ def _fill(store: ox.Store, dump: Dump) -> None:
 
 
 def _merged(memory: SemanticMemory, dump: Dump, file: Path) -> Change:
-    """The change that brings a dump into a memory."""
+    """Return the change that brings a dump into a memory."""
     store, known = memory.store, set(memory.lessons())
     added: dict[GraphName, set[ox.Triple]] = {name: set() for name in GraphName}
     operations: list[ledger.Operation] = []
     for lesson, graphs in dump.lessons.items():
         said = {name: sorted(triples, key=str) for name, triples in graphs.items() if triples}
         if lesson in known:
-            if {name: set(triples) for name, triples in memory.contributions(lesson).items()} != _sets(said):
+            if {name: set(triples) for name, triples in memory.contributions(lesson).items()} != {
+                name: set(triples) for name, triples in said.items()
+            }:
                 raise RejectedWriteError(
                     f"{file}: its lesson '{lesson}' differs from the one in the memory at {memory.path}; forget that "
                     "one first, or import into another memory"
@@ -113,7 +111,7 @@ def _merged(memory: SemanticMemory, dump: Dump, file: Path) -> Change:
 
 
 def _loose(store: ox.Store, dump: Dump) -> Iterator[tuple[GraphName, ox.NamedNode, set[ox.Triple]]]:
-    """What belongs to no lesson, by graph; what a lesson says as well is marked as loaded, so that it stays."""
+    """Yield what belongs to no lesson, by graph; what a lesson says as well is marked as loaded, so that it stays."""
     for name in CONTRIBUTED:
         loose = dump.loose(name)
         also = {triple for triple in loose if any(ledger.quads_of(store, triple))} | dump.loaded[name]
@@ -122,7 +120,3 @@ def _loose(store: ox.Store, dump: Dump) -> Iterator[tuple[GraphName, ox.NamedNod
         yield name, loaded_graph(name), also
     inferred = graph_iri(GraphName.INFERRED)
     yield GraphName.INFERRED, inferred, dump.canonical[GraphName.INFERRED]
-
-
-def _sets(said: dict[GraphName, list[ox.Triple]]) -> dict[GraphName, set[ox.Triple]]:
-    return {name: set(triples) for name, triples in said.items()}

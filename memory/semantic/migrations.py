@@ -14,7 +14,7 @@ _GRAPHS_0 = "urn:deixis:graph:"
 
 
 def _from_0(old: ox.Store, new: ox.Store) -> None:
-    """Version 0 named its graphs ``urn:deixis:graph:learned``, a lesson's ``urn:deixis:graph:lesson:set-1:learned``."""
+    """Rename the graphs of version 0: ``urn:deixis:graph:learned``, and ``urn:deixis:graph:lesson:set-1:learned``."""
 
     def renamed() -> Iterator[ox.Quad]:
         for quad in old:
@@ -28,7 +28,7 @@ def _from_0(old: ox.Store, new: ox.Store) -> None:
 
 
 def _from_1(old: ox.Store, new: ox.Store) -> None:
-    """Version 1 kept no statistics; the first lesson that is learned or forgotten counts those that are there."""
+    """Copy version 1, which kept no statistics; the next lesson learned or forgotten counts those that are there."""
     new.bulk_extend(old)
 
 

@@ -10,7 +10,7 @@ import pyoxigraph as ox
 
 from deixis.memory import folder as files
 from deixis.memory.errors import MemoryBusyError, MemoryFormatError, MemoryWriteError
-from deixis.memory.folder import State, committed
+from deixis.memory.folder import FolderState, committed
 from deixis.memory.owner import OwnerLock
 from deixis.memory.semantic.migrations import MIGRATIONS
 from deixis.memory.semantic.rdf import ledger
@@ -25,21 +25,21 @@ class Opened:
         self.store = open_store(folder)
 
     def close(self) -> None:
-        """Closes the store, then lets go of the lock."""
+        """Close the store, then let go of the lock."""
         self.shut()
         self._lock.release()
 
     def shut(self) -> None:
-        """Closes the store alone."""
+        """Close the store alone."""
         del self.store
 
     def reopen(self) -> None:
-        """Opens the store again after :meth:`shut`."""
+        """Open the store again after :meth:`shut`."""
         self.store = open_store(self.folder)
 
 
 def open_store(folder: Path) -> ox.Store:
-    """Opens ``semantic/`` for reading and writing."""
+    """Open ``semantic/`` for reading and writing."""
     try:
         return ox.Store(folder / files.STORE)
     except (OSError, RuntimeError) as error:
@@ -51,72 +51,60 @@ def open_store(folder: Path) -> ox.Store:
 
 
 def _fill(store: ox.Store) -> None:
-    """What every memory begins with, into a store that is none of a memory's yet: nobody reads it half full."""
+    """Fill a new store with what every memory begins with, before it is part of a memory: nobody reads it half full."""
     store.bulk_extend(packaged_quads())
 
 
 def open_memory(folder: Path, create: bool, fill: Callable[[ox.Store], None] = _fill) -> Opened:
-    """Opens a memory, or makes one whose store ``fill`` fills; raises as ``SemanticMemory.open`` does."""
+    """Open a memory, or make one whose store ``fill`` fills; raise as ``SemanticMemory.open`` does."""
     state = files.inspect(folder)
-    if state in (State.ABSENT, State.EMPTY) and not create:
+    if state in (FolderState.ABSENT, FolderState.EMPTY) and not create:
         raise MemoryFormatError(f"{_nothing(folder, state)}; learn something into it first, or name another folder")
-    made = _make_folder(folder) if state is State.ABSENT else False
+    made = state is FolderState.ABSENT
+    if made:
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise MemoryWriteError(f"the folder {folder} cannot be made: {error.strerror}") from error
     try:
-        return _open_locked(folder, fill)
+        lock = OwnerLock.acquire(folder)
+        try:
+            lock.sign()
+            _prepare(folder, fill)
+            opened = Opened(folder, lock)
+        except BaseException:
+            lock.release(undo=True)
+            raise
+        try:
+            for log in (folder / files.STORE).glob("LOG.old.*"):  # the store leaves one behind at every opening
+                with contextlib.suppress(OSError):
+                    log.unlink()
+            _update_package(opened)
+        except BaseException:
+            opened.close()
+            raise
+        return opened
     except BaseException:
         if made and not any(folder.iterdir()):
             folder.rmdir()
         raise
 
 
-def _nothing(folder: Path, state: State) -> str:
-    """What there is where nothing was learned."""
+def _nothing(folder: Path, state: FolderState) -> str:
+    """Return what there is where nothing was learned."""
     from deixis.memory.perceptual.in_folder import has_views
 
-    if state is State.ABSENT:
+    if state is FolderState.ABSENT:
         return f"there is no memory at {folder}"
     if has_views(folder):
         return f"the memory at {folder} has views only, nothing was learned into it yet"
     return f"there is no memory yet in the empty folder {folder}"
 
 
-def _make_folder(folder: Path) -> bool:
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise MemoryWriteError(f"the folder {folder} cannot be made: {error.strerror}") from error
-    return True
-
-
-def _open_locked(folder: Path, fill: Callable[[ox.Store], None]) -> Opened:
-    lock = OwnerLock.acquire(folder)
-    try:
-        lock.sign()
-        _prepare(folder, fill)
-        opened = Opened(folder, lock)
-    except BaseException:
-        lock.release(undo=True)
-        raise
-    try:
-        _drop_old_logs(folder)
-        _update_package(opened)
-    except BaseException:
-        opened.close()
-        raise
-    return opened
-
-
-def _drop_old_logs(folder: Path) -> None:
-    """The store leaves a log of its own behind at every opening, and never takes one away."""
-    for log in (folder / files.STORE).glob("LOG.old.*"):
-        with contextlib.suppress(OSError):
-            log.unlink()
-
-
 def _prepare(folder: Path, fill: Callable[[ox.Store], None]) -> None:
-    """Everything between the lock and the open store. What is damaged is found before anything is changed."""
+    """Create, finish or migrate the folder between locking and opening; check for damage before any change."""
     state = files.inspect(folder)
-    if state is State.EMPTY:
+    if state is FolderState.EMPTY:
         with committed(folder):
             files.create(folder, fill, package_digest())
         return
@@ -127,7 +115,7 @@ def _prepare(folder: Path, fill: Callable[[ox.Store], None]) -> None:
 
 
 def _update_package(opened: Opened) -> None:
-    """Brings the ontology and the shapes to the packaged version, if they are of another one."""
+    """Bring the ontology and the shapes to the packaged version, if they are of another one."""
     mark, digest = files.read_mark(opened.folder), package_digest()
     if mark.get("package") == digest:
         return

@@ -28,7 +28,7 @@ class MemoryStats:
 
 
 def count(store: ox.Store, folder: Path, lessons: int) -> MemoryStats:
-    """Counts a store's content."""
+    """Count a store's content."""
     learned, asserted = graph_iri(GraphName.LEARNED), graph_iri(GraphName.ASSERTED)
     return MemoryStats(
         triples={name: _number(store, f"{{ GRAPH {graph_iri(name)} {{ ?x ?p ?o }} }}", "*") for name in GraphName},

@@ -98,7 +98,7 @@ def commit_aside(opened: Opened, write: Callable[[SemanticMemory], None]) -> Non
 
 
 def rewrite(opened: Opened, mark: dict[str, Any]) -> None:
-    """Writes the store anew with what it holds, and nothing else: the store itself never gives back the texts of what
+    """Write the store anew with what it holds, and nothing else: the store itself never gives back the texts of what
     was removed."""
 
     def fill(aside: Path) -> None:
@@ -110,7 +110,7 @@ def rewrite(opened: Opened, mark: dict[str, Any]) -> None:
 
 
 def _swap_in(opened: Opened, fill: Callable[[Path], None], mark: dict[str, Any]) -> None:
-    """Puts a store that ``fill`` makes in a folder in the place of the open one; where it fails, nothing is changed."""
+    """Put a store that ``fill`` makes in a folder in the place of the open one; where it fails, nothing is changed."""
     aside = opened.folder / files.NEW
     with committed(opened.folder):
         shutil.rmtree(aside, ignore_errors=True)
@@ -128,7 +128,7 @@ def _swap_in(opened: Opened, fill: Callable[[Path], None], mark: dict[str, Any])
 
 
 def _quads(store: ox.Store, name: GraphName, triples: Iterable[ox.Triple]) -> Iterator[ox.Quad]:
-    """The quads to write: where the graph has content, a triple that is there already is marked as loaded too."""
+    """Yield the quads to write: where the graph has content, a triple that is there already is marked as loaded too."""
     graph, mark = graph_iri(name), loaded_graph(name)
     merged = name in UNION and store.contains_named_graph(MERGED)
     held = any(store.quads_for_pattern(None, None, None, graph))
@@ -141,8 +141,8 @@ def _quads(store: ox.Store, name: GraphName, triples: Iterable[ox.Triple]) -> It
         yield quad
 
 
-FEW_FORGOTTEN = 10
-"""Forgotten lessons whose room on the disk is not worth writing the store anew."""
+MIN_FORGOTTEN = 10
+"""Minimum number of forgotten lessons for which the store is written anew, to give disk space back."""
 
 
 class SemanticMemory(Closing):
@@ -156,7 +156,7 @@ class SemanticMemory(Closing):
 
     @classmethod
     def open(cls, path: str | Path, create: bool = False) -> SemanticMemory:
-        """Opens a memory, or makes one with ``create``.
+        """Open a memory, or make one with ``create``.
 
         Raises MemoryBusyError where somebody has it open, MemoryFormatError where there is none or it cannot be
         believed, MemoryWriteError where the folder cannot be written. A failed open changes nothing.
@@ -164,7 +164,7 @@ class SemanticMemory(Closing):
         return cls(open_memory(Path(path), create))
 
     def close(self) -> None:
-        """Lets go of the folder; views made by :meth:`dataset` are of no use any more.
+        """Let go of the folder; views made by :meth:`dataset` are of no use any more.
 
         Where as much was forgotten as is left, the disk that it took is given back.
         """
@@ -200,7 +200,7 @@ class SemanticMemory(Closing):
         inferred: Sequence[ox.Triple],
         models: Models | None = None,
     ) -> None:
-        """Writes a lesson, and what now follows from everything, in one step; see :meth:`learn_all`."""
+        """Write a lesson, and what now follows from everything, in one step; see :meth:`learn_all`."""
         self.learn_all({lesson: contributions}, inferred, models)
 
     def learn_all(
@@ -209,7 +209,7 @@ class SemanticMemory(Closing):
         inferred: Sequence[ox.Triple],
         models: Models | None = None,
     ) -> None:
-        """Writes lessons, and what now follows from everything, in one step.
+        """Write lessons, and what now follows from everything, in one step.
 
         ``inferred`` replaces the inferred graph, ``models`` the sets of models that are given. Blank nodes become
         names. Raises RejectedWriteError, having written nothing, where a lesson is known already, says nothing, or
@@ -220,7 +220,8 @@ class SemanticMemory(Closing):
         )
 
     def arrival(self, lessons: Mapping[str, Mapping[GraphName, Sequence[ox.Triple]]]) -> Change:
-        """The change that new lessons make, to be committed with what follows from it; raises as :meth:`learn_all`."""
+        """Return the change that new lessons make, to be committed with what follows from it; raises as
+        :meth:`learn_all`."""
         changes = []
         for lesson, contributions in lessons.items():
             if self.knows(lesson):
@@ -232,14 +233,14 @@ class SemanticMemory(Closing):
         return together(*changes)
 
     def departure(self, lesson: str) -> Change:
-        """The change that takes a lesson back, to be committed with what follows; raises as :meth:`forget`."""
+        """Return the change that takes a lesson back, to be committed with what follows; raises as :meth:`forget`."""
         self._known(lesson)
         with reading(self.path):
             self._forgets += 1
             return departing(self.store, lesson)
 
     def forget(self, lesson: str, inferred: Sequence[ox.Triple], models: Models | None = None) -> None:
-        """Takes back what only this lesson contributed, and replaces the inferred graph and models, in one step.
+        """Take back what only this lesson contributed, and replace the inferred graph and models, in one step.
 
         Raises UnknownLessonError, naming the nearest one, where there is no such lesson; RejectedWriteError where
         something that stays depends on what would go.
@@ -248,19 +249,20 @@ class SemanticMemory(Closing):
         self.commit(together(gone, concluding(self.store, inferred), modelling(self.store, models or {})))
 
     def conclude(self, inferred: Sequence[ox.Triple], models: Models | None = None) -> None:
-        """Replaces the inferred graph, and the models that are given, in one step."""
+        """Replace the inferred graph, and the models that are given, in one step."""
         change = together(concluding(self.store, inferred), modelling(self.store, models or {}))
         if change.operations:
             self.commit(change)
 
     def keep_models(self, models: Models) -> None:
-        """Replaces the sets of learned models that are given, in one step; an empty set takes them away."""
+        """Replace the sets of learned models that are given, in one step; an empty set takes them away."""
         change = modelling(self.store, models)
         if change.operations:
             self.commit(change, self.kept_up() if ModelSet.SIZES not in models else None)
 
     def models(self, which: ModelSet, properties: Iterable[str] | None = None) -> list[ox.Triple]:
-        """The triples of a set of learned models; with ``properties`` those alone, without reading the others."""
+        """Return the triples of a set of learned models; with ``properties`` those alone, without reading the
+        others."""
         graph = models_graph(which)
         with reading(self.path):
             if properties is None:
@@ -269,7 +271,8 @@ class SemanticMemory(Closing):
             return [quad.triple for name in named for quad in self.store.quads_for_pattern(None, name, None, graph)]
 
     def remaining(self, lesson: str) -> dict[GraphName, list[ox.Triple]]:
-        """What the canonical graphs would hold without that lesson; raises UnknownLessonError where there is none."""
+        """Return what the canonical graphs would hold without that lesson; raises UnknownLessonError where there is
+        none."""
         gone = self.departure(lesson).removed
         with reading(self.path):
             return {
@@ -278,7 +281,7 @@ class SemanticMemory(Closing):
             }
 
     def load(self, contributions: Mapping[GraphName, Iterable[ox.Triple]]) -> None:
-        """Writes much at once that belongs to no lesson: fast, all or nothing, guarded by the same shapes.
+        """Write much at once that belongs to no lesson: fast, all or nothing, guarded by the same shapes.
 
         Raises RejectedWriteError where the shapes would be broken, and writes nothing then.
         """
@@ -288,28 +291,28 @@ class SemanticMemory(Closing):
         load_aside(self._open, contributions)
 
     def lessons(self) -> tuple[str, ...]:
-        """The lessons in the order learned."""
+        """Return the lessons in the order learned."""
         with reading(self.path):
             return ledger.lessons(self.store)
 
     def knows(self, lesson: str) -> bool:
-        """Whether there is a lesson of that id."""
+        """Return whether there is a lesson of that id."""
         with reading(self.path):
             return ledger.knows(self.store, lesson)
 
     def contributions(self, lesson: str) -> dict[GraphName, list[ox.Triple]]:
-        """What one lesson contributed, by graph; raises UnknownLessonError where there is none."""
+        """Return what one lesson contributed, by graph; raises UnknownLessonError where there is none."""
         self._known(lesson)
         with reading(self.path):
             return ledger.copies(self.store, lesson)
 
     def triples(self, name: GraphName) -> Iterator[ox.Triple]:
-        """The triples of a canonical graph, in no stated order."""
+        """Yield the triples of a canonical graph, in no stated order."""
         with reading(self.path):
             yield from ledger.triples_in(self.store, graph_iri(GraphName(name)))
 
     def query(self, sparql: str) -> QueryResult:
-        """Asks SELECT, ASK, CONSTRUCT or DESCRIBE of the asserted, inferred and learned graphs together.
+        """Ask SELECT, ASK, CONSTRUCT or DESCRIBE of the asserted, inferred and learned graphs together.
 
         ``GRAPH ?g`` reaches all six canonical graphs. Raises QueryError, with the place, for anything else.
         """
@@ -321,7 +324,7 @@ class SemanticMemory(Closing):
             return run_query(self.store, sparql, self._union)
 
     def dataset(self) -> rdflib.Dataset:
-        """A live view of the six canonical graphs for rdflib; to be read only."""
+        """Return a live view of the six canonical graphs for rdflib; to be read only."""
         from deixis.memory.semantic.queries.rdflib_view import dataset_view
 
         view = dataset_view(self.store)
@@ -329,12 +332,12 @@ class SemanticMemory(Closing):
         return view
 
     def stats(self) -> MemoryStats:
-        """Counts of what is kept."""
+        """Return counts of what is kept."""
         with reading(self.path):
             return count(self.store, self.path, len(self.lessons()))
 
     def commit(self, change: Change, kept_up: str | None = None) -> None:
-        """Writes a change in one step, if what comes of it keeps to the shapes; raises RejectedWriteError if not.
+        """Write a change in one step, if what comes of it keeps to the shapes; raise RejectedWriteError if not.
 
         ``kept_up`` says that what follows from everything is right after the change, and for which rules; see
         :meth:`kept_up`. Without it, what follows is to be worked out anew.
@@ -360,7 +363,8 @@ class SemanticMemory(Closing):
         commit_aside(self._open, write)
 
     def kept_up(self) -> str | None:
-        """The rules by which the inferred graph and the statistics are right; None where they are to be made anew."""
+        """Return the rules by which the inferred graph and the statistics are right; None where they are to be made
+        anew."""
         with reading(self.path):
             return ledger.kept_up(self.store)
 
@@ -419,7 +423,7 @@ class _Copy(SemanticMemory):
 
 
 def _give_back(opened: Opened, forgotten: int) -> None:
-    """Writes a store anew that holds no more lessons than were forgotten since it was; where that fails, it stays.
+    """Write a store anew that holds no more lessons than were forgotten since it was; where that fails, it stays.
 
     So every lesson that is forgotten pays for one that is copied, however many there are.
     """
@@ -427,7 +431,7 @@ def _give_back(opened: Opened, forgotten: int) -> None:
     with contextlib.suppress(MemoryWriteError, MemoryFormatError, OSError):
         mark = read_mark(opened.folder)
         gone = int(mark.pop("forgotten", 0)) + forgotten
-        if gone >= FEW_FORGOTTEN and gone >= len(ledger.lessons(opened.store)):
+        if gone >= MIN_FORGOTTEN and gone >= len(ledger.lessons(opened.store)):
             rewrite(opened, mark)
         else:
             write_mark(opened.folder, {**mark, "forgotten": gone})

@@ -51,7 +51,7 @@ class PointCloud:
         return result
 
     def take(self, chosen: NDArray[np.bool_] | NDArray[np.integer]) -> PointCloud:
-        """The chosen points with all that is known of them; no longer an image."""
+        """Return the chosen points with all that is known of them; no longer an image."""
 
         return PointCloud(
             self.points[chosen],

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from deixis.perception.clouds.cloud import PointCloud
-from deixis.perception.clouds.content import Content, content_of
+from deixis.perception.clouds.content import content_of
 from deixis.perception.clouds.depth import PNG, Intrinsics, read_depth, read_intrinsics
 from deixis.perception.clouds.npy import MAGIC, read_npz_cloud
 from deixis.perception.clouds.pcd import read_pcd
@@ -20,7 +20,7 @@ _ZIP = b"PK\x03\x04"
 
 
 def read_cloud(path: str | Path, intrinsics: str | Path | Intrinsics | None = None) -> PointCloud:
-    """Reads a PCD, PLY, XYZ or NPZ file, or a depth image together with its camera's ``intrinsics``.
+    """Read a PCD, PLY, XYZ or NPZ file, or a depth image together with its camera's ``intrinsics``.
 
     A point without depth stays in its place with a coordinate that is not finite. Memory is bounded by what the file's
     size can justify. Raises CloudError, with the file and the place in it, where it is no cloud or is damaged.
@@ -34,10 +34,7 @@ def read_cloud(path: str | Path, intrinsics: str | Path | Intrinsics | None = No
         return read_depth(content, camera)
     if head.startswith((PNG, MAGIC)):
         raise CloudError(f"{content.name}: a depth image becomes a cloud by its camera's intrinsics; give them too")
-    return _reader(head, Path(path).suffix.lower(), content)
-
-
-def _reader(head: bytes, suffix: str, content: Content) -> PointCloud:
+    suffix = Path(path).suffix.lower()
     if head.startswith((b"ply\n", b"ply\r")) or suffix == ".ply":
         return read_ply(content)
     if head.startswith(_ZIP) or suffix == ".npz":
@@ -50,7 +47,7 @@ def _reader(head: bytes, suffix: str, content: Content) -> PointCloud:
 
 
 def write_cloud(path: str | Path, cloud: PointCloud, encoding: str = "binary") -> None:
-    """Writes PCD (``ascii``, ``binary`` or ``binary_compressed``) or PLY (``ascii`` or ``binary``), by the suffix.
+    """Write PCD (``ascii``, ``binary`` or ``binary_compressed``) or PLY (``ascii`` or ``binary``), by the suffix.
 
     Raises CloudError where the suffix or the encoding is another, or the file cannot be written.
     """

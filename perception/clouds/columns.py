@@ -29,7 +29,7 @@ def cloud_of_columns(
     organised: tuple[int, int] | None = None,
     origin: tuple[float, float, float] = (0.0, 0.0, 0.0),
 ) -> PointCloud:
-    """A cloud of columns (n,) in the types that the file declares; CloudError where a coordinate is missing.
+    """Return a cloud of columns (n,) in the types that the file declares; CloudError where a coordinate is missing.
 
     >>> one, four = np.ones(1), np.array([0x0000FF80], np.uint32)
     >>> cloud_of_columns({"x": one, "y": one, "z": one, "rgb": four}, "a.pcd").colours.tolist()
@@ -50,7 +50,7 @@ def cloud_of_columns(
 
 
 def side_by_side(columns: Columns, names: tuple[str, ...]) -> NDArray[np.float32]:
-    """The named columns as one array (n, columns), in single precision."""
+    """Return the named columns as one array (n, columns), in single precision."""
     out = np.empty((len(columns[names[0]]), len(names)), np.float32)
     with np.errstate(over="ignore", invalid="ignore"):
         for place, name in enumerate(names):
@@ -59,13 +59,14 @@ def side_by_side(columns: Columns, names: tuple[str, ...]) -> NDArray[np.float32
 
 
 def single(values: NDArray[np.generic]) -> NDArray[np.float32]:
-    """Numbers in single precision; one too large for it becomes infinite."""
+    """Return numbers in single precision; one too large for it becomes infinite."""
     with np.errstate(over="ignore", invalid="ignore"):
         return values.astype(np.float32)
 
 
 def declared(values: NDArray[np.float64], kind: np.dtype[np.generic], name: str, file: str) -> NDArray[np.generic]:
-    """Numbers that were read as text, in the type that the file declares for them; CloudError where one is none."""
+    """Return numbers that were read as text, in the type that the file declares for them; CloudError where one is
+    none."""
     if kind.kind == "f":
         with np.errstate(over="ignore"):
             return values.astype(kind)
@@ -94,7 +95,8 @@ def _colours(columns: Columns, file: str) -> NDArray[np.uint8] | None:
 
 
 def as_bytes(colours: NDArray[np.generic], file: str, whole: bool = False) -> NDArray[np.uint8]:
-    """Colours (n, 3) as bytes: floats are shares from 0 to 1, unless ``whole``; whole numbers are bytes already."""
+    """Return colours (n, 3) as bytes: floats are shares from 0 to 1, unless ``whole``; whole numbers are bytes
+    already."""
     if colours.dtype == np.uint8:
         return colours.astype(np.uint8, copy=False)
     whole = whole or colours.dtype.kind in "iu"
@@ -109,7 +111,7 @@ def as_bytes(colours: NDArray[np.generic], file: str, whole: bool = False) -> ND
 
 
 def labels_of(column: NDArray[np.generic], file: str) -> NDArray[np.int32]:
-    """Labels in 32 bits; an unsigned 4294967295, which stands for none in some files, becomes -1."""
+    """Return labels in 32 bits; an unsigned 4294967295, which stands for none in some files, becomes -1."""
     if column.dtype.kind in "iu" and column.dtype.itemsize <= 4:
         return column.astype(np.int32)
     values = column.astype(np.float64)

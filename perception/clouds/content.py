@@ -32,11 +32,11 @@ class Content:
         return len(self.data)
 
     def line_of(self, at: int) -> int:
-        """The number, from 1, of the line in which byte ``at`` stands."""
+        """Return the number, from 1, of the line in which byte ``at`` stands."""
         return int(np.count_nonzero(self.data[:at] == ord("\n"))) + 1
 
     def header_lines(self) -> Iterator[tuple[int, str, int]]:
-        """Lines of a header: number from 1, text without blanks around it, where the next line begins.
+        """Yield lines of a header: number from 1, text without blanks around it, where the next line begins.
 
         Raises CloudError at a line or a header too long to be one, and where the file ends before the caller does.
         """
@@ -56,7 +56,7 @@ class Content:
             yield number, line.decode("latin-1").strip(), at
 
     def refuse_rest(self, at: int) -> None:
-        """Raises CloudError where more than padding, that is zeros or blanks, stands from byte ``at`` on.
+        """Raise CloudError where more than padding, that is zeros or blanks, stands from byte ``at`` on.
 
         PCL fills binary files up to a whole page with zeros.
         """
@@ -68,7 +68,7 @@ class Content:
 
 
 def content_of(path: str | Path) -> Content:
-    """Reads a file; raises CloudError where that cannot be done, or where it is no regular file or too large."""
+    """Read a file; raise CloudError where that cannot be done, or where it is no regular file or too large."""
     name = str(path)
     try:
         with open(path, "rb", opener=_without_waiting) as file:
@@ -87,5 +87,5 @@ def content_of(path: str | Path) -> Content:
 
 
 def _without_waiting(path: str, flags: int) -> int:
-    """Opens without waiting for somebody to write to a pipe."""
+    """Open without waiting for somebody to write to a pipe."""
     return os.open(path, flags | os.O_NONBLOCK)

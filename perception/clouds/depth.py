@@ -54,7 +54,7 @@ class Intrinsics:
 
 
 def read_intrinsics(path: str | Path) -> Intrinsics:
-    """Reads ``{"width": 640, "height": 480, "fx": 525, "fy": 525, "cx": 319.5, "cy": 239.5, "depth_scale": 1000}``.
+    """Read ``{"width": 640, "height": 480, "fx": 525, "fy": 525, "cx": 319.5, "cy": 239.5, "depth_scale": 1000}``.
 
     Raises CloudError, with the file and the key, where it is no such thing.
     """
@@ -87,7 +87,8 @@ def _number(data: dict[str, Any], key: str, file: str, whole: bool = False) -> f
 
 
 def read_depth(content: Content, camera: Intrinsics) -> PointCloud:
-    """The organised cloud that a depth image shows; raises CloudError where it is malformed or of another size."""
+    """Return the organised cloud that a depth image shows; raises CloudError where it is malformed or of another
+    size."""
     depth = depth_image(content)
     if depth.shape != (camera.height, camera.width):
         raise CloudError(
@@ -99,7 +100,8 @@ def read_depth(content: Content, camera: Intrinsics) -> PointCloud:
 
 
 def back_projected(depth: NDArray[np.floating], camera: Intrinsics) -> NDArray[np.float32]:
-    """Points (rows * columns, 3) of depth (rows, columns) in metres: z = depth, x = (column - cx) z / fx, y alike."""
+    """Return points (rows * columns, 3) of depth (rows, columns) in metres: z = depth, x = (column - cx) z / fx, y
+    alike."""
     z = np.where(np.isfinite(depth) & (depth > 0), depth, np.nan)
     x = (np.arange(camera.width) - camera.cx) * z / camera.fx
     y = (np.arange(camera.height)[:, None] - camera.cy) * z / camera.fy
@@ -107,7 +109,7 @@ def back_projected(depth: NDArray[np.floating], camera: Intrinsics) -> NDArray[n
 
 
 def depth_image(content: Content) -> NDArray[np.generic]:
-    """The image's values (rows, columns), in its own units."""
+    """Return the image's values (rows, columns), in its own units."""
     head = content.data[:8].tobytes()
     if head == PNG:
         return _png(content)
@@ -124,7 +126,8 @@ def depth_image(content: Content) -> NDArray[np.generic]:
 
 
 def _png(content: Content) -> NDArray[np.generic]:
-    """Greyscale values; what the header declares is compared with the file's size before anything is unpacked."""
+    """Return greyscale values; what the header declares is compared with the file's size before anything is
+    unpacked."""
     from PIL import Image
 
     head = content.data[8:33].tobytes()
@@ -142,23 +145,19 @@ def _png(content: Content) -> NDArray[np.generic]:
             f" it must be possible, and 1 to {MAX_PIXELS}"
         )
     try:
-        _check_length(content, size)
+        # the pixels must all be there: pillow fills up missing ones with zeros
+        parts, at = [], 8
+        while at + 12 <= len(content):
+            length = int.from_bytes(content.data[at : at + 4].tobytes(), "big")
+            if content.data[at + 4 : at + 8].tobytes() == b"IDAT":
+                parts.append(content.data[at + 8 : at + 8 + length].tobytes())
+            at += 12 + length
+        unpacking = zlib.decompressobj()
+        there = len(unpacking.decompress(b"".join(parts), size + 1))
+        if there != size or not unpacking.eof:
+            raise ValueError(f"{there} bytes of pixels, not {size}")
         with Image.open(io.BytesIO(content.data.data), formats=["PNG"]) as image:
             return np.asarray(image)
     except (OSError, SyntaxError, ValueError, zlib.error) as error:
         reason = " ".join(str(error).split())
         raise CloudError(f"{content.name}: the PNG is damaged ({reason}); get the whole file") from error
-
-
-def _check_length(content: Content, size: int) -> None:
-    """Raises ValueError where the pixels are not all there, which pillow fills up with zeros."""
-    parts, at = [], 8
-    while at + 12 <= len(content):
-        length = int.from_bytes(content.data[at : at + 4].tobytes(), "big")
-        if content.data[at + 4 : at + 8].tobytes() == b"IDAT":
-            parts.append(content.data[at + 8 : at + 8 + length].tobytes())
-        at += 12 + length
-    unpacking = zlib.decompressobj()
-    there = len(unpacking.decompress(b"".join(parts), size + 1))
-    if there != size or not unpacking.eof:
-        raise ValueError(f"{there} bytes of pixels, not {size}")

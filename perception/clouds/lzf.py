@@ -21,7 +21,7 @@ _Bytes = NDArray[np.uint8]
 
 @njit(cache=True)
 def decompress(packed: _Bytes, out: _Bytes) -> tuple[int, int]:
-    """Fills ``out``; how many bytes were read and written, fewer than given where the data is not as long as said."""
+    """Fill ``out``; how many bytes were read and written, fewer than given where the data is not as long as said."""
     read = written = 0
     while read < len(packed):
         control = int(packed[read])
@@ -52,7 +52,7 @@ def decompress(packed: _Bytes, out: _Bytes) -> tuple[int, int]:
 
 @njit(cache=True)
 def compress(plain: _Bytes) -> _Bytes:
-    """Packs bytes greedily: each three that were met before, within 8192 bytes, become a reference."""
+    """Pack bytes greedily: each three that were met before, within 8192 bytes, become a reference."""
     n = len(plain)
     out = np.empty(n + n // _MAX_PLAIN + 4, np.uint8)
     last = np.full(1 << _HASH_BITS, -1, np.int64)
@@ -90,7 +90,7 @@ def compress(plain: _Bytes) -> _Bytes:
 
 @njit(cache=True)
 def _put_plain(plain: _Bytes, begin: int, end: int, out: _Bytes, size: int) -> int:
-    """Writes plain bytes (none, or up to 32) behind their control byte; the new size."""
+    """Write plain bytes (none, or up to 32) behind their control byte; the new size."""
     if end > begin:
         out[size] = end - begin - 1
         size += 1

@@ -40,7 +40,8 @@ class Mesh:
             raise CloudError("a mesh's part is the index of a name, one for each face")
 
     def part_named(self, name: str) -> Mesh:
-        """The faces of one part, with no other vertices than theirs; raises CloudError where there is no such part."""
+        """Return the faces of one part, with no other vertices than theirs; raises CloudError where there is no such
+        part."""
         if self.part is None or name not in self.names:
             known = ", ".join(self.names) or "none"
             raise CloudError(f"the mesh has no part '{name}'; its parts are: {known}")
@@ -50,7 +51,7 @@ class Mesh:
 
 
 def fans(lengths: NDArray[np.int64], corners: NDArray[np.int64]) -> tuple[NDArray[np.int32], NDArray[np.int64]]:
-    """Triangles (m, 3) of polygons, each a fan around its first corner, and which polygon each comes from (m,).
+    """Return triangles (m, 3) of polygons, each a fan around its first corner, and which polygon each comes from (m,).
 
     ``corners`` holds the polygons' corners one after the other. A polygon of fewer than three corners has no triangle.
 

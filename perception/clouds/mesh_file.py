@@ -67,7 +67,7 @@ class _ObjLines:
 
 
 def read_obj(content: Content) -> Mesh:
-    """The mesh in an OBJ file; raises CloudError, with the line, where it is malformed or has no face.
+    """Return the mesh in an OBJ file; raises CloudError, with the line, where it is malformed or has no face.
 
     The parts are those that have faces, by the last ``o`` or ``g`` before each; faces before any are in the part ''.
     """
@@ -86,10 +86,14 @@ def read_obj(content: Content) -> Mesh:
 
 
 def _take_obj_line(words: list[str], parsed: _ObjLines, where: str) -> None:
-    """Takes in one line."""
+    """Take in one line."""
     keyword = words[0] if words else "#"
     if keyword == "v":
-        parsed.vertices.extend(_vertex(words[1:], where))
+        try:
+            x, y, z = (float(w) for w in words[1:][:3])
+        except ValueError:
+            raise CloudError(f"{where}: a vertex has three numbers, x, y and z") from None
+        parsed.vertices.extend((x, y, z))
     elif keyword == "f":
         if len(words) < 4:
             raise CloudError(f"{where}: a face of {len(words) - 1} corners; it has 3 at the least")
@@ -102,16 +106,8 @@ def _take_obj_line(words: list[str], parsed: _ObjLines, where: str) -> None:
         parsed.part = parsed.names.setdefault(" ".join(words[1:]), len(parsed.names))
 
 
-def _vertex(words: list[str], where: str) -> tuple[float, float, float]:
-    try:
-        x, y, z = (float(word) for word in words[:3])
-    except ValueError:
-        raise CloudError(f"{where}: a vertex has three numbers, x, y and z") from None
-    return x, y, z
-
-
 def _corner(word: str, vertices: int, where: str) -> int:
-    """The row of the vertex that v, v/vt, v//vn or v/vt/vn names."""
+    """Return the row of the vertex that v, v/vt, v//vn or v/vt/vn names."""
     try:
         number = int(word.partition("/")[0])
     except ValueError:
@@ -123,7 +119,8 @@ def _corner(word: str, vertices: int, where: str) -> int:
 
 
 def read_stl(content: Content) -> Mesh:
-    """The mesh in an STL file; raises CloudError, with the line or byte, where it is malformed or has no triangle."""
+    """Return the mesh in an STL file; raises CloudError, with the line or byte, where it is malformed or has no
+    triangle."""
     # Binary files may begin with 'solid' too, so that their length, which the count gives, decides.
     declared = int(content.data[80:_STL_HEADER].view("<u4")[0]) if len(content) >= _STL_HEADER else 0
     if _STL_HEADER + declared * _STL_TRIANGLE.itemsize == len(content):

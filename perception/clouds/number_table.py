@@ -37,7 +37,7 @@ def read_table(
     lists: Sequence[int] = (),
     kept: int = -1,
 ) -> TextTable:
-    """``rows`` lines of ``width`` columns from byte ``at`` on, of which ``lists`` are lists, their length first.
+    """Read ``rows`` lines of ``width`` columns from byte ``at`` on, of which ``lists`` are lists, their length first.
 
     None for ``rows`` stands for all there are, in a file that declares nothing: as wide as the first. Raises
     CloudError, before anything is allocated, where the file is too short for so many values; and at a line with too few
@@ -74,7 +74,7 @@ def read_table(
 
 
 def _settle(content: Content, out: NDArray[np.float64], inexact: NDArray[np.int64]) -> None:
-    """Puts the correctly rounded values where the kernel had none: ``inexact`` (k, 4) row, column, begin, end."""
+    """Put the correctly rounded values where the kernel had none: ``inexact`` (k, 4) row, column, begin, end."""
     if not len(inexact):
         return
     longest = int(np.argmax(inexact[:, 3] - inexact[:, 2]))
@@ -89,7 +89,7 @@ def _settle(content: Content, out: NDArray[np.float64], inexact: NDArray[np.int6
 def _error(
     content: Content, status: int, at: int, row: int, rows: int, column: int, width: int, declared: bool
 ) -> CloudError:
-    """What a kernel found, in words."""
+    """Return what a kernel found, in words."""
     from deixis.perception.clouds.table_kernels import BAD_LENGTH, TOO_FEW, TOO_MANY
 
     where = f"{content.name}:{content.line_of(at)}"

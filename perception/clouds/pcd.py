@@ -89,7 +89,7 @@ class _Entry:
 
 
 def read_header(content: Content) -> PcdHeader:
-    """The header of a PCD file; raises CloudError, with the line, where it is none."""
+    """Return the header of a PCD file; raises CloudError, with the line, where it is none."""
     entries, end = _entries(content)
     encoding = entries["DATA"].single().lower()
     if encoding not in ENCODINGS:
@@ -100,31 +100,9 @@ def read_header(content: Content) -> PcdHeader:
     if version is not None and version.single() not in VERSIONS:
         raise CloudError(f"{version.where}: version '{shown(version.single())}' is not read; 0.5 to 0.7 are")
     width, height = _size(entries, content.name)
-    return PcdHeader(_fields(entries, content.name), width, height, _origin(entries), encoding, end)
-
-
-def _entries(content: Content) -> tuple[dict[str, _Entry], int]:
-    """Entries by keyword up to DATA, and where the data begins."""
-    entries: dict[str, _Entry] = {}
-    for number, line, end in content.header_lines():
-        keyword, *values = line.split() or ["#"]
-        where = f"{content.name}:{number}"
-        if keyword.startswith("#"):
-            continue
-        if keyword not in _KEYWORDS:
-            raise CloudError(f"{where}: '{shown(keyword)}' is no entry of a PCD header; take the line out")
-        if keyword in entries:
-            raise CloudError(f"{where}: a second {keyword}; take one of them out")
-        entries[keyword] = _Entry(values, where)
-        if keyword == "DATA":
-            return entries, end
-    raise AssertionError("header_lines raises at the end of the file")
-
-
-def _fields(entries: dict[str, _Entry], file: str) -> tuple[Field, ...]:
     named = entries.get("FIELDS", entries.get("COLUMNS"))
     if named is None or not named.values:
-        raise CloudError(f"{file}: the header has no FIELDS; add the line FIELDS x y z")
+        raise CloudError(f"{content.name}: the header has no FIELDS; add the line FIELDS x y z")
     n = len(named.values)
     sizes, types, counts = (
         _one_each(entries.get(keyword), keyword, n, usual)
@@ -140,7 +118,25 @@ def _fields(entries: dict[str, _Entry], file: str) -> tuple[Field, ...]:
         raise CloudError(f"{named.where}: the field '{shown(twice)}' is declared twice; rename one")
     if sum(field.size for field in fields) > MAX_POINT_BYTES:
         raise CloudError(f"{named.where}: a point of more than {MAX_POINT_BYTES} bytes; correct SIZE and COUNT")
-    return fields
+    return PcdHeader(fields, width, height, _origin(entries), encoding, end)
+
+
+def _entries(content: Content) -> tuple[dict[str, _Entry], int]:
+    """Return entries by keyword up to DATA, and where the data begins."""
+    entries: dict[str, _Entry] = {}
+    for number, line, end in content.header_lines():
+        keyword, *values = line.split() or ["#"]
+        where = f"{content.name}:{number}"
+        if keyword.startswith("#"):
+            continue
+        if keyword not in _KEYWORDS:
+            raise CloudError(f"{where}: '{shown(keyword)}' is no entry of a PCD header; take the line out")
+        if keyword in entries:
+            raise CloudError(f"{where}: a second {keyword}; take one of them out")
+        entries[keyword] = _Entry(values, where)
+        if keyword == "DATA":
+            return entries, end
+    raise AssertionError("header_lines raises at the end of the file")
 
 
 def _one_each(entry: _Entry | None, keyword: str, n: int, usual: str) -> list[str]:
@@ -170,7 +166,7 @@ def _count(entries: dict[str, _Entry], count: str) -> int:
 
 
 def _size(entries: dict[str, _Entry], file: str) -> tuple[int, int]:
-    """Width and height, which agree with POINTS wherever that is given."""
+    """Return width and height, which agree with POINTS wherever that is given."""
     found = {
         keyword: entries[keyword].whole(entries[keyword].single())
         for keyword in ("WIDTH", "HEIGHT", "POINTS")
@@ -189,7 +185,7 @@ def _size(entries: dict[str, _Entry], file: str) -> tuple[int, int]:
 
 
 def _origin(entries: dict[str, _Entry]) -> tuple[float, float, float]:
-    """The position in VIEWPOINT: tx ty tz qw qx qy qz."""
+    """Return the position in VIEWPOINT: tx ty tz qw qx qy qz."""
     entry = entries.get("VIEWPOINT")
     if entry is None:
         return (0.0, 0.0, 0.0)
@@ -208,7 +204,7 @@ _Columns = dict[str, NDArray[np.generic]]
 
 
 def read_pcd(content: Content) -> PointCloud:
-    """The cloud in a PCD file; raises CloudError, with the line or byte, where it is malformed."""
+    """Return the cloud in a PCD file; raises CloudError, with the line or byte, where it is malformed."""
     header = read_header(content)
     columns = {"ascii": _ascii, "binary": _binary, "binary_compressed": _compressed}[header.encoding](content, header)
     return cloud_of_columns(columns, content.name, header.organised, header.origin)
@@ -261,7 +257,7 @@ def _compressed(content: Content, header: PcdHeader) -> _Columns:
 
 
 def _unpacked(content: Content, header: PcdHeader) -> NDArray[np.uint8]:
-    """The plain bytes; sizes are compared with header and file before anything is allocated."""
+    """Return the plain bytes; sizes are compared with header and file before anything is allocated."""
     from deixis.perception.clouds.lzf import MAX_EXPANSION, decompress
 
     begin = header.end + 8

@@ -71,7 +71,7 @@ class PlyHeader:
 
 
 def read_header(content: Content) -> PlyHeader:
-    """The header of a PLY file; raises CloudError, with the line, where it is none."""
+    """Return the header of a PLY file; raises CloudError, with the line, where it is none."""
     encoding = ""
     elements: list[Element] = []
     for number, line, end in content.header_lines():
@@ -111,7 +111,7 @@ def _element(words: list[str], before: list[Element], encoding: str, where: str)
 
 
 def _with_property(words: list[str], elements: list[Element], order: str, where: str) -> Element:
-    """The last element with one property more."""
+    """Return the last element with one property more."""
     if not elements:
         raise CloudError(f"{where}: a property before any element; put the line 'element …' before it")
     types = [_TYPES.get(word) for word in (words[1:3] if words[:1] == ["list"] else words[:1])]
@@ -143,7 +143,7 @@ class ElementTable:
 
 
 def text_table(content: Content, at: int, element: Element, wanted: Set[str]) -> ElementTable:
-    """An element in ascii, one row a line; raises CloudError, with the line, where it is malformed."""
+    """Return an element in ascii, one row a line; raises CloudError, with the line, where it is malformed."""
     properties = list(enumerate(element.properties))
     lists = [place for place, column in properties if column.length is not None]
     kept = next((place for place in lists if element.properties[place].name in wanted), -1)
@@ -157,7 +157,7 @@ def text_table(content: Content, at: int, element: Element, wanted: Set[str]) ->
 
 
 def binary_table(content: Content, at: int, element: Element, wanted: Set[str]) -> ElementTable:
-    """An element in binary; raises CloudError, with the byte, where the file is too short for it."""
+    """Return an element in binary; raises CloudError, with the byte, where the file is too short for it."""
     least = element.rows * sum(column.least_bytes for column in element.properties)
     if at + least > len(content):
         raise _too_short(content, at, element, least)
@@ -206,7 +206,7 @@ def _binary_lists(content: Content, at: int, element: Element, wanted: Set[str])
 def _gathered(
     data: NDArray[np.uint8], starts: NDArray[np.int64], lengths: NDArray[np.int64], dtype: np.dtype[np.generic]
 ) -> NDArray[np.number]:
-    """The values of all lists, one after the other, each list at its own place in the bytes."""
+    """Return the values of all lists, one after the other, each list at its own place in the bytes."""
     size = dtype.itemsize
     before = np.cumsum(lengths) - lengths
     at = np.repeat(starts - before * size, lengths) + np.arange(lengths.sum()) * size
@@ -226,13 +226,13 @@ CORNERS = frozenset({"vertex_indices", "vertex_index"})
 
 
 def read_ply(content: Content) -> PointCloud:
-    """The vertices as a cloud; raises CloudError, with the line or byte, where the file is malformed."""
+    """Return the vertices as a cloud; raises CloudError, with the line or byte, where the file is malformed."""
     columns, _, _ = _body(content)
     return cloud_of_columns(columns, content.name)
 
 
 def read_ply_mesh(content: Content) -> Mesh:
-    """Vertices and faces; raises CloudError where there are none, or where the file is malformed."""
+    """Return vertices and faces; raises CloudError where there are none, or where the file is malformed."""
     columns, lengths, corners = _body(content)
     missing = [name for name in POINT if name not in columns]
     if missing:
@@ -244,7 +244,7 @@ def read_ply_mesh(content: Content) -> Mesh:
 
 
 def _body(content: Content) -> tuple[Columns, NDArray[np.int64], NDArray[np.int64]]:
-    """The vertices' columns, how many corners each face has, and all their corners one after the other."""
+    """Return the vertices' columns, how many corners each face has, and all their corners one after the other."""
     header = read_header(content)
     read = text_table if header.encoding == "ascii" else binary_table
     tables: dict[str, ElementTable] = {}
@@ -262,7 +262,7 @@ def _body(content: Content) -> tuple[Columns, NDArray[np.int64], NDArray[np.int6
 
 
 def _corners(file: str, vertices: int, lengths: NDArray[np.int64], values: NDArray[np.number]) -> NDArray[np.int64]:
-    """The values as corners; raises CloudError where one is no vertex."""
+    """Return the values as corners; raises CloudError where one is no vertex."""
     good = (values >= 0) & (values < vertices) & (values == np.floor(values))
     if not good.all():
         wrong = int(np.argmin(good))

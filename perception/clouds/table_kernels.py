@@ -33,7 +33,7 @@ _MANTISSA_END = np.uint64(2**53)
 
 
 def _fives() -> NDArray[np.uint64]:
-    """Powers of five, shifted to 128 bits of which the first is set: upper and lower half (powers, 2).
+    """Return powers of five, shifted to 128 bits of which the first is set: upper and lower half (powers, 2).
 
     They are rounded down, but the reciprocals down to -27, with which ties can occur, are rounded up.
     """
@@ -51,7 +51,7 @@ _FIVES = _fives()
 
 @njit(cache=True)
 def _product(a: np.uint64, b: np.uint64) -> tuple[np.uint64, np.uint64]:
-    """Upper and lower half of a product in 128 bits."""
+    """Return upper and lower half of a product in 128 bits."""
     a1, a0, b1, b0 = a >> _32, a & _LOW, b >> _32, b & _LOW
     low, left, right = a0 * b0, a1 * b0, a0 * b1
     middle = (low >> _32) + (left & _LOW) + (right & _LOW)
@@ -61,7 +61,8 @@ def _product(a: np.uint64, b: np.uint64) -> tuple[np.uint64, np.uint64]:
 
 @njit(cache=True, error_model="numpy")
 def nearest(w: np.uint64, power: int) -> float:
-    """The double nearest to w times 10 to the ``power``, which lies within MIN_POWER and MAX_POWER; even on a tie."""
+    """Return the double nearest to w times 10 to the ``power``, which lies within MIN_POWER and MAX_POWER; even on a
+    tie."""
     if w <= _MANTISSA_END and -22 <= power <= 22:
         ten = float(_TENS[abs(power)])
         return float(w) / ten if power < 0 else float(w) * ten
@@ -94,7 +95,7 @@ def _is_blank(byte: int) -> bool:
 
 @njit(cache=True)
 def _value_start(text: _Bytes, at: int) -> int:
-    """Where the next value of this line begins, or -1 where there is none."""
+    """Return where the next value of this line begins, or -1 where there is none."""
     while at < len(text):
         if text[at] > 32:
             return at
@@ -113,7 +114,7 @@ def _token_end(text: _Bytes, at: int) -> int:
 
 @njit(cache=True)
 def row_start(text: _Bytes, at: int) -> int:
-    """Where the next row begins: blank lines and those that begin with # or // are passed over."""
+    """Return where the next row begins: blank lines and those that begin with # or // are passed over."""
     while at < len(text):
         if _is_blank(text[at]):
             at += 1
@@ -127,7 +128,7 @@ def row_start(text: _Bytes, at: int) -> int:
 
 @njit(cache=True)
 def count_rows(text: _Bytes, at: int) -> int:
-    """How many rows there are from ``at`` on."""
+    """Return how many rows there are from ``at`` on."""
     rows = 0
     at = row_start(text, at)
     while at < len(text):
@@ -140,7 +141,7 @@ def count_rows(text: _Bytes, at: int) -> int:
 
 @njit(cache=True)
 def _spells(text: _Bytes, at: int, word: bytes) -> bool:
-    """Whether a word in capitals stands at ``at``, in any case."""
+    """Return whether a word in capitals stands at ``at``, in any case."""
     if at + len(word) > len(text):
         return False
     same = True
@@ -151,7 +152,7 @@ def _spells(text: _Bytes, at: int, word: bytes) -> bool:
 
 @njit(cache=True)
 def _word_at(text: _Bytes, at: int) -> tuple[float, int]:
-    """nan, inf or infinity in any case: value and end; the end is ``at`` where it is none of them."""
+    """Return value and end of nan, inf or infinity in any case; the end is ``at`` where it is none of them."""
     if _spells(text, at, _NAN):
         return np.nan, at + len(_NAN)
     if _spells(text, at, _INFINITY):
@@ -163,7 +164,7 @@ def _word_at(text: _Bytes, at: int) -> tuple[float, int]:
 
 @njit(cache=True)
 def _exponent_at(text: _Bytes, at: int) -> tuple[int, int]:
-    """The number after an e, and its end; the end is ``at`` where there is none."""
+    """Return the number after an e, and its end; the end is ``at`` where there is none."""
     begin = at
     negative = at < len(text) and text[at] == 45
     if at < len(text) and (text[at] == 45 or text[at] == 43):
@@ -178,7 +179,7 @@ def _exponent_at(text: _Bytes, at: int) -> tuple[int, int]:
 
 @njit(cache=True, error_model="numpy")
 def _number_at(text: _Bytes, at: int) -> tuple[float, int, bool]:
-    """A number's value, its end (``at`` where there is none) and whether the value is exact."""
+    """Return a number's value, its end (``at`` where there is none) and whether the value is exact."""
     begin = at
     negative = at < len(text) and text[at] == 45
     if at < len(text) and (text[at] == 45 or text[at] == 43):
@@ -221,7 +222,7 @@ def parse_rows(
     lengths: NDArray[np.int64],
     values: NDArray[np.float64],
 ) -> tuple[int, int, int, int, int, int]:
-    """Fills ``out`` (rows, wanted) from text, one row a line; ``roles`` says what to do with each column.
+    """Fill ``out`` (rows, wanted) from text, one row a line; ``roles`` says what to do with each column.
 
     A role is the place of the column in ``out``, or SKIPPED, or LISTED or KEPT. Fills in addition ``inexact`` (k, 4),
     row and column in ``out``, begin and end of values still to be rounded; ``lengths`` (rows,) of the list KEPT; and
@@ -297,7 +298,7 @@ def walk_rows(
     starts: NDArray[np.int64],
     lengths: NDArray[np.int64],
 ) -> tuple[int, int, int]:
-    """Walks through binary rows; fills ``starts`` and ``lengths`` (rows, wanted) of each wanted value or list: the byte
+    """Walk through binary rows; fill ``starts`` and ``lengths`` (rows, wanted) of each wanted value or list: the byte
     at which it begins, and how many values it has.
 
     ``length_sizes`` is 0 for a column that is no list. Returns what went wrong, at which byte and in which row.

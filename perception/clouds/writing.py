@@ -17,7 +17,8 @@ _PLY_TYPES = {"<f4": "float", "|u1": "uchar", "<i4": "int"}
 
 
 def pcd_bytes(cloud: PointCloud, encoding: str) -> Iterator[bytes]:
-    """A PCD file, version 0.7, piece by piece; the origin is its viewpoint. An image keeps its rows and columns."""
+    """Yield a PCD file, version 0.7, piece by piece; the origin is its viewpoint. An image keeps its rows and
+    columns."""
     _check(encoding, PCD_ENCODINGS, "PCD")
     columns = _coordinates(cloud)
     if cloud.colours is not None:
@@ -43,7 +44,7 @@ def pcd_bytes(cloud: PointCloud, encoding: str) -> Iterator[bytes]:
 
 
 def ply_bytes(cloud: PointCloud, encoding: str) -> Iterator[bytes]:
-    """A PLY file piece by piece, ``binary`` being little-endian; it has no place for origin, rows and columns."""
+    """Yield a PLY file piece by piece, ``binary`` being little-endian; it has no place for origin, rows and columns."""
     _check(encoding, PLY_ENCODINGS, "PLY")
     columns = _coordinates(cloud)
     if cloud.colours is not None:
@@ -66,7 +67,7 @@ def _coordinates(cloud: PointCloud) -> dict[str, NDArray[np.generic]]:
 
 
 def _rest(cloud: PointCloud, normals: tuple[str, str, str]) -> dict[str, NDArray[np.generic]]:
-    """Normals and labels, as columns."""
+    """Return normals and labels, as columns."""
     columns: dict[str, NDArray[np.generic]] = {}
     if cloud.normals is not None:
         columns |= dict(zip(normals, cloud.normals.T, strict=True))
@@ -76,7 +77,7 @@ def _rest(cloud: PointCloud, normals: tuple[str, str, str]) -> dict[str, NDArray
 
 
 def _table(columns: dict[str, NDArray[np.generic]]) -> NDArray[np.void]:
-    """Columns as rows of bytes, little-endian."""
+    """Return columns as rows of bytes, little-endian."""
     table = np.empty(len(columns["x"]), [(name, column.dtype.newbyteorder("<")) for name, column in columns.items()])
     for name, column in columns.items():
         table[name] = column

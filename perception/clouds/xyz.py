@@ -23,7 +23,7 @@ _SEPARATORS = b",;"
 
 
 def read_xyz(content: Content) -> PointCloud:
-    """The cloud in a text file; raises CloudError, with the line, where it is malformed or has no point."""
+    """Return the cloud in a text file; raises CloudError, with the line, where it is malformed or has no point."""
     from deixis.perception.clouds.table_kernels import row_start
 
     blank = content.data.copy()
@@ -31,20 +31,6 @@ def read_xyz(content: Content) -> PointCloud:
         blank[blank == separator] = ord(" ")
     plain = Content(content.name, blank)
     start = row_start(blank, 0)
-    width = _width(content, start)
-    chosen = [0, 1, 2, 3, 4, 5] if width == 6 else [0, 1, 2]
-    table = read_table(plain, start, None, width, chosen).columns
-    points, more = single(table[:, :3]), table[:, 3:]
-    if width != 6:
-        return PointCloud(points)
-    if Path(content.name).suffix.lower() == ".xyzn":
-        return PointCloud(points, normals=single(more))
-    whole = bool((more > 1).any() and (more == np.floor(more)).all())
-    return PointCloud(points, as_bytes(more, content.name, whole))
-
-
-def _width(content: Content, start: int) -> int:
-    """How many columns the first row has."""
     line = content.data[start : start + 1024].tobytes().split(b"\n")[0]
     words = re.split(r"[\s,;]+", line.decode("latin-1").strip())
     where = f"{content.name}:{content.line_of(start)}"
@@ -55,4 +41,13 @@ def _width(content: Content, start: int) -> int:
             f"{where}: {len(words)} columns beginning '{shown(words[0])}'; a line has x y z, x y z intensity, or x y z"
             " red green blue"
         )
-    return len(words)
+    width = len(words)
+    chosen = [0, 1, 2, 3, 4, 5] if width == 6 else [0, 1, 2]
+    table = read_table(plain, start, None, width, chosen).columns
+    points, more = single(table[:, :3]), table[:, 3:]
+    if width != 6:
+        return PointCloud(points)
+    if Path(content.name).suffix.lower() == ".xyzn":
+        return PointCloud(points, normals=single(more))
+    whole = bool((more > 1).any() and (more == np.floor(more)).all())
+    return PointCloud(points, as_bytes(more, content.name, whole))

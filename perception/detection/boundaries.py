@@ -35,7 +35,19 @@ class Boundaries:
 def boundaries(surface: Surface, patches: Supervoxels, settings: DetectionSettings) -> Boundaries:
     """Return where patches of a surface meet, and what speaks for two things there."""
     limits = settings.boundaries
-    pairs, smooth, jumped = _meetings(surface, patches)
+    # pairs of patches (m, 2), the lesser first, and how many neighbours meet there, without and with a jump
+    p = np.repeat(np.arange(len(surface)), surface.neighbours.shape[1])
+    q = surface.neighbours.ravel()
+    there = q >= 0
+    p, q = p[there], q[there]
+    there = patches.of[p] != patches.of[q]
+    p, q = p[there], q[there]
+    a, b = patches.of[p].astype(np.int64), patches.of[q].astype(np.int64)
+    codes, place = np.unique(np.minimum(a, b) * len(patches) + np.maximum(a, b), return_inverse=True)
+    jumps = np.linalg.norm(surface.points[p] - surface.points[q], axis=1) > surface.jump[p]
+    total = sums(place)
+    jump = sums(place, jumps.astype(np.float64))
+    pairs, smooth, jumped = np.stack(np.divmod(codes, len(patches)), axis=1), total - jump, jump
     i, j = pairs.T
     sigma = sums(patches.of, surface.sigma) / patches.sizes
     apart = np.median(np.linalg.norm(patches.middles[i] - patches.middles[j], axis=1)) if len(pairs) else 0.0
@@ -49,7 +61,8 @@ def boundaries(surface: Surface, patches: Supervoxels, settings: DetectionSettin
 
 
 def creases(patches: Supervoxels, pairs: NDArray[np.int64]) -> NDArray[np.float64]:
-    """The angle (m,) by which the surfaces of pairs (m, 2) are bent towards each other; 0 where they bend away."""
+    """Return the angle (m,) by which the surfaces of pairs (m, 2) are bent towards each other; 0 where they bend
+    away."""
     i, j = pairs.T
     cosine = (patches.normals[i] * patches.normals[j]).sum(axis=1)
     opening = ((patches.normals[i] - patches.normals[j]) * (patches.middles[i] - patches.middles[j])).sum(axis=1)
@@ -57,7 +70,7 @@ def creases(patches: Supervoxels, pairs: NDArray[np.int64]) -> NDArray[np.float6
 
 
 def steps(patches: Supervoxels, pairs: NDArray[np.int64], off_edge_share: float) -> NDArray[np.float64]:
-    """How far (m,) one surface of each pair lies above the other along their common normal; 0 on a sphere.
+    """Return how far (m,) one surface of each pair lies above the other along their common normal; 0 on a sphere.
 
     Where two planes meet at an angle that is 0 only if both middles are as far from the edge; ``off_edge_share`` is
     the difference of the two distances by their sum that is allowed for.
@@ -72,28 +85,10 @@ def steps(patches: Supervoxels, pairs: NDArray[np.int64], off_edge_share: float)
     return over
 
 
-def _meetings(
-    surface: Surface, patches: Supervoxels
-) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]:
-    """Pairs of patches (m, 2), the first the lesser, and how many neighbours meet there, without and with a jump."""
-    p = np.repeat(np.arange(len(surface)), surface.neighbours.shape[1])
-    q = surface.neighbours.ravel()
-    there = q >= 0
-    p, q = p[there], q[there]
-    there = patches.of[p] != patches.of[q]
-    p, q = p[there], q[there]
-    a, b = patches.of[p].astype(np.int64), patches.of[q].astype(np.int64)
-    codes, place = np.unique(np.minimum(a, b) * len(patches) + np.maximum(a, b), return_inverse=True)
-    jumps = np.linalg.norm(surface.points[p] - surface.points[q], axis=1) > surface.jump[p]
-    total = sums(place)
-    jumped = sums(place, jumps.astype(np.float64))
-    return np.stack(np.divmod(codes, len(patches)), axis=1), total - jumped, jumped
-
-
 def agglomerated(
     meeting: Boundaries, colours: NDArray[np.float64], weights: NDArray[np.float64], settings: BoundarySettings
 ) -> NDArray[np.int32]:
-    """The region (s,) that each of s patches ends in, numbered from 0 in the order of their first patches.
+    """Return the region (s,) that each of s patches ends in, numbered from 0 in the order of their first patches.
 
     The evidence between two regions is the mean over their common boundary (average linkage). Those with the least are
     merged, as long as that is below ``merge_limit``; ties go to the pair with the smaller numbers. ``colours`` (s, 3),
@@ -140,12 +135,12 @@ class _Regions:
         self._colours: list[list[float]] = (colours * weights[:, None]).tolist()  # times the weights
 
     def evidence(self, a: int, b: int) -> float:
-        """What speaks for two things."""
+        """Return what speaks for two things."""
         length, total = self.around[a][b]
         return total / length
 
     def delay(self, a: int, b: int) -> float:
-        """The same, and more where their colours differ."""
+        """Return the same, and more where their colours differ."""
         tint = 0.0
         for one, other in zip(self._colours[a], self._colours[b], strict=True):
             tint += (one / self._weights[a] - other / self._weights[b]) ** 2
@@ -153,7 +148,7 @@ class _Regions:
         return self.evidence(a, b) + self._settings.colour_delay * share
 
     def merge(self, a: int, b: int) -> None:
-        """Region b becomes part of region a."""
+        """Make region b part of region a."""
         del self.around[a][b], self.around[b][a]
         for c, (length, total) in self.around[b].items():
             del self.around[c][b]
@@ -165,7 +160,8 @@ class _Regions:
 
 
 def numbered(parent: list[int]) -> NDArray[np.int32]:
-    """The trees that parents make, each root its own parent, numbered from 0 in the order of their first members."""
+    """Return the trees that parents make, each root its own parent, numbered from 0 in the order of their first
+    members."""
     roots = []
     for start in range(len(parent)):
         at = start

@@ -19,7 +19,7 @@ from deixis.perception.detection.plane import Outlook, Plane
 from deixis.perception.detection.settings import DetectionSettings
 from deixis.perception.detection.supervoxels import supervoxels
 from deixis.perception.detection.surface import Surface, surface_of
-from deixis.perception.detection.tables import Table, tables
+from deixis.perception.detection.tables import FoundTable, tables
 from deixis.perception.detection.viewpoint import believed, in_frame, likely, moved, outlook_of, table_frame
 from deixis.perception.errors import CloudError
 from deixis.perception.scene import OrientedBox, PerceivedObject, Scene
@@ -64,7 +64,7 @@ class Detection:
 
 
 def detect(cloud: PointCloud, settings: DetectionSettings | None = None) -> Detection:
-    """A table of a cloud and the things on it; labels that a cloud bears are not looked at.
+    """Return a table of a cloud and the things on it; labels that a cloud bears are not looked at.
 
     Raises CloudError for a cloud without one finite point, or so wide or narrow that it is not in metres. A cloud
     without a table, and a table with nothing on it, give an answer that says so; so does one with another table.
@@ -80,7 +80,18 @@ def detect(cloud: PointCloud, settings: DetectionSettings | None = None) -> Dete
     if not len(kept):
         raise CloudError("a cloud without one finite point shows nothing; is its depth image empty?")
     points = cloud.points[kept].astype(np.float64)
-    _require_metres(points, settings)
+    few = points[:: max(1, len(points) // 10_000)]
+    spread = float(np.median(np.linalg.norm(few - np.median(few, axis=0), axis=1)))
+    if spread > settings.scale.max_median_radius:
+        raise CloudError(
+            f"half of the points are more than {spread:.0f} m from the middle, too far for a table;"
+            " coordinates are metres: divide millimetres by 1000, centimetres by 100; a depth image has a depth_scale"
+        )
+    if len(few) > 100 and spread < settings.scale.min_median_radius:
+        raise CloudError(
+            f"half of the points are within {1000 * spread:.2g} mm of the middle, too near for a table;"
+            " coordinates are metres: is the unit, or the depth_scale of the intrinsics, another?"
+        )
     outlook = believed(outlook_of(cloud, settings), points, settings)
     if len(points) >= settings.least_points and _is_alone(points, settings):
         return _alone(cloud, kept, points, outlook, settings)
@@ -105,10 +116,19 @@ def _more(number: int) -> str:
 
 
 def _on_table(
-    cloud: PointCloud, kept: NDArray[np.intp], points: NDArray[np.float64], table: Table, settings: DetectionSettings
+    cloud: PointCloud,
+    kept: NDArray[np.intp],
+    points: NDArray[np.float64],
+    table: FoundTable,
+    settings: DetectionSettings,
 ) -> Detection:
-    """The things on one table, among the points (n, 3) of those numbers in the cloud."""
-    view = _view(points, table.plane, table.outlook, settings)
+    """Return the things on one table, among the points (n, 3) of those numbers in the cloud."""
+    level = np.flatnonzero(np.abs(table.plane.heights(points)) < settings.plane.table_band)
+    top = level[in_largest_piece(points[level] @ table.plane.across.T, settings.outlines.table_cell)]
+    frame = table_frame(table.plane, points[top] if len(top) else points, table.outlook, settings.viewer)
+    viewer = moved(table.outlook.eye[None], frame)[0]
+    at = np.ascontiguousarray(moved(points, frame))
+    view = _TableView(frame, at, np.linalg.norm(at - viewer, axis=1), viewer, top)
     eye = table.outlook.eye if table.outlook.known else None
     neighbours = neighbour_table(points, kept, cloud.organised, settings.surface, eye)
     rising = raised(view.heights, view.distance, neighbours, settings)
@@ -124,7 +144,8 @@ def _on_table(
     table_seen = view.points[(np.abs(view.heights) < settings.plane.table_band) & (found == BACKGROUND), :2]
     rims = [rim_of(thing[:, :2], table_seen, settings.outlines) for thing in members]
     boxes = np.stack([upright_box(thing, settings.outlines, rim) for thing, rim in zip(members, rims, strict=True)])
-    order = _left_to_right(boxes)
+    low = boxes[:, 0, :2]
+    order = np.lexsort((low[:, 1], low[:, 0].round(2)))
     labels = np.full(len(cloud), BACKGROUND, np.int32)
     labels[kept] = np.append(np.argsort(order), BACKGROUND)[found]
     oriented = tuple(oriented_box(members[k], settings.outlines, rims[k]) for k in order)
@@ -132,23 +153,8 @@ def _on_table(
     return Detection(cloud, table.plane, view.frame, labels, boxes[order], oriented, notes)
 
 
-def _require_metres(points: NDArray[np.float64], settings: DetectionSettings) -> None:
-    few = points[:: max(1, len(points) // 10_000)]
-    spread = float(np.median(np.linalg.norm(few - np.median(few, axis=0), axis=1)))
-    if spread > settings.scale.max_median_radius:
-        raise CloudError(
-            f"half of the points are more than {spread:.0f} m from the middle, too far for a table;"
-            " coordinates are metres: divide millimetres by 1000, centimetres by 100; a depth image has a depth_scale"
-        )
-    if len(few) > 100 and spread < settings.scale.min_median_radius:
-        raise CloudError(
-            f"half of the points are within {1000 * spread:.2g} mm of the middle, too near for a table;"
-            " coordinates are metres: is the unit, or the depth_scale of the intrinsics, another?"
-        )
-
-
 def _is_alone(points: NDArray[np.float64], settings: DetectionSettings) -> bool:
-    """Whether all there is, but for a few points, is as small as a thing."""
+    """Return whether all there is, but for a few points, is as small as a thing."""
     axes = np.linalg.svd(np.cov(points.T))[0]
     limits = settings.scale
     outliers = (limits.outlier_percent, 100 - limits.outlier_percent)
@@ -164,7 +170,8 @@ def _alone(
     outlook: Outlook,
     settings: DetectionSettings,
 ) -> Detection:
-    """One thing, all that is seen, as if it stood on a table: upright as told, else as the image, else as the cloud."""
+    """Return one thing, all that is seen, as if it stood on a table: upright as told, else as the image, else as the
+    cloud."""
     ups = (outlook.upwards, outlook.up, np.array([0.0, 0.0, 1.0]))
     up = next(direction for direction in ups if direction is not None)
     below = Plane(up, float(np.percentile(points @ up, settings.scale.outlier_percent)))
@@ -194,17 +201,8 @@ class _TableView:
         return np.ascontiguousarray(self.points[:, 2])
 
 
-def _view(points: NDArray[np.float64], plane: Plane, outlook: Outlook, settings: DetectionSettings) -> _TableView:
-    level = np.flatnonzero(np.abs(plane.heights(points)) < settings.plane.table_band)
-    top = level[in_largest_piece(points[level] @ plane.across.T, settings.outlines.table_cell)]
-    frame = table_frame(plane, points[top] if len(top) else points, outlook, settings.viewer)
-    eye = moved(outlook.eye[None], frame)[0]
-    at = np.ascontiguousarray(moved(points, frame))
-    return _TableView(frame, at, np.linalg.norm(at - eye, axis=1), eye, top)
-
-
 def _too_small(view: _TableView, settings: DetectionSettings) -> tuple[str, ...]:
-    """A note where the table is too small for one."""
+    """Return a note where the table is too small for one."""
     across, deep = _sides(view)
     if max(across, deep) >= settings.scale.min_table_length:
         return ()
@@ -213,7 +211,8 @@ def _too_small(view: _TableView, settings: DetectionSettings) -> tuple[str, ...]
 
 
 def _too_large(view: _TableView, settings: DetectionSettings) -> tuple[str, ...]:
-    """A note where no table is so large: what is level with it is looked at, as points far apart are no one piece."""
+    """Return a note where no table is so large: what is level with it is looked at, as points far apart are no one
+    piece."""
     level = view.points[np.abs(view.heights) < settings.plane.table_band, :2]
     level = level[:: max(1, len(level) // 10_000)]
     if not len(level):
@@ -227,13 +226,13 @@ def _too_large(view: _TableView, settings: DetectionSettings) -> tuple[str, ...]
 
 
 def _sides(view: _TableView) -> tuple[float, float]:
-    """How far the table reaches across and away, in metres."""
+    """Return how far the table reaches across and away, in metres."""
     across, deep = np.ptp(view.points[view.top, :2], axis=0).tolist() if len(view.top) else (0.0, 0.0)
     return across, deep
 
 
 def _a_wall(view: _TableView, settings: DetectionSettings) -> tuple[str, ...]:
-    """A note where more is far above the table than on it."""
+    """Return a note where more is far above the table than on it."""
     above = (view.heights > settings.reach).sum()
     if above <= (np.abs(view.heights) < settings.plane.table_band).sum():
         return ()
@@ -248,7 +247,7 @@ def _things(
     colours: NDArray[np.uint8] | None,
     settings: DetectionSettings,
 ) -> NDArray[np.int32]:
-    """The number of its thing for each point (n,), in no particular order, -1 for none."""
+    """Return the number of its thing for each point (n,), in no particular order, -1 for none."""
     found = np.full(len(view.points), BACKGROUND, np.int32)
     chosen = np.flatnonzero(rising.above)
     if not len(chosen):
@@ -262,7 +261,17 @@ def _things(
     table = view.points[np.abs(view.heights) < settings.plane.table_band]
     within = above_outline(table, surface.points, settings.outlines)
     least = np.maximum(settings.height, settings.heights.object_noise_ratio * rising.upper(view.distance[chosen]))
-    found[chosen] = _kept(pieces, within, surface.points, least, settings)
+    result = np.full(len(pieces), BACKGROUND, np.int32)
+    n = 0
+    for piece in range(int(pieces.max()) + 1):
+        of = pieces == piece
+        if of.sum() < settings.least_points or within[of].mean() < settings.heights.min_share_above_table:
+            continue
+        rise = np.quantile(surface.points[of, 2] / least[of], settings.heights.object_quantile)
+        if rise > 1.0 and np.ptp(surface.points[of], axis=0).max() >= settings.least_length:
+            result[of] = n
+            n += 1
+    found[chosen] = result
     return found
 
 
@@ -272,33 +281,6 @@ def segments(surface: Surface, settings: DetectionSettings) -> NDArray[np.int32]
     meeting = boundaries(surface, patches, settings)
     regions = agglomerated(meeting, patches.tints, patches.weights, settings.boundaries)
     return whole_things(Parts(regions, patches, meeting, settings.joining)).of[patches.of]
-
-
-def _kept(
-    pieces: NDArray[np.int32],
-    within: NDArray[np.bool_],
-    points: NDArray[np.float64],
-    least: NDArray[np.float64],
-    settings: DetectionSettings,
-) -> NDArray[np.int32]:
-    """Pieces that are no things get -1: too small, too low to be told from noise, or mostly beside the table."""
-    result = np.full(len(pieces), BACKGROUND, np.int32)
-    number = 0
-    for piece in range(int(pieces.max()) + 1):
-        of = pieces == piece
-        if of.sum() < settings.least_points or within[of].mean() < settings.heights.min_share_above_table:
-            continue
-        rise = np.quantile(points[of, 2] / least[of], settings.heights.object_quantile)
-        if rise > 1.0 and np.ptp(points[of], axis=0).max() >= settings.least_length:
-            result[of] = number
-            number += 1
-    return result
-
-
-def _left_to_right(boxes: NDArray[np.float64]) -> NDArray[np.intp]:
-    """The order of boxes (k, 2, 3) by their least x, to the centimetre, then by their least y, shape (k,)."""
-    low = boxes[:, 0, :2]
-    return np.lexsort((low[:, 1], low[:, 0].round(2)))
 
 
 def _nothing(cloud: PointCloud, plane: Plane | None, frame: NDArray[np.float64], *why: str) -> Detection:

@@ -26,7 +26,7 @@ class Raised:
     settings: HeightSettings
 
     def upper(self, distance: NDArray[np.float64]) -> NDArray[np.float64]:
-        """The height (n,) that is surely no noise, at distances (n,) from the sensor."""
+        """Return the height (n,) that is surely no noise, at distances (n,) from the sensor."""
         nearest = self.settings.min_noise_distance
         return self.settings.upper_threshold * self.averaged * np.maximum(distance, nearest) ** 2
 
@@ -37,7 +37,7 @@ def raised(
     neighbours: NDArray[np.int32],
     settings: DetectionSettings,
 ) -> Raised:
-    """Which of the points are above the table, by their heights (n,) and their distances (n,) from the sensor.
+    """Return which of the points are above the table, by their heights (n,) and their distances (n,) from the sensor.
 
     A sensor's noise grows with the square of the distance (Khoshelham and Elberink 2012); how large it is, is measured
     on the table itself.
@@ -57,7 +57,8 @@ def raised(
 
 
 def _noise(heights: NDArray[np.float64], growth: NDArray[np.float64], limits: HeightSettings) -> float:
-    """The standard deviation of the table's heights at one metre, by the median, from the points below the plane.
+    """Return the standard deviation of the table's heights at one metre, by the median, from the points below the
+    plane.
 
     Those above are no use: what lies on the table is among them.
     """

@@ -26,7 +26,7 @@ Pairs = NDArray[np.intp]
 
 
 def whole_things(parts: Parts) -> Parts:
-    """Parts joined until they are things, rule by rule."""
+    """Return parts joined until they are things, rule by rule."""
     parts = _without_fragments(parts)
     for rule in (
         of_one_colour,
@@ -48,7 +48,7 @@ def whole_things(parts: Parts) -> Parts:
 
 
 def _applied(rule: Callable[[Parts], Pairs], parts: Parts) -> Parts:
-    """A rule applied as long as it finds something, each time to the two that meet longest."""
+    """Return a rule applied as long as it finds something, each time to the two that meet longest."""
     while len(pairs := rule(parts)):
         longest = int(np.argmax(parts.lengths[pairs[:, 0], pairs[:, 1]]))
         parts = parts.joined(pairs[longest : longest + 1])
@@ -62,20 +62,22 @@ def _without_fragments(parts: Parts) -> Parts:
 
 
 def fragments(parts: Parts) -> Pairs:
-    """Pieces that are too small, each with the part that it meets longest and most smoothly."""
+    """Return pieces that are too small, each with the part that it meets longest and most smoothly."""
     pull = parts.smooth * (2.0 - np.where(parts.lengths > 0, parts.evidence, 2.0))
     small = np.flatnonzero((parts.areas < parts.settings.fragment_area) & (pull.max(axis=1, initial=0.0) > 0))
     return np.stack([small, pull[small].argmax(axis=1)], axis=1)
 
 
 def of_one_colour(parts: Parts) -> Pairs:
-    """Parts of one colour that meet without much of a crease: the head and the handle of a fork, a draped napkin."""
+    """Return parts of one colour that meet without much of a crease: the head and the handle of a fork, a draped
+    napkin."""
     smooth = parts.evidence < parts.settings.same_colour_evidence
     return _pairs(_alike(parts) & smooth & (np.abs(parts.rise) < parts.settings.resting_rise))
 
 
 def enclosed(parts: Parts) -> Pairs:
-    """A part within the outline of one that is above it where they meet, both of one colour: the well of a plate."""
+    """Return a part within the outline of one that is above it where they meet, both of one colour: the well of a
+    plate."""
     limits = parts.settings
     low = (parts.rise < limits.well_rise) & (parts.lengths > 0) & ~_differ(parts)
     low &= parts.tops[:, None] <= parts.tops[None] + limits.well_top_tolerance
@@ -84,7 +86,7 @@ def enclosed(parts: Parts) -> Pairs:
 
 
 def insides(parts: Parts) -> Pairs:
-    """The inside of a cup, with its outside: it is curved inwards, and its rim is as high."""
+    """Return the inside of a cup, with its outside: it is curved inwards, and its rim is as high."""
     bent = parts.bulge < -parts.settings.min_cavity_bend
     deep = parts.tops - parts.bottoms > parts.settings.min_cavity_depth
     hollow = (bent & deep)[:, None] & deep[None] & (parts.lengths > 0) & ~_differ(parts)
@@ -92,38 +94,39 @@ def insides(parts: Parts) -> Pairs:
 
 
 def bridged(parts: Parts) -> Pairs:
-    """Two parts of one surface, parted by something narrow that lies on both."""
+    """Return two parts of one surface, parted by something narrow that lies on both."""
     under = _under(parts)
     pairs = _pairs(np.triu(_both(under) & _alike(parts) & (parts.gaps < parts.settings.max_hidden_gap)))
     return _chosen(pairs, lambda a, b: continues(parts, a, b, np.flatnonzero(under[a] & under[b])))
 
 
 def round_rims(parts: Parts) -> Pairs:
-    """Two pieces of a rim that is round, parted by something that lies on both: a plate, and a napkin across it."""
+    """Return two pieces of a rim that is round, parted by something that lies on both: a plate, and a napkin across
+    it."""
     pairs = _pairs(np.triu(_both(_under(parts)) & _alike(parts) & _level(parts)))
     return _chosen(pairs, lambda a, b: parts.once(roundness, a, b) > parts.settings.min_rim_share)
 
 
 def _level(parts: Parts) -> NDArray[np.bool_]:
-    """Which parts are equally high, (p, p)."""
+    """Return which parts are equally high, (p, p)."""
     result: NDArray[np.bool_] = np.abs(parts.tops[:, None] - parts.tops[None]) < parts.settings.level_tolerance
     return result
 
 
 def _under(parts: Parts) -> NDArray[np.bool_]:
-    """Which parts others lie on, (p, p)."""
+    """Return which parts others lie on, (p, p)."""
     return (parts.rise < -parts.settings.covering_rise) & (parts.lengths > 0)
 
 
 def _both(under: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """On which two parts (p, p) one and the same thing lies."""
+    """Return on which two parts (p, p) one and the same thing lies."""
     counted = under.astype(np.float64)
     both: NDArray[np.bool_] = counted @ counted.T > 0
     return both
 
 
 def on_a_foot(parts: Parts) -> Pairs:
-    """Something high above a flat foot of its colour that is no wider: a glass, its stem hidden or not."""
+    """Return something high above a flat foot of its colour that is no wider: a glass, its stem hidden or not."""
     limits = parts.settings
     high = parts.middles > 2 * limits.foot_height
     foot = (parts.middles < limits.foot_height) & (parts.bottoms < limits.foot_height / 2)
@@ -134,7 +137,7 @@ def on_a_foot(parts: Parts) -> Pairs:
 
 
 def necks(parts: Parts) -> Pairs:
-    """Something narrow right on the middle of what is much higher than wide: the neck of a bottle, its cap."""
+    """Return something narrow right on the middle of what is much higher than wide: the neck of a bottle, its cap."""
     limits = parts.settings
     narrow = parts.widths[:, None] < limits.attachment_ratio * parts.widths[None]
     upright = parts.tops - parts.bottoms > limits.bottle_slenderness * parts.widths
@@ -146,7 +149,8 @@ def necks(parts: Parts) -> Pairs:
 
 
 def handles(parts: Parts) -> Pairs:
-    """Something small that stands on nothing, and the larger thing of its colour and height beside which it is."""
+    """Return something small that stands on nothing, and the larger thing of its colour and height beside which it
+    is."""
     limits = parts.settings
     small = parts.widths[:, None] < limits.attachment_ratio * parts.widths[None]
     small &= parts.areas[:, None] < limits.attachment_ratio * parts.areas[None]
@@ -164,7 +168,7 @@ def handles(parts: Parts) -> Pairs:
 
 
 def end_to_end(parts: Parts) -> Pairs:
-    """Two low pieces of one colour in a line, together long and narrow: the head and the handle of a spoon."""
+    """Return two low pieces of one colour in a line, together long and narrow: the head and the handle of a spoon."""
     limits = parts.settings
     low = parts.tops < limits.max_cutlery_height
     pairs = _pairs(np.triu(low[:, None] & low[None] & (parts.gaps < limits.max_cutlery_gap) & ~_differ(parts)))
@@ -176,14 +180,16 @@ def end_to_end(parts: Parts) -> Pairs:
 
 
 def _lie_as_one(parts: Parts, a: int, b: int) -> bool:
-    """Whether two pieces in a line can be one rigid thing for how high they lie: both come down to what it lies on, or
-    it leans and its slope goes on from the one to the other. Cutlery on a plate does neither to cutlery beside it."""
+    """Return whether two pieces in a line can be one rigid thing for how high they lie: both come down to what it
+    lies on, or it leans and its slope goes on from the one to the other. Cutlery on a plate does neither to cutlery
+    beside it."""
     down = abs(parts.bottoms[a] - parts.bottoms[b]) < parts.settings.resting_difference
     return bool(down or parts.once(offset, a, b) < parts.settings.resting_rise)
 
 
 def sides(parts: Parts) -> Pairs:
-    """A thin upright piece, and the thing of its colour whose side it is: seen so aslant that the edge is a jump."""
+    """Return a thin upright piece, and the thing of its colour whose side it is: seen so aslant that the edge is a
+    jump."""
     limits = parts.settings
     low = parts.tops[:, None] < parts.tops[None] + limits.resting_rise
     beside = (parts.gaps < limits.attachment_gap) & low & ~_differ(parts)
@@ -204,18 +210,18 @@ def _chosen(pairs: Pairs, belong: Callable[[int, int], bool]) -> Pairs:
 
 
 def _alike(parts: Parts) -> NDArray[np.bool_]:
-    """Which parts are of one plain colour, (p, p)."""
+    """Return which parts are of one plain colour, (p, p)."""
     plain = parts.motley < parts.settings.max_plain_variation
     return (parts.unlike() < parts.settings.max_same_colour) & plain[:, None] & plain[None]
 
 
 def _differ(parts: Parts) -> NDArray[np.bool_]:
-    """Which parts are surely not of one colour, (p, p): they differ by more than both vary in themselves."""
+    """Return which parts are surely not of one colour, (p, p): they differ by more than both vary in themselves."""
     varied = np.minimum(parts.motley[:, None], parts.motley[None])
     result: NDArray[np.bool_] = parts.unlike() >= np.maximum(parts.settings.min_other_colour, varied)
     return result
 
 
 def _pairs(which: NDArray[np.bool_]) -> Pairs:
-    """The pairs of different parts that are marked in (p, p)."""
+    """Return the pairs of different parts that are marked in (p, p)."""
     return np.argwhere(which & ~np.eye(len(which), dtype=np.bool_))

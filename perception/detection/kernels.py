@@ -14,7 +14,8 @@ from numba import njit
 
 @njit(cache=True, nogil=True)
 def averaged(values, neighbours, apart, rounds):  # type: ignore[no-untyped-def]
-    """Each value (n,) averaged with those of its neighbours that differ by no more than ``apart`` (n,), repeatedly."""
+    """Return each value (n,) averaged with those of its neighbours that differ by no more than ``apart`` (n,),
+    repeatedly."""
     before = values.copy()
     after = np.empty_like(before)
     for _ in range(rounds):
@@ -31,7 +32,7 @@ def averaged(values, neighbours, apart, rounds):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, nogil=True)
 def grown(seeds, allowed, neighbours):  # type: ignore[no-untyped-def]
-    """The seeds (n,), and all allowed points (n,) that are connected with them through allowed ones."""
+    """Return the seeds (n,), and all allowed points (n,) that are connected with them through allowed ones."""
     reached = seeds.copy()
     stack = np.empty(len(seeds), np.int64)
     count = 0
@@ -51,8 +52,8 @@ def grown(seeds, allowed, neighbours):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def spreads(points, neighbours, radius, jump):  # type: ignore[no-untyped-def]
-    """For points (n, 3): mean (n, 3) and covariance (n, 3, 3) of those within ``radius`` (n,) that are reached from
-    neighbour to neighbour without a ``jump`` (n,)."""
+    """Return for points (n, 3): mean (n, 3) and covariance (n, 3, 3) of those within ``radius`` (n,) that are
+    reached from neighbour to neighbour without a ``jump`` (n,)."""
     n = len(points)
     means, covariances = np.empty((n, 3)), np.empty((n, 3, 3))
     stamp, queue = np.full(n, -1, np.int64), np.empty(n, np.int64)
@@ -85,7 +86,7 @@ def spreads(points, neighbours, radius, jump):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, nogil=True)
 def squared(points, i, j):  # type: ignore[no-untyped-def]
-    """The squared distance of two of the points (n, 3)."""
+    """Return the squared distance of two of the points (n, 3)."""
     x, y, z = points[i, 0] - points[j, 0], points[i, 1] - points[j, 1], points[i, 2] - points[j, 2]
     return x * x + y * y + z * z
 

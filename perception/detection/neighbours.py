@@ -27,7 +27,8 @@ def neighbour_table(
     settings: SurfaceSettings,
     eye: NDArray[np.float64] | None = None,
 ) -> NDArray[np.int32]:
-    """For each of the points (n, 3), finite, its neighbours (n, 8) as indices among these, -1 where there is none.
+    """Return for each of the points (n, 3), finite, its neighbours (n, 8) as indices among these, -1 where there is
+    none.
 
     ``kept`` (n,) are the places of the points in the image of ``organised`` rows and columns; without these, ``eye``
     (3,) is from where they were seen, if that is known.
@@ -37,7 +38,19 @@ def neighbour_table(
     """
     if organised is not None:
         return _pixels(kept, *organised)
-    return _nearest(points if eye is None else directions(points, eye), settings.max_neighbour_ratio)
+    places = points if eye is None else directions(points, eye)
+    from scipy.spatial import cKDTree
+
+    count = min(NEIGHBOURS + 1, len(places))
+    found = np.full((len(places), NEIGHBOURS), -1, np.int32)
+    if count < 2:
+        return found
+    distance, index = cKDTree(places).query(places, k=count, workers=-1)
+    usual = float(np.median(distance[:, 1:]))
+    near = index.astype(np.int32)
+    near[(distance > settings.max_neighbour_ratio * usual) | (near == np.arange(len(places))[:, None])] = -1
+    found[:, : count - 1] = near[:, 1:]
+    return found
 
 
 def _pixels(kept: NDArray[np.intp], rows: int, columns: int) -> NDArray[np.int32]:
@@ -46,19 +59,3 @@ def _pixels(kept: NDArray[np.intp], rows: int, columns: int) -> NDArray[np.int32
     number[row + 1, column + 1] = np.arange(len(kept))
     table = [number[row + 1 + down, column + 1 + right] for down, right in _AROUND]
     return np.ascontiguousarray(np.stack(table, axis=1))
-
-
-def _nearest(points: NDArray[np.float64], max_ratio: float) -> NDArray[np.int32]:
-    """Return the nearest points, none beyond ``max_ratio`` times the usual distance of the nearest."""
-    from scipy.spatial import cKDTree
-
-    count = min(NEIGHBOURS + 1, len(points))
-    found = np.full((len(points), NEIGHBOURS), -1, np.int32)
-    if count < 2:
-        return found
-    distance, index = cKDTree(points).query(points, k=count, workers=-1)
-    usual = float(np.median(distance[:, 1:]))
-    near = index.astype(np.int32)
-    near[(distance > max_ratio * usual) | (near == np.arange(len(points))[:, None])] = -1
-    found[:, : count - 1] = near[:, 1:]
-    return found

@@ -18,7 +18,7 @@ SECTORS = 36
 def above_outline(
     table: NDArray[np.float64], points: NDArray[np.float64], settings: OutlineSettings
 ) -> NDArray[np.bool_]:
-    """Which of the points (n, 3) are above or below the convex hull of the table's points (m, 3), shape (n,).
+    """Return which of the points (n, 3) are above or below the convex hull of the table's points (m, 3), shape (n,).
 
     Only the largest connected piece of the table counts, so that what is level elsewhere in the room is left out.
     """
@@ -39,7 +39,7 @@ def above_outline(
 
 
 def in_largest_piece(plan: NDArray[np.float64], cell_size: float) -> NDArray[np.bool_]:
-    """Which of points (n, 2) are in the connected piece that has most of them, shape (n,).
+    """Return which of points (n, 2) are in the connected piece that has most of them, shape (n,).
 
     Points are connected over a grid of cells of ``cell_size`` (metres), or of a thousandth of the whole if that is
     more.
@@ -60,7 +60,8 @@ def in_largest_piece(plan: NDArray[np.float64], cell_size: float) -> NDArray[np.
 
 
 def corners_of(plan: NDArray[np.float64]) -> NDArray[np.float64] | None:
-    """The corners (k, 2) of the convex outline of places (n, 2), in turn; None of too few, or of places in a line."""
+    """Return the corners (k, 2) of the convex outline of places (n, 2), in turn; None of too few, or of places in a
+    line."""
     from scipy.spatial import ConvexHull, QhullError
 
     try:
@@ -78,23 +79,23 @@ class Circle:
     radius: float
 
     def off(self, plan: NDArray[np.float64]) -> NDArray[np.float64]:
-        """How far places (n, 2) are beyond it, in its radius; within it below 0, shape (n,)."""
+        """Return how far places (n, 2) are beyond it, in its radius; within it below 0, shape (n,)."""
         out: NDArray[np.float64] = np.linalg.norm(plan - self.centre, axis=1) / self.radius - 1.0
         return out
 
     def sectors(self, plan: NDArray[np.float64], edge: float) -> NDArray[np.int64]:
-        """The sectors in which there are places (n, 2) at its edge, in order."""
+        """Return the sectors in which there are places (n, 2) at its edge, in order."""
         x, y = (plan[self.off(plan) > -edge] - self.centre).T
         turn = np.arctan2(y, x) / (2 * np.pi) % 1.0
         return np.unique(np.minimum(turn * SECTORS, SECTORS - 1).astype(np.int64))
 
     def turned(self, axes: NDArray[np.float64]) -> Circle:
-        """The same along other axes, in rows, (2, 2)."""
+        """Return the same along other axes, in rows, (2, 2)."""
         return Circle(axes @ self.centre, self.radius)
 
 
 def circle_around(plan: NDArray[np.float64], edge: float) -> Circle | None:
-    """The circle on which all corners of the convex outline of places (n, 2) lie, as well as ``edge`` has it.
+    """Return the circle on which all corners of the convex outline of places (n, 2) lie, as well as ``edge`` has it.
 
     By algebraic least squares (Kasa, A circle fitting procedure and its error analysis, 1976). None where there is
     none, or fewer than five corners.
@@ -109,7 +110,8 @@ def circle_around(plan: NDArray[np.float64], edge: float) -> Circle | None:
 
 
 def rim_of(plan: NDArray[np.float64], table: NDArray[np.float64], settings: OutlineSettings) -> Circle | None:
-    """The whole rim of a round thing of which places (n, 2) are seen, the rest being hidden by itself or by others.
+    """Return the whole rim of a round thing of which places (n, 2) are seen, the rest being hidden by itself or by
+    others.
 
     None where what is seen is not round, where too little of its edge is, or where the table is seen at places (m, 2)
     within what would be its rim.
@@ -129,7 +131,8 @@ def rim_of(plan: NDArray[np.float64], table: NDArray[np.float64], settings: Outl
 def upright_box(
     points: NDArray[np.float64], settings: OutlineSettings, rim: Circle | None = None
 ) -> NDArray[np.float64]:
-    """Least and greatest corner (2, 3) of points (n, 3) in the table's frame; it stands on the table or above it.
+    """Return least and greatest corner (2, 3) of points (n, 3) in the table's frame; it stands on the table or above
+    it.
 
     ``rim`` is a circle in the plan that it takes in, too.
 
@@ -147,7 +150,7 @@ def upright_box(
 
 
 def oriented_box(points: NDArray[np.float64], settings: OutlineSettings, rim: Circle | None = None) -> OrientedBox:
-    """The upright box with the smallest plan, among those with a side along a side of the points' outline.
+    """Return the upright box with the smallest plan, among those with a side along a side of the points' outline.
 
     Its first side is the longer one, with a yaw above -pi/2, to pi/2. ``rim`` is a circle in the plan that it takes in,
     too. That the smallest rectangle has such a side is the theorem of Freeman and Shapira (1975).
@@ -159,7 +162,7 @@ def oriented_box(points: NDArray[np.float64], settings: OutlineSettings, rim: Ci
 
 
 def _box_along(yaw: float, points: NDArray[np.float64], settings: OutlineSettings, rim: Circle | None) -> OrientedBox:
-    """The box with a side in that direction."""
+    """Return the box with a side in that direction."""
     yaw = float(np.pi / 2 - (np.pi / 2 - yaw) % np.pi)
     axes = turned_axes(yaw)
     low, high = upright_box(points @ axes.T, settings, rim and rim.turned(axes[:2, :2]))

@@ -36,11 +36,12 @@ class Parts:
         return int(self.of.max()) + 1 if len(self.of) else 0
 
     def members(self, part: int) -> NDArray[np.intp]:
-        """Its patches."""
+        """Return its patches."""
         return np.flatnonzero(self.of == part)
 
     def once(self, measure: Measure, a: int, b: int) -> float:
-        """What a function of the patches of two parts gives, worked out once: joining others does not change it."""
+        """Return what a function of the patches of two parts gives, worked out once: joining others does not change
+        it."""
         key = (measure, *self._marks[a], *self._marks[b])
         if key not in self.known:
             self.known[key] = measure(self, self.members(a), self.members(b))
@@ -147,12 +148,12 @@ class Parts:
         return np.divide(total, self.lengths, out=np.zeros_like(total), where=self.lengths > 0)
 
     def unlike(self) -> NDArray[np.float64]:
-        """The difference between the colours of parts, (p, p)."""
+        """Return the difference between the colours of parts, (p, p)."""
         result: NDArray[np.float64] = np.linalg.norm(self.colours[:, None] - self.colours[None], axis=2)
         return result
 
     def joined(self, pairs: NDArray[np.intp]) -> Parts:
-        """The same with the parts of each pair (k, 2) made one."""
+        """Return the same with the parts of each pair (k, 2) made one."""
         from scipy.sparse import coo_array
         from scipy.sparse.csgraph import connected_components
 
@@ -162,7 +163,7 @@ class Parts:
         return replace(self, of=of)
 
     def _between(self, values: NDArray[np.float64], sign: float = 1.0) -> NDArray[np.float64]:
-        """Sums over where parts meet, weighted by length; the other way round with another ``sign``."""
+        """Return sums over where parts meet, weighted by length; the other way round with another ``sign``."""
         a, b = self.of[self.meeting.pairs].T.astype(np.int64)
         apart = a != b
         count, weighted = len(self), values * self.meeting.lengths
@@ -172,7 +173,7 @@ class Parts:
 
 
 def inside(parts: Parts, inner: int, outer: int) -> float:
-    """The share of a part's patches that lie within the convex outline of another, as seen from above."""
+    """Return the share of a part's patches that lie within the convex outline of another, as seen from above."""
     return parts.once(_share_inside, inner, outer)
 
 
@@ -185,7 +186,8 @@ def _share_inside(parts: Parts, inner: NDArray[np.intp], outer: NDArray[np.intp]
 
 
 def _covered(parts: Parts, cover: int, places: NDArray[np.float64]) -> bool:
-    """Whether most places (k, 3) are within a part's outline, or no farther from it than it is higher: hidden by it."""
+    """Return whether most places (k, 3) are within a part's outline, or no farther from it than it is higher: hidden
+    by it."""
     hull = _hull(parts.patches.middles[parts.members(cover), :2])
     if hull is None:
         return True
@@ -194,7 +196,7 @@ def _covered(parts: Parts, cover: int, places: NDArray[np.float64]) -> bool:
 
 
 def apart(parts: Parts, a: int, b: int) -> float:
-    """The least distance between patches of two parts, as seen from above."""
+    """Return the least distance between patches of two parts, as seen from above."""
     return parts.once(_least_distance, a, b)
 
 
@@ -206,7 +208,7 @@ def _least_distance(parts: Parts, one: NDArray[np.intp], two: NDArray[np.intp]) 
 
 
 def _hull(plan: NDArray[np.float64]) -> NDArray[np.float64] | None:
-    """The half planes (k, 3) of a convex hull; None for points in a line."""
+    """Return the half planes (k, 3) of a convex hull; None for points in a line."""
     from scipy.spatial import ConvexHull, QhullError
 
     if len(plan) < 3:
@@ -219,8 +221,8 @@ def _hull(plan: NDArray[np.float64]) -> NDArray[np.float64] | None:
 
 
 def continues(parts: Parts, a: int, b: int, over: NDArray[np.intp]) -> bool:
-    """Whether one surface goes on in the other, under a part that is over both: where they are nearest, that part is
-    between them, and their planes are the same."""
+    """Return whether one surface goes on in the other, under a part that is over both: where they are nearest, that
+    part is between them, and their planes are the same."""
     if parts.once(_share_of_one_plane, a, b) <= parts.settings.min_coplanar_share:
         return False
     p, q = _nearest(parts, parts.members(a), parts.members(b))
@@ -229,7 +231,7 @@ def continues(parts: Parts, a: int, b: int, over: NDArray[np.intp]) -> bool:
 
 
 def _share_of_one_plane(parts: Parts, one: NDArray[np.intp], two: NDArray[np.intp]) -> float:
-    """Of the nearest patches of two parts, the share that lie in one plane."""
+    """Return the share of the nearest patches of two parts that lie in one plane."""
     p, q = _nearest(parts, one, two)
     if not len(p):
         return 0.0
@@ -243,7 +245,7 @@ def _share_of_one_plane(parts: Parts, one: NDArray[np.intp], two: NDArray[np.int
 
 
 def _nearest(parts: Parts, one: NDArray[np.intp], two: NDArray[np.intp]) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """Patches of two parts where these are nearest, and not too far apart: of the first, and of the second."""
+    """Return patches of two parts where these are nearest, and not too far apart: of the first, and of the second."""
     from scipy.spatial import cKDTree
 
     middles = parts.patches.middles
@@ -254,7 +256,8 @@ def _nearest(parts: Parts, one: NDArray[np.intp], two: NDArray[np.intp]) -> tupl
 
 
 def roundness(parts: Parts, one: NDArray[np.intp], two: NDArray[np.intp]) -> float:
-    """The share of a circle around two parts, as seen from above, that their edges follow; 0 where they leave it."""
+    """Return the share of a circle around two parts, as seen from above, that their edges follow; 0 where they leave
+    it."""
     plan = parts.patches.middles[np.concatenate([one, two]), :2]
     tolerance = parts.settings.rim_tolerance
     circle = circle_around(plan, tolerance)
@@ -262,7 +265,8 @@ def roundness(parts: Parts, one: NDArray[np.intp], two: NDArray[np.intp]) -> flo
 
 
 def slenderness(parts: Parts, one: NDArray[np.intp], two: NDArray[np.intp]) -> float:
-    """How often as long as wide two parts are together, if the one begins where the other, longer one ends; else 0."""
+    """Return how often as long as wide two parts are together, if the one begins where the other, longer one ends;
+    else 0."""
     plans = [parts.patches.middles[part, :2] for part in (one, two)]
     longer = max(plans, key=lambda plan: extents(plan)[0])
     turned = [plan @ _axes(longer) for plan in plans]
@@ -276,8 +280,8 @@ def slenderness(parts: Parts, one: NDArray[np.intp], two: NDArray[np.intp]) -> f
 
 
 def offset(parts: Parts, one: NDArray[np.intp], two: NDArray[np.intp]) -> float:
-    """Metres by which two pieces of one line miss each other in height, in the middle between them, if each goes on as
-    it slopes: little where both are pieces of something straight, level or leaning."""
+    """Return metres by which two pieces of one line miss each other in height, in the middle between them, if each
+    goes on as it slopes: little where both are pieces of something straight, level or leaning."""
     places = [parts.patches.middles[part] for part in (one, two)]
     longer = max(places, key=lambda place: extents(place[:, :2])[0])
     along = _axes(longer[:, :2])[:, 0]
@@ -288,20 +292,21 @@ def offset(parts: Parts, one: NDArray[np.intp], two: NDArray[np.intp]) -> float:
 
 
 def _height_at(along: NDArray[np.float64], heights: NDArray[np.float64], width: float) -> float:
-    """Where a line through heights (n,) at places (n,) along it passes 0; of what is too short to slope, the mean."""
+    """Return where a line through heights (n,) at places (n,) along it passes 0; of what is too short to slope, the
+    mean."""
     off = along - along.mean()
     slope = float(off @ heights) / max(float(off @ off), width**2)
     return float(heights.mean() - slope * along.mean())
 
 
 def _axes(plan: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The principal axes of places (n, 2), the longer first, as columns (2, 2)."""
+    """Return the principal axes of places (n, 2), the longer first, as columns (2, 2)."""
     apart = plan - plan.mean(axis=0)
     axes: NDArray[np.float64] = np.linalg.eigh(apart.T @ apart)[1][:, ::-1]
     return axes
 
 
 def extents(plan: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Length and width (2,) of places (n, 2) along their principal axes."""
+    """Return length and width (2,) of places (n, 2) along their principal axes."""
     extents: NDArray[np.float64] = np.ptp(plan @ _axes(plan), axis=0)
     return extents

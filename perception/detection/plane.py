@@ -22,7 +22,7 @@ class Plane:
     offset: float
 
     def heights(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Metres above the plane, of points (n, 3), shape (n,)."""
+        """Return metres above the plane, of points (n, 3), shape (n,)."""
         result: NDArray[np.float64] = points @ self.normal - self.offset
         return result
 
@@ -33,11 +33,11 @@ class Plane:
         return along
 
     def is_along(self, other: Plane, settings: PlaneSettings) -> bool:
-        """Whether both are as level, their normals to the same side."""
+        """Return whether both are as level, their normals to the same side."""
         return bool(self.normal @ other.normal > settings.min_normal_cosine)
 
     def turned(self) -> Plane:
-        """The same plane, with its normal to the other side."""
+        """Return the same plane, with its normal to the other side."""
         return Plane(-self.normal, -self.offset)
 
 
@@ -55,7 +55,7 @@ class Outlook:
     known: bool = True
 
     def could_be_table(self, normal: NDArray[np.float64]) -> bool:
-        """Whether a plane with this normal, towards the eye, is level for a camera that is held upright."""
+        """Return whether a plane with this normal, towards the eye, is level for a camera that is held upright."""
         if self.upwards is not None:
             return bool(normal @ self.upwards > 0.7)
         if self.up is None or self.right is None:
@@ -64,7 +64,7 @@ class Outlook:
 
 
 def table_plane(points: NDArray[np.float64], outlook: Outlook, settings: DetectionSettings) -> Plane | None:
-    """The plane of the table under points (n, 3), all finite; None where there is none."""
+    """Return the plane of the table under points (n, 3), all finite; None where there is none."""
     rng, limits = np.random.default_rng(settings.seed), settings.plane
     size = limits.sample_size
     sample = points if len(points) <= size else points[np.sort(rng.choice(len(points), size, replace=False))]
@@ -77,7 +77,9 @@ def table_plane(points: NDArray[np.float64], outlook: Outlook, settings: Detecti
     for plane in found:  # a wall is nothing that stands on the floor
         free &= np.abs(plane.heights(sample)) > tolerance
     levels = [level_of(plane, sample, tolerance, sample[free], limits) for plane in planes]
-    levels = _without_floors(levels, len(sample), limits)
+    total = len(sample)
+    tables = [height for height in levels if height.bears(total, limits)]
+    levels = [height for height in levels if not any(height.is_floor_below(table, limits) for table in tables)]
     # What stands on a table tells its upper side, should the sensor seem to be below: the origin may be a mere default.
     turned = [level.plane.turned() for level in levels]
     levels += [
@@ -91,7 +93,7 @@ def table_plane(points: NDArray[np.float64], outlook: Outlook, settings: Detecti
 
 
 @dataclass(frozen=True, eq=False)
-class Level:
+class LevelPlane:
     """A plane, the points on it (k, 3), and how many stand on it."""
 
     plane: Plane
@@ -104,11 +106,11 @@ class Level:
         return len(self.points) + 10 * self.standing
 
     def bears(self, total: int, settings: PlaneSettings) -> bool:
-        """Whether enough of a ``total`` of points stand on it to be things."""
+        """Return whether enough of a ``total`` of points stand on it to be things."""
         return self.standing >= settings.min_standing_share * total
 
-    def is_floor_below(self, other: Level, settings: PlaneSettings) -> bool:
-        """Whether it lies a table's height below another level one."""
+    def is_floor_below(self, other: LevelPlane, settings: PlaneSettings) -> bool:
+        """Return whether it lies a table's height below another level one."""
         drop = np.median(self.plane.heights(other.points))
         return self.plane.is_along(other.plane, settings) and bool(drop > settings.floor_drop)
 
@@ -119,20 +121,16 @@ def level_of(
     tolerance: NDArray[np.float64],
     free: NDArray[np.float64],
     settings: PlaneSettings,
-) -> Level:
-    """What of a sample (n, 3) is on a plane within a tolerance (n,), and what of the ``free`` points stands on it."""
+) -> LevelPlane:
+    """Return what of a sample (n, 3) is on a plane within a tolerance (n,), and what of the ``free`` points stands
+    on it."""
     on = sample[np.abs(plane.heights(sample)) <= tolerance]
-    return Level(plane, on, _standing(plane, on, free, settings))
-
-
-def _without_floors(levels: list[Level], total: int, settings: PlaneSettings) -> list[Level]:
-    """All but those that lie a table's height below one on which something stands, however large they are."""
-    tables = [level for level in levels if level.bears(total, settings)]
-    return [level for level in levels if not any(level.is_floor_below(table, settings) for table in tables)]
+    return LevelPlane(plane, on, _standing(plane, on, free, settings))
 
 
 def tolerance_at(points: NDArray[np.float64], outlook: Outlook, settings: PlaneSettings) -> NDArray[np.float64]:
-    """Metres from a plane, (n,), within which points (n, 3) may be on it; they grow with the square of the distance."""
+    """Return metres from a plane, (n,), within which points (n, 3) may be on it; they grow with the square of the
+    distance."""
     squared = ((points - outlook.eye) ** 2).sum(axis=1)
     near: NDArray[np.float64] = settings.tolerance * np.clip(squared, 0.25, settings.max_noise_distance**2)
     return near
@@ -145,7 +143,7 @@ def _planes(
     rng: np.random.Generator,
     settings: PlaneSettings,
 ) -> list[Plane]:
-    """The large ones, the one with most points first."""
+    """Return the large ones, the one with most points first."""
     found = []
     left = np.ones(len(sample), dtype=np.bool_)
     least = max(3, settings.min_inlier_share * len(sample))
@@ -155,7 +153,16 @@ def _planes(
         plane = _largest(sample[left], tolerance[left], rng, settings.ransac_trials)
         if plane is None:
             break
-        plane = _towards(refined(plane, sample[left], tolerance[left]), outlook, sample, settings.min_standing_height)
+        candidate = refined(plane, sample[left], tolerance[left])
+        side = float(candidate.normal @ outlook.eye - candidate.offset)
+        if outlook.upwards is not None:
+            side = float(candidate.normal @ outlook.upwards)
+        elif abs(side) < 0.05:
+            heights = candidate.heights(sample)
+            side = float(
+                (heights > settings.min_standing_height).sum() - (heights < -settings.min_standing_height).sum()
+            )
+        plane = candidate if side >= 0 else candidate.turned()
         on = np.abs(plane.heights(sample)) <= 1.5 * tolerance
         if (on & left).sum() < least:
             break
@@ -167,7 +174,8 @@ def _planes(
 def _largest(
     points: NDArray[np.float64], tolerance: NDArray[np.float64], rng: np.random.Generator, trials: int
 ) -> Plane | None:
-    """The plane through three of the points that most points are on; one far away counts for the area it stands for."""
+    """Return the plane through three of the points that most points are on; one far away counts for the area it
+    stands for."""
     triples = points[rng.integers(len(points), size=(trials, 3))]
     normals = np.cross(triples[:, 1] - triples[:, 0], triples[:, 2] - triples[:, 0])
     length = np.linalg.norm(normals, axis=1)
@@ -184,7 +192,7 @@ def _largest(
 
 
 def refined(plane: Plane, points: NDArray[np.float64], tolerance: NDArray[np.float64], rounds: int = 6) -> Plane:
-    """The least-squares plane of the points near it, over and over, ever nearer: what stands on it has no say.
+    """Return the least-squares plane of the points near it, over and over, ever nearer: what stands on it has no say.
 
     Points are weighted by the inverse of their noise's variance. ``tolerance`` (n,) is in metres.
     """
@@ -202,19 +210,8 @@ def refined(plane: Plane, points: NDArray[np.float64], tolerance: NDArray[np.flo
     return plane
 
 
-def _towards(plane: Plane, outlook: Outlook, points: NDArray[np.float64], min_standing_height: float) -> Plane:
-    """The plane with its normal to the side of the sensor; where that is in the plane, of the things on it."""
-    side = float(plane.normal @ outlook.eye - plane.offset)
-    if outlook.upwards is not None:
-        side = float(plane.normal @ outlook.upwards)
-    elif abs(side) < 0.05:
-        heights = plane.heights(points)
-        side = float((heights > min_standing_height).sum() - (heights < -min_standing_height).sum())
-    return plane if side >= 0 else plane.turned()
-
-
 def _standing(plane: Plane, on: NDArray[np.float64], free: NDArray[np.float64], settings: PlaneSettings) -> int:
-    """How many of the ``free`` points are above the box around those that are ``on`` the plane, not far up."""
+    """Return how many of the ``free`` points are above the box around those that are ``on`` the plane, not far up."""
     if len(on) < 3:
         return 0
     across = plane.across

@@ -47,7 +47,7 @@ class Supervoxels:
 
 
 def supervoxels(surface: Surface, settings: SupervoxelSettings) -> Supervoxels:
-    """Patches of a surface of one point or more."""
+    """Return patches of a surface of one point or more."""
     from deixis.perception.detection.kernels import grow
 
     noisy = np.clip(settings.spacing_noise_ratio * np.median(surface.sigma), settings.min_spacing, settings.max_spacing)
@@ -56,11 +56,7 @@ def supervoxels(surface: Surface, settings: SupervoxelSettings) -> Supervoxels:
     shape = (surface.points, surface.smooth, surface.normals, surface.colours)
     costs = (settings.turn_cost, settings.step_cost, settings.colour_cost, settings.colour_noise)
     found = grow(seeds, spacing, costs, *shape, surface.neighbours, surface.jump)
-    return _described(surface, np.unique(found, return_inverse=True)[1].astype(np.int32), settings)
-
-
-def _described(surface: Surface, of: NDArray[np.int32], settings: SupervoxelSettings) -> Supervoxels:
-    """The patches with their means; ``of`` (n,) are numbers from 0 without a gap."""
+    of = np.unique(found, return_inverse=True)[1].astype(np.int32)
     middles, normals = means(of, surface.smooth), means(of, surface.normals)
     colours = means(of, surface.colours, surface.points[:, 2].clip(settings.min_colour_height))
     normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
@@ -70,19 +66,19 @@ def _described(surface: Surface, of: NDArray[np.int32], settings: SupervoxelSett
 def means(
     of: NDArray[np.integer], values: NDArray[np.float64], weights: NDArray[np.float64] | None = None
 ) -> NDArray[np.float64]:
-    """The means (m, d) of values (n, d) by number ``of`` (n,), weighted by (n,)."""
+    """Return the means (m, d) of values (n, d) by number ``of`` (n,), weighted by (n,)."""
     weights = np.ones(len(of)) if weights is None else weights
     total = np.stack([sums(of, values[:, axis] * weights) for axis in range(values.shape[1])], axis=1)
     return total / sums(of, weights)[:, None]
 
 
 def sums(of: NDArray[np.integer], values: NDArray[np.float64] | None = None, count: int = 0) -> NDArray[np.float64]:
-    """The sums of values (n,), or how many there are, by number ``of`` (n,), for at least ``count`` numbers."""
+    """Return the sums of values (n,), or how many there are, by number ``of`` (n,), for at least ``count`` numbers."""
     return np.bincount(of, values, minlength=count).astype(np.float64)
 
 
 def _seeds(points: NDArray[np.float64], spacing: float) -> NDArray[np.int64]:
-    """In each cell of a grid that has points, the one nearest to their mean."""
+    """Return for each occupied cell of a grid the point nearest to the mean of its points."""
     cells = np.floor(points / spacing).astype(np.int64)
     of = np.unique(cells, axis=0, return_inverse=True)[1].ravel()
     off = ((points - means(of, points)[of]) ** 2).sum(axis=1)

@@ -41,10 +41,17 @@ def surface_of(
     eye: NDArray[np.float64],
     settings: SurfaceSettings,
 ) -> Surface:
-    """The surface through points (n, 3) with colours (n, 3), seen from ``eye`` (3,) with noise ``sigma`` (n,)."""
+    """Return the surface through points (n, 3) with colours (n, 3), seen from ``eye`` (3,) with noise ``sigma``
+    (n,)."""
     from deixis.perception.detection.kernels import spreads
 
-    spacing = _spacing(points, neighbours, np.linalg.norm(points - eye, axis=1))
+    distance = np.linalg.norm(points - eye, axis=1)
+    there = neighbours >= 0
+    away = np.linalg.norm(points[neighbours] - points[:, None], axis=2)
+    relative = np.where(there, away, 0.0).sum(axis=1) / np.maximum(there.sum(axis=1), 1) / np.maximum(distance, 1e-6)
+    known = relative[there.any(axis=1)]
+    # the mean distance of eight neighbours is 1.2 sides of a pixel; it grows with the distance from the sensor
+    spacing = distance * float(np.median(known) if len(known) else 0.0) / 1.2
     jump = np.maximum(
         np.maximum(settings.min_jump, settings.jump_noise_ratio * sigma), settings.jump_spacing_ratio * spacing
     )
@@ -55,25 +62,9 @@ def surface_of(
     normals *= np.where(((eye - points) * normals).sum(axis=1) < 0, -1.0, 1.0)[:, None]
     off = ((points - middles) * normals).sum(axis=1)
     smooth = points - off[:, None] * normals
-    return Surface(points, smooth, normals, _smooth_lab(colours, neighbours), neighbours, sigma, jump, spacing)
-
-
-def _spacing(
-    points: NDArray[np.float64], neighbours: NDArray[np.int32], distance: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    """The mean distance of eight neighbours is 1.2 sides of a pixel; it grows with the distance from the sensor."""
-    there = neighbours >= 0
-    away = np.linalg.norm(points[neighbours] - points[:, None], axis=2)
-    relative = np.where(there, away, 0.0).sum(axis=1) / np.maximum(there.sum(axis=1), 1) / np.maximum(distance, 1e-6)
-    known = relative[there.any(axis=1)]
-    return distance * float(np.median(known) if len(known) else 0.0) / 1.2
-
-
-def _smooth_lab(colours: NDArray[np.uint8] | None, neighbours: NDArray[np.int32]) -> NDArray[np.float64]:
-    if colours is None:
-        return np.zeros((len(neighbours), 3))
-    lab = lab_of_srgb(colours.astype(np.float64))
-    there = neighbours >= 0
-    total = lab + np.where(there[:, :, None], lab[neighbours], 0.0).sum(axis=1)
-    mean: NDArray[np.float64] = total / (1 + there.sum(axis=1))[:, None]
-    return mean
+    lab = np.zeros((len(points), 3))
+    if colours is not None:
+        own, there = lab_of_srgb(colours.astype(np.float64)), neighbours >= 0
+        total = own + np.where(there[:, :, None], own[neighbours], 0.0).sum(axis=1)
+        lab = total / (1 + there.sum(axis=1))[:, None]
+    return Surface(points, smooth, normals, lab, neighbours, sigma, jump, spacing)

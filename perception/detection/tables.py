@@ -15,7 +15,7 @@ from deixis.perception.detection.viewpoint import likely
 
 
 @dataclass(frozen=True, eq=False)
-class Table:
+class FoundTable:
     """Its plane, from where it is seen, and the numbers (k,) of the points that are of no table before it."""
 
     plane: Plane
@@ -23,35 +23,27 @@ class Table:
     points: NDArray[np.intp]
 
 
-def tables(points: NDArray[np.float64], outlook: Outlook, settings: DetectionSettings) -> Iterator[Table]:
-    """The tables under points (n, 3), all finite; none where nothing large is level."""
-    plane, outlook = _first(points, outlook, settings)
+def tables(points: NDArray[np.float64], outlook: Outlook, settings: DetectionSettings) -> Iterator[FoundTable]:
+    """Yield the tables under points (n, 3), all finite; none where nothing large is level."""
+    view = outlook
+    base = table_plane(points, view, settings)
+    if base is None and view.up is not None and view.right is not None:
+        view = replace(view, up=-view.up, right=-view.right)
+        base = table_plane(points, view, settings)
+    plane, outlook = base, view if base is None else likely(view, points, base, settings)
     left = np.arange(len(points))
     while plane is not None:
-        yield Table(plane, outlook, left)
-        left = left[_beside(plane, points[left], settings)]
+        yield FoundTable(plane, outlook, left)
+        places = points[left]
+        plan = places @ plane.across.T
+        on = np.abs(plane.heights(places)) < settings.plane.table_band
+        left = left[~above_outline(plan[on], plan, settings.outlines)]
         enough = len(left) >= settings.plane.min_inlier_share * len(points)
         plane = _another(points[left], plane, outlook, settings) if enough else None
 
 
-def _first(points: NDArray[np.float64], outlook: Outlook, settings: DetectionSettings) -> tuple[Plane | None, Outlook]:
-    """The table's plane, for a camera that is held upright, else upside down; and from where it was seen."""
-    plane = table_plane(points, outlook, settings)
-    if plane is None and outlook.up is not None and outlook.right is not None:
-        outlook = replace(outlook, up=-outlook.up, right=-outlook.right)
-        plane = table_plane(points, outlook, settings)
-    return plane, outlook if plane is None else likely(outlook, points, plane, settings)
-
-
-def _beside(plane: Plane, points: NDArray[np.float64], settings: DetectionSettings) -> NDArray[np.bool_]:
-    """Which points (n, 3) are neither the table's nor above or below it, shape (n,)."""
-    plan = points @ plane.across.T
-    on = np.abs(plane.heights(points)) < settings.plane.table_band
-    return ~above_outline(plan[on], plan, settings.outlines)
-
-
 def _another(points: NDArray[np.float64], plane: Plane, outlook: Outlook, settings: DetectionSettings) -> Plane | None:
-    """One more table among points (n, 3), those beside the table of a ``plane``; None where there is none.
+    """Return one more table among points (n, 3), those beside the table of a ``plane``; None where there is none.
 
     It is as level and about as high, neither being a floor to the other, and something stands on it.
     """

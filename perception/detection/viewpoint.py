@@ -18,7 +18,7 @@ from deixis.perception.detection.settings import DetectionSettings, ViewpointSet
 
 
 def outlook_of(cloud: PointCloud, settings: DetectionSettings) -> Outlook:
-    """From where a cloud was seen, and which way up: the rows of its image go down as seen from its origin."""
+    """Return from where a cloud was seen, and which way up: the rows of its image go down as seen from its origin."""
     eye = np.asarray(cloud.origin, dtype=np.float64)
     upwards = None
     if settings.up is not None:
@@ -39,7 +39,7 @@ def outlook_of(cloud: PointCloud, settings: DetectionSettings) -> Outlook:
 
 
 def _rays(image: NDArray[np.float32], eye: NDArray[np.float64], lines: int) -> NDArray[np.float64]:
-    """Unit vectors from the eye to the pixels of an image (r, c, 3), in about ``lines`` of its columns."""
+    """Return unit vectors from the eye to the pixels of an image (r, c, 3), in about ``lines`` of its columns."""
     rays = image[:, :: max(1, image.shape[1] // lines)] - eye
     with np.errstate(invalid="ignore", divide="ignore"):
         unit: NDArray[np.float64] = rays / np.linalg.norm(rays, axis=2, keepdims=True)
@@ -47,8 +47,8 @@ def _rays(image: NDArray[np.float32], eye: NDArray[np.float64], lines: int) -> N
 
 
 def _uneven(rays: NDArray[np.float64], quantile: float) -> float:
-    """By what share most steps from ray to ray along the first axis of (r, c, 3) change to the next, at most, beyond
-    what those of a pinhole camera do: up to 45 degrees aside, twice the step's angle."""
+    """Return by what share most steps from ray to ray along the first axis of (r, c, 3) change to the next, at most,
+    beyond what those of a pinhole camera do: up to 45 degrees aside, twice the step's angle."""
     steps = np.diff(rays, axis=0)
     angles = np.linalg.norm(steps[1:], axis=2)
     with np.errstate(invalid="ignore", divide="ignore"):
@@ -57,7 +57,8 @@ def _uneven(rays: NDArray[np.float64], quantile: float) -> float:
 
 
 def _direction(rays: NDArray[np.float64]) -> NDArray[np.float64] | None:
-    """Where the first axis of an image leads, from rays (r, c, 3): the direction that is in the planes of all columns.
+    """Return where the first axis of an image leads, from rays (r, c, 3): the direction that is in the planes of all
+    columns.
 
     The mean step from ray to ray is aslant where more of one side of the image is seen.
     """
@@ -72,7 +73,8 @@ def _direction(rays: NDArray[np.float64]) -> NDArray[np.float64] | None:
 
 
 def believed(outlook: Outlook, points: NDArray[np.float64], settings: DetectionSettings) -> Outlook:
-    """The outlook on the points (n, 3), if they may have been seen from there; else one from above, as not known."""
+    """Return the outlook on the points (n, 3), if they may have been seen from there; else one from above, as not
+    known."""
     limits = settings.viewpoint
     few = _sample(points, settings)
     if outlook.known and apart(few, outlook.eye, limits) < limits.max_far_share:
@@ -82,22 +84,20 @@ def believed(outlook: Outlook, points: NDArray[np.float64], settings: DetectionS
 
 
 def likely(outlook: Outlook, points: NDArray[np.float64], plane: Plane, settings: DetectionSettings) -> Outlook:
-    """The outlook, if it is known and above the table; else from where the points (n, 3) look most as if seen."""
+    """Return the outlook, if it is known and above the table; else from where the points (n, 3) look most as if
+    seen."""
     limits = settings.viewpoint
     if outlook.known and plane.heights(outlook.eye[None])[0] > limits.min_eye_height:
         return outlook
     few = _sample(points, settings)
     on = few[np.abs(plane.heights(few)) < settings.plane.table_band]
-    places = _places_around((on if len(on) else few).mean(axis=0), plane, limits)
+    middle = (on if len(on) else few).mean(axis=0)
+    turns = np.arange(limits.assumed_azimuths) * 2 * np.pi / limits.assumed_azimuths
+    level = np.column_stack([np.cos(turns), np.sin(turns)]) @ plane.across
+    aslant = np.cos(limits.assumed_elevation) * level + np.sin(limits.assumed_elevation) * plane.normal
+    places = [middle + limits.assumed_distance * direction for direction in (plane.normal, *aslant)]
     eye = min(places, key=lambda place: apart(few, place, limits))
     return replace(outlook, eye=eye, up=None, right=None, known=False)
-
-
-def _places_around(middle: NDArray[np.float64], plane: Plane, settings: ViewpointSettings) -> list[NDArray[np.float64]]:
-    turns = np.arange(settings.assumed_azimuths) * 2 * np.pi / settings.assumed_azimuths
-    level = np.column_stack([np.cos(turns), np.sin(turns)]) @ plane.across
-    aslant = np.cos(settings.assumed_elevation) * level + np.sin(settings.assumed_elevation) * plane.normal
-    return [middle + settings.assumed_distance * direction for direction in (plane.normal, *aslant)]
 
 
 def _sample(points: NDArray[np.float64], settings: DetectionSettings) -> NDArray[np.float64]:
@@ -108,7 +108,8 @@ def _sample(points: NDArray[np.float64], settings: DetectionSettings) -> NDArray
 
 
 def apart(points: NDArray[np.float64], eye: NDArray[np.float64], settings: ViewpointSettings) -> float:
-    """The share of neighbours in direction, as seen from ``eye`` (3,), that are apart in space, of points (n, 3).
+    """Return the share of neighbours in direction, as seen from ``eye`` (3,), that are apart in space, of points (n,
+    3).
 
     >>> x, y = (axis.ravel() for axis in np.mgrid[-0.5:0.5:0.02, -0.5:0.5:0.02])
     >>> bowl = np.stack([x, y, x**2 + y**2], axis=1)
@@ -129,7 +130,7 @@ def apart(points: NDArray[np.float64], eye: NDArray[np.float64], settings: Viewp
 
 
 def directions(points: NDArray[np.float64], eye: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Unit vectors (n, 3) from the eye (3,) to points (n, 3)."""
+    """Return unit vectors (n, 3) from the eye (3,) to points (n, 3)."""
     rays = points - eye
     result: NDArray[np.float64] = rays / np.maximum(np.linalg.norm(rays, axis=1, keepdims=True), 1e-9)
     return result
@@ -138,7 +139,7 @@ def directions(points: NDArray[np.float64], eye: NDArray[np.float64]) -> NDArray
 def table_frame(
     plane: Plane, on: NDArray[np.float64], outlook: Outlook, viewer: tuple[float, float, float] | None
 ) -> NDArray[np.float64]:
-    """The transform (4, 4) that takes points of the cloud's frame to the table's.
+    """Return the transform (4, 4) that takes points of the cloud's frame to the table's.
 
     z is the height above the plane. y points away from the viewer: from a ``viewer`` that is given to the middle of
     the table's points ``on`` (n, 3); else upwards in the image, as whoever holds the camera sees it; else from the
@@ -160,7 +161,7 @@ def table_frame(
 def _away(
     plane: Plane, middle: NDArray[np.float64], outlook: Outlook, viewer: tuple[float, float, float] | None
 ) -> list[NDArray[np.float64]]:
-    """Directions away from the viewer, the best first; not all need to be of use."""
+    """Return directions away from the viewer, the best first; not all need to be of use."""
     if viewer is not None:
         return [middle - np.asarray(viewer, dtype=np.float64)]
     if not outlook.known:
@@ -171,7 +172,7 @@ def _away(
 
 
 def _across(up: NDArray[np.float64], wanted: list[NDArray[np.float64]]) -> NDArray[np.float64]:
-    """The first direction that is not along ``up``, made level; else y or x of the cloud's frame."""
+    """Return the first direction that is not along ``up``, made level; else y or x of the cloud's frame."""
     for direction in (*wanted, np.array([0.0, 1.0, 0.0]), np.array([1.0, 0.0, 0.0])):
         level = direction - (direction @ up) * up
         length = float(np.linalg.norm(level))
@@ -181,7 +182,7 @@ def _across(up: NDArray[np.float64], wanted: list[NDArray[np.float64]]) -> NDArr
 
 
 def moved(points: NDArray[np.floating], frame: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Points (n, 3) taken by a transform (4, 4); what is not finite stays so."""
+    """Return points (n, 3) taken by a transform (4, 4); what is not finite stays so."""
     with np.errstate(invalid="ignore"):  # infinity times nothing
         result: NDArray[np.float64] = points @ frame[:3, :3].T + frame[:3, 3]
     return result

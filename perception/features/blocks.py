@@ -20,7 +20,7 @@ BLOCKS_PER_THREAD = 4
 
 
 def in_blocks(job: Callable[[int, int], object], count: int, threads: int | None = None) -> None:
-    """Calls ``job(start, stop)`` until 0 to ``count`` are covered; ``threads`` are all the process may use if None.
+    """Call ``job(start, stop)`` until 0 to ``count`` are covered; ``threads`` are all the process may use if None.
 
     >>> covered = []
     >>> in_blocks(lambda start, stop: covered.append((start, stop)), 40, threads=1)
@@ -44,5 +44,5 @@ def in_blocks(job: Callable[[int, int], object], count: int, threads: int | None
 
 
 def available() -> int:
-    """The number of processors that this process may run on."""
+    """Return the number of processors that this process may run on."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

@@ -44,7 +44,7 @@ class D2ExtentsDescriber:
         return False
 
     def describe(self, cloud: PointCloud) -> NDArray[np.float32]:
-        """The descriptor (1, size)."""
+        """Return the descriptor (1, size)."""
         points = finite_points(cloud)
         points = points[voxel_keypoints(points, self.voxel)]
         if len(points) < 2:
@@ -54,10 +54,8 @@ class D2ExtentsDescriber:
         other = (one + rng.integers(1, len(points), size=self.pairs)) % len(points)
         distances = np.linalg.norm(points[one] - points[other], axis=1)
         counts, _ = np.histogram(distances, self.bins, (0.0, float(distances.max())))
-        return np.concatenate([counts / self.pairs, self.weight * _extents(points)])[None].astype(np.float32)
-
-
-def _extents(points: NDArray[np.float64]) -> NDArray[np.float64]:
-    centred = points - points.mean(axis=0)
-    axes = np.linalg.eigh(centred.T @ centred)[1]
-    return np.sort(np.ptp(centred @ axes, axis=0))[::-1]
+        centred = points - points.mean(axis=0)
+        axes = np.linalg.eigh(centred.T @ centred)[1]
+        return np.concatenate([counts / self.pairs, self.weight * np.sort(np.ptp(centred @ axes, axis=0))[::-1]])[
+            None
+        ].astype(np.float32)

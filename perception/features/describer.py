@@ -28,7 +28,7 @@ class Describer(Protocol):
     def local(self) -> bool: ...
 
     def describe(self, cloud: PointCloud) -> NDArray[np.float32]:
-        """Descriptors (k, size) of a single object's cloud: one for each keypoint, or k = 1.
+        """Return descriptors (k, size) of a single object's cloud: one for each keypoint, or k = 1.
 
         Points without depth are ignored. A view with nothing to describe (no finite point, or none with what the
         descriptor needs) gives (0, size).
@@ -37,24 +37,24 @@ class Describer(Protocol):
 
 
 def finite_points(cloud: PointCloud) -> NDArray[np.float64]:
-    """The points that have a depth, (m, 3)."""
+    """Return the points that have a depth, (m, 3)."""
     return cloud.points[cloud.finite].astype(np.float64)
 
 
 def require_points(points: NDArray[np.floating], name: str = "points") -> None:
-    """Refuses what is not of shape (n, 3)."""
+    """Refuse what is not of shape (n, 3)."""
     if points.ndim != 2 or points.shape[1] != 3:
         raise CloudError(f"{name} have shape (n, 3), not {points.shape}")
 
 
 def require_length(value: float, name: str) -> None:
-    """Refuses a length that is not a positive, finite number of metres."""
+    """Refuse a length that is not a positive, finite number of metres."""
     if not (math.isfinite(value) and value > 0):
         raise CloudError(f"{name} is a length above 0 in metres, not {value:g}")
 
 
 def require_indices(indices: NDArray[np.integer], points: NDArray[np.floating], name: str) -> None:
-    """Refuses indices (k,) of which one is out of range or names a point that is not finite."""
+    """Refuse indices (k,) of which one is out of range or names a point that is not finite."""
     if indices.ndim != 1 or not (indices.dtype.kind in "iu" or indices.size == 0):
         raise CloudError(f"{name} are whole numbers of shape (k,), not {indices.dtype} of shape {indices.shape}")
     if indices.size and (indices.min() < 0 or indices.max() >= len(points)):

@@ -46,7 +46,7 @@ class FpfhDescriber:
         return True
 
     def describe(self, cloud: PointCloud) -> NDArray[np.float32]:
-        """Histograms (k, 33), in the order of voxels."""
+        """Return histograms (k, 33), in the order of voxels."""
         points = finite_points(cloud)
         points = points[voxel_keypoints(points, self.spacing)]
         normals = estimate_normals(points, radius=self.normal_radius, origin=cloud.origin)

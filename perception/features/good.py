@@ -46,23 +46,19 @@ class GoodDescriber:
         return False
 
     def describe(self, cloud: PointCloud) -> NDArray[np.float32]:
-        """The descriptor (1, size)."""
+        """Return the descriptor (1, size)."""
         points = finite_points(cloud)
         if len(points) < 3 or not np.ptp(points, axis=0).any():
             return np.empty((0, self.size), np.float32)
-        placed = self._in_own_frame(points)
-        side = float(np.ptp(placed, axis=0).max())
-        views = [self._projection(placed[:, list(plane)], side) for plane in PLANES]
-        first = views.pop(int(np.argmax([_entropy(view) for view in views])))
-        return np.concatenate([first, *sorted(views, key=_variance)])[None].astype(np.float32)
-
-    def _in_own_frame(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
         centred = points - points.mean(axis=0)
         axes = np.linalg.eigh(centred.T @ centred)[1][:, ::-1]
         x = axes[:, 0] * self._sign(centred @ axes[:, 0])
         y = axes[:, 1] * self._sign(centred @ axes[:, 1])
         placed: NDArray[np.float64] = centred @ np.stack([x, y, np.cross(x, y)], axis=1)
-        return placed
+        side = float(np.ptp(placed, axis=0).max())
+        views = [self._projection(placed[:, list(plane)], side) for plane in PLANES]
+        first = views.pop(int(np.argmax([_entropy(view) for view in views])))
+        return np.concatenate([first, *sorted(views, key=_variance)])[None].astype(np.float32)
 
     def _sign(self, along: NDArray[np.float64]) -> float:
         more = int((along > self.threshold).sum()) - int((along < -self.threshold).sum())
@@ -81,7 +77,7 @@ def _entropy(view: NDArray[np.float64]) -> float:
 
 
 def _variance(view: NDArray[np.float64]) -> float:
-    """Of the number of the bin, counted row by row."""
+    """Return the variance of the number of the bin, counted row by row."""
     numbers = np.arange(1, len(view) + 1)
     mean = float(numbers @ view)
     return float((numbers - mean) ** 2 @ view)

@@ -41,7 +41,8 @@ class CellGrid(NamedTuple):
 
 
 def cell_grid(points: NDArray[np.floating], cell: float) -> CellGrid:
-    """The points (n, 3), n > 0 and all finite, in cells of about the given edge; larger ones where they are too many.
+    """Return the points (n, 3), n > 0 and all finite, in cells of about the given edge; larger ones where they are too
+    many.
 
     >>> grid = cell_grid(np.array([[0.0, 0, 9], [5, 0, 0], [0, 0, 0]]), 1.0)
     >>> grid.shape.tolist(), grid.order.tolist(), grid.axes.tolist()
@@ -62,13 +63,13 @@ def cell_grid(points: NDArray[np.floating], cell: float) -> CellGrid:
 
 
 def in_axes_of(grid: CellGrid, vectors: NDArray[np.floating]) -> NDArray[np.float64]:
-    """Vectors (m, 3) in the grid's axes, as the kernels take them."""
+    """Return vectors (m, 3) in the grid's axes, as the kernels take them."""
     return np.ascontiguousarray(vectors[:, grid.axes], dtype=np.float64)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _sort(x, y, z, low, shape, cell, starts, order):  # type: ignore[no-untyped-def]
-    """Fills ``starts`` and ``order``; points of one cell keep their order."""
+    """Fill ``starts`` and ``order``; points of one cell keep their order."""
     codes = np.empty(len(x), np.int64)
     for i in range(len(x)):
         code = int((x[i] - low[0]) / cell) * shape[1] + int((y[i] - low[1]) / cell)
@@ -84,13 +85,14 @@ def _sort(x, y, z, low, shape, cell, starts, order):  # type: ignore[no-untyped-
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def most_runs(grid):  # type: ignore[no-untyped-def]
-    """How many runs there can be at most."""
+    """Return how many runs there can be at most."""
     return grid.shape[0] * grid.shape[1]
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def ball_runs(grid, place, radius, runs):  # type: ignore[no-untyped-def]
-    """Runs of points that hold all within ``radius`` of ``place`` (3,), in ``runs`` (any, 2); returns their number."""
+    """Return runs of points that hold all within ``radius`` of ``place`` (3,), in ``runs`` (any, 2); returns their
+    number."""
     count = 0
     reach = radius + 1e-6 * (radius + grid.cell)
     diagonal = math.sqrt(0.5) * grid.cell
@@ -108,7 +110,8 @@ def ball_runs(grid, place, radius, runs):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def cylinder_runs(grid, place, axis, radius, runs):  # type: ignore[no-untyped-def]
-    """The same for a cylinder about ``place`` along the unit vector ``axis`` (3,), ``radius`` high to either side."""
+    """Return the same for a cylinder about ``place`` along the unit vector ``axis`` (3,), ``radius`` high to either
+    side."""
     count = 0
     reach = radius + 1e-6 * (radius + grid.cell)
     first, last = _window(grid, place, reach * _breadth(axis[0]), 0)
@@ -125,7 +128,8 @@ def cylinder_runs(grid, place, axis, radius, runs):  # type: ignore[no-untyped-d
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _interval(dx, dy, axis, reach, half):  # type: ignore[no-untyped-def]
-    """Where a row, centred ``dx`` and ``dy`` off and ``half`` a cell wide to each side, may meet the cylinder."""
+    """Return where a row, centred ``dx`` and ``dy`` off and ``half`` a cell wide to each side, may meet the
+    cylinder."""
     low, high = -np.inf, np.inf
     along = dx * axis[0] + dy * axis[1]
     slope = axis[2]
@@ -146,13 +150,14 @@ def _interval(dx, dy, axis, reach, half):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _breadth(component):  # type: ignore[no-untyped-def]
-    """Half the extent, along an axis, of the cylinder of radius 1 and half height 1 whose axis has this component."""
+    """Return half the extent, along an axis, of the cylinder of radius 1 and half height 1 whose axis has this
+    component."""
     return abs(component) + math.sqrt(max(0.0, 1.0 - component * component))
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _window(grid, place, reach, axis):  # type: ignore[no-untyped-def]
-    """The cells along an axis within reach, as a range."""
+    """Return the cells along an axis within reach, as a range."""
     first = math.floor((place[axis] - reach - grid.low[axis]) / grid.cell)
     last = math.floor((place[axis] + reach - grid.low[axis]) / grid.cell)
     return max(0, first), min(grid.shape[axis], last + 1)
@@ -160,13 +165,13 @@ def _window(grid, place, reach, axis):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _offset(grid, place, index, axis):  # type: ignore[no-untyped-def]
-    """From the place to the middle of a cell, along an axis."""
+    """Return from the place to the middle of a cell, along an axis."""
     return grid.low[axis] + (index + 0.5) * grid.cell - place[axis]
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _append(grid, i, j, low, high, runs, count):  # type: ignore[no-untyped-def]
-    """One more run: the cells of row (i, j) that meet the interval from low to high, if they hold a point."""
+    """Return one more run: the cells of row (i, j) that meet the interval from low to high, if they hold a point."""
     base = (i * grid.shape[1] + j) * grid.shape[2]
     first = max(0, math.floor((low - grid.low[2]) / grid.cell))
     last = min(grid.shape[2], math.floor((high - grid.low[2]) / grid.cell) + 1)
@@ -219,7 +224,7 @@ BUFFER = 512
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def images(grid, normals, places, axes, width, support, cosine, radial, angular, out):  # type: ignore[no-untyped-def]
-    """Fills ``out`` (k, bins) with the images of keypoints at ``places`` (k, 3) about ``axes`` (k, 3).
+    """Fill ``out`` (k, bins) with the images of keypoints at ``places`` (k, 3) about ``axes`` (k, 3).
 
     ``normals`` (n, 3) are those of the grid's points, in its order and axes; none (0, 3) where neither a support
     angle (``cosine`` > 0) nor ``angular`` asks for them.
@@ -259,7 +264,7 @@ def images(grid, normals, places, axes, width, support, cosine, radial, angular,
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def discarded(width):  # type: ignore[no-untyped-def]
-    """The bin for what lies outside."""
+    """Return the bin for what lies outside."""
     return 2 * width * width
 
 
@@ -308,7 +313,7 @@ def _turn(normals, axis, cosine, outside, bins, angles):  # type: ignore[no-unty
 
 @intrinsic
 def _add_four(typing, sums, at, a, b):  # type: ignore[no-untyped-def]
-    """Adds (1, a, b, a b) to the four numbers at a position, in one vector addition."""
+    """Add (1, a, b, a b) to the four numbers at a position, in one vector addition."""
 
     def generate(context, builder, signature, arguments):  # type: ignore[no-untyped-def]
         _, position, a_value, b_value = arguments
@@ -326,7 +331,7 @@ def _add_four(typing, sums, at, a, b):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _add(a, b, bins, count, sums):  # type: ignore[no-untyped-def]
-    """Adds to two sets of sums by turns: neighbours in a run often share a bin, and need not wait for each other."""
+    """Add to two sets of sums by turns: neighbours in a run often share a bin, and need not wait for each other."""
     flat, half = sums.reshape(-1), count // 2
     other = sums.shape[1]
     for i in range(half):
@@ -338,7 +343,7 @@ def _add(a, b, bins, count, sums):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _to_corners(sums, image):  # type: ignore[no-untyped-def]
-    """Adds to the image (width + 1, 2 width + 1) the shares that the sums stand for; returns the number of points.
+    """Add to the image (width + 1, 2 width + 1) the shares that the sums stand for; return the number of points.
 
     Sums are read one by one: a view of an array per bin costs as much as all the points of a small cloud.
     """
@@ -361,7 +366,7 @@ def _to_corners(sums, image):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _add_angles(a, b, bins, angles, count, image, turned):  # type: ignore[no-untyped-def]
-    """Adds each point's shares to the image, and its angle times its shares to ``turned``.
+    """Add each point's shares to the image, and its angle times its shares to ``turned``.
 
     An average divides by shares however small, so these are added one by one, not got as differences of sums.
     """

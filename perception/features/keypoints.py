@@ -20,7 +20,8 @@ SUBVOXELS = float(2**24)
 
 
 def voxel_keypoints(points: NDArray[np.floating], size: float) -> NDArray[np.int64]:
-    """Indices (k,) of the point nearest to the centroid of each occupied voxel; points that are not finite are ignored.
+    """Return indices (k,) of the point nearest to the centroid of each occupied voxel; points that are not finite are
+    ignored.
 
     Voxels are cubes of edge ``size`` in metres, laid from the least finite coordinates, and the result is in the order
     of voxels (x, then y, then z). So neither moving the cloud nor shuffling its points changes which points are chosen
@@ -48,13 +49,8 @@ def voxel_keypoints(points: NDArray[np.floating], size: float) -> NDArray[np.int
     order = np.lexsort(voxels.T[::-1])
     voxels, inside = voxels[order], inside[order]
     first = np.concatenate([[True], (voxels[1:] != voxels[:-1]).any(axis=1)])
-    return _nearest(finite[order], places[order], inside, np.flatnonzero(first))
-
-
-def _nearest(
-    indices: NDArray[np.int64], places: NDArray[np.float64], inside: NDArray[np.float64], starts: NDArray[np.intp]
-) -> NDArray[np.int64]:
-    """Of each group of points, from one of ``starts`` to the next, the index of that nearest to their mean."""
+    indices = finite[order]
+    starts = np.flatnonzero(first)
     sizes = np.diff(np.append(starts, len(indices)))
     group = np.repeat(np.arange(len(starts)), sizes)
     whole = np.rint(inside * SUBVOXELS).astype(np.int64)
@@ -63,7 +59,7 @@ def _nearest(
     distances = (offsets.astype(np.float64) ** 2).sum(axis=1)
     nearest = distances == np.minimum.reduceat(distances, starts)[group]
     candidates = np.flatnonzero(nearest)
-    x, y, z = places[candidates].T
+    x, y, z = places[order][candidates].T
     candidates = candidates[np.lexsort((indices[candidates], z, y, x, group[candidates]))]
     leading = np.unique(group[candidates], return_index=True)[1]
     return indices[candidates[leading]]

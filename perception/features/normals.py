@@ -31,7 +31,7 @@ def estimate_normals(
     at: NDArray[np.integer] | None = None,
     threads: int | None = None,
 ) -> NDArray[np.float32]:
-    """Unit normals (n, 3) of points (n, 3); with ``at`` (m,) only of the points with these indices, (m, 3).
+    """Return unit normals (n, 3) of points (n, 3); with ``at`` (m,) only of the points with these indices, (m, 3).
 
     A neighbourhood holds what lies within ``radius`` metres, or the ``neighbours`` nearest points, the point itself
     included; one of the two is given. Normals point to the side on which ``origin``, the sensor, stands; one at a
@@ -53,8 +53,17 @@ def estimate_normals(
     normals = np.full((len(points), 3), np.nan, np.float32) if at is None else np.empty((len(wanted), 3), np.float32)
     if len(wanted):
         counts, covariances = _neighbourhoods(points[finite], points[wanted], radius, neighbours, threads)
-        found = _planes(counts, covariances)
-        _turn(found, np.asarray(origin, np.float64) - points[wanted])
+        largest = np.abs(covariances).max(axis=(1, 2))
+        scale = np.where(largest > 0, largest, 1.0)[:, None, None]
+        values, vectors = np.linalg.eigh(covariances / scale)
+        planes: NDArray[np.float64] = vectors[:, :, 0]
+        planes[(counts < 3) | (values[:, 1] <= LINE_SPREAD_RATIO * values[:, 2])] = np.nan
+        found = planes
+        directions = found
+        side = (directions * (np.asarray(origin, np.float64) - points[wanted])).sum(axis=1)
+        first = np.take_along_axis(directions, (directions != 0).argmax(axis=1)[:, None], axis=1)[:, 0]
+        directions[(side < 0) | ((side == 0) & (first < 0))] *= -1
+        directions += 0.0
         normals[wanted if at is None else slice(None)] = found
     return normals
 
@@ -70,32 +79,20 @@ def _neighbourhoods(
         raise CloudError("give either a radius or a number of neighbours to estimate normals from")
     if radius is not None:
         require_length(radius, "a normal's radius")
-        return _within(points, places, radius, threads)
+        from deixis.perception.features.kernels import cell_grid, in_axes_of, spreads
+
+        grid = cell_grid(points, radius)
+        turned, radius = in_axes_of(grid, places), float(radius)
+        counts, covariances = np.zeros(len(places), np.int64), np.zeros((len(places), 3, 3))
+        in_blocks(
+            lambda start, stop: spreads(grid, turned[start:stop], radius, counts[start:stop], covariances[start:stop]),
+            len(places),
+            threads,
+        )
+        back = np.argsort(grid.axes)
+        return counts, covariances[:, back][:, :, back]
     if neighbours is None or neighbours < 3:
         raise CloudError(f"a plane takes 3 neighbours or more, not {neighbours}")
-    return _nearest(points, places, neighbours, threads)
-
-
-def _within(
-    points: NDArray[np.floating], places: NDArray[np.floating], radius: float, threads: int | None
-) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
-    from deixis.perception.features.kernels import cell_grid, in_axes_of, spreads
-
-    grid = cell_grid(points, radius)
-    turned, radius = in_axes_of(grid, places), float(radius)
-    counts, covariances = np.zeros(len(places), np.int64), np.zeros((len(places), 3, 3))
-    in_blocks(
-        lambda start, stop: spreads(grid, turned[start:stop], radius, counts[start:stop], covariances[start:stop]),
-        len(places),
-        threads,
-    )
-    back = np.argsort(grid.axes)
-    return counts, covariances[:, back][:, :, back]
-
-
-def _nearest(
-    points: NDArray[np.floating], places: NDArray[np.floating], neighbours: int, threads: int | None
-) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
     from scipy.spatial import cKDTree
 
     count = min(neighbours, len(points))
@@ -108,21 +105,3 @@ def _nearest(
         around -= around.mean(axis=1, keepdims=True)
         covariances[part] = np.einsum("mki,mkj->mij", around, around) / count
     return np.full(len(places), count), covariances
-
-
-def _planes(counts: NDArray[np.int64], covariances: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The directions of least spread (m, 3); nan where there is no plane."""
-    largest = np.abs(covariances).max(axis=(1, 2))
-    scale = np.where(largest > 0, largest, 1.0)[:, None, None]
-    values, vectors = np.linalg.eigh(covariances / scale)
-    normals: NDArray[np.float64] = vectors[:, :, 0]
-    normals[(counts < 3) | (values[:, 1] <= LINE_SPREAD_RATIO * values[:, 2])] = np.nan
-    return normals
-
-
-def _turn(normals: NDArray[np.float64], to_sensor: NDArray[np.float64]) -> None:
-    """Turns normals (m, 3), in place, to the side of the sensor."""
-    side = (normals * to_sensor).sum(axis=1)
-    first = np.take_along_axis(normals, (normals != 0).argmax(axis=1)[:, None], axis=1)[:, 0]
-    normals[(side < 0) | ((side == 0) & (first < 0))] *= -1
-    normals += 0.0  # no negative zeros

@@ -26,7 +26,7 @@ DESCRIBERS: Mapping[str, Callable[[], Describer]] = MappingProxyType(
 
 
 def describer_named(name: str) -> Describer:
-    """The describer of that name, with its defaults.
+    """Return the describer of that name, with its defaults.
 
     >>> describer_named("spin_images").size
     153

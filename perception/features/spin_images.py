@@ -19,7 +19,7 @@ from deixis.perception.features.describer import require_indices, require_length
 from deixis.perception.features.keypoints import voxel_keypoints
 from deixis.perception.features.normals import estimate_normals
 
-MANY_POINTS = 20_000
+LARGE_CLOUD = 20_000
 CELLS_OF_FEW, CELLS_OF_MANY = 3, 5
 """Cells of the grid along the support: fewer read too many points, more have rows too short to be fast."""
 
@@ -28,7 +28,7 @@ UNIT_TOLERANCE = 1e-3
 
 
 def image_size(width: int) -> int:
-    """The number of bins: (width + 1) rows of distance from the axis times (2 width + 1) columns along it.
+    """Return the number of bins: (width + 1) rows of distance from the axis times (2 width + 1) columns along it.
 
     >>> image_size(8)
     153
@@ -49,7 +49,7 @@ def spin_images(
     angular: bool = False,
     threads: int | None = None,
 ) -> NDArray[np.float32]:
-    """Spin images (k, (width + 1) (2 width + 1)) of the points with the indices ``keypoints`` (k,), row by row.
+    """Return spin images (k, (width + 1) (2 width + 1)) of the points with the indices ``keypoints`` (k,), row by row.
 
     Each point within ``support`` metres of a keypoint p with normal n has a distance alpha from the axis (p, n) and a
     height beta along it. Bins measure support / width / sqrt(2) both ways, and hold what has alpha and abs(beta) less
@@ -75,7 +75,7 @@ def spin_images(
     from deixis.perception.features.kernels import cell_grid, images, in_axes_of
 
     finite = np.isfinite(points).all(axis=1)
-    grid = cell_grid(points[finite], support / (CELLS_OF_FEW if len(points) < MANY_POINTS else CELLS_OF_MANY))
+    grid = cell_grid(points[finite], support / (CELLS_OF_FEW if len(points) < LARGE_CLOUD else CELLS_OF_MANY))
     places, axes = in_axes_of(grid, points[keypoints]), in_axes_of(grid, normals[keypoints])
     looked_at = normals[finite][grid.order] if angular or support_angle_cos > 0 else normals[:0]
     turning = in_axes_of(grid, looked_at)
@@ -163,7 +163,7 @@ class SpinImageDescriber:
         return True
 
     def describe(self, cloud: PointCloud) -> NDArray[np.float32]:
-        """Spin images (k, size), in the order of voxels."""
+        """Return spin images (k, size), in the order of voxels."""
         everywhere = self.angular or self.support_angle_cos > 0
         keypoints, normals = keypoints_and_normals(cloud, self.voxel, self.normal_radius, everywhere, self.threads)
         return spin_images(
@@ -182,7 +182,8 @@ class SpinImageDescriber:
 def keypoints_and_normals(
     cloud: PointCloud, voxel: float, radius: float, everywhere: bool = False, threads: int | None = None
 ) -> tuple[NDArray[np.int64], NDArray[np.float32]]:
-    """Indices (k,) of the voxels' keypoints that have a normal, and normals (n, 3): the cloud's own, or estimated.
+    """Return indices (k,) of the voxels' keypoints that have a normal, and normals (n, 3): the cloud's own, or
+    estimated.
 
     Estimated are only those of keypoints, the others being nan, unless they are wanted ``everywhere``.
     """

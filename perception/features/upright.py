@@ -48,7 +48,7 @@ class UprightShape(NamedTuple):
 
 
 def upright_shape(points: NDArray[np.floating]) -> UprightShape | None:
-    """Of finite points (n, 3) in metres in the table's frame, z up and 0 on the table; None of none.
+    """Return the shape of finite points (n, 3) in metres in the table's frame, z up and 0 on the table; None of none.
 
     What stands on another thing is as high as its top is above the table. Where a thing reaches below 0, so that the
     frame is not the table's, height is over its own foot. Length and width are the sides of the smallest rectangle in
@@ -64,22 +64,18 @@ def upright_shape(points: NDArray[np.floating]) -> UprightShape | None:
     lowest, top = np.percentile(thinned[:, 2], (FOOT_PERCENTILE, TOP_PERCENTILE))
     foot = min(float(lowest), 0.0)
     height = max(float(top - foot), MIN_HEIGHT)
-    aside, sides = _smallest_rectangle(thinned[:, :2])
-    radii = np.hypot(*aside.T)
-    over, outward = np.clip((thinned[:, 2] - foot) / height, 0.0, 1.0), radii / max(float(radii.max()), MIN_HEIGHT)
-    counts, _, _ = np.histogram2d(over, outward, bins=HISTOGRAM_CELLS, range=((0.0, 1.0), (0.0, 1.0)))
-    return UprightShape(np.sqrt(counts.ravel() / len(thinned)), np.log(np.array([height, *sides]) + EXTENT_OFFSET))
-
-
-def _smallest_rectangle(plan: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Points (n, 2) from the middle of the smallest rectangle around them, along its sides; and these, longer first."""
+    plan = thinned[:, :2]
     angles = np.arange(PLAN_DIRECTIONS) * np.pi / 2 / PLAN_DIRECTIONS
     along = plan @ np.stack([np.cos(angles), np.sin(angles)])  # (n, turns)
     across = plan @ np.stack([-np.sin(angles), np.cos(angles)])
     least = int(np.argmin(np.ptp(along, axis=0) * np.ptp(across, axis=0)))
     turned = np.stack([along[:, least], across[:, least]], axis=1)
     middle = (turned.min(axis=0) + turned.max(axis=0)) / 2
-    return turned - middle, np.sort(np.ptp(turned, axis=0))[::-1]
+    aside, sides = turned - middle, np.sort(np.ptp(turned, axis=0))[::-1]
+    radii = np.hypot(*aside.T)
+    over, outward = np.clip((thinned[:, 2] - foot) / height, 0.0, 1.0), radii / max(float(radii.max()), MIN_HEIGHT)
+    counts, _, _ = np.histogram2d(over, outward, bins=HISTOGRAM_CELLS, range=((0.0, 1.0), (0.0, 1.0)))
+    return UprightShape(np.sqrt(counts.ravel() / len(thinned)), np.log(np.array([height, *sides]) + EXTENT_OFFSET))
 
 
 @dataclass(frozen=True)
@@ -114,7 +110,7 @@ class UprightDescriber:
         return True
 
     def describe(self, cloud: PointCloud) -> NDArray[np.float32]:
-        """Descriptors (k, size), in the order of voxels."""
+        """Return descriptors (k, size), in the order of voxels."""
         shape = upright_shape(finite_points(cloud))
         if shape is None:
             return np.empty((0, self.size), np.float32)

@@ -16,7 +16,7 @@ from typing import Any
 
 from deixis.perception.checks import items, kind, mapping, number, pixels, score, shown, text
 from deixis.perception.errors import SceneError
-from deixis.perception.formats.image_boxes import ImageBox, box_around, image_scene
+from deixis.perception.formats.image_boxes import box_around, image_scene
 from deixis.perception.scene import Scene
 
 MAX_LISTED = 5
@@ -36,12 +36,12 @@ class _Image:
 
 
 def is_coco(data: Any) -> bool:
-    """Whether parsed JSON is meant as COCO annotations."""
+    """Return whether parsed JSON is meant as COCO annotations."""
     return isinstance(data, Mapping) and "images" in data and "annotations" in data and "objects" not in data
 
 
 def coco_scene(data: Mapping[str, Any], file: str, image: str | int | None = None) -> Scene:
-    """The scene of one image; ``image`` chooses it by file name or id where there are several.
+    """Return the scene of one image; ``image`` chooses it by file name or id where there are several.
 
     >>> found = coco_scene({
     ...     "images": [{"id": 1, "file_name": "table.jpg", "width": 640, "height": 480}],
@@ -64,7 +64,12 @@ def coco_scene(data: Mapping[str, Any], file: str, image: str | int | None = Non
         if belongs_to not in known:
             raise SceneError(f"{where}: 'image_id' {shown(belongs_to)} is the id of no image in this file")
         if belongs_to == chosen.id and not _is_crowd(entry, where):
-            boxes.append(_box(entry, labels, where))
+            label = _label(_required(entry, "category_id", where), labels, where)
+            if entry.get("bbox") is not None:
+                points, place = _bbox(entry["bbox"], f"{where}: 'bbox'"), f"{where}: 'bbox'"
+            else:
+                points, place = _polygons(entry.get("segmentation"), where), f"{where}: 'segmentation'"
+            boxes.append(box_around(points, place, label, score(entry, where)))
     return image_scene(boxes, chosen.height, file)
 
 
@@ -85,7 +90,7 @@ def _images(data: Mapping[str, Any], file: str) -> list[_Image]:
 
 
 def _chosen(images: list[_Image], wanted: str | int | None, file: str) -> _Image:
-    """By file name first, then by id, which may be given as a text."""
+    """Return the image of a file name, else of an id, which may be given as a text."""
     if wanted is None and len(images) == 1:
         return images[0]
     named = [image for image in images if image.name is not None and image.name == wanted]
@@ -118,15 +123,6 @@ def _is_crowd(entry: Mapping[str, Any], where: str) -> bool:
     return bool(crowd)
 
 
-def _box(entry: Mapping[str, Any], labels: Mapping[_Id, str], where: str) -> ImageBox:
-    label = _label(_required(entry, "category_id", where), labels, where)
-    if entry.get("bbox") is not None:
-        points, place = _bbox(entry["bbox"], f"{where}: 'bbox'"), f"{where}: 'bbox'"
-    else:
-        points, place = _polygons(entry.get("segmentation"), where), f"{where}: 'segmentation'"
-    return box_around(points, place, label, score(entry, where))
-
-
 def _label(category: Any, labels: Mapping[_Id, str], where: str) -> str | None:
     if category is None:
         return None
@@ -146,7 +142,7 @@ def _bbox(data: Any, where: str) -> list[tuple[float, float]]:
 
 
 def _polygons(data: Any, where: str) -> list[tuple[float, float]]:
-    """The corners of all parts."""
+    """Return the corners of all parts."""
     if data is None:
         raise SceneError(f"{where}: 'bbox' is missing, and so is 'segmentation'; an object needs one of them")
     if isinstance(data, Mapping):

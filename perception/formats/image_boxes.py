@@ -22,7 +22,7 @@ class ImageBox:
     confidence: float = 1.0
 
     def joined(self, other: ImageBox) -> ImageBox:
-        """The box around both, named and trusted as this one."""
+        """Return the box around both, named and trusted as this one."""
         return ImageBox(
             min(self.left, other.left),
             min(self.top, other.top),
@@ -36,7 +36,7 @@ class ImageBox:
 def box_around(
     points: Iterable[Sequence[float]], where: str, label: str | None = None, confidence: float = 1.0
 ) -> ImageBox:
-    """The bounding box of points (x, y).
+    """Return the bounding box of points (x, y).
 
     >>> box_around([(0, 4), (2, 0), (3, 1)], "polygon")
     ImageBox(left=0, top=0, right=3, bottom=4, label=None, confidence=1.0)
@@ -54,7 +54,7 @@ def box_around(
 
 
 def image_scene(boxes: Sequence[ImageBox], height: float | None, file: str) -> Scene:
-    """The scene of an image, y turned upwards: what is higher in the image lies farther away, as seen in it.
+    """Return the scene of an image, y turned upwards: what is higher in the image lies farther away, as seen in it.
 
     The origin is the image's bottom left corner where its ``height`` is known, else the height of the lowest
     outline, so that the least y is 0. The unit is px, the frame ``image``, and the image counts as seen from the

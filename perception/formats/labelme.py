@@ -37,12 +37,13 @@ _MARKS = {"version", "flags", "imagePath", "imageData", "imageHeight", "imageWid
 
 
 def is_labelme(data: Any) -> bool:
-    """Whether parsed JSON is meant as LabelMe annotations."""
+    """Return whether parsed JSON is meant as LabelMe annotations."""
     return isinstance(data, Mapping) and "shapes" in data and "objects" not in data and not _MARKS.isdisjoint(data)
 
 
 def labelme_scene(data: Mapping[str, Any], file: str, image: str | int | None = None) -> Scene:
-    """The scene of the one image; ``image`` need not be given, and must be the file's own (``imagePath``) if it is.
+    """Return the scene of the one image; ``image`` need not be given, and must be the file's own (``imagePath``) if it
+    is.
 
     >>> found = labelme_scene({"version": "5.4.1", "imageHeight": 100, "shapes": [
     ...     {"label": "plate", "points": [[50, 40], [50, 70]], "shape_type": "circle"}]}, "table.json")
@@ -51,24 +52,21 @@ def labelme_scene(data: Mapping[str, Any], file: str, image: str | int | None = 
 
     Raises SceneError, with the place, where the file is malformed or ``image`` is another one.
     """
-    _require_image(data.get("imagePath"), image, file)
+    path = data.get("imagePath")
+    own = path if isinstance(path, str) else ""
+    if image is not None and str(image) not in (own, PurePath(own.replace("\\", "/")).name):
+        raise SceneError(f"{file}: this file is about the image '{shown(own)}' alone, not '{shown(image)}'")
     height = pixels(data.get("imageHeight"), f"{file}: 'imageHeight'")
     boxes: dict[object, ImageBox] = {}
     for position, entry in enumerate(items(data, "shapes", file)):
         where = f"{file}: shapes[{position}]"
         box = _box(mapping(entry, where), where)
-        group = _group(entry.get("group_id"), where)
+        group = entry.get("group_id")
+        if group is not None and (isinstance(group, bool) or not isinstance(group, int | str)):
+            raise SceneError(f"{where}: 'group_id' is a whole number, a text or null, not {kind(group)}")
         key = position if group is None else (box.label, group)
         boxes[key] = boxes[key].joined(box) if key in boxes else box
     return image_scene(list(boxes.values()), height, file)
-
-
-def _require_image(path: Any, wanted: str | int | None, file: str) -> None:
-    if wanted is None:
-        return
-    own = path if isinstance(path, str) else ""
-    if str(wanted) not in (own, PurePath(own.replace("\\", "/")).name):
-        raise SceneError(f"{file}: this file is about the image '{shown(own)}' alone, not '{shown(wanted)}'")
 
 
 def _box(entry: Mapping[str, Any], where: str) -> ImageBox:
@@ -76,32 +74,24 @@ def _box(entry: Mapping[str, Any], where: str) -> ImageBox:
         if key not in entry:
             raise SceneError(f"{where}: '{key}' is missing")
     label = text(entry["label"], f"{where}: 'label'")
-    shape = _shape(entry.get("shape_type"), where)
-    points = _points(entry["points"], shape, f"{where}: 'points'")
-    corners = _around(points) if shape == "circle" else points
-    return box_around(corners, f"{where}: 'points'", label, score(entry, where))
-
-
-def _shape(data: Any, where: str) -> str:
-    """The type of a shape; old files have none and mean a polygon."""
-    if data is None:
-        return "polygon"
-    shape = text(data, f"{where}: 'shape_type'")
+    shape = "polygon"  # what old files mean, which have no types
+    if entry.get("shape_type") is not None:
+        shape = text(entry["shape_type"], f"{where}: 'shape_type'")
     if shape == "point":
         raise SceneError(f"{where}: a point has no extent, and an object needs a box; outline it, or leave it out")
     if shape not in POINTS:
         raise SceneError(f"{where}: the shape_type '{shown(shape)}' is not known; use one of {', '.join(POINTS)}")
-    return shape
-
-
-def _points(data: Any, shape: str, where: str) -> list[_Point]:
+    data = entry["points"]
+    at = f"{where}: 'points'"
     least, most = POINTS[shape]
     if not isinstance(data, list):
-        raise SceneError(f"{where} must be a list of points [x, y], not {kind(data)}")
+        raise SceneError(f"{at} must be a list of points [x, y], not {kind(data)}")
     if len(data) < least or (most is not None and len(data) > most):
         number_of = f"{least} or more" if most is None else f"{least}" if least == most else f"{least} to {most}"
-        raise SceneError(f"{where}: a {shape} has {number_of} points, not {len(data)}")
-    return [_point(point, f"{where}[{position}]") for position, point in enumerate(data)]
+        raise SceneError(f"{at}: a {shape} has {number_of} points, not {len(data)}")
+    points = [_point(point, f"{at}[{position}]") for position, point in enumerate(data)]
+    corners = _around(points) if shape == "circle" else points
+    return box_around(corners, f"{where}: 'points'", label, score(entry, where))
 
 
 def _point(data: Any, where: str) -> _Point:
@@ -111,15 +101,7 @@ def _point(data: Any, where: str) -> _Point:
 
 
 def _around(points: list[_Point]) -> list[_Point]:
-    """Two corners of the square around a circle, of which the centre and a point on it are given."""
+    """Return two corners of the square around a circle, of which the centre and a point on it are given."""
     (x, y), (rim_x, rim_y) = points
     radius = math.hypot(rim_x - x, rim_y - y)
     return [(x - radius, y - radius), (x + radius, y + radius)]
-
-
-def _group(data: Any, where: str) -> int | str | None:
-    if data is None:
-        return None
-    if isinstance(data, bool) or not isinstance(data, int | str):
-        raise SceneError(f"{where}: 'group_id' is a whole number, a text or null, not {kind(data)}")
-    return data

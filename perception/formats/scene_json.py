@@ -28,7 +28,7 @@ FORMATS: tuple[tuple[Callable[[Any], bool], Reader], ...] = ((is_coco, coco_scen
 
 
 def annotation_reader(data: Any) -> Reader | None:
-    """The reader of the annotation format that parsed JSON is in, or None where it is in none.
+    """Return the reader of the annotation format that parsed JSON is in, or None where it is in none.
 
     >>> annotation_reader({"images": [], "annotations": [], "categories": []}).__name__
     'coco_scene'
@@ -48,7 +48,7 @@ _ORIENTED_KEYS = {"centre", "yaw", "extents"}
 
 
 def read_scene(source: str | Path | Mapping[str, Any], image: str | int | None = None) -> Scene:
-    """Reads a scene from a ``.scene.json`` or an annotation file, or takes one that is parsed already.
+    """Read a scene from a ``.scene.json`` or an annotation file, or take one that is parsed already.
 
     ``image`` chooses the image, by file name or id, in a COCO file that has several.
 
@@ -66,10 +66,6 @@ def read_scene(source: str | Path | Mapping[str, Any], image: str | int | None =
             " what 'perceive' gives in Python is a scene already"
         )
     path = Path(source)
-    return scene_from_dict(_parsed(path), str(path), image)
-
-
-def _parsed(path: Path) -> Any:
     try:
         if path.is_dir():
             raise SceneError(f"{path}: this is a folder, and a scene is a .scene.json file")
@@ -86,42 +82,39 @@ def _parsed(path: Path) -> Any:
         ) from error
     except ValueError as error:
         raise SceneError(f"{path}: cannot be read: {error}") from error
-    return parse_json(content, str(path), SceneError, no_number=None)
+    return scene_from_dict(parse_json(content, str(path), SceneError, no_number=None), str(path), image)
 
 
 def scene_from_dict(data: Any, file: str, image: str | int | None = None) -> Scene:
-    """The scene that parsed JSON describes, whichever of the formats it is in; ``image`` as in :func:`read_scene`.
+    """Return the scene that parsed JSON describes, whichever of the formats it is in; ``image`` as in
+    :func:`read_scene`.
 
     In a scene of our own unknown keys are errors, so that a misspelt one is not lost.
     """
     reader = annotation_reader(data)
     if reader is not None:
         return reader(data, file, image)
-    scene = _own_scene(data, file)
-    if image is not None:
-        raise SceneError(f"{file}: an image ('{shown(image)}') is chosen in annotation files, and this is a scene")
-    return scene
-
-
-def _own_scene(data: Any, file: str) -> Scene:
-    scene = _mapping(data, file, _SCENE_KEYS)
-    if "objects" not in scene:
+    found = _mapping(data, file, _SCENE_KEYS)
+    if "objects" not in found:
         raise SceneError(f"{file}: 'objects' is missing: the list of what was seen")
-    if not isinstance(scene["objects"], list):
+    if not isinstance(found["objects"], list):
         raise SceneError(f"{file}: 'objects' must be a list")
-    unit = text(scene.get("unit", "m"), f"{file}: 'unit'")
+    unit = text(found.get("unit", "m"), f"{file}: 'unit'")
     if unit not in UNITS:
         raise SceneError(f"{file}: the unit '{unit}' is not known; use one of {', '.join(UNITS)}")
-    return Scene(
+    scene = Scene(
         objects=tuple(
             _object(entry, f"{file}: objects[{position}]", UNITS[unit])
-            for position, entry in enumerate(scene["objects"])
+            for position, entry in enumerate(found["objects"])
         ),
-        frame=text(scene.get("frame", "table"), f"{file}: 'frame'"),
-        viewpoint=text(scene.get("viewpoint", "chair"), f"{file}: 'viewpoint'"),
+        frame=text(found.get("frame", "table"), f"{file}: 'frame'"),
+        viewpoint=text(found.get("viewpoint", "chair"), f"{file}: 'viewpoint'"),
         unit="px" if unit == "px" else "m",
         file=file,
     )
+    if image is not None:
+        raise SceneError(f"{file}: an image ('{shown(image)}') is chosen in annotation files, and this is a scene")
+    return scene
 
 
 def _object(data: Any, where: str, scale: float) -> PerceivedObject:
@@ -150,7 +143,7 @@ def _oriented(data: Any, where: str, scale: float) -> OrientedBox:
 
 
 def _colour(data: Any, where: str) -> Rgb:
-    """A colour from a word of the ontology (its prototype), from ``#rrggbb``, or from three numbers."""
+    """Return a colour from a word of the ontology (its prototype), from ``#rrggbb``, or from three numbers."""
     if isinstance(data, list | tuple):
         parts = [number(part, where) for part in data]
         if len(parts) != 3 or not all(0 <= part <= 255 for part in parts):
@@ -163,16 +156,12 @@ def _colour(data: Any, where: str) -> Rgb:
         if (found := rgb_of_hex(said)) is None:
             raise SceneError(f"{where}: '{shown(said)}' is no colour; write #rrggbb in hexadecimal digits")
         return found
-    return _prototype(said, where)
-
-
-def _prototype(word: str, where: str) -> Rgb:
     colours = default_ontology().colours
-    if (colour := colours.of_word(word)) is not None:
+    if (colour := colours.of_word(said)) is not None:
         return colour.prototype
-    near = nearest(word.casefold(), list(colours.words)) if len(word) <= MAX_SHOWN else None
+    near = nearest(said.casefold(), list(colours.words)) if len(said) <= MAX_SHOWN else None
     told = f"did you mean '{near}'?" if near else f"say one of {', '.join(c.label for c in colours)}, or #rrggbb"
-    raise SceneError(f"{where}: there is no colour '{shown(word)}'; {told}")
+    raise SceneError(f"{where}: there is no colour '{shown(said)}'; {told}")
 
 
 def _mapping(data: Any, where: str, known: set[str]) -> Mapping[str, Any]:
@@ -196,7 +185,8 @@ def _numbers(data: Any, where: str, scale: float, counts: Sequence[int]) -> tupl
 
 
 def scene_to_dict(scene: Scene) -> dict[str, Any]:
-    """The scene as :func:`read_scene` takes it, coordinates in metres (or pixels); points in memory are left out."""
+    """Return the scene as :func:`read_scene` takes it, coordinates in metres (or pixels); points in memory are left
+    out."""
     objects = []
     for thing in scene.objects:
         entry: dict[str, Any] = {"id": thing.id, "min": list(thing.minimum), "max": list(thing.maximum)}

@@ -53,7 +53,7 @@ class Calibration:
         return min(self.known, self.unknown) >= MIN_HELD_OUT_ANSWERS
 
     def probabilities(self, normalised: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Probabilities (..., c + 1) of c categories and, last, of none of them, from their ND (..., c).
+        """Return probabilities (..., c + 1) of c categories and, last, of none of them, from their ND (..., c).
 
         >>> even = Calibration(threshold=1.0, even=1.0, doubt=2.0, choice=4.0)
         >>> even.probabilities(np.array([1.0, np.inf, 1.0])).tolist()
@@ -68,7 +68,8 @@ SHIPPED = Calibration(threshold=0.73, even=0.74, doubt=7.3, choice=10.5)
 
 
 def calibrate(held: HeldOut, prior_unknown: float = 0.5, start: Calibration = SHIPPED) -> Calibration:
-    """Threshold and probabilities from held-out views, if ``prior_unknown`` of all things seen are of no category.
+    """Return threshold and probabilities from held-out views, if ``prior_unknown`` of all things seen are of no
+    category.
 
     With fewer than ``MIN_HELD_OUT_ANSWERS`` known or unknown answers everything stays as in ``start``: of a few answers
     likelihood makes certainties, beside a threshold that does not move. Raises RecognitionError where the prior is not
@@ -86,7 +87,7 @@ def calibrate(held: HeldOut, prior_unknown: float = 0.5, start: Calibration = SH
 
 
 def best_threshold(known: NDArray[np.float64], unknown: NDArray[np.float64], prior_unknown: float = 0.5) -> float:
-    """The ND that makes the least expected share of errors: known things above it, unknown ones at or below.
+    """Return the ND that makes the least expected share of errors: known things above it, unknown ones at or below.
 
     ``known`` (k,) and ``unknown`` (u,) are the least ND of each held-out view. Cuts lie halfway between neighbouring
     values; of equally good ones the middle one is taken. With an even prior this maximises Youden's J.
@@ -109,7 +110,8 @@ def best_threshold(known: NDArray[np.float64], unknown: NDArray[np.float64], pri
 
 
 def expected_calibration_error(confidence: NDArray[np.float64], right: NDArray[np.bool_], bins: int = 10) -> float:
-    """Mean over answers of how far the confidence in their bin is from the share that is right (Naeini et al. 2015).
+    """Return mean over answers of how far the confidence in their bin is from the share that is right (Naeini et al.
+    2015).
 
     >>> expected_calibration_error(np.array([0.75, 0.75, 0.75, 0.75]), np.array([True, True, True, False]))
     0.0
@@ -120,7 +122,7 @@ def expected_calibration_error(confidence: NDArray[np.float64], right: NDArray[n
 
 
 def auroc(known: NDArray[np.floating], unknown: NDArray[np.floating]) -> float:
-    """The probability that something unknown has a higher score than something known; equal ones count half.
+    """Return the probability that something unknown has a higher score than something known; equal ones count half.
 
     nan where there is none of either.
 
@@ -135,7 +137,7 @@ def auroc(known: NDArray[np.floating], unknown: NDArray[np.floating]) -> float:
 
 
 def _log_shares(normalised: NDArray[np.float64], logs: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Logarithms of the probabilities (..., c + 1); ``logs`` (3,) are those of even, doubt and choice."""
+    """Return logarithms of the probabilities (..., c + 1); ``logs`` (3,) are those of even, doubt and choice."""
     log_even, (doubt, choice) = logs[0], np.exp(logs[1:])
     apart = np.log(np.maximum(normalised, MIN_NORMALISED))
     nearest = apart.min(axis=-1, keepdims=True)
@@ -155,7 +157,7 @@ def _fitted(
     prior_unknown: float,
     start: Calibration,
 ) -> tuple[float, float, float]:
-    """The most probable even distance, doubt and choice."""
+    """Return the most probable even distance, doubt and choice."""
     from scipy.optimize import minimize
 
     first = np.log([start.even, start.doubt, start.choice])

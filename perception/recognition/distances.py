@@ -25,7 +25,7 @@ class Target:
 
     @classmethod
     def of(cls, descriptors: NDArray[np.float32]) -> Target:
-        """Raises RecognitionError unless the descriptors are finite rows, one at least."""
+        """Raise RecognitionError unless the descriptors are finite rows, one at least."""
         size = descriptors.shape[-1] if isinstance(descriptors, np.ndarray) and descriptors.ndim else 0
         rows = checked("the target view", descriptors, size)
         if not len(rows):
@@ -33,7 +33,7 @@ class Target:
         return cls(rows, np.ascontiguousarray(rows.T), np.sqrt(squared_lengths(rows)))
 
     def require_fit(self, views: PackedViews) -> None:
-        """Raises RecognitionError where views have descriptors of another length."""
+        """Raise RecognitionError where views have descriptors of another length."""
         if len(views) and views.size != len(self.columns):
             raise RecognitionError(
                 f"the target's descriptors have {len(self.columns)} numbers and the remembered views' {views.size};"
@@ -42,7 +42,8 @@ class Target:
 
 
 def view_distance(target: NDArray[np.float32], view: NDArray[np.float32]) -> float:
-    """D_V (equation 1): the mean over the target's descriptors (q, d) of the least distance to the view's (k, d).
+    """Return D_V (equation 1): the mean over the target's descriptors (q, d) of the least distance to the view's (k,
+    d).
 
     It is not symmetric: every descriptor of the target needs a counterpart in the view, not the other way round.
 
@@ -56,7 +57,7 @@ def view_distance(target: NDArray[np.float32], view: NDArray[np.float32]) -> flo
 
 
 def view_distances(target: NDArray[np.float32] | Target, views: PackedViews) -> NDArray[np.float64]:
-    """D_V (m,) between a target (q, d) and each of m views; raises RecognitionError where they do not fit."""
+    """Return D_V (m,) between a target (q, d) and each of m views; raises RecognitionError where they do not fit."""
     from deixis.perception.recognition.kernels import fill_view_distances
 
     seen = target if isinstance(target, Target) else Target.of(target)
@@ -69,7 +70,7 @@ def view_distances(target: NDArray[np.float32] | Target, views: PackedViews) -> 
 
 
 def category_distance(target: NDArray[np.float32] | Target, views: PackedViews) -> tuple[float, int]:
-    """D_C (equation 2): the least D_V over a category's views, and the place of the first view that has it.
+    """Return D_C (equation 2): the least D_V over a category's views, and the place of the first view that has it.
 
     A category without a view is infinitely far, at place -1.
     """

@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.perception.recognition.distances import Target
-from deixis.perception.recognition.index import Effort, ViewIndex
+from deixis.perception.recognition.index import ViewIndex
 from deixis.perception.recognition.instances import InstanceCategory
 from deixis.perception.recognition.settings import RecognitionSettings
-from deixis.perception.recognition.spread import Width, spreads
+from deixis.perception.recognition.spread import spreads
 
 MAX_HELD_OUT = 400
 """Views that are held out, at most; evenly over the categories."""
@@ -54,7 +54,7 @@ def hold_out(
     most: int = MAX_HELD_OUT,
     progress: Progress | None = None,
 ) -> HeldOut:
-    """Holds views out, ``most`` of all categories together, evenly chosen; views of one thing are held out together.
+    """Hold views out, ``most`` of all categories together, evenly chosen; views of one thing are held out together.
 
     So what follows is about things never seen before, where categories know which thing a view shows. Among more views
     than are searched exactly, other categories are searched as recognition searches them.
@@ -67,39 +67,26 @@ def hold_out(
     for done, (number, place) in enumerate(chosen):
         if progress is not None:
             progress(done, len(chosen))
-        rows[done] = _row(number, place, categories, indexes, widths, settings, effort)
+        own = categories[number]
+        rest = np.flatnonzero(own.shown != own.shown[place])
+        left = list(widths)
+        left[number] = own.width(settings.over_things, rest)
+        target = Target.of(own.views[place])
+        distances = np.full(len(categories), np.inf)
+        reduced = None
+        for other, index in enumerate(indexes):
+            if index is None or other == number:
+                continue
+            reduced = index.reduction(target.descriptors) if reduced is None else reduced
+            distances[other] = index.nearest(target, reduced, effort).distance
+        if len(rest):
+            distances[number] = own.distances[place, rest].min()
+        rows[done] = distances / [spread.value for spread in spreads(left, settings.prior_spread, settings.shrinkage)]
     return HeldOut(rows, np.array([number for number, _ in chosen], np.int64))
 
 
-def _row(
-    number: int,
-    place: int,
-    categories: Sequence[InstanceCategory],
-    indexes: Sequence[ViewIndex | None],
-    widths: Sequence[Width],
-    settings: RecognitionSettings,
-    effort: Effort | None,
-) -> NDArray[np.float64]:
-    """ND (c,) of a view that is held out."""
-    own = categories[number]
-    rest = np.flatnonzero(own.shown != own.shown[place])
-    left = list(widths)
-    left[number] = own.width(settings.over_things, rest)
-    target = Target.of(own.views[place])
-    distances = np.full(len(categories), np.inf)
-    reduced = None
-    for other, index in enumerate(indexes):
-        if index is None or other == number:
-            continue
-        reduced = index.reduction(target.descriptors) if reduced is None else reduced
-        distances[other] = index.nearest(target, reduced, effort).distance
-    if len(rest):
-        distances[number] = own.distances[place, rest].min()
-    return distances / [spread.value for spread in spreads(left, settings.prior_spread, settings.shrinkage)]
-
-
 def _evenly(count: int, most: int) -> list[int]:
-    """At most ``most`` of 0 to ``count``, evenly spread.
+    """Return at most ``most`` numbers of 0 to ``count``, evenly spread.
 
     >>> _evenly(10, 4)
     [0, 2, 5, 7]

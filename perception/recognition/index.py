@@ -47,7 +47,8 @@ class Reduction:
 
     @classmethod
     def of(cls, packs: list[PackedViews]) -> Reduction:
-        """The principal axes of what the packs hold, from an even sample of it; at least one pack is not empty."""
+        """Return the principal axes of what the packs hold, from an even sample of it; at least one pack is not
+        empty."""
         from deixis.perception.recognition.kernels import AXES
 
         count = sum(len(pack.descriptors) for pack in packs)
@@ -61,7 +62,7 @@ class Reduction:
         return cls(origin, np.ascontiguousarray(vectors[:, ::-1][:, : AXES - 1]), count, share)
 
     def __call__(self, descriptors: NDArray[np.float32]) -> NDArray[np.float32]:
-        """Reduced descriptors (n, AXES + 1) of descriptors (n, d), the last column their squared lengths."""
+        """Return reduced descriptors (n, AXES + 1) of descriptors (n, d), the last column their squared lengths."""
         from deixis.perception.recognition.kernels import AXES
 
         out = np.zeros((len(descriptors), AXES + 1), np.float32)
@@ -77,14 +78,15 @@ class Reduction:
 
 
 def longest(reduced: NDArray[np.float32]) -> float:
-    """The greatest length of reduced descriptors (n, AXES + 1)."""
+    """Return the greatest length of reduced descriptors (n, AXES + 1)."""
     from deixis.perception.recognition.kernels import AXES
 
     return float(np.sqrt(reduced[:, AXES].max(initial=0.0)))
 
 
 def slack(one: float, other: float) -> float:
-    """By how much rounding can make a squared distance too large, of reduced descriptors of these lengths at most."""
+    """Return by how much rounding can make a squared distance too large, of reduced descriptors of these lengths at
+    most."""
     from deixis.perception.recognition.kernels import AXES, EPSILON
 
     return 4.0 * (AXES + 8) * EPSILON * (one + other) ** 2
@@ -131,11 +133,17 @@ class InvertedFile:
 
     @classmethod
     def of(cls, reduced: NDArray[np.float32], view_starts: NDArray[np.int64]) -> InvertedFile:
-        """Files reduced descriptors of m views, which ``view_starts`` (m + 1,) tells apart."""
-        centres = _centres(
-            reduced[:: -(-len(reduced) // CENTRE_SAMPLE)], max(1, min(MAX_LISTS, len(reduced) // LIST_SIZE))
-        )
-        lists = _nearest(reduced, centres)
+        """File reduced descriptors of m views, which ``view_starts`` (m + 1,) tells apart."""
+        from scipy.cluster.vq import kmeans2
+
+        rows = np.ascontiguousarray(reduced[:: -(-len(reduced) // CENTRE_SAMPLE)][:, :-1])
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # an empty cluster keeps its centre
+            centres: NDArray[np.float32] = kmeans2(
+                rows, max(1, min(MAX_LISTS, len(reduced) // LIST_SIZE)), iter=KMEANS_ROUNDS, minit="points", rng=0
+            )[0]
+        lows = range(0, len(reduced), CENTRE_BLOCK)
+        lists = np.concatenate([_squares(reduced[low : low + CENTRE_BLOCK], centres).argmin(axis=1) for low in lows])
         order = np.argsort(lists, kind="stable")
         starts = np.searchsorted(lists[order], np.arange(len(centres) + 1))
         count = len(view_starts) - 1
@@ -143,8 +151,8 @@ class InvertedFile:
         return cls(centres, starts, reduced[order], views[order], count)
 
     def estimates(self, reduced: NDArray[np.float32], count: int) -> NDArray[np.float64]:
-        """About D_V (m,) between a target, by its reduced descriptors (q, AXES + 1), and every view: by the nearest
-        descriptors in ``count`` lists. What has nothing there counts as far as the farthest centre of these."""
+        """Return about D_V (m,) between a target, by its reduced descriptors (q, AXES + 1), and every view: by the
+        nearest descriptors in ``count`` lists. What has nothing there counts as far as the farthest centre of these."""
         from deixis.perception.recognition.kernels import estimates
 
         out = np.zeros(self.count)
@@ -153,25 +161,8 @@ class InvertedFile:
         return out / len(reduced)
 
 
-def _centres(sample: NDArray[np.float32], count: int) -> NDArray[np.float32]:
-    """So many centres (count, AXES) of a sample (n, AXES + 1), n >= count, by k-means."""
-    from scipy.cluster.vq import kmeans2
-
-    rows = np.ascontiguousarray(sample[:, :-1])
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # an empty cluster keeps its centre
-        centres: NDArray[np.float32] = kmeans2(rows, count, iter=KMEANS_ROUNDS, minit="points", rng=0)[0]
-    return centres
-
-
-def _nearest(reduced: NDArray[np.float32], centres: NDArray[np.float32]) -> NDArray[np.int64]:
-    """The nearest centre (n,) of each reduced descriptor."""
-    lows = range(0, len(reduced), CENTRE_BLOCK)
-    return np.concatenate([_squares(reduced[low : low + CENTRE_BLOCK], centres).argmin(axis=1) for low in lows])
-
-
 def _squares(reduced: NDArray[np.float32], centres: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Squared distances (n, l), less the squared lengths of the descriptors."""
+    """Return squared distances (n, l), less the squared lengths of the descriptors."""
     squares: NDArray[np.float32] = reduced[:, :-1] @ (-2.0 * centres.T)
     squares += np.square(centres).sum(axis=1)
     return squares
@@ -200,7 +191,7 @@ class ViewIndex:
 
     @classmethod
     def of(cls, views: PackedViews, reduction: Reduction | None = None) -> ViewIndex:
-        """An index of one view at least."""
+        """Return an index of one view at least."""
         turned = reduction or Reduction.of([views])
         return cls(views, turned, turned(views.descriptors))
 
@@ -215,7 +206,7 @@ class ViewIndex:
         return InvertedFile.of(self.reduced, self.views.starts)
 
     def nearest(self, target: Target, reduced: NDArray[np.float32], effort: Effort | None = None) -> Nearest:
-        """The nearest view to a target whose reduced descriptors are given; exact unless an effort is."""
+        """Return the nearest view to a target whose reduced descriptors are given; exact unless an effort is."""
         count = len(self.views)
         if effort is not None:
             few = np.argsort(self.filed.estimates(reduced, effort.lists), kind="stable")[: effort.few]
@@ -238,7 +229,7 @@ class ViewIndex:
         return out
 
     def _compared(self, target: Target, order: NDArray[np.intp], bounds: NDArray[np.float64]) -> Nearest:
-        """The nearest of some views, in the order in which they are compared, with lower bounds of their D_V."""
+        """Return the nearest of some views, in the order in which they are compared, with lower bounds of their D_V."""
         from deixis.perception.recognition.kernels import nearest_view
 
         views = self.views
@@ -256,7 +247,7 @@ class ViewIndex:
 
 
 def indexes_of(packs: Sequence[PackedViews], reduction: Reduction | None = None) -> list[ViewIndex | None]:
-    """An index for each pack that is not empty, all by one reduction."""
+    """Return an index for each pack that is not empty, all by one reduction."""
     full = [pack for pack in packs if len(pack)]
     if not full:
         return [None] * len(packs)

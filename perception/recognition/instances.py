@@ -45,7 +45,7 @@ class InstanceCategory:
     def of(
         cls, name: str, views: Iterable[tuple[str, NDArray[np.float32]]], things: Mapping[str, str] | None = None
     ) -> InstanceCategory:
-        """A category of views (id, descriptors (k, d)), all distances computed."""
+        """Return a category of views (id, descriptors (k, d)), all distances computed."""
         named = list(views)
         packed = PackedViews.of((key, array) for key, array in named if len(array))
         return cls.among(name, packed, tuple(key for key, array in named if not len(array)), things or {})
@@ -54,7 +54,7 @@ class InstanceCategory:
     def among(
         cls, name: str, views: PackedViews, empty: tuple[str, ...], things: Mapping[str, str]
     ) -> InstanceCategory:
-        """The same of views that are packed already, but for the empty ones."""
+        """Return the same of views that are packed already, but for the empty ones."""
         distances = np.array([view_distances(views[i], views) for i in range(len(views))])
         return cls(name, views, distances.reshape(len(views), len(views)), empty, dict(things))
 
@@ -77,12 +77,13 @@ class InstanceCategory:
         return np.array([numbers[name] for name in names], np.int64)
 
     def width(self, over_things: bool, places: NDArray[np.intp] | None = None) -> Width:
-        """The ICD over views of different things, or over all views; of the views in some places only."""
+        """Return the ICD over views of different things, or over all views; of the views in some places only."""
         at = np.arange(len(self)) if places is None else places
         return Width.of(self.distances[np.ix_(at, at)], self.shown[at] if over_things else None)
 
     def with_view(self, key: str, descriptors: NDArray[np.float32], thing: str | None = None) -> InstanceCategory:
-        """The category with one view more, the last; raises RecognitionError where it does not fit, or is known."""
+        """Return the category with one view more, the last; raises RecognitionError where it does not fit, or is
+        known."""
         if key in self.views.ids or key in self.empty:
             raise RecognitionError(f"category '{self.name}' has a view '{key}' already")
         things = self.things if thing is None else {**self.things, key: thing}
@@ -97,7 +98,7 @@ class InstanceCategory:
         return replace(self, views=self.views.joined(new), distances=distances, things=things)
 
     def without_view(self, key: str) -> InstanceCategory:
-        """The category with one view less; raises RecognitionError where it has no such view."""
+        """Return the category with one view less; raises RecognitionError where it has no such view."""
         things = {view: thing for view, thing in self.things.items() if view != key}
         if key in self.empty:
             return replace(self, empty=tuple(name for name in self.empty if name != key), things=things)

@@ -34,7 +34,7 @@ _SUMS_IN_ANY_ORDER = {"nnan", "nsz", "reassoc", "contract"}
 
 @njit(cache=True, nogil=True, error_model="numpy", fastmath=_SUMS_IN_ANY_ORDER)
 def lower_bounds(columns, squares, reduced, starts, slack, out):  # type: ignore[no-untyped-def]
-    """Fills ``out`` (m,) with lower bounds of D_V between the target and each of m views.
+    """Fill ``out`` (m,) with lower bounds of D_V between the target and each of m views.
 
     ``columns`` (AXES, >= q) are the target's reduced descriptors times -2, ``squares`` (q,) their squared lengths;
     whole vectors (:data:`LANES`) of columns are fastest, so there may be more than q. ``reduced`` (n, AXES + 1) are
@@ -60,7 +60,7 @@ def lower_bounds(columns, squares, reduced, starts, slack, out):  # type: ignore
 
 @njit(cache=True, nogil=True, error_model="numpy", fastmath=_SUMS_IN_ANY_ORDER)
 def estimates(target, squares, count, reduced, starts, views, out):  # type: ignore[no-untyped-def]
-    """Adds to ``out`` (m,) D_V times q, as ``count`` lists of an inverted file have it.
+    """Add to ``out`` (m,) D_V times q, as ``count`` lists of an inverted file have it.
 
     ``target`` (q, AXES + 1) and ``reduced`` (n, AXES + 1) are reduced descriptors, the latter in lists from
     ``starts[i]`` to ``starts[i + 1]``, of views in the places ``views`` (n,) of ``out``. ``squares`` (q, l) are squared
@@ -85,7 +85,7 @@ def estimates(target, squares, count, reduced, starts, views, out):  # type: ign
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _least(values, places, least):  # type: ignore[no-untyped-def]
-    """Fills ``least`` (p,) with the p least of ``values`` (l,), in order, and ``places`` (p,) with where they are."""
+    """Fill ``least`` (p,) with the p least of ``values`` (l,), in order, and ``places`` (p,) with where they are."""
     last = len(least) - 1
     least[:] = np.inf
     for place in range(len(values)):
@@ -100,7 +100,7 @@ def _least(values, places, least):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _products(view, columns):  # type: ignore[no-untyped-def]
-    """Dot products (k, q) of rows (k, d) with columns (d, q), in pieces that a BLAS computes in one thread.
+    """Return dot products (k, q) of rows (k, d) with columns (d, q), in pieces that a BLAS computes in one thread.
 
     Products of views are small. Where other programs keep the processors busy, the threads of a BLAS wait for each
     other some hundred times as long as they compute.
@@ -115,7 +115,7 @@ def _products(view, columns):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, nogil=True, error_model="numpy", fastmath=_NO_NAN)
 def _least_of_columns(products, squares, least):  # type: ignore[no-untyped-def]
-    """Fills ``least`` (q,) with each column's least |v|^2 - 2 t.v, from dot products (k, q)."""
+    """Fill ``least`` (q,) with each column's least |v|^2 - 2 t.v, from dot products (k, q)."""
     least[:] = np.inf
     for k in range(products.shape[0]):
         row = products[k]
@@ -125,7 +125,8 @@ def _least_of_columns(products, squares, least):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, nogil=True, error_model="numpy", fastmath=_SUMS_IN_ANY_ORDER)
 def _lowest(least, lengths, rough, longest, within):  # type: ignore[no-untyped-def]
-    """The least that D_V times q can be, from each column's least (q,); and ``within`` (q,), what may be the least."""
+    """Return the least that D_V times q can be, from each column's least (q,); and ``within`` (q,), what may be the
+    least."""
     lowest = 0.0
     for t in range(len(least)):
         error = rough * (lengths[t] + longest)
@@ -136,7 +137,8 @@ def _lowest(least, lengths, rough, longest, within):  # type: ignore[no-untyped-
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def view_distance(target, columns, lengths, view, squares, limit):  # type: ignore[no-untyped-def]
-    """D_V (equation 1): the mean over the target's descriptors (q, d) of the least distance to the view's (k, d).
+    """Return D_V (equation 1): the mean over the target's descriptors (q, d) of the least distance to the view's (k,
+    d).
 
     ``columns`` (d, q) is the target transposed, ``lengths`` (q,) are its descriptors' lengths; ``squares`` (k,) are
     the squared lengths of the view's. A distance that is surely above ``limit`` is not worked out: infinite.
@@ -169,7 +171,7 @@ def _squared(one, other):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def fill_view_distances(target, columns, lengths, descriptors, starts, squares, out):  # type: ignore[no-untyped-def]
-    """Fills ``out`` (m,) with D_V between the target and each of m views."""
+    """Fill ``out`` (m,) with D_V between the target and each of m views."""
     for view in range(len(out)):
         low, high = starts[view], starts[view + 1]
         out[view] = view_distance(target, columns, lengths, descriptors[low:high], squares[low:high], np.inf)
@@ -179,8 +181,8 @@ def fill_view_distances(target, columns, lengths, descriptors, starts, squares, 
 def nearest_view(  # type: ignore[no-untyped-def]
     target, columns, lengths, descriptors, starts, squares, candidates, bounds
 ):
-    """Least D_V over ``candidates`` (c,), which are in the order of their lower ``bounds`` (c,); place, and how many
-    were looked at: none whose bound is above the best.
+    """Return least D_V over ``candidates`` (c,), which are in the order of their lower ``bounds`` (c,); place, and how
+    many were looked at: none whose bound is above the best.
 
     Of views equally near the first in memory is taken.
     """

@@ -20,7 +20,7 @@ from deixis.perception.errors import RecognitionError
 from deixis.perception.recognition.calibration import SHIPPED, Calibration, calibrate
 from deixis.perception.recognition.distances import Target
 from deixis.perception.recognition.held_out import Progress, hold_out
-from deixis.perception.recognition.index import Effort, Nearest, Reduction, ViewIndex, indexes_of
+from deixis.perception.recognition.index import Effort, Nearest, ViewIndex, indexes_of
 from deixis.perception.recognition.instances import InstanceCategory
 from deixis.perception.recognition.settings import DEFAULT, RecognitionSettings
 from deixis.perception.recognition.spread import Spread, SpreadSource, spreads
@@ -66,17 +66,21 @@ class Recognition:
 
 
 def no_answer(calibration: Calibration, reason: str) -> Recognition:
-    """Unknown, because there was nothing to compare."""
+    """Return unknown, because there was nothing to compare."""
     return Recognition(None, (), 1.0, calibration, True, (reason,))
 
 
 def decided(ranked: Sequence[Candidate], unknown: float, calibration: Calibration, exact: bool) -> Recognition:
-    """The decision between the nearest category and none, with its reasons."""
+    """Return the decision between the nearest category and none, with its reasons."""
     first = ranked[0]
     label = first.category if first.normalised <= calibration.threshold else None
     reasons = [_comparison(first, calibration)]
     if first.spread.source in (SpreadSource.POOLED, SpreadSource.PRIOR) and first.nearest is not None:
-        reasons.append(_stand_in(first))
+        width = first.spread.width
+        unit = "thing" if width.over_things else "view"
+        what = f"has one {unit}" if width.count == 1 else f"has no two {unit}s that differ"
+        whence = "the median ICD of others" if first.spread.source is SpreadSource.POOLED else "a constant"
+        reasons.append(f"'{first.category}' {what}, so that D_C is divided by {whence}")
     if not exact:
         reasons.append("distances are of the nearest views that an approximate search found")
     return Recognition(label, tuple(ranked), unknown, calibration, exact, tuple(reasons))
@@ -94,7 +98,7 @@ def _comparison(first: Candidate, calibration: Calibration) -> str:
 
 
 def _divisor(first: Candidate) -> str:
-    """The number that D_C is divided by, and what it is where it comes from the category itself."""
+    """Return the number that D_C is divided by, and what it is where it comes from the category itself."""
     width = first.spread.width
     own = f"{first.spread.value:.3g}: its ICD over {width.count} {'things' if width.over_things else 'views'}"
     match first.spread.source:
@@ -104,14 +108,6 @@ def _divisor(first: Candidate) -> str:
             return f"{own}, {width.icd:.3g}, drawn to the median one"
         case _:
             return f"{first.spread.value:.3g}"
-
-
-def _stand_in(first: Candidate) -> str:
-    width = first.spread.width
-    unit = "thing" if width.over_things else "view"
-    what = f"has one {unit}" if width.count == 1 else f"has no two {unit}s that differ"
-    whence = "the median ICD of others" if first.spread.source is SpreadSource.POOLED else "a constant"
-    return f"'{first.category}' {what}, so that D_C is divided by {whence}"
 
 
 @dataclass(frozen=True, eq=False)
@@ -130,7 +126,7 @@ class Recogniser:
         settings: RecognitionSettings = DEFAULT,
         calibration: Calibration = SHIPPED,
     ) -> Recogniser:
-        """Raises RecognitionError where two categories bear one name, or descriptors differ in length."""
+        """Raise RecognitionError where two categories bear one name, or descriptors differ in length."""
         names = [category.name for category in categories]
         if len(set(names)) < len(names):
             raise RecognitionError(f"two categories bear one name: {', '.join(sorted(names))}")
@@ -139,7 +135,7 @@ class Recogniser:
         return cls(tuple(categories), tuple(indexes), settings, calibration)
 
     def recognise(self, descriptors: NDArray[np.float32]) -> Recognition:
-        """Names a view by its descriptors (q, d), or says that it is unknown, and why.
+        """Name a view by its descriptors (q, d), or say that it is unknown, and why.
 
         No descriptor (q = 0), or no category, is unknown with that reason. Raises RecognitionError where descriptors
         are not finite or not of the categories' length.
@@ -165,13 +161,13 @@ class Recogniser:
         return spreads(widths, self.settings.prior_spread, self.settings.shrinkage)
 
     def learned(self, category: InstanceCategory) -> Recogniser:
-        """The same with this category in place of the one of its name, or as one more."""
+        """Return the same with this category in place of the one of its name, or as one more."""
         if category.name not in [known.name for known in self.categories]:
             return self._with((*self.categories, category), (*self.indexes, None), category)
         return self._with(self.categories, self.indexes, category)
 
     def forgotten(self, name: str) -> Recogniser:
-        """The same without a category; raises RecognitionError where there is none of that name."""
+        """Return the same without a category; raises RecognitionError where there is none of that name."""
         places = [i for i, category in enumerate(self.categories) if category.name != name]
         if len(places) == len(self.categories):
             raise RecognitionError(f"there is no category '{name}'")
@@ -182,12 +178,13 @@ class Recogniser:
         )
 
     def calibrated(self, progress: Progress | None = None) -> Recogniser:
-        """The same with threshold and probabilities from its own views, each held out with all views of its thing."""
+        """Return the same with threshold and probabilities from its own views, each held out with all views of its
+        thing."""
         held = hold_out(self.categories, self.indexes, self.settings, progress=progress)
         return replace(self, calibration=calibrate(held, self.settings.prior_unknown))
 
     def _nearest(self, target: Target, effort: Effort | None) -> list[Nearest]:
-        """The nearest view of each category."""
+        """Return the nearest view of each category."""
         nothing = Nearest(float("inf"), -1, 0)
         first = next((index for index in self.indexes if index is not None), None)
         if first is None:
@@ -202,7 +199,7 @@ class Recogniser:
         indexes: tuple[ViewIndex | None, ...],
         category: InstanceCategory,
     ) -> Recogniser:
-        """These with one category's views as they are now; all are reduced anew when there are twice as many."""
+        """Return these with one category's views as they are now; all are reduced anew when there are twice as many."""
         changed = tuple(category if known.name == category.name else known for known in categories)
         _require_one_size(changed)
         reduction = next((index.reduction for index in indexes if index is not None), None)
@@ -210,7 +207,9 @@ class Recogniser:
         if reduction is None or count > 2 * reduction.count:
             return replace(self, categories=changed, indexes=tuple(indexes_of([known.views for known in changed])))
         kept = tuple(
-            _index(category, reduction) if known.name == category.name else index
+            (ViewIndex.of(category.views, reduction) if len(category) else None)
+            if known.name == category.name
+            else index
             for known, index in zip(changed, indexes, strict=True)
         )
         return replace(self, categories=changed, indexes=kept)
@@ -222,12 +221,8 @@ def recognise(
     settings: RecognitionSettings = DEFAULT,
     calibration: Calibration = SHIPPED,
 ) -> Recognition:
-    """Names one view; for many of them make a :class:`Recogniser` once."""
+    """Return name one view; for many of them make a :class:`Recogniser` once."""
     return Recogniser.of(categories, settings, calibration).recognise(descriptors)
-
-
-def _index(category: InstanceCategory, reduction: Reduction) -> ViewIndex | None:
-    return ViewIndex.of(category.views, reduction) if len(category) else None
 
 
 def _candidate(category: InstanceCategory, near: Nearest, spread: Spread, probability: float) -> Candidate:

@@ -40,7 +40,7 @@ class RecognitionSettings:
             raise RecognitionError(f"an ICD is shrunk by 0 things or more, not {self.shrinkage:g}")
 
     def effort_among(self, views: int) -> Effort | None:
-        """What is spent on the search among so many views of all categories; None: it is exact."""
+        """Return what is spent on the search among so many views of all categories; None: it is exact."""
         return None if views <= self.exact_up_to else self.effort
 
 

@@ -47,7 +47,8 @@ class Width:
 
     @classmethod
     def of(cls, distances: NDArray[np.floating], things: NDArray[np.int64] | None = None) -> Width:
-        """From D_V (n, n) between views; ``things`` (n,) are numbers of what they show. None: equation 3 as it stands.
+        """Return from D_V (n, n) between views; ``things`` (n,) are numbers of what they show. None: equation 3 as it
+        stands.
 
         >>> distances = np.array([[0.0, 1.0, 4.0], [1.0, 0.0, 6.0], [4.0, 6.0, 0.0]])
         >>> Width.of(distances, np.array([0, 0, 1])).icd, round(Width.of(distances).icd, 2)
@@ -79,7 +80,8 @@ class Spread:
 
 
 def spreads(widths: Sequence[Width], prior: float, shrinkage: float = 0.0) -> list[Spread]:
-    """The spread of each category: (n ICD + s M) / (n + s), M being the median ICD, n things and s the shrinkage.
+    """Return the spread of each category: (n ICD + s M) / (n + s), M being the median ICD, n things and s the
+    shrinkage.
 
     >>> widths = [Width(1.0, 5), Width(3.0, 5), Width(8.0, 15), Width(None, 1)]
     >>> [spread.value for spread in spreads(widths, prior=1.0)]

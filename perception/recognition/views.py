@@ -42,7 +42,8 @@ class PackedViews:
 
     @classmethod
     def of(cls, views: Iterable[tuple[str, NDArray[np.float32]]]) -> PackedViews:
-        """Views by id, each with its descriptors (k, d); raises RecognitionError for what :func:`checked` refuses."""
+        """Return views by id, each with its descriptors (k, d); raises RecognitionError for what :func:`checked`
+        refuses."""
         named = list(views)
         ids = tuple(name for name, _ in named)
         if not named:
@@ -53,13 +54,17 @@ class PackedViews:
         if not all(map(len, arrays)):
             empty = next(name for name, array in named if not len(array))
             raise RecognitionError(f"view '{empty}' has no descriptor: there is nothing to compare")
-        return cls(ids, np.concatenate(arrays), _starts([len(array) for array in arrays]))
+        return cls(
+            ids,
+            np.concatenate(arrays),
+            np.concatenate([[0], np.cumsum([len(array) for array in arrays])]).astype(np.int64),
+        )
 
     def __len__(self) -> int:
         return len(self.ids)
 
     def __getitem__(self, place: int) -> NDArray[np.float32]:
-        """The descriptors (k, d) of the view in that place."""
+        """Return the descriptors (k, d) of the view in that place."""
         return self.descriptors[self.starts[place] : self.starts[place + 1]]
 
     @property
@@ -73,7 +78,7 @@ class PackedViews:
         return squared_lengths(self.descriptors).astype(np.float32)
 
     def joined(self, others: PackedViews) -> PackedViews:
-        """These views and then the others."""
+        """Return these views and then the others."""
         if not len(self) or not len(others):
             return self if len(self) else others
         _require_distinct((*self.ids, *others.ids))
@@ -83,13 +88,13 @@ class PackedViews:
         return PackedViews((*self.ids, *others.ids), np.concatenate([self.descriptors, others.descriptors]), starts)
 
     def without(self, place: int) -> PackedViews:
-        """All views but the one in that place."""
+        """Return all views but the one in that place."""
         rest = [(name, self[i]) for i, name in enumerate(self.ids) if i != place]
         return PackedViews.of(rest)
 
 
 def checked(what: str, descriptors: NDArray[np.float32], size: int) -> NDArray[np.float32]:
-    """Descriptors (k, size) as they are compared: float32, in one piece, and finite; k may be 0."""
+    """Return descriptors (k, size) as they are compared: float32, in one piece, and finite; k may be 0."""
     if not isinstance(descriptors, np.ndarray) or descriptors.ndim != 2 or descriptors.shape[1] != size:
         found = getattr(descriptors, "shape", type(descriptors).__name__)
         raise RecognitionError(f"{what}: descriptors of shape (k, {size}) are wanted, not {found}")
@@ -101,13 +106,9 @@ def checked(what: str, descriptors: NDArray[np.float32], size: int) -> NDArray[n
 
 
 def squared_lengths(descriptors: NDArray[np.float32]) -> NDArray[np.float64]:
-    """Squared lengths (n,), summed in double precision."""
+    """Return squared lengths (n,), summed in double precision."""
     result: NDArray[np.float64] = np.einsum("ij,ij->i", descriptors, descriptors, dtype=np.float64)
     return result
-
-
-def _starts(lengths: Sequence[int]) -> NDArray[np.int64]:
-    return np.concatenate([[0], np.cumsum(lengths)]).astype(np.int64)
 
 
 def _require_distinct(ids: Sequence[str]) -> None:
@@ -120,7 +121,7 @@ _NAMES = ("descriptors.npy", "lengths.npy", "squares.npy", "ids.json")
 
 
 def write_views(folder: Path, views: Iterable[tuple[str, NDArray[np.float32]]]) -> None:
-    """Writes views (id, descriptors (k, d)), one at a time, into a folder of their own, which is made.
+    """Write views (id, descriptors (k, d)), one at a time, into a folder of their own, which is made.
 
     Raises RecognitionError where a view is empty or does not fit, a name comes twice, or the folder holds views.
     """
@@ -150,7 +151,8 @@ def write_views(folder: Path, views: Iterable[tuple[str, NDArray[np.float32]]]) 
 
 
 def open_views(folder: Path) -> PackedViews:
-    """The views of a folder, their descriptors mapped from the file; raises RecognitionError where it holds none."""
+    """Return the views of a folder, their descriptors mapped from the file; raises RecognitionError where it holds
+    none."""
     try:
         descriptors = np.load(folder / _NAMES[0], mmap_mode="r", allow_pickle=False)
         lengths, squares = (np.load(folder / name, allow_pickle=False) for name in _NAMES[1:3])
@@ -174,7 +176,8 @@ def open_views(folder: Path) -> PackedViews:
 
 
 def mapped(views: Iterable[tuple[str, NDArray[np.float32]]]) -> PackedViews:
-    """Views (id, descriptors (k, d)) on the disk alone, read one at a time; their file ends with what is returned.
+    """Return views (id, descriptors (k, d)) on the disk alone, read one at a time; their file ends with what is
+    returned.
 
     It is in the folder for temporary files (``TMPDIR``), without a name there. Raises RecognitionError where it cannot
     be written, and as :func:`write_views` does.
@@ -194,5 +197,5 @@ def mapped(views: Iterable[tuple[str, NDArray[np.float32]]]) -> PackedViews:
 
 
 def _write_header(file: object, shape: tuple[int, int]) -> None:
-    """A header of fixed length, so that it can be written again when the number of rows is known."""
+    """Write a header of fixed length, so that it can be written again when the number of rows is known."""
     npy_format.write_array_header_1_0(file, {"descr": "<f4", "fortran_order": False, "shape": shape})  # type: ignore[arg-type]

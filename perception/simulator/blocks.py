@@ -13,7 +13,7 @@ CLOTH_CELL = 0.004
 
 
 def napkin(size: Size, rng: np.random.Generator) -> Mesh:
-    """A folded napkin: flat below, slightly uneven above, thinner at its edges."""
+    """Return a folded napkin: flat below, slightly uneven above, thinner at its edges."""
     columns, rows = (max(int(np.ceil(side / CLOTH_CELL)), 4) + 1 for side in (size.width, size.length))
     x, y = np.meshgrid(np.linspace(-1, 1, columns), np.linspace(-1, 1, rows))
     waves = rng.uniform(1.0, 3.0, (3, 2)), rng.uniform(0, 2 * np.pi, 3)
@@ -25,7 +25,7 @@ def napkin(size: Size, rng: np.random.Generator) -> Mesh:
 
 
 def block(size: Size, rng: np.random.Generator) -> Mesh:
-    """A block with round corners and a bevelled top."""
+    """Return a block with round corners and a bevelled top."""
     corner = rng.uniform(0.15, 0.3) * min(size.width, size.length)
     bevel = min(0.15 * size.height, 0.5 * corner)
     insets = [(0.0, 0.0), (0.0, size.height - bevel), (0.3 * bevel, size.height - 0.3 * bevel), (bevel, size.height)]
@@ -40,7 +40,7 @@ def block(size: Size, rng: np.random.Generator) -> Mesh:
 
 
 def cylinder(size: Size, rng: np.random.Generator) -> Mesh:
-    """A cylinder with a bevelled top."""
+    """Return a cylinder with a bevelled top."""
     radius = size.width / 2
     bevel = min(0.1 * size.height, rng.uniform(0.1, 0.25) * radius)
     outline = [(radius, 0.0), (radius, size.height - bevel), (radius - bevel, size.height)]

@@ -6,7 +6,6 @@ right and y away from whoever sits there, z up.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -42,36 +41,36 @@ class Camera:
         return position
 
     def directions(self) -> NDArray[np.float64]:
-        """Where the pixels look, row by row, in the camera's frame (rows * columns, 3), with z = 1."""
+        """Return where the pixels look, row by row, in the camera's frame (rows * columns, 3), with z = 1."""
         lens = self.lens
         v, u = np.mgrid[: lens.height, : lens.width]
         rays = [(u - lens.cx) / lens.fx, (v - lens.cy) / lens.fy, np.ones(u.shape)]
         return np.stack(rays, axis=-1).reshape(-1, 3)
 
     def pixels(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Where points (n, 3) of the table's frame are in the image, (n, 2); NaN for those behind the camera."""
+        """Return where points (n, 3) of the table's frame are in the image, (n, 2); NaN for those behind the camera."""
         seen, lens = self.to_camera(points), self.lens
         z = np.where(seen[:, 2] > 0, seen[:, 2], np.nan)
         return np.stack([lens.fx * seen[:, 0] / z + lens.cx, lens.fy * seen[:, 1] / z + lens.cy], axis=1)
 
     def to_table(self, points: NDArray[np.floating]) -> NDArray[np.float64]:
-        """Points (n, 3) of the camera's frame in the table's."""
+        """Return points (n, 3) of the camera's frame in the table's."""
         moved: NDArray[np.float64] = points @ self.pose[:3, :3].T + self.pose[:3, 3]
         return moved
 
     def to_camera(self, points: NDArray[np.floating]) -> NDArray[np.float64]:
-        """Points (n, 3) of the table's frame in the camera's."""
+        """Return points (n, 3) of the table's frame in the camera's."""
         moved: NDArray[np.float64] = (points - self.pose[:3, 3]) @ self.pose[:3, :3]
         return moved
 
     def sees(self, points: NDArray[np.float64]) -> bool:
-        """Whether all points (n, 3) of the table's frame are within the image."""
+        """Return whether all points (n, 3) of the table's frame are within the image."""
         at = self.pixels(points)
         within = (at >= -0.5) & (at <= (self.lens.width - 0.5, self.lens.height - 0.5))  # NaN is not
         return bool(within.all())
 
     def windowed(self, points: NDArray[np.float64]) -> Camera:
-        """The part of the image that shows the points (n, 3) of the table's frame, with a pixel to spare.
+        """Return the part of the image that shows the points (n, 3) of the table's frame, with a pixel to spare.
 
         Raises SimulationError where the image shows none of it.
         """
@@ -86,7 +85,8 @@ class Camera:
 
 
 def looking_pose(eye: ArrayLike, target: ArrayLike) -> NDArray[np.float64]:
-    """The pose (4, 4) of a camera at ``eye`` that looks at ``target``, upright; from above, away from the viewer is up.
+    """Return the pose (4, 4) of a camera at ``eye`` that looks at ``target``, upright; from above, away from the viewer
+    is up.
 
     >>> looking_pose((0, 0, 1), (0, 0, 0))[:3, :3].tolist()
     [[1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, -1.0]]
@@ -107,7 +107,7 @@ def looking_pose(eye: ArrayLike, target: ArrayLike) -> NDArray[np.float64]:
 
 
 def check_place(height: float, back: float, azimuth: float) -> None:
-    """Raises SimulationError for a place where no camera can be; lengths in metres, the azimuth in radians."""
+    """Raise SimulationError for a place where no camera can be; lengths in metres, the azimuth in radians."""
     if not 0 < height < MAX_CAMERA_DISTANCE:
         raise SimulationError(f"a camera stands above the table, below {MAX_CAMERA_DISTANCE:g} m, not at {height:g} m")
     if not abs(back) < MAX_CAMERA_DISTANCE:
@@ -121,7 +121,7 @@ def check_place(height: float, back: float, azimuth: float) -> None:
 def chair_camera(
     table: LaidTable, height: float = HEIGHT, back: float = 0.0, azimuth: float = 0.0, lens: Intrinsics = KINECT
 ) -> Camera:
-    """The camera of whoever sits at the table: above its near edge, looking at the middle of what lies there.
+    """Return the camera of whoever sits at the table: above its near edge, looking at the middle of what lies there.
 
     ``height`` above the table and ``back`` from its edge are in metres; ``azimuth`` (radians) takes the camera around
     the table, counter-clockwise from above. Where not everything is in view it stands farther away along the same
@@ -134,15 +134,11 @@ def chair_camera(
     away = np.array([0.0, table.top.low[1] - back - middle[1], height])
     cosine, sine = np.cos(azimuth), np.sin(azimuth)
     away = np.array([-sine * away[1], cosine * away[1], height])
-    for farther in _steps():
+    for farther in 1.05 ** np.arange(120):
         camera = Camera(looking_pose(target + farther * away, target), lens)
         if camera.sees(corners):
             return camera
     raise SimulationError("the table is too large for one image; give the camera more height")
-
-
-def _steps() -> Iterable[float]:
-    return 1.05 ** np.arange(120)
 
 
 def _corners(box: NDArray[np.float64]) -> NDArray[np.float64]:

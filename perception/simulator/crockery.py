@@ -20,14 +20,15 @@ Profile = list[tuple[float, float]]
 
 
 def plate(size: Size, rng: np.random.Generator) -> Mesh:
-    """A flat well and a rim: mostly a flange that rises beyond a step, else one curve."""
+    """Return a flat well and a rim: mostly a flange that rises beyond a step, else one curve."""
     radius, height = size.width / 2, size.height
     thickness = min(rng.uniform(0.003, 0.0045), 0.3 * height)
     well = radius * rng.uniform(0.58, 0.70)
     share = np.linspace(0.0, 1.0, 24)
     if rng.random() < 0.75:
         step, at = rng.uniform(0.4, 0.6), rng.uniform(0.22, 0.32)
-        rise = np.where(share < at, step * _eased(share / at), step + (1 - step) * (share - at) / (1 - at))
+        eased = (1 - np.cos(np.pi * np.clip(share / at, 0, 1))) / 2
+        rise = np.where(share < at, step * eased, step + (1 - step) * (share - at) / (1 - at))
     else:
         rise = share ** rng.uniform(1.6, 2.4)
     across, above = well + (radius - well) * share, thickness + (height - thickness) * rise
@@ -45,7 +46,7 @@ def bowl(size: Size, rng: np.random.Generator) -> Mesh:
 
 
 def cup(size: Size, rng: np.random.Generator) -> Mesh:
-    """A cup that widens upwards, with a handle."""
+    """Return a cup that widens upwards, with a handle."""
     radius, height = size.width / 2, size.height
     foot = radius * rng.uniform(0.5, 0.65)
     share = np.linspace(0.0, 1.0, 28) ** 1.5
@@ -54,7 +55,7 @@ def cup(size: Size, rng: np.random.Generator) -> Mesh:
 
 
 def mug(size: Size, rng: np.random.Generator) -> Mesh:
-    """A nearly straight mug with a handle."""
+    """Return a nearly straight mug with a handle."""
     radius, height = size.width / 2, size.height
     taper = rng.uniform(0.86, 1.0)
     share = np.concatenate([[0.0, 0.02, 0.05], np.linspace(0.1, 1.0, 10)])
@@ -63,7 +64,8 @@ def mug(size: Size, rng: np.random.Generator) -> Mesh:
 
 
 def vessel(outer: NDArray[np.float64], z: NDArray[np.float64], wall: float, floor: float | None = None) -> Profile:
-    """The profile of an open vessel with an outer radius for every height, from the table (z[0] = 0) to the rim."""
+    """Return the profile of an open vessel with an outer radius for every height, from the table (z[0] = 0) to the
+    rim."""
     floor = max(1.5 * wall, 0.004) if floor is None else floor
     inside = z > floor
     inner = [(r - wall, h) for r, h in zip(outer[inside][::-1], z[inside][::-1], strict=True)]
@@ -75,7 +77,7 @@ def vessel(outer: NDArray[np.float64], z: NDArray[np.float64], wall: float, floo
 def _with_handle(
     outer: NDArray[np.float64], z: NDArray[np.float64], wall: float, size: Size, ends: tuple[float, float]
 ) -> Mesh:
-    """The vessel with an ear whose ends, at shares of the height, are sunk into the wall."""
+    """Return the vessel with an ear whose ends, at shares of the height, are sunk into the wall."""
     above, below = (share * size.height for share in ends)
     start, end = (float(np.interp(at, z, outer)) - 0.5 * wall for at in (above, below))
     depth = min(0.009, 0.25 * (above - below))
@@ -89,11 +91,6 @@ def _with_handle(
     return joined(revolved(vessel(outer, z, wall)), tube(path, width=0.011, depth=depth))
 
 
-def _eased(share: NDArray[np.float64]) -> NDArray[np.float64]:
-    result: NDArray[np.float64] = (1 - np.cos(np.pi * np.clip(share, 0, 1))) / 2
-    return result
-
-
 STEMMED_SLENDERNESS = 1.7
 """Water glasses that are so many times as high as wide have a stem."""
 
@@ -105,7 +102,7 @@ def tumbler(size: Size, rng: np.random.Generator) -> Mesh:
 
 
 def water_glass(size: Size, rng: np.random.Generator) -> Mesh:
-    """A goblet where it is slender, else a tumbler."""
+    """Return a goblet where it is slender, else a tumbler."""
     if size.height < STEMMED_SLENDERNESS * size.width:
         return tumbler(size, rng)
     return stemmed(size, rng, stem=rng.uniform(0.3, 0.38), belly=rng.uniform(0.5, 0.75), rim=rng.uniform(0.88, 0.97))
@@ -116,14 +113,14 @@ def wine_glass(size: Size, rng: np.random.Generator) -> Mesh:
 
 
 def champagne_glass(size: Size, rng: np.random.Generator) -> Mesh:
-    """A flute where it is slender, else a saucer on a stem."""
+    """Return a flute where it is slender, else a saucer on a stem."""
     if size.height < 2.0 * size.width:
         return stemmed(size, rng, stem=rng.uniform(0.6, 0.68), belly=0.9, rim=0.99)
     return stemmed(size, rng, stem=rng.uniform(0.3, 0.38), belly=rng.uniform(0.55, 0.7), rim=rng.uniform(0.82, 0.92))
 
 
 def stemmed(size: Size, rng: np.random.Generator, stem: float, belly: float, rim: float) -> Mesh:
-    """A foot, a stem up to a share of the height, and a bowl.
+    """Return a foot, a stem up to a share of the height, and a bowl.
 
     ``belly`` is the share of the bowl's height at which it is widest, ``rim`` the share of that width at the rim.
     """
@@ -143,7 +140,7 @@ def stemmed(size: Size, rng: np.random.Generator, stem: float, belly: float, rim
 
 
 def bottle(size: Size, rng: np.random.Generator) -> Mesh:
-    """A closed bottle."""
+    """Return a closed bottle."""
     radius, height = size.width / 2, size.height
     neck = min(radius * 0.6, rng.uniform(0.013, 0.016))
     shoulder, throat = rng.uniform(0.55, 0.64), rng.uniform(0.70, 0.78)

@@ -36,7 +36,7 @@ class _Bar:
         cells: NDArray[np.bool_] | None = None,
         flat: bool = False,
     ) -> Mesh:
-        """The solid: thinner at its sides; ``across`` from -1 to 1, (columns,) or (rows, columns).
+        """Return the solid: thinner at its sides; ``across`` from -1 to 1, (columns,) or (rows, columns).
 
         ``sunk`` and ``shifted`` move its points down and along x, (rows, columns). Unless it is ``flat`` it is tilted
         so that it rests on its handle and on its head.
@@ -49,19 +49,14 @@ class _Bar:
         bottom = np.zeros_like(x) if flat else middle - lens
         top = 2 * lens if flat else middle + lens
         if not flat:
-            tilt = _tilt(self.along, bottom)
+            # the line (rows, 1) through the lowest points of the two halves
+            lowest = bottom.min(axis=1)
+            half = self.along <= self.along[-1] / 2
+            a, b = int(np.argmin(np.where(half, lowest, np.inf))), int(np.argmin(np.where(half, np.inf, lowest)))
+            slope = (lowest[b] - lowest[a]) / (self.along[b] - self.along[a])
+            tilt = (lowest[a] + slope * (self.along - self.along[a]))[:, None]
             bottom, top = bottom - tilt, top - tilt
         return thick_sheet(x, y, bottom, top, cells)
-
-
-def _tilt(along: Array, bottom: Array) -> Array:
-    """The line (rows, 1) through the lowest points of the two halves."""
-    lowest = bottom.min(axis=1)
-    half = along <= along[-1] / 2
-    a, b = int(np.argmin(np.where(half, lowest, np.inf))), int(np.argmin(np.where(half, np.inf, lowest)))
-    slope = (lowest[b] - lowest[a]) / (along[b] - along[a])
-    line: Array = (lowest[a] + slope * (along - along[a]))[:, None]
-    return line
 
 
 def _smooth(stations: Array, nodes: Mapping[float, float]) -> Array:
@@ -72,20 +67,20 @@ def _smooth(stations: Array, nodes: Mapping[float, float]) -> Array:
 
 
 def _stations(rows: int = 90) -> Array:
-    """Denser towards both ends, which are round."""
+    """Return places denser towards both ends, which are round."""
     even = np.linspace(0.0, 1.0, rows)
     return 0.75 * even + 0.25 * (1 - np.cos(np.pi * even)) / 2
 
 
 def _round_end(stations: Array, size: Size, half: float) -> Array:
-    """How much of its width is left near the handle's end, which is about a half circle."""
+    """Return how much of its width is left near the handle's end, which is about a half circle."""
     share = np.clip(stations * size.length / half, 0.03, 1.0)
     left: Array = np.sqrt(1 - (1 - share) ** 2)
     return left
 
 
 def spoon(roundness: float = 0.0) -> Builder:
-    """A builder of spoons; ``roundness`` 1 makes the bowl as long as wide, 0 the usual egg."""
+    """Return a builder of spoons; ``roundness`` 1 makes the bowl as long as wide, 0 the usual egg."""
 
     def build(size: Size, rng: np.random.Generator) -> Mesh:
         wide, deep = size.width / 2, size.width * rng.uniform(0.14, 0.2)
@@ -109,7 +104,7 @@ def spoon(roundness: float = 0.0) -> Builder:
 
 
 def fork(tines: int = 4) -> Builder:
-    """A builder of forks with so many tines."""
+    """Return a builder of forks with so many tines."""
 
     def build(size: Size, rng: np.random.Generator) -> Mesh:
         wide, root = size.width / 2, rng.uniform(0.72, 0.77)
@@ -121,29 +116,21 @@ def fork(tines: int = 4) -> Builder:
         rise, tip = 0.9 * size.height, rng.uniform(0.45, 0.8) * size.height
         middle = _smooth(t, {0.0: 0.0, 0.3: 0.4 * rise, start - 0.04: rise, root + 0.08: 0.1 * rise, 1.0: tip})
         thickness = _smooth(t, {0.0: 0.0025, start: 0.003, root: 0.002, 1.0: 0.0015})
-        across, cells = _tined(t, tines, root, rng.uniform(1.1, 1.5))
-        return _Bar(t * size.length, half, middle, thickness).sheet(across, cells=cells)
+        ratio = rng.uniform(1.1, 1.5)
+        gap = 2 / (tines * ratio + tines - 1)
+        centres = -1 + ratio * gap / 2 + np.arange(tines) * gap * (1 + ratio)
+        pointed = np.clip((1 - t) / 0.06, 0.3, 1.0)[:, None, None]
+        offsets = np.array([-0.5, 0.0, 0.5]) * ratio * gap
+        span = (centres[None, :, None] + pointed * offsets).reshape(len(t), -1)
+        squares = np.ones((len(t) - 1, 3 * tines - 1), dtype=np.bool_)
+        squares[t[:-1] >= root, 2::3] = False
+        return _Bar(t * size.length, half, middle, thickness).sheet(span, cells=squares)
 
     return build
 
 
-def _tined(stations: Array, tines: int, root: float, ratio: float) -> tuple[Array, NDArray[np.bool_]]:
-    """Columns (rows, 3 a tine) of which each tine takes three, and the cells without the gaps between the tines.
-
-    ``ratio`` is the width of a tine over that of a gap. Tines become points over the last tenth of the length.
-    """
-    gap = 2 / (tines * ratio + tines - 1)
-    centres = -1 + ratio * gap / 2 + np.arange(tines) * gap * (1 + ratio)
-    pointed = np.clip((1 - stations) / 0.06, 0.3, 1.0)[:, None, None]
-    offsets = np.array([-0.5, 0.0, 0.5]) * ratio * gap
-    across = (centres[None, :, None] + pointed * offsets).reshape(len(stations), -1)
-    cells = np.ones((len(stations) - 1, 3 * tines - 1), dtype=np.bool_)
-    cells[stations[:-1] >= root, 2::3] = False
-    return across, cells
-
-
 def knife(blade: float = 0.55, breadth: float = 1.0, grip: float = 0.75, pointed: bool = False) -> Builder:
-    """A builder of knives, which lie on their side, the edge to the left.
+    """Return a builder of knives, which lie on their side, the edge to the left.
 
     ``blade`` is its share of the length; the wider of ``breadth`` (of the blade) and ``grip`` is the knife's width.
     """

@@ -56,16 +56,17 @@ class DepthSensor:
 
     @classmethod
     def ideal(cls) -> DepthSensor:
-        """No noise, nothing missing."""
+        """Return no noise, nothing missing."""
         return cls(noise=0.0, missing=0.0, grazing=(np.pi, 2 * np.pi), colour_noise=0.0)
 
     def measured(self, depth: NDArray[np.float64], rng: np.random.Generator) -> NDArray[np.float64]:
-        """Depths (n,) in metres as they are measured."""
+        """Return depths (n,) in metres as they are measured."""
         noisy = depth + rng.standard_normal(len(depth)) * self.noise * NOISE * depth**2
         return _quantised(noisy) if self.quantised else noisy
 
     def lost(self, cosine: NDArray[np.float64], rng: np.random.Generator) -> NDArray[np.bool_]:
-        """Which points (n,) have no depth, by the cosine of the angle between the ray and the surface's normal."""
+        """Return which points (n,) have no depth, by the cosine of the angle between the ray and the surface's
+        normal."""
         angle = np.arccos(np.clip(np.abs(cosine), 0.0, 1.0))
         start, end = self.grazing
         share = np.maximum(np.clip((angle - start) / (end - start), 0.0, 1.0), self.missing)
@@ -74,7 +75,7 @@ class DepthSensor:
 
 
 def _quantised(depth: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Depths of which the disparity is whole: 1 / (step * k)."""
+    """Return depths of which the disparity is whole: 1 / (step * k)."""
     result: NDArray[np.float64] = 1 / (DISPARITY_STEP * np.maximum(np.round(1 / (DISPARITY_STEP * depth)), 1))
     return result
 
@@ -93,7 +94,7 @@ class Look:
 
 
 def look(caster: RayCaster, camera: Camera, sensor: DepthSensor, rng: np.random.Generator) -> Look:
-    """One look at meshes in the table's frame."""
+    """Return one look at meshes in the table's frame."""
     rays = camera.directions()
     turned = rays @ camera.pose[:3, :3].T
     hits = caster.cast(camera.eye, turned)
@@ -108,7 +109,9 @@ def look(caster: RayCaster, camera: Camera, sensor: DepthSensor, rng: np.random.
     mesh = np.full(len(rays), NOTHING, dtype=np.int32)
     mesh[seen[kept]] = hits.mesh[seen[kept]]
     shade = np.zeros(len(rays))
-    shade[seen[kept]] = _shade(hits.normals[seen[kept]], cosine[kept])
+    # Lambert's law, for a lamp and for light from all around; normals are turned towards the camera
+    lit = np.clip((hits.normals[seen[kept]] @ LIGHT) * np.sign(cosine[kept]), 0.0, 1.0)
+    shade[seen[kept]] = 0.45 + 0.55 * lit
     return Look(points, mesh, shade)
 
 
@@ -116,15 +119,9 @@ LIGHT = np.array([-0.36, -0.25, 0.9])
 """Where most light comes from, a unit vector in the table's frame."""
 
 
-def _shade(normals: NDArray[np.float32], cosine: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Lambert's law, for a lamp and for light from all around; normals are turned towards the camera."""
-    lit = np.clip((normals @ LIGHT) * np.sign(cosine), 0.0, 1.0)
-    result: NDArray[np.float64] = 0.45 + 0.55 * lit
-    return result
-
-
 def see(table: LaidTable, camera: Camera, sensor: DepthSensor | None = None, seed: int = 0) -> PointCloud:
-    """The table as an organised cloud in the camera's frame, the camera at its origin, with colours and the truth.
+    """Return the table as an organised cloud in the camera's frame, the camera at its origin, with colours and the
+    truth.
 
     Labels are -1 where nothing was measured, 0 for the table, and 1 and up for the things in the order of the table.
     The same seed gives the same cloud.
@@ -144,7 +141,7 @@ def see(table: LaidTable, camera: Camera, sensor: DepthSensor | None = None, see
 
 
 def in_table_frame(cloud: PointCloud, camera: Camera) -> PointCloud:
-    """A cloud of the camera's frame in the table's, with the camera as its origin."""
+    """Return a cloud of the camera's frame in the table's, with the camera as its origin."""
     x, y, z = camera.eye.tolist()
     points = camera.to_table(cloud.points.astype(np.float64)).astype(np.float32)
     normals = None if cloud.normals is None else (cloud.normals @ camera.pose[:3, :3].T).astype(np.float32)

@@ -35,17 +35,18 @@ PlanBox = tuple[NDArray[np.float64], NDArray[np.float64]]
 
 
 def overlap_in_plan(box: PlanBox, other: PlanBox) -> bool:
-    """Whether two boxes of the plan overlap."""
+    """Return whether two boxes of the plan overlap."""
     return bool((box[0] < other[1]).all() and (other[0] < box[1]).all())
 
 
 def plan_box(mesh: Mesh) -> PlanBox:
-    """The box around a mesh, seen from above."""
+    """Return the box around a mesh, seen from above."""
     return mesh.vertices[:, :2].min(axis=0), mesh.vertices[:, :2].max(axis=0)
 
 
 def lowered(mesh: Mesh, below: Sequence[Mesh]) -> Mesh:
-    """A stiff thing that stands on z = 0, raised so far that it rests on whatever lies below it, level as it is."""
+    """Return a stiff thing that stands on z = 0, raised so far that it rests on whatever lies below it, level as it
+    is."""
     if not below:
         return mesh
     lower, upper = RayCaster(below), RayCaster([mesh])
@@ -56,7 +57,8 @@ def lowered(mesh: Mesh, below: Sequence[Mesh]) -> Mesh:
 
 
 def draped(mesh: Mesh, below: Sequence[Mesh], cell: float) -> Mesh:
-    """A soft thing that lies on z = 0, laid over whatever lies below it: each vertex is raised by what is under it.
+    """Return a soft thing that lies on z = 0, laid over whatever lies below it: each vertex is raised by what is under
+    it.
 
     No edge of the mesh may be longer in the plan than ``cell`` (metres) times the root of 2. What is under a vertex
     is the highest place within that distance on each axis, so that no face cuts into what it lies on.
@@ -82,7 +84,7 @@ def draped(mesh: Mesh, below: Sequence[Mesh], cell: float) -> Mesh:
 def _raise_to_vertices(
     heights: NDArray[np.float64], meshes: Sequence[Mesh], low: NDArray[np.float64], fine: float
 ) -> None:
-    """Raises a grid of heights to the vertices nearest to its points: a rim between the points is not missed."""
+    """Raise a grid of heights to the vertices nearest to its points: a rim between the points is not missed."""
     for mesh in meshes:
         cell = np.rint((mesh.vertices[:, :2] - low) / fine).astype(np.int64)
         there = ((cell >= 0) & (cell < heights.shape)).all(axis=1)
@@ -90,7 +92,7 @@ def _raise_to_vertices(
 
 
 def _places(meshes: Sequence[Mesh], low: NDArray[np.float64], high: NDArray[np.float64]) -> NDArray[np.float64]:
-    """A grid over a part of the plan, and the vertices in it."""
+    """Return a grid over a part of the plan, and the vertices in it."""
     axes = [np.linspace(low[axis], high[axis], int((high[axis] - low[axis]) / HEIGHT_STEP) + 2) for axis in (0, 1)]
     grid = np.stack(np.meshgrid(*axes), axis=-1).reshape(-1, 2)
     vertices = np.concatenate([mesh.vertices[:, :2] for mesh in meshes])
@@ -100,7 +102,7 @@ def _places(meshes: Sequence[Mesh], low: NDArray[np.float64], high: NDArray[np.f
 
 WOOD: Colour = (150, 112, 78)
 LINEN_CLOTH: Colour = (226, 222, 212)
-FOREIGN: Colour = (186, 150, 90)
+FOREIGN_COLOUR: Colour = (186, 150, 90)
 """The colour of a mesh from a file."""
 
 MARGIN = 0.15
@@ -177,7 +179,7 @@ class LaidTable:
 
 
 def lay(placements: Iterable[Placement], top: TableTop | None = None, ontology: Ontology | None = None) -> LaidTable:
-    """Sets things down in the order in which they come, each on the table or on what lies there already.
+    """Set things down in the order in which they come, each on the table or on what lies there already.
 
     Stiff things stay level and are lowered until they touch; cloth drapes. So nothing goes through anything, and
     what is to lie below must come first. Without a ``top`` the table reaches a little beyond what lies on it. Raises
@@ -191,33 +193,27 @@ def lay(placements: Iterable[Placement], top: TableTop | None = None, ontology: 
             raise SimulationError(f"'{placement.name}' is placed twice; give every thing a name of its own")
         if not np.isfinite([placement.x, placement.y, placement.yaw]).all():
             raise SimulationError(f"'{placement.name}' has no place: {placement.x}, {placement.y}, yaw {placement.yaw}")
-        things.append(_set_down(placement, things, boxes, ontology))
+        laid, soft = _upright(placement, ontology)
+        mesh = moved(laid.mesh, placement.yaw, by=(placement.x, placement.y, 0.0))
+        own = plan_box(mesh)
+        below = [other.mesh for other, box in zip(things, boxes, strict=True) if overlap_in_plan(own, box)]
+        things.append(replace(laid, mesh=draped(mesh, below, CLOTH_CELL) if soft else lowered(mesh, below)))
         boxes.append(plan_box(things[-1].mesh))
     return LaidTable(top or top_under(things), tuple(things))
 
 
-def _set_down(
-    placement: Placement, there: Sequence[LaidThing], boxes: Sequence[PlanBox], ontology: Ontology
-) -> LaidThing:
-    """The thing laid over what is ``there``, which has these boxes."""
-    thing, soft = _upright(placement, ontology)
-    mesh = moved(thing.mesh, placement.yaw, by=(placement.x, placement.y, 0.0))
-    own = plan_box(mesh)
-    below = [other.mesh for other, box in zip(there, boxes, strict=True) if overlap_in_plan(own, box)]
-    return replace(thing, mesh=draped(mesh, below, CLOTH_CELL) if soft else lowered(mesh, below))
-
-
 def _upright(placement: Placement, ontology: Ontology) -> tuple[LaidThing, bool]:
-    """The thing by itself at the origin, and whether it is soft."""
+    """Return the thing by itself at the origin, and whether it is soft."""
     name, kind = placement.name, placement.kind
     if placement.mesh is not None:
-        return LaidThing(name, kind, stood(placement.mesh), FOREIGN, "mesh from a file"), False
+        return LaidThing(name, kind, stood(placement.mesh), FOREIGN_COLOUR, "mesh from a file"), False
     made = make(kind, placement.seed, placement.plan, ontology)
     return LaidThing(name, kind, made.mesh, made.colour, made.form.name, made.form.generic), made.form.soft
 
 
 def stood(mesh: Mesh) -> Mesh:
-    """The mesh moved so that its box stands on z = 0, centred on the z axis. Raises SimulationError for no mesh."""
+    """Return the mesh moved so that its box stands on z = 0, centred on the z axis. Raises SimulationError for no
+    mesh."""
     if not len(mesh.faces) or not np.isfinite(mesh.vertices).all():
         raise SimulationError("a mesh has no faces, or vertices that are nowhere")
     low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
@@ -226,7 +222,7 @@ def stood(mesh: Mesh) -> Mesh:
 
 
 def top_under(things: Sequence[LaidThing], margin: float = MARGIN, colour: Colour = WOOD) -> TableTop:
-    """A table that reaches ``margin`` metres beyond all things."""
+    """Return a table that reaches ``margin`` metres beyond all things."""
     if not things:
         return TableTop((-0.5, -0.35), (0.5, 0.35), colour=colour)
     boxes = [plan_box(thing.mesh) for thing in things]
@@ -235,7 +231,8 @@ def top_under(things: Sequence[LaidThing], margin: float = MARGIN, colour: Colou
 
 
 def truth_scene(table: LaidTable, viewpoint: str = "chair") -> Scene:
-    """Every thing with its name and its box in the table's frame; ``o3`` is the thing whose points bear label 3."""
+    """Return every thing with its name and its box in the table's frame; ``o3`` is the thing whose points bear label
+    3."""
     things = []
     for number, thing in enumerate(table.things, start=1):
         low, high = thing.box.tolist()

@@ -34,7 +34,7 @@ class RayCaster:
             self._scene.add_triangles(vertices, core.Tensor(np.ascontiguousarray(mesh.faces, dtype=np.uint32)))
 
     def cast(self, origins: NDArray[np.floating], directions: NDArray[np.floating]) -> Hits:
-        """The first hit of every ray; ``origins`` (r, 3) or (3,), ``directions`` (r, 3)."""
+        """Return the first hit of every ray; ``origins`` (r, 3) or (3,), ``directions`` (r, 3)."""
         rays = np.empty((len(directions), 6), dtype=np.float32)
         rays[:, :3], rays[:, 3:] = origins, directions
         found = self._scene.cast_rays(self._tensor(rays))
@@ -47,11 +47,11 @@ class RayCaster:
         )
 
     def tops(self, plan: NDArray[np.float64]) -> NDArray[np.float64]:
-        """How high the meshes reach at places (p, 2) of the plan; NaN where there is nothing."""
+        """Return how high the meshes reach at places (p, 2) of the plan; NaN where there is nothing."""
         return self._vertical(plan, start=10.0, down=True)
 
     def bottoms(self, plan: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Where the meshes begin, from below, at places (p, 2) of the plan; NaN where there is nothing."""
+        """Return where the meshes begin, from below, at places (p, 2) of the plan; NaN where there is nothing."""
         return self._vertical(plan, start=-10.0, down=False)
 
     def _vertical(self, plan: NDArray[np.float64], start: float, down: bool) -> NDArray[np.float64]:

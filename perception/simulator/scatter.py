@@ -19,7 +19,7 @@ KINDS = (
 )
 """What random tables are laid with."""
 
-ON_PLATES = ("napkin", "butter knife", "teaspoon", "dessert fork")
+PLATED_KINDS = ("napkin", "butter knife", "teaspoon", "dessert fork")
 """What is laid on a plate half the time, where there is a free one that is large enough."""
 
 MIN_GAP = 0.012
@@ -37,7 +37,8 @@ def scattered(
     foreign: Sequence[Placement] = (),
     ontology: Ontology | None = None,
 ) -> list[Placement]:
-    """So many things of random kinds, and the ``foreign`` ones, which have meshes, at random places, turned at random.
+    """Return so many things of random kinds, and the ``foreign`` ones, which have meshes, at random places, turned at
+    random.
 
     They lie at least ``MIN_GAP`` apart, but some on plates; the area that they take up is wider than deep. Names are
     kinds with numbers. Raises SimulationError for more than ``MAX_THINGS`` things, or none.
@@ -48,13 +49,13 @@ def scattered(
     floor = _Floor(rng)
     placed = [floor.put(placement, placement.plan or (0.1, 0.1)) for placement in foreign]
     chosen = [str(kind) for kind in rng.choice(np.array(kinds), count)]
-    chosen.sort(key=lambda kind: kind in ON_PLATES)  # what lies below is set down first
+    chosen.sort(key=lambda kind: kind in PLATED_KINDS)  # what lies below is set down first
     for number, kind in enumerate(chosen):
         name = f"{kind.replace(' ', '_')}_{chosen[:number].count(kind) + 1}"
         instance = int(rng.integers(2**31))
         plan = drawn_plan(kind_named(kind, ontology), instance, ontology)
         thing = Placement(name, kind, 0.0, 0.0, seed=instance)
-        on_plate = floor.put_on_plate(thing, plan) if kind in ON_PLATES and rng.random() < 0.5 else None
+        on_plate = floor.put_on_plate(thing, plan) if kind in PLATED_KINDS and rng.random() < 0.5 else None
         placed.append(on_plate or floor.put(thing, plan))
     return placed
 
@@ -69,24 +70,25 @@ class _Floor:
         self._half = 0.15
 
     def put(self, thing: Placement, plan: tuple[float, float]) -> Placement:
-        """The thing at a free place; the area grows until there is one."""
+        """Return the thing at a free place; the area grows until there is one."""
         while True:
             for _ in range(_MAX_TRIES):
                 x, y = self._rng.uniform(-1, 1, 2) * (1.2 * self._half, 0.85 * self._half)
                 yaw = float(self._rng.uniform(0, 2 * np.pi))
                 corners = _corners(x, y, yaw, plan)
-                if not _overlaps_any(corners, self._taken):
+                own = corners[1:3] - corners[:2]
+                theirs = (self._taken[:, 1:3] - self._taken[:, :2]).transpose(0, 2, 1)
+                apart = _apart(corners @ own.T, self._taken @ own.T) | _apart(corners @ theirs, self._taken @ theirs)
+                if bool(apart.all()):
                     self._taken = np.append(self._taken, corners[None], axis=0)
-                    return self._stands(thing, plan, float(x), float(y), yaw)
+                    x, y = float(x), float(y)
+                    if thing.kind is not None and thing.kind.endswith("plate"):
+                        self._plates.append((plan[0], x, y))
+                    return _at(thing, x, y, yaw)
             self._half *= 1.15
 
-    def _stands(self, thing: Placement, plan: tuple[float, float], x: float, y: float, yaw: float) -> Placement:
-        if thing.kind is not None and thing.kind.endswith("plate"):
-            self._plates.append((plan[0], x, y))
-        return _at(thing, x, y, yaw)
-
     def put_on_plate(self, thing: Placement, plan: tuple[float, float]) -> Placement | None:
-        """The thing on the first free plate on which all of it fits."""
+        """Return the thing on the first free plate on which all of it fits."""
         for place, (across, x, y) in enumerate(self._plates):
             if float(np.hypot(*plan)) < across:
                 del self._plates[place]
@@ -99,7 +101,7 @@ def _at(thing: Placement, x: float, y: float, yaw: float) -> Placement:
 
 
 def _corners(x: float, y: float, yaw: float, plan: tuple[float, float]) -> NDArray[np.float64]:
-    """Of a rectangle with half a gap around it, counter-clockwise, (4, 2)."""
+    """Return the corners of a rectangle with half a gap around it, counter-clockwise, (4, 2)."""
     half = (np.array(plan) + MIN_GAP) / 2
     corners = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)]) * half
     turn = np.array([[np.cos(yaw), np.sin(yaw)], [-np.sin(yaw), np.cos(yaw)]])
@@ -107,17 +109,9 @@ def _corners(x: float, y: float, yaw: float, plan: tuple[float, float]) -> NDArr
     return turned
 
 
-def _overlaps_any(rectangle: NDArray[np.float64], others: NDArray[np.float64]) -> bool:
-    """Whether a rectangle (4, 2) overlaps one of the others (m, 4, 2): no side of either has the other beyond it
-    (separating axes)."""
-    own = rectangle[1:3] - rectangle[:2]
-    theirs = (others[:, 1:3] - others[:, :2]).transpose(0, 2, 1)
-    apart = _apart(rectangle @ own.T, others @ own.T) | _apart(rectangle @ theirs, others @ theirs)
-    return not bool(apart.all())
-
-
 def _apart(one: NDArray[np.float64], other: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Whether there is a direction along which corners (…, 4, directions) and the others' do not overlap, (m,)."""
+    """Return whether there is a direction along which corners (…, 4, directions) and the others' do not overlap,
+    (m,)."""
     beyond = (one.max(axis=-2) <= other.min(axis=-2)) | (other.max(axis=-2) <= one.min(axis=-2))
     result: NDArray[np.bool_] = beyond.any(axis=-1)
     return result

@@ -22,7 +22,7 @@ class Size:
 
 
 def drawn_size(usual: SizeRange, rng: np.random.Generator, plan: tuple[float, float] | None = None) -> Size:
-    """A size within the usual range; each length has a triangular distribution with its mode at what is typical.
+    """Return a size within the usual range; each length has a triangular distribution with its mode at what is typical.
 
     ``plan`` gives width and length where they are settled already, and only the height is drawn.
     """
@@ -42,7 +42,7 @@ def _mixed(common: float, own: float) -> float:
 
 
 def quantile(extent: Extent, share: float) -> float:
-    """The length below which a share of the triangular distribution lies.
+    """Return the length below which a share of the triangular distribution lies.
 
     >>> quantile(Extent(0.0, 1.0, 2.0), 0.5), quantile(Extent(0.0, 1.0, 2.0), 1.0)
     (1.0, 2.0)
@@ -57,7 +57,7 @@ def quantile(extent: Extent, share: float) -> float:
 
 
 def share_below(extent: Extent, length: float) -> float:
-    """The share of the triangular distribution that lies below a length: what :func:`quantile` undoes."""
+    """Return the share of the triangular distribution that lies below a length: what :func:`quantile` undoes."""
     low, mode, high = extent.least, extent.typical, extent.greatest
     at = min(max(length, low), high)
     if high == low:

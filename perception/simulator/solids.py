@@ -14,7 +14,7 @@ SEGMENTS = 96
 
 
 def revolved(profile: Sequence[tuple[float, float]], segments: int = SEGMENTS) -> Mesh:
-    """The solid that a profile (radius, height) sweeps around the z axis.
+    """Return the solid that a profile (radius, height) sweeps around the z axis.
 
     The profile runs counter-clockwise, from the axis (radius 0) below outwards and back to the axis above, so that
     the solid lies on its left. Raises ValueError where an end is not on the axis.
@@ -34,7 +34,7 @@ def revolved(profile: Sequence[tuple[float, float]], segments: int = SEGMENTS) -
 
 
 def ringed(rings: NDArray[np.float64], first: ArrayLike | None = None, last: ArrayLike | None = None) -> Mesh:
-    """A skin over s closed rings of k points each (s, k, 3), closed at both ends by a fan.
+    """Return a skin over s closed rings of k points each (s, k, 3), closed at both ends by a fan.
 
     The rings run counter-clockwise as seen from where the last one lies. ``first`` and ``last`` are the tips of the
     fans; without them the ends are flat.
@@ -55,7 +55,8 @@ def ringed(rings: NDArray[np.float64], first: ArrayLike | None = None, last: Arr
 
 
 def tube(path: NDArray[np.float64], width: float, depth: float, sides: int = 16) -> Mesh:
-    """A bar of elliptic section along a path (s, 3) in the plane x = 0; ``depth`` is across the path in that plane."""
+    """Return a bar of elliptic section along a path (s, 3) in the plane x = 0; ``depth`` is across the path in that
+    plane."""
     along = np.gradient(path, axis=0)
     along /= np.linalg.norm(along, axis=1, keepdims=True)
     across = np.stack([np.zeros(len(path)), along[:, 2], -along[:, 1]], axis=1)
@@ -72,7 +73,7 @@ def thick_sheet(
     top: NDArray[np.float64],
     cells: NDArray[np.bool_] | None = None,
 ) -> Mesh:
-    """What lies between two surfaces over one grid in the plan: cutlery, cloth.
+    """Return what lies between two surfaces over one grid in the plan: cutlery, cloth.
 
     ``x``, ``y``, ``bottom`` and ``top`` have shape (rows, columns); x grows with the column and y with the row, or
     the faces turn inwards. ``cells`` (rows - 1, columns - 1) says which cells of the grid are there; all without it.
@@ -87,50 +88,43 @@ def thick_sheet(
     a, b, c, d = (part[there] for part in (index[:-1, :-1], index[:-1, 1:], index[1:, 1:], index[1:, :-1]))
     upper = np.concatenate([np.stack([a, b, c], axis=1), np.stack([a, c, d], axis=1)])
     edges = np.concatenate([np.stack(pair, axis=1) for pair in ((a, b), (b, c), (c, d), (d, a))])
-    border = edges[~_has_twin(edges, rows * columns)]
+    n = rows * columns
+    found: NDArray[np.bool_] = np.isin(edges[:, 0] * n + edges[:, 1], edges[:, 1] * n + edges[:, 0])
+    border = edges[~found]
     below = rows * columns
     walls = [
         np.stack([border[:, 0] + below, border[:, 1] + below, border[:, 1]], axis=1),
         np.stack([border[:, 0] + below, border[:, 1], border[:, 0]], axis=1),
     ]
     vertices = np.concatenate([np.stack([x, y, z], axis=-1).reshape(-1, 3) for z in (top, bottom)])
-    return _without_loose_vertices(vertices, np.concatenate([upper, upper[:, ::-1] + below, *walls]))
-
-
-def _has_twin(edges: NDArray[np.int64], vertices: int) -> NDArray[np.bool_]:
-    """Which directed edges (e, 2) are there the other way round too: those inside a sheet."""
-    found: NDArray[np.bool_] = np.isin(edges[:, 0] * vertices + edges[:, 1], edges[:, 1] * vertices + edges[:, 0])
-    return found
-
-
-def _without_loose_vertices(vertices: NDArray[np.float64], faces: NDArray[np.integer]) -> Mesh:
+    faces = np.concatenate([upper, upper[:, ::-1] + below, *walls])
     used, renumbered = np.unique(faces, return_inverse=True)
     return Mesh(vertices[used], renumbered.reshape(faces.shape).astype(np.int32))
 
 
 def joined(*meshes: Mesh) -> Mesh:
-    """Several meshes as one; where they overlap the inner faces stay."""
+    """Return several meshes as one; where they overlap the inner faces stay."""
     starts = np.cumsum([0, *(len(mesh.vertices) for mesh in meshes[:-1])])
     faces = [mesh.faces + start for mesh, start in zip(meshes, starts, strict=True)]
     return Mesh(np.concatenate([mesh.vertices for mesh in meshes]), np.concatenate(faces))
 
 
 def fitted(mesh: Mesh, width: float, length: float, height: float) -> Mesh:
-    """The mesh stretched to an extent on x, y and z; its box is centred on the z axis and stands on z = 0."""
+    """Return the mesh stretched to an extent on x, y and z; its box is centred on the z axis and stands on z = 0."""
     low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
     unit = (mesh.vertices - low) / np.where(high > low, high - low, 1.0)
     return Mesh((unit - (0.5, 0.5, 0.0)) * (width, length, height), mesh.faces)
 
 
 def moved(mesh: Mesh, yaw: float = 0.0, by: ArrayLike = (0.0, 0.0, 0.0)) -> Mesh:
-    """The mesh turned about the z axis by ``yaw`` radians, counter-clockwise from above, then shifted."""
+    """Return the mesh turned about the z axis by ``yaw`` radians, counter-clockwise from above, then shifted."""
     cosine, sine = _turn(yaw)
     turned = mesh.vertices @ np.array([[cosine, sine, 0.0], [-sine, cosine, 0.0], [0.0, 0.0, 1.0]])
     return Mesh(turned + np.asarray(by, dtype=np.float64), mesh.faces)
 
 
 def _turn(yaw: float) -> tuple[float, float]:
-    """Cosine and sine; exact for quarter turns, so that what was fitted into a box keeps to it."""
+    """Return cosine and sine; exact for quarter turns, so that what was fitted into a box keeps to it."""
     quarters = yaw / (np.pi / 2)
     if abs(quarters - round(quarters)) < 1e-12:
         return ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))[round(quarters) % 4]

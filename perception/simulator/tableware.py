@@ -97,7 +97,7 @@ class Instance:
 
 
 def kind_named(word: str, ontology: Ontology) -> Kind:
-    """The kind that a word or a name stands for; raises SimulationError where there is none."""
+    """Return the kind that a word or a name stands for; raises SimulationError where there is none."""
     kind = ontology.kinds.of_word(word)
     if kind is None:
         raise SimulationError(f"'{word}' is no kind of thing that the ontology knows; try 'dinner plate' or 'fork'")
@@ -105,7 +105,7 @@ def kind_named(word: str, ontology: Ontology) -> Kind:
 
 
 def form_of(kind: Kind | None, ontology: Ontology) -> Form:
-    """The shape of the nearest kind that has one, else a cylinder or a block, by the outline of the kind.
+    """Return the shape of the nearest kind that has one, else a cylinder or a block, by the outline of the kind.
 
     >>> ontology = default_ontology()
     >>> [form_of(ontology.kinds.of_word(word), ontology).name for word in ("salad fork", "vase")]
@@ -121,7 +121,7 @@ def form_of(kind: Kind | None, ontology: Ontology) -> Form:
 
 
 def usual_size(kind: Kind | None, ontology: Ontology) -> SizeRange:
-    """How large things of a kind are made: as large as they usually are, some forms within a part of that."""
+    """Return how large things of a kind are made: as large as they usually are, some forms within a part of that."""
     usual = ontology.sizes.of(kind.iri if kind else None)
     form = form_of(kind, ontology)
     return usual if form.height is None else replace(usual, height=form.height)
@@ -130,7 +130,8 @@ def usual_size(kind: Kind | None, ontology: Ontology) -> SizeRange:
 def make(
     kind: str | None, seed: int, plan: tuple[float, float] | None = None, ontology: Ontology | None = None
 ) -> Instance:
-    """One thing of a kind (None: of unknown kind, a block), varied from the seed: the same seed gives the same thing.
+    """Return one thing of a kind (None: of unknown kind, a block), varied from the seed: the same seed gives the same
+    thing.
 
     ``plan`` gives its width and its length (with the handle) in metres; else both are drawn from the usual sizes,
     as its height is. Raises SimulationError where the ontology does not know the kind, or a plan is no size.
@@ -145,13 +146,18 @@ def make(
         raise SimulationError(f"a thing's width and length are above 0, not {plan[0]:g} and {plan[1]:g}")
     form, rng = form_of(found, ontology), np.random.default_rng(seed)
     size = _size(form, usual_size(found, ontology), rng, plan)
-    colour = _tinted(form.colours[int(rng.integers(len(form.colours)))], rng)
+    red, green, blue = np.clip(
+        np.array(form.colours[int(rng.integers(len(form.colours)))]) * rng.uniform(0.92, 1.04) + rng.normal(0, 3, 3),
+        0,
+        255,
+    ).astype(int)
+    colour = int(red), int(green), int(blue)
     mesh = fitted(form.build(size, rng), size.width, size.length, size.height)
     return Instance(mesh, colour, form, size)
 
 
 def drawn_plan(kind: Kind | None, seed: int, ontology: Ontology) -> tuple[float, float]:
-    """Width and length of the thing that :func:`make` gives for a seed."""
+    """Return width and length of the thing that :func:`make` gives for a seed."""
     size = _size(form_of(kind, ontology), usual_size(kind, ontology), np.random.default_rng(seed), None)
     return size.width, size.length
 
@@ -162,9 +168,3 @@ def _size(form: Form, usual: SizeRange, rng: np.random.Generator, plan: tuple[fl
         reach += rng.uniform(usual.reach.least, usual.reach.greatest)
     size = drawn_size(usual, rng, plan)
     return size if plan is not None else Size(size.width, size.length * reach, size.height)
-
-
-def _tinted(colour: Colour, rng: np.random.Generator) -> Colour:
-    """The colour a little lighter or darker, and a little off its tint."""
-    red, green, blue = np.clip(np.array(colour) * rng.uniform(0.92, 1.04) + rng.normal(0, 3, 3), 0, 255).astype(int)
-    return int(red), int(green), int(blue)

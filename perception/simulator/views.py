@@ -24,7 +24,8 @@ MAX_THING_SIZE = 1.0
 
 
 def views_of(mesh: Mesh, count: int, seed: int, noise: float = 1.0, upright: bool = False) -> list[PointCloud]:
-    """So many views of a thing by itself, as a depth camera at other places sees it: only its points, without a table.
+    """Return so many views of a thing by itself, as a depth camera at other places sees it: only its points, without a
+    table.
 
     The mesh is in metres, z up, wherever it stands. Cameras are spread evenly over the part of the upper hemisphere
     that ``CAMERA_ELEVATIONS`` leaves, at ``CAMERA_DISTANCES`` from the middle of the thing, and look there. Each cloud

@@ -81,7 +81,7 @@ class Axioms:
 
 
 def split_axioms(triples: Iterable[Triple]) -> Axioms:
-    """The axioms of some triples, in their order.
+    """Return the axioms of some triples, in their order.
 
     ``owl:imports`` is dropped, so that nobody follows it. A property that is used between things and declared as
     nothing is declared here, since a description-logic reasoner would take it for an annotation.
@@ -90,8 +90,23 @@ def split_axioms(triples: Iterable[Triple]) -> Axioms:
     about: dict[str, list[Triple]] = defaultdict(list)
     for triple in triples:
         about[triple.subject].append(triple)
-    kinds = _Kinds(triples)
-    structural = {node for node, said in about.items() if is_blank(node) and _is_structural(said)}
+    kinds = _NameKinds(triples)
+    # blank nodes that are part of an axiom's syntax, and no individuals
+    structural = {
+        node
+        for node, said in about.items()
+        if is_blank(node)
+        and any(
+            triple.predicate in (FIRST, REST)
+            or (triple.predicate.startswith(_SYNTAX) and triple.predicate not in (SAME_AS, DIFFERENT_FROM))
+            or (
+                triple.predicate == TYPE
+                and triple.object.startswith(_BUILT_IN)
+                and triple.object not in _OF_INDIVIDUALS
+            )
+            for triple in said
+        )
+    }
     led_to = {triple.object for triple in triples if triple.object in structural}
     axioms, declarations, annotations = [], [], []
     for triple in triples:
@@ -104,11 +119,14 @@ def split_axioms(triples: Iterable[Triple]) -> Axioms:
             axioms.append(Axiom((triple, *_expression(triple.object, about, structural))))
     for node in about:
         if node in structural and node not in led_to and _stands_alone(about[node]):
-            axioms.append(Axiom(tuple(_typed_first(_expression(node, about, structural)))))
+            found = _expression(node, about, structural)
+            root = found[0].subject
+            typed_first = sorted(found, key=lambda triple: (triple.subject != root, triple.predicate != TYPE))
+            axioms.append(Axiom(tuple(typed_first)))
     return Axioms(tuple(axioms), (*declarations, *kinds.implied()), tuple(annotations))
 
 
-class _Kinds:
+class _NameKinds:
     """What the names of an ontology are."""
 
     def __init__(self, triples: list[Triple]) -> None:
@@ -126,12 +144,12 @@ class _Kinds:
         return triple.predicate == TYPE and triple.object in _DECLARING
 
     def is_annotation(self, triple: Triple) -> bool:
-        subject, predicate, object = triple
+        subject, predicate, obj = triple
         return (
             predicate in _ANNOTATIONS
             or self._any(predicate, {ANNOTATION_PROPERTY})
             or self._any(subject, {ONTOLOGY, ANNOTATION_PROPERTY, term("owl:Axiom"), term("owl:Annotation")})
-            or (predicate == TYPE and object == ONTOLOGY)
+            or (predicate == TYPE and obj == ONTOLOGY)
             or (self._undeclared(predicate) and self._any(subject, _TERMS))
         )
 
@@ -141,7 +159,7 @@ class _Kinds:
         )
 
     def implied(self) -> list[Triple]:
-        """Declarations of properties that are used and not declared."""
+        """Return declarations of properties that are used and not declared."""
         used = {
             (triple.predicate, DATATYPE_PROPERTY if is_literal(triple.object) else OBJECT_PROPERTY): None
             for triple in self._triples
@@ -150,25 +168,16 @@ class _Kinds:
         return [Triple(predicate, TYPE, kind) for predicate, kind in used]
 
 
-def _is_structural(said: list[Triple]) -> bool:
-    """Whether a blank node is part of an axiom's syntax, and no individual."""
-    return any(
-        triple.predicate in (FIRST, REST)
-        or (triple.predicate.startswith(_SYNTAX) and triple.predicate not in (SAME_AS, DIFFERENT_FROM))
-        or (triple.predicate == TYPE and triple.object.startswith(_BUILT_IN) and triple.object not in _OF_INDIVIDUALS)
-        for triple in said
-    )
-
-
 def _stands_alone(said: list[Triple]) -> bool:
-    """Whether a blank node that nothing leads to is an axiom: a set of members, a negative one, a general one."""
+    """Return whether a blank node that nothing leads to is an axiom: a set of members, a negative one, a general
+    one."""
     predicates = {triple.predicate for triple in said}
     alone = {term(f"owl:{name}") for name in ("members", "distinctMembers", "sourceIndividual", "disjointWith")}
     return not predicates.isdisjoint({*alone, term("rdfs:subClassOf"), term("owl:equivalentClass")})
 
 
 def _expression(node: str, about: dict[str, list[Triple]], structural: set[str]) -> list[Triple]:
-    """The triples of a blank node and of those that it leads to."""
+    """Return the triples of a blank node and of those that it leads to."""
     found: list[Triple] = []
     todo, seen = [node], {node}
     while todo:
@@ -181,7 +190,3 @@ def _expression(node: str, about: dict[str, list[Triple]], structural: set[str])
                 seen.add(triple.object)
                 todo.append(triple.object)
     return found
-
-
-def _typed_first(triples: list[Triple]) -> list[Triple]:
-    return sorted(triples, key=lambda triple: (triple.subject != triples[0].subject, triple.predicate != TYPE))

@@ -29,7 +29,7 @@ from deixis.reasoning.description_logic.terms import (
 )
 from deixis.reasoning.errors import InconsistencyError, SettingError
 
-EXPLAINED = 5
+MAX_EXPLAINED = 5
 """Unsatisfiable classes that are explained; those after them usually fail for the same reasons."""
 
 _WORDS_OF_OWL = tuple(f"<{base}" for base in PREFIXES.values())
@@ -65,7 +65,7 @@ class Entailment:
 
 
 def entail(ntriples: str, engine: LogicEngine | str = LogicEngine.AUTO, time_limit: float = 60.0) -> Entailment:
-    """What follows between named things, and why the ontology, or a class of it, is impossible where it is.
+    """Return what follows between named things, and why the ontology, or a class of it, is impossible where it is.
 
     Raises LimitError where ``time_limit`` (seconds) is up, SettingError for an engine of another name, and what
     :func:`deixis.reasoning.description_logic.reasoners.classify` raises of bad input.
@@ -81,7 +81,7 @@ def entail(ntriples: str, engine: LogicEngine | str = LogicEngine.AUTO, time_lim
         why = justify(ntriples, None, deadline)
         return Entailment(engine, complete, (), (), why, ())
     inferred, unsatisfiable = found
-    explained = [Triple(f"<{iri}>", SUB_CLASS_OF, NOTHING) for iri in unsatisfiable[:EXPLAINED]]
+    explained = [Triple(f"<{iri}>", SUB_CLASS_OF, NOTHING) for iri in unsatisfiable[:MAX_EXPLAINED]]
     impossible = tuple(justify(ntriples, statement, deadline) for statement in explained)
     return Entailment(engine, complete, inferred, unsatisfiable, None, impossible)
 
@@ -109,14 +109,14 @@ def _by_rules(ntriples: str, engine: LogicEngine, deadline: Deadline) -> Found:
 
 
 def _is_telling(triple: Triple) -> bool:
-    """Whether a triple relates named things, and none of the words of OWL."""
-    subject, _, object = triple
-    blank = is_blank(subject) or is_blank(object)
-    return not blank and not subject.startswith(_WORDS_OF_OWL) and not object.startswith(_WORDS_OF_OWL)
+    """Return whether a triple relates named things, and none of the words of OWL."""
+    subject, _, obj = triple
+    blank = is_blank(subject) or is_blank(obj)
+    return not blank and not subject.startswith(_WORDS_OF_OWL) and not obj.startswith(_WORDS_OF_OWL)
 
 
 def _schema(parts: Axioms) -> Iterable[Triple]:
-    """The axioms about classes and properties, without the facts about individuals."""
+    """Yield the axioms about classes and properties, without the facts about individuals."""
     for axiom in parts.axioms:
         root = axiom.root
         says_of_terms = root.predicate.startswith(_WORDS_OF_OWL) and root.predicate != TYPE
@@ -126,7 +126,7 @@ def _schema(parts: Axioms) -> Iterable[Triple]:
 
 
 def unsatisfiable_by_rules(triples: Iterable[Triple], deadline: Deadline = Deadline.never()) -> tuple[str, ...]:
-    """The IRIs of the named classes of which the rules see that nothing can belong to them, sorted.
+    """Return the IRIs of the named classes of which the rules see that nothing can belong to them, sorted.
 
     Each class is given a member of its own: a contradiction that needs one of these members only condemns its class.
     Raises LimitError where the deadline passes.

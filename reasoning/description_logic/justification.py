@@ -57,26 +57,27 @@ _OURS = tuple(f"<{PREFIXES[name]}" for name in ("rdf", "rdfs", "owl"))
 
 
 def denial(triple: Triple) -> tuple[Triple, ...]:
-    """The triples that deny a statement about named things; raises SettingError for one that cannot be denied so."""
-    subject, predicate, object = triple
+    """Return the triples that deny a statement about named things; raises SettingError for one that cannot be denied
+    so."""
+    subject, predicate, obj = triple
     if any(is_blank(part) for part in triple):
         raise SettingError(f"a statement to explain is about named things: {triple}")
     some_pair = Triple(_SOMEONE, subject, _OTHER)
     cases: dict[str, Callable[[], tuple[Triple, ...]]] = {
-        SUB_CLASS_OF: lambda: (Triple(_SOMEONE, TYPE, subject), *_not_a(_SOMEONE, object)),
-        DISJOINT_WITH: lambda: (Triple(_SOMEONE, TYPE, subject), Triple(_SOMEONE, TYPE, object)),
-        TYPE: lambda: _not_a(subject, object),
-        SUB_PROPERTY_OF: lambda: (some_pair, *_not_related(_SOMEONE, object, _OTHER)),
-        DOMAIN: lambda: (some_pair, *_not_a(_SOMEONE, object)),
-        RANGE: lambda: (some_pair, *_not_a(_OTHER, object)),
-        SAME_AS: lambda: (Triple(subject, DIFFERENT_FROM, object),),
-        DIFFERENT_FROM: lambda: (Triple(subject, SAME_AS, object),),
+        SUB_CLASS_OF: lambda: (Triple(_SOMEONE, TYPE, subject), *_not_a(_SOMEONE, obj)),
+        DISJOINT_WITH: lambda: (Triple(_SOMEONE, TYPE, subject), Triple(_SOMEONE, TYPE, obj)),
+        TYPE: lambda: _not_a(subject, obj),
+        SUB_PROPERTY_OF: lambda: (some_pair, *_not_related(_SOMEONE, obj, _OTHER)),
+        DOMAIN: lambda: (some_pair, *_not_a(_SOMEONE, obj)),
+        RANGE: lambda: (some_pair, *_not_a(_OTHER, obj)),
+        SAME_AS: lambda: (Triple(subject, DIFFERENT_FROM, obj),),
+        DIFFERENT_FROM: lambda: (Triple(subject, SAME_AS, obj),),
     }
-    if predicate in cases and not (predicate == TYPE and object.startswith(_OURS) and object != NOTHING):
+    if predicate in cases and not (predicate == TYPE and obj.startswith(_OURS) and obj != NOTHING):
         return cases[predicate]()
     if predicate.startswith(_OURS):
         raise SettingError(f"a statement of this kind cannot be explained: {triple}")
-    return _not_related(subject, predicate, object)
+    return _not_related(subject, predicate, obj)
 
 
 def _not_a(thing: str, kind: str) -> tuple[Triple, ...]:
@@ -85,17 +86,17 @@ def _not_a(thing: str, kind: str) -> tuple[Triple, ...]:
     return Triple(thing, TYPE, _NODE), Triple(_NODE, TYPE, CLASS), Triple(_NODE, COMPLEMENT_OF, kind)
 
 
-def _not_related(subject: str, predicate: str, object: str) -> tuple[Triple, ...]:
-    target = TARGET_VALUE if is_literal(object) else TARGET_INDIVIDUAL
+def _not_related(subject: str, predicate: str, obj: str) -> tuple[Triple, ...]:
+    target = TARGET_VALUE if is_literal(obj) else TARGET_INDIVIDUAL
     return (
         Triple(_NODE, TYPE, NEGATIVE_PROPERTY_ASSERTION),
         Triple(_NODE, SOURCE_INDIVIDUAL, subject),
         Triple(_NODE, ASSERTION_PROPERTY, predicate),
-        Triple(_NODE, target, object),
+        Triple(_NODE, target, obj),
     )
 
 
-BATCH, MOST_RINGS, MOST_CONTRADICTIONS = 24, 10, 100
+BATCH, MAX_RINGS, MAX_CONTRADICTIONS = 24, 10, 100
 """Ontologies, rings of names, and contradictions that are looked at at once."""
 
 Oracle = Callable[[Sequence[Sequence[Axiom]]], int | None]
@@ -119,7 +120,7 @@ class Justification:
 
 
 def justify(ntriples: str, entailed: Triple | None = None, deadline: Deadline = Deadline.never()) -> Justification:
-    """Why a statement follows from an ontology, or, without one, why the ontology is inconsistent.
+    """Return why a statement follows from an ontology, or, without one, why the ontology is inconsistent.
 
     The statement is about named things: ``rdfs:subClassOf`` (of ``owl:Nothing``: why a class is unsatisfiable),
     ``rdfs:subPropertyOf``, ``rdfs:domain``, ``rdfs:range``, ``owl:disjointWith``, ``owl:sameAs``,
@@ -129,7 +130,15 @@ def justify(ntriples: str, entailed: Triple | None = None, deadline: Deadline = 
     parts = split_axioms(read_ntriples(ntriples))
     denied = () if entailed is None else denial(entailed)
     oracle = _oracle(parts, denied, deadline)
-    seed = _seed(parts, denied, oracle, deadline)
+    # the fewest axioms in the derivation of a contradiction by OWL 2 RL; many of them only if HermiT agrees
+    known = Materialisation([*_triples(parts.axioms), *parts.declarations, *denied], deadline)
+    owner: dict[Triple, list[Axiom]] = defaultdict(list)
+    for each in parts.axioms:
+        for part in each.triples:
+            owner[part].append(each)
+    owning = [_owners(known, owner, seen) for seen in known.contradictions[:MAX_CONTRADICTIONS]]
+    fewest = min(owning, key=len, default=None)
+    seed = fewest if fewest is None or len(fewest) <= FEW or oracle([fewest]) == 0 else None
     minimal = None if seed is None else _minimal(seed, oracle)
     if minimal is None and (around := _expanded(parts, entailed, oracle)) is not None:
         minimal = _minimal(around, oracle)
@@ -155,37 +164,25 @@ def _triples(axioms: Iterable[Axiom]) -> dict[Triple, None]:
     return dict.fromkeys(triple for axiom in axioms for triple in axiom.triples)
 
 
-def _seed(parts: Axioms, denied: Sequence[Triple], oracle: Oracle, deadline: Deadline) -> list[Axiom] | None:
-    """The fewest axioms in the derivation of a contradiction by OWL 2 RL; many of them only if HermiT agrees."""
-    known = Materialisation([*_triples(parts.axioms), *parts.declarations, *denied], deadline)
-    owner: dict[Triple, list[Axiom]] = defaultdict(list)
-    for axiom in parts.axioms:
-        for triple in axiom.triples:
-            owner[triple].append(axiom)
-    found = [_owners(known, owner, seen) for seen in known.contradictions[:MOST_CONTRADICTIONS]]
-    fewest = min(found, key=len, default=None)
-    return fewest if fewest is None or len(fewest) <= FEW or oracle([fewest]) == 0 else None
-
-
 def _owners(known: Materialisation, owner: dict[Triple, list[Axiom]], seen: Contradiction) -> list[Axiom]:
     stated = [step.triple for step in known.derivation(seen.premises) if step.rule is None]
     return list(dict.fromkeys(axiom for triple in stated for axiom in owner.get(triple, ())[:1]))
 
 
 def _expanded(parts: Axioms, entailed: Triple | None, oracle: Oracle) -> list[Axiom] | None:
-    """The axioms around the statement, as far from it as it takes to contradict its denial; near ones first."""
+    """Return the axioms around the statement, as far from it as it takes to contradict its denial; near ones first."""
     ordered, ends = _rings(parts.axioms, entailed)
     place = oracle([ordered[:end] for end in ends])
     return None if place is None else ordered[: ends[place]]
 
 
 def _rings(axioms: Sequence[Axiom], entailed: Triple | None) -> tuple[list[Axiom], list[int]]:
-    """Axioms by how many steps of shared names they are from a statement, and where each of the steps ends."""
+    """Return axioms by how many steps of shared names they are from a statement, and where each of the steps ends."""
     names = {part for part in entailed or () if not is_literal(part)}
     ordered: list[Axiom] = []
     ends: list[int] = []
     left = list(axioms)
-    while names and left and len(ends) < MOST_RINGS:
+    while names and left and len(ends) < MAX_RINGS:
         near = [axiom for axiom in left if axiom.signature & names]
         if not near:
             break
@@ -198,7 +195,7 @@ def _rings(axioms: Sequence[Axiom], entailed: Triple | None) -> tuple[list[Axiom
 
 
 def _minimal(axioms: list[Axiom], oracle: Oracle) -> tuple[Axiom, ...] | None:
-    """The axioms without those that can be spared; None where a few contradict nothing.
+    """Return the axioms without those that can be spared; None where a few contradict nothing.
 
     Of few mostly none can be spared, so that they are asked about themselves in the run that leaves each out in turn.
     """

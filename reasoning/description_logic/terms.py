@@ -27,7 +27,7 @@ PREFIXES = {
 
 
 def term(name: str) -> str:
-    """The term that a prefixed name stands for.
+    """Return the term that a prefixed name stands for.
 
     >>> term("rdfs:label")
     '<http://www.w3.org/2000/01/rdf-schema#label>'
@@ -73,7 +73,7 @@ class Triple(NamedTuple):
 
 
 def read_ntriples(text: str) -> list[Triple]:
-    """The triples of a document, in its order; raises TriplesError, with the line, for what is no N-Triples."""
+    """Return the triples of a document, in its order; raises TriplesError, with the line, for what is no N-Triples."""
     triples = []
     for number, line in enumerate(text.split("\n"), 1):
         if not line.strip() or line.lstrip().startswith("#"):
@@ -81,13 +81,13 @@ def read_ntriples(text: str) -> list[Triple]:
         found = _LINE.fullmatch(line.rstrip("\r"))
         if found is None:
             raise TriplesError(f"line {number} is not a triple in N-Triples: {line.strip()[:80]}")
-        subject, predicate, object = (_unescaped(part, number) for part in found.groups())
-        triples.append(Triple(subject, predicate, object))
+        subject, predicate, obj = (_unescaped(part, number) for part in found.groups())
+        triples.append(Triple(subject, predicate, obj))
     return triples
 
 
 def _unescaped(term: str, number: int) -> str:
-    """An IRI with its escapes read, so that one name has one spelling."""
+    """Return an IRI with its escapes read, so that one name has one spelling."""
     if "\\" not in term or is_literal(term):
         return term
     iri = _ESCAPE.sub(lambda found: chr(min(int(found[0][2:], 16), sys.maxunicode)), term[1:-1])
@@ -97,12 +97,12 @@ def _unescaped(term: str, number: int) -> str:
 
 
 def write_ntriples(triples: Iterable[Triple]) -> str:
-    """A document of these triples, a line each."""
+    """Return a document of these triples, a line each."""
     return "".join(f"{triple}\n" for triple in triples)
 
 
 def iri_of(term: str) -> str | None:
-    """The IRI that a term spells, or None where it is a blank node or a literal."""
+    """Return the IRI that a term spells, or None where it is a blank node or a literal."""
     return term[1:-1] if term.startswith("<") else None
 
 

@@ -80,11 +80,11 @@ _JOINED = {term("owl:unionOf"): " or ", term("owl:intersectionOf"): " and ", ter
 
 
 def labels_of(triples: Iterable[Triple]) -> dict[str, str]:
-    """The label of each thing that has one, an English one or one in no language rather than another."""
+    """Return the label of each thing that has one, an English one or one in no language rather than another."""
     found: dict[str, tuple[bool, str]] = {}
-    for subject, predicate, object in triples:
-        if predicate == LABEL and is_literal(object):
-            text, _, language = object[1:].rpartition('"')
+    for subject, predicate, obj in triples:
+        if predicate == LABEL and is_literal(obj):
+            text, _, language = obj[1:].rpartition('"')
             other = language.startswith("@") and not language.startswith("@en")
             found[subject] = min(found.get(subject, (True, "\U0010ffff")), (other, text))
     return {subject: text for subject, (_, text) in found.items()}
@@ -97,15 +97,15 @@ class Words:
         self._labels = labels
 
     def axiom(self, axiom: Axiom) -> str:
-        """An axiom in one sentence."""
+        """Return an axiom in one sentence."""
         return _Sentence(self, axiom.triples).of(axiom.root)
 
     def triple(self, triple: Triple) -> str:
-        """A statement in one sentence."""
+        """Return a statement in one sentence."""
         return _Sentence(self, (triple,)).of(triple)
 
     def name(self, name: str) -> str:
-        """What people call a term: its label, or else the last part of its IRI; a literal's own text."""
+        """Return what people call a term: its label, or else the last part of its IRI; a literal's own text."""
         if name in self._labels:
             return self._labels[name]
         if is_literal(name):
@@ -122,44 +122,46 @@ class _Sentence:
     def __init__(self, words: Words, triples: Iterable[Triple]) -> None:
         self._words = words
         self._said: dict[str, dict[str, str]] = defaultdict(dict)
-        for subject, predicate, object in triples:
-            self._said[subject].setdefault(predicate, object)
+        for subject, predicate, obj in triples:
+            self._said[subject].setdefault(predicate, obj)
 
     def of(self, root: Triple) -> str:
-        subject, predicate, object = root
+        subject, predicate, obj = root
         if is_blank(subject) and predicate == TYPE:
-            return self._of_blank(subject, object)
+            said = self._said[subject]
+            if obj in _MEMBERS:
+                return _MEMBERS[obj].format(self._listed(said.get(MEMBERS, said.get(DISTINCT_MEMBERS, NIL)), ", "))
+            if obj == NEGATIVE_PROPERTY_ASSERTION:
+                parts = (said.get(term(f"owl:{name}"), "") for name in ("sourceIndividual", "targetIndividual"))
+                source, target = (self._expression(part or said.get(term("owl:targetValue"), NIL)) for part in parts)
+                return f"not {self._words.name(said.get(term('owl:assertionProperty'), subject))}({source}, {target})"
+            for predicate in _STATEMENTS:
+                if predicate in said:
+                    return _STATEMENTS[predicate].format(self._expression(subject), self._expression(said[predicate]))
+            return f"something is {_a(self._expression(obj))}"
         if predicate == TYPE:
-            characteristic = _CHARACTERISTICS.get(object)
+            characteristic = _CHARACTERISTICS.get(obj)
             if characteristic:
                 return characteristic.format(self._expression(subject))
-            return f"{self._expression(subject)} is {_a(self._expression(object))}"
-        if predicate == SUB_CLASS_OF and object == NOTHING:
+            return f"{self._expression(subject)} is {_a(self._expression(obj))}"
+        if predicate == SUB_CLASS_OF and obj == NOTHING:
             return f"nothing can be {_a(self._expression(subject))}"
         if predicate in _STATEMENTS:
-            return _STATEMENTS[predicate].format(self._expression(subject), self._expression(object))
-        return f"{self._words.name(predicate)}({self._expression(subject)}, {self._expression(object)})"
-
-    def _of_blank(self, node: str, kind: str) -> str:
-        said = self._said[node]
-        if kind in _MEMBERS:
-            return _MEMBERS[kind].format(self._listed(said.get(MEMBERS, said.get(DISTINCT_MEMBERS, NIL)), ", "))
-        if kind == NEGATIVE_PROPERTY_ASSERTION:
-            parts = (said.get(term(f"owl:{name}"), "") for name in ("sourceIndividual", "targetIndividual"))
-            source, target = (self._expression(part or said.get(term("owl:targetValue"), NIL)) for part in parts)
-            return f"not {self._words.name(said.get(term('owl:assertionProperty'), node))}({source}, {target})"
-        for predicate in _STATEMENTS:
-            if predicate in said:
-                return _STATEMENTS[predicate].format(self._expression(node), self._expression(said[predicate]))
-        return f"something is {_a(self._expression(kind))}"
+            return _STATEMENTS[predicate].format(self._expression(subject), self._expression(obj))
+        return f"{self._words.name(predicate)}({self._expression(subject)}, {self._expression(obj)})"
 
     def _expression(self, node: str) -> str:
-        """A class expression, a list, or a name."""
+        """Return a class expression, a list, or a name."""
         said = self._said.get(node, {}) if is_blank(node) else {}
         if FIRST in said:
             return self._listed(node, ", ")
         if term("owl:onProperty") in said:
-            return self._restriction(said)
+            prop = self._expression(said[term("owl:onProperty")])
+            kind = self._expression(said.get(term("owl:onClass"), said.get(term("owl:onDataRange"), THING)))
+            for predicate, form in _RESTRICTIONS.items():
+                if predicate in said:
+                    return form.format(p=prop, v=self._expression(said[predicate]), c=kind)
+            return f"something with '{prop}'"
         if term("owl:complementOf") in said:
             return f"something that is not {self._expression(said[term('owl:complementOf')])}"
         if term("owl:inverseOf") in said:
@@ -168,14 +170,6 @@ class _Sentence:
             if predicate in said:
                 return f"({self._listed(said[predicate], between)})"
         return {THING: "thing", NOTHING: "nothing"}.get(node) or self._words.name(node)
-
-    def _restriction(self, said: Mapping[str, str]) -> str:
-        property = self._expression(said[term("owl:onProperty")])
-        kind = self._expression(said.get(term("owl:onClass"), said.get(term("owl:onDataRange"), THING)))
-        for predicate, form in _RESTRICTIONS.items():
-            if predicate in said:
-                return form.format(p=property, v=self._expression(said[predicate]), c=kind)
-        return f"something with '{property}'"
 
     def _listed(self, head: str, between: str) -> str:
         members, seen = [], set()

@@ -43,24 +43,25 @@ class Bound:
     strict: bool
 
     def denied(self) -> Bound:
-        """What holds where this does not."""
+        """Return what holds where this does not."""
         return Bound(self.axis, self.head, self.head_side, self.tail, self.tail_side, not self.strict)
 
     def reversed(self) -> Bound:
-        """The same with subject and object exchanged."""
+        """Return the same with subject and object exchanged."""
         return Bound(self.axis, 1 - self.tail, self.tail_side, 1 - self.head, self.head_side, self.strict)
 
-    def points(self, subject: int, object: int, n: int) -> tuple[int, int]:
-        """The two points for given objects, of n."""
-        ends = (subject, object)
+    def points(self, subject: int, obj: int, n: int) -> tuple[int, int]:
+        """Return the two points for given objects, of n."""
+        ends = (subject, obj)
         return (
             (2 * self.axis + self.tail_side) * n + ends[self.tail],
             (2 * self.axis + self.head_side) * n + ends[self.head],
         )
 
-    def difference(self, subject: int, object: int, n: int) -> Difference:
-        """The same as a difference constraint; on each axis object k of n has the points k (low) and n + k (high)."""
-        ends = (subject, object)
+    def difference(self, subject: int, obj: int, n: int) -> Difference:
+        """Return the same as a difference constraint; on each axis object k of n has the points k (low) and n + k
+        (high)."""
+        ends = (subject, obj)
         code = STRICT if self.strict else ZERO
         return Difference(self.axis, self.head_side * n + ends[self.head], self.tail_side * n + ends[self.tail], code)
 
@@ -87,7 +88,7 @@ class Order:
 
 
 @dataclass(frozen=True, eq=False)
-class Bounds:
+class EndpointBounds:
     """k bounds between points: ``tail`` is before ``head``, or not after it where not ``strict``.
 
     ``premise`` says which premise each comes from, as a position in a list of the caller's.
@@ -101,13 +102,13 @@ class Bounds:
     def __len__(self) -> int:
         return len(self.tail)
 
-    def of_premises(self, chosen: NDArray[np.bool_]) -> Bounds:
-        """The bounds of the chosen premises, a mask over them."""
+    def of_premises(self, chosen: NDArray[np.bool_]) -> EndpointBounds:
+        """Return the bounds of the chosen premises, a mask over them."""
         keep = chosen[self.premise]
-        return Bounds(self.tail[keep], self.head[keep], self.strict[keep], self.premise[keep])
+        return EndpointBounds(self.tail[keep], self.head[keep], self.strict[keep], self.premise[keep])
 
-    def joined(self, other: Bounds) -> Bounds:
-        return Bounds(
+    def joined(self, other: EndpointBounds) -> EndpointBounds:
+        return EndpointBounds(
             np.concatenate([self.tail, other.tail]),
             np.concatenate([self.head, other.head]),
             np.concatenate([self.strict, other.strict]),
@@ -115,10 +116,10 @@ class Bounds:
         )
 
 
-def bounds_of(rows: list[tuple[int, int, bool, int]]) -> Bounds:
-    """Bounds from rows of tail, head, strict and premise."""
+def bounds_of(rows: list[tuple[int, int, bool, int]]) -> EndpointBounds:
+    """Return bounds from rows of tail, head, strict and premise."""
     tail, head, strict, premise = zip(*rows, strict=True) if rows else ((), (), (), ())
-    return Bounds(
+    return EndpointBounds(
         np.array(tail, np.int64), np.array(head, np.int64), np.array(strict, np.bool_), np.array(premise, np.int64)
     )
 
@@ -126,14 +127,15 @@ def bounds_of(rows: list[tuple[int, int, bool, int]]) -> Bounds:
 def order_differences(
     tail: NDArray[np.int64], head: NDArray[np.int64], strict: NDArray[np.bool_], n: int
 ) -> NDArray[np.int64]:
-    """Bounds between points of n objects as difference constraints, shape (k, 4), as :meth:`Bound.difference` says."""
+    """Return bounds between points of n objects as difference constraints, shape (k, 4), as :meth:`Bound.difference`
+    says."""
     codes = np.where(strict, STRICT, ZERO)
     return np.stack([tail // (2 * n), head % (2 * n), tail % (2 * n), codes], axis=1).astype(np.int64)
 
 
 @lru_cache(maxsize=256)
 def meaning(relation: Relation) -> Alternatives:
-    """What a relation says: one conjunction of bounds where it is convex on every axis.
+    """Return what a relation says: one conjunction of bounds where it is convex on every axis.
 
     >>> from deixis.ontology.tbox import default_ontology
     >>> r = default_ontology().relations
@@ -147,14 +149,14 @@ def meaning(relation: Relation) -> Alternatives:
 
 @lru_cache(maxsize=256)
 def denial(relation: Relation) -> Alternatives:
-    """What the denial of a relation says: of every alternative one bound fails."""
+    """Return what the denial of a relation says: of every alternative one bound fails."""
     parts = product(*([bound.denied() for bound in conjunction] for conjunction in meaning(relation)))
     return tuple(tuple(dict.fromkeys(part)) for part in parts)
 
 
 @lru_cache(maxsize=1024)
 def common(alternatives: Alternatives) -> Conjunction:
-    """What holds whichever alternative does, as far as bounds can say it: the convex hull on every axis.
+    """Return what holds whichever alternative does, as far as bounds can say it: the convex hull on every axis.
 
     >>> from deixis.ontology.tbox import default_ontology
     >>> r = default_ontology().relations
@@ -171,7 +173,7 @@ def common(alternatives: Alternatives) -> Conjunction:
 
 
 def claims(fact: Fact) -> tuple[Alternatives, ...]:
-    """What a fact demands, each of which must hold: one demand, but one for every relation that it denies."""
+    """Return what a fact demands, each of which must hold: one demand, but one for every relation that it denies."""
     if not fact.positive:
         return tuple(denial(relation) for relation in fact.relations)
     return (tuple(dict.fromkeys(part for relation in fact.relations for part in meaning(relation))),)
@@ -179,15 +181,17 @@ def claims(fact: Fact) -> tuple[Alternatives, ...]:
 
 @lru_cache(maxsize=1024)
 def convex_parts(axis: int, mask: int) -> Alternatives:
-    """A set of Allen relations as a disjunction of conjunctions of bounds on an axis, the largest parts first."""
+    """Return a set of Allen relations as a disjunction of conjunctions of bounds on an axis, the largest parts
+    first."""
     return tuple(tuple(_bound(axis, order) for order in piece.orders) for piece in convex_pieces(mask))
 
 
 def _end_order(bound: Bound) -> EndOrder:
-    """A bound as an order of two of the four end points."""
+    """Return a bound as an order of two of the four end points."""
     return EndOrder(2 * bound.tail + bound.tail_side, 2 * bound.head + bound.head_side, bound.strict)
 
 
 def _bound(axis: int, order: EndOrder) -> Bound:
-    """An order of two of the four end points: two are the subject's, then two the object's, the low one first."""
+    """Return an order of two of the four end points: two are the subject's, then two the object's, the low one
+    first."""
     return Bound(axis, *divmod(order.lesser, 2), *divmod(order.greater, 2), order.strict)

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from deixis.ontology.relation import Relation
 from deixis.reasoning.constraints.paths import OrderGraph
-from deixis.reasoning.entailment.bounds import AXES, Bound, Bounds, meaning
+from deixis.reasoning.entailment.bounds import AXES, Bound, EndpointBounds, meaning
 from deixis.reasoning.errors import LimitError
 
 MAX_CONNECTED = 12_000
@@ -54,7 +54,7 @@ class Groups:
 
 
 def groups_of(subjects: NDArray[np.integer], objects: NDArray[np.integer], n: int) -> Groups:
-    """The connected groups of n objects; raises LimitError where one has more than ``MAX_CONNECTED``."""
+    """Return the connected groups of n objects; raises LimitError where one has more than ``MAX_CONNECTED``."""
     from deixis.reasoning.entailment.kernels import connected
 
     label, count = connected(subjects.astype(np.int64), objects.astype(np.int64), n)
@@ -90,13 +90,13 @@ class Orders:
     groups: Groups
     axes: tuple[AxisRows | None, ...]
 
-    def implies(self, bound: Bound, subject: int, object: int) -> bool:
-        """Whether the bound holds of two objects in every picture."""
+    def implies(self, bound: Bound, subject: int, obj: int) -> bool:
+        """Return whether the bound holds of two objects in every picture."""
         rows = self.axes[bound.axis]
         label, place = self.groups.label, self.groups.place
-        if rows is None or label[subject] != label[object]:
+        if rows is None or label[subject] != label[obj]:
             return False
-        ends = (place[subject], place[object])
+        ends = (place[subject], place[obj])
         group = label[subject]
         size, words = int(self.groups.sizes[group]), int(self.groups.words[group])
         row = rows.start[group] + (bound.tail_side * size + ends[bound.tail]) * 2 * words
@@ -105,7 +105,8 @@ class Orders:
         return bool(int(bits) >> (column & 63) & 1)
 
     def relation_bits(self, relation: Relation) -> Words:
-        """Of which pairs the relation holds in every picture: every group's (objects, objects) bit matrix, flat.
+        """Return for which pairs the relation holds in every picture: every group's (objects, objects) bit matrix,
+        flat.
 
         Nothing bears a relation to itself here. A relation that is no single conjunction of bounds is found of no pair.
         """
@@ -136,7 +137,7 @@ class Orders:
         return bits
 
     def pairs(self, relation: Relation) -> NDArray[np.int64]:
-        """The pairs of which the relation holds in every picture, shape (k, 2), by subject, then by object."""
+        """Return the pairs of which the relation holds in every picture, shape (k, 2), by subject, then by object."""
         from deixis.reasoning.entailment.kernels import count_bits, list_pairs
 
         bits = self.relation_bits(relation)
@@ -148,14 +149,15 @@ class Orders:
         return pairs
 
     def count(self, relation: Relation) -> int:
-        """Of how many pairs the relation holds in every picture."""
+        """Return for how many pairs the relation holds in every picture."""
         from deixis.reasoning.entailment.kernels import count_bits
 
         return int(count_bits(self.relation_bits(relation)))
 
 
-def order_graph(bounds: Bounds, n: int) -> OrderGraph:
-    """The graph of bounds between the 6 n points of n objects; every object's low edge is before its high edge."""
+def order_graph(bounds: EndpointBounds, n: int) -> OrderGraph:
+    """Return the graph of bounds between the 6 n points of n objects; every object's low edge is before its high
+    edge."""
     low = (np.arange(AXES)[:, None] * 2 * n + np.arange(n)).ravel()
     return OrderGraph.of(
         2 * AXES * n,
@@ -166,8 +168,8 @@ def order_graph(bounds: Bounds, n: int) -> OrderGraph:
     )
 
 
-def orders_of(bounds: Bounds, groups: Groups) -> Orders | None:
-    """Closes bounds between the edges of objects; None where no picture satisfies them."""
+def orders_of(bounds: EndpointBounds, groups: Groups) -> Orders | None:
+    """Close bounds between the edges of objects; None where no picture satisfies them."""
     axes: list[AxisRows | None] = []
     n = len(groups.label)
     axis_of = bounds.tail // (2 * n) if n else bounds.tail
@@ -180,8 +182,8 @@ def orders_of(bounds: Bounds, groups: Groups) -> Orders | None:
     return Orders(groups, tuple(axes))
 
 
-def _axis_rows(bounds: Bounds, chosen: NDArray[np.bool_], axis: int, groups: Groups) -> AxisRows | None:
-    """The closed rows of an axis; None where its bounds contradict each other."""
+def _axis_rows(bounds: EndpointBounds, chosen: NDArray[np.bool_], axis: int, groups: Groups) -> AxisRows | None:
+    """Return the closed rows of an axis; None where its bounds contradict each other."""
     from deixis.reasoning.entailment.kernels import close
 
     n = len(groups.label)

@@ -38,7 +38,7 @@ class Closed:
 
 
 def close(demands: Demands, deadline: Deadline) -> Closed:
-    """Everything that the demands imply; searches end at ``deadline``."""
+    """Return everything that the demands imply; searches end at ``deadline``."""
     graph, firm = demands.graph, demands.firm
     groups = groups_of(graph.subjects[firm], graph.objects[firm], len(graph.nodes))
     orders = orders_of(demands.bounds, groups)
@@ -77,7 +77,7 @@ class LocalProblem:
     clauses: Clauses
 
     def network(self) -> DifferenceNetwork | None:
-        """What is demanded without the choices; None where that contradicts itself."""
+        """Return what is demanded without the choices; None where that contradicts itself."""
         n = len(self.nodes)
         network = DifferenceNetwork(2 * n, AXES, ORDERS)
         axis, low = np.divmod(np.arange(AXES * n), max(n, 1))
@@ -85,7 +85,7 @@ class LocalProblem:
         return network if network.add_all(np.concatenate([own, self.differences])) else None
 
     def picture(self, deadline: Deadline) -> Codes | None:
-        """The orders of some picture; None where there is none. Raises OutOfTimeError."""
+        """Return the orders of some picture; None where there is none. Raises OutOfTimeError."""
         network = self.network()
         return None if network is None else solution(network, self.clauses, self._nothing_taken(), deadline)
 
@@ -93,7 +93,7 @@ class LocalProblem:
         return np.full(len(self.clauses), -1, np.int64)
 
     def shared(self, deadline: Deadline) -> tuple[Codes | None, bool]:
-        """What all pictures share, and whether that is all of it; None where there is no picture.
+        """Return what all pictures share, and whether that is all of it; None where there is no picture.
 
         At the deadline what has been proved so far is given, which is right, and False. Raises OutOfTimeError where not
         even one picture was found.
@@ -120,7 +120,7 @@ class LocalProblem:
 
 
 def _candidate(known: Codes, common: Codes) -> Difference | None:
-    """A bound that holds in all pictures found and is not known to follow; strict ones first, they say more."""
+    """Return a bound that holds in all pictures found and is not known to follow; strict ones first, they say more."""
     for code in (STRICT, ZERO):
         seen = ((common <= code) & (known > code)).transpose(0, 2, 1)
         place = int(seen.argmax())
@@ -131,7 +131,7 @@ def _candidate(known: Codes, common: Codes) -> Difference | None:
 
 
 def local_problem(demands: Demands, nodes: NDArray[np.int64], choices: Sequence[Choice]) -> LocalProblem:
-    """What is demanded among the objects of a connected group."""
+    """Return what is demanded among the objects of a connected group."""
     n, m = len(demands.graph.nodes), len(nodes)
     place = np.full(n, -1)
     place[nodes] = np.arange(m)
@@ -145,7 +145,7 @@ def local_problem(demands: Demands, nodes: NDArray[np.int64], choices: Sequence[
 
 
 def _empty_rows(axis: int, groups: Groups) -> AxisRows:
-    """The rows of an axis of which nothing is said: every object's low edge is before its high edge."""
+    """Return the rows of an axis of which nothing is said: every object's low edge is before its high edge."""
     n = len(groups.label)
     low = 2 * axis * n + np.arange(n)
     own = orders_of(bounds_of([(int(p), int(p) + n, True, -1) for p in low]), groups)
@@ -156,7 +156,7 @@ def _empty_rows(axis: int, groups: Groups) -> AxisRows:
 
 
 def _write(known: Codes, axes: Sequence[AxisRows], groups: Groups, group: int) -> None:
-    """Puts a group's closed orders into the rows of every axis."""
+    """Put a group's closed orders into the rows of every axis."""
     size, words = int(groups.sizes[group]), int(groups.words[group])
     for axis in range(AXES):
         rows = axes[axis]
@@ -169,7 +169,7 @@ def _write(known: Codes, axes: Sequence[AxisRows], groups: Groups, group: int) -
 
 
 def consistent(demands: Demands, deadline: Deadline) -> bool:
-    """Whether there is a picture of what is demanded. Raises OutOfTimeError."""
+    """Return whether there is a picture of what is demanded. Raises OutOfTimeError."""
     n = len(demands.graph.nodes)
     if order_graph(demands.bounds, n).contradictory:
         return False
@@ -180,13 +180,14 @@ def consistent(demands: Demands, deadline: Deadline) -> bool:
 
 
 def picture_of(known: Codes) -> NDArray[np.float64]:
-    """Boxes of n objects that satisfy closed, consistent orders: shape (n, 2, 3), least and greatest corner."""
+    """Return boxes of n objects that satisfy closed, consistent orders: shape (n, 2, 3), least and greatest corner."""
     after = (known == STRICT).sum(axis=1)
     return _boxes(after.reshape(AXES, 2, -1))
 
 
 def picture_of_group(orders: Orders, group: int) -> NDArray[np.float64]:
-    """The same for the objects of a connected group, in its order, by closed orders in which no choice is left."""
+    """Return the same for the objects of a connected group, in its order, by closed orders in which no choice is
+    left."""
     n, words = int(orders.groups.sizes[group]), int(orders.groups.words[group])
     after = np.tile(np.array([[1], [0]], np.int64), (AXES, 1, n))
     for axis, rows in enumerate(orders.axes):
@@ -197,7 +198,7 @@ def picture_of_group(orders: Orders, group: int) -> NDArray[np.float64]:
 
 
 def _boxes(after: NDArray[np.int64]) -> NDArray[np.float64]:
-    """Boxes from how many edges must be after each, shape (axes, 2, n).
+    """Return boxes from how many edges must be after each, shape (axes, 2, n).
 
     Every edge lies at minus that number, the levels counted from 0: where u must not be after v, all that is after v is
     after u, so that u lies no farther; and where u must be before v, v itself is one more.

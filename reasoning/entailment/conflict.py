@@ -28,7 +28,7 @@ class Conflict:
 
 
 def compatible(a: Relation, b: Relation) -> bool:
-    """Whether some two boxes bear both: their atoms meet on every axis.
+    """Return whether some two boxes bear both: their atoms meet on every axis.
 
     >>> from deixis.ontology.tbox import default_ontology
     >>> r = default_ontology().relations
@@ -40,7 +40,7 @@ def compatible(a: Relation, b: Relation) -> bool:
 
 
 def find_conflict(implied: Implications, deadline: Deadline | None = None) -> Conflict | None:
-    """A minimal contradiction; None where the facts are consistent, or where the time limit left that open.
+    """Return a minimal contradiction; None where the facts are consistent, or where the time limit left that open.
 
     Searches end at ``deadline`` (without one, after the time limit of ``implied``). Raises OutOfTimeError where
     there is a contradiction among choices, and the time is up before it is minimal.
@@ -68,7 +68,7 @@ def find_conflict(implied: Implications, deadline: Deadline | None = None) -> Co
 
 
 def _group_edges(implied: Implications) -> list[int]:
-    """The firm facts of the group that has no picture."""
+    """Return the firm facts of the group that has no picture."""
     graph, firm = implied.graph, implied.demands.firm
     inside = implied.closed.groups.label[graph.subjects[firm]] == implied.closed.contradictory
     edges: list[int] = firm[inside].tolist()
@@ -76,7 +76,7 @@ def _group_edges(implied: Implications) -> list[int]:
 
 
 def _minimal_circle(demands: Demands, edges: Sequence[int]) -> bool:
-    """Whether nothing but one circle is in the facts' bounds, so that every fact is needed to close it."""
+    """Return whether nothing but one circle is in the facts' bounds, so that every fact is needed to close it."""
     few = demands.restricted(edges)
     return not few.choices and order_graph(few.bounds, len(demands.graph.nodes)).is_single_cycle
 
@@ -86,7 +86,7 @@ def _inconsistent(facts: list[Fact], vocabulary: Relations, deadline: Deadline) 
 
 
 def _reason(facts: Sequence[Fact], vocabulary: Relations) -> str:
-    """Why one of the facts cannot hold beside the others: a choice, else a denial, else the first."""
+    """Return why one of the facts cannot hold beside the others: a choice, else a denial, else the first."""
     fact = next((f for f in facts if f.positive and len(f.relations) > 1), None)
     fact = fact or next((f for f in facts if not f.positive), facts[0])
     s, o = fact.subject, fact.object

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from deixis.ontology.graph import Fact, RelationGraph
 from deixis.ontology.relation import Relations
 from deixis.reasoning.constraints.disjunctive import Clause
-from deixis.reasoning.entailment.bounds import Alternatives, Bounds, bounds_of, claims, common, meaning
+from deixis.reasoning.entailment.bounds import Alternatives, EndpointBounds, bounds_of, claims, common, meaning
 
 
 @dataclass(frozen=True)
@@ -32,7 +32,7 @@ class Choice:
     premise: int
 
     def clause(self, n: int) -> Clause:
-        """The alternatives as difference constraints between the points of n objects."""
+        """Return the alternatives as difference constraints between the points of n objects."""
         return Clause(
             tuple(
                 tuple(bound.difference(self.subject, self.object, n) for bound in conjunction)
@@ -50,11 +50,11 @@ class Demands:
 
     graph: RelationGraph
     firm: NDArray[np.int64]  # the edges that demand something
-    bounds: Bounds
+    bounds: EndpointBounds
     choices: tuple[Choice, ...]
 
     def restricted(self, edges: Iterable[int]) -> Demands:
-        """What only these facts demand."""
+        """Return what only these facts demand."""
         chosen = np.zeros(len(self.graph), np.bool_)
         chosen[list(edges)] = True
         return Demands(
@@ -90,8 +90,8 @@ class EdgeFacts(Sequence[Fact]):
 
 
 def demands_of(graph: RelationGraph) -> Demands:
-    """What the firm facts of a graph demand."""
-    firm = _firm(graph)
+    """Return what the firm facts of a graph demand."""
+    firm = np.flatnonzero(~graph.optional & (graph.weights >= 1.0) & (graph.relation_sets != 0))
     single = graph.positive[firm] & (np.bitwise_count(graph.relation_sets[firm]) == 1)
     bounds = _plain_bounds(graph, firm[single])
     choices: list[Choice] = []
@@ -109,17 +109,13 @@ def demands_of(graph: RelationGraph) -> Demands:
 
 
 def demands_of_facts(vocabulary: Relations, facts: Sequence[Fact]) -> Demands:
-    """The same for a list of facts and the objects that they name."""
+    """Return the same for a list of facts and the objects that they name."""
     names = tuple(dict.fromkeys(name for fact in facts for name in (fact.subject, fact.object)))
     return demands_of(RelationGraph.from_facts(vocabulary, names, facts))
 
 
-def _firm(graph: RelationGraph) -> NDArray[np.int64]:
-    return np.flatnonzero(~graph.optional & (graph.weights >= 1.0) & (graph.relation_sets != 0))
-
-
 def _relations(graph: RelationGraph, edges: NDArray[np.int64]) -> NDArray[np.int64]:
-    """The index of each edge's only relation."""
+    """Return the index of each edge's only relation."""
     return np.round(np.log2(graph.relation_sets[edges])).astype(np.int64)
 
 
@@ -128,8 +124,8 @@ def _of_several_parts(graph: RelationGraph, edges: NDArray[np.int64]) -> list[in
     return [int(edge) for edge in edges[several[_relations(graph, edges)]]] if several.any() else []
 
 
-def _plain_bounds(graph: RelationGraph, edges: NDArray[np.int64]) -> Bounds:
-    """The bounds of facts that affirm one relation which is a single conjunction; the order of edges is kept."""
+def _plain_bounds(graph: RelationGraph, edges: NDArray[np.int64]) -> EndpointBounds:
+    """Return the bounds of facts that affirm one relation which is a single conjunction; the order of edges is kept."""
     n = len(graph.nodes)
     relations = _relations(graph, edges)
     subjects, objects = graph.subjects[edges].astype(np.int64), graph.objects[edges].astype(np.int64)
@@ -149,4 +145,4 @@ def _plain_bounds(graph: RelationGraph, edges: NDArray[np.int64]) -> Bounds:
     tail, head, premise = (np.concatenate([part[k] for part in parts]) for k in (0, 1, 3))
     strict = np.repeat([part[2] for part in parts], [len(part[0]) for part in parts])
     order = np.argsort(premise, kind="stable")
-    return Bounds(tail[order], head[order], strict[order], premise[order])
+    return EndpointBounds(tail[order], head[order], strict[order], premise[order])

@@ -21,14 +21,14 @@ from deixis.reasoning.constraints.disjunctive import OutOfTimeError
 from deixis.reasoning.constraints.minimal import minimal_subset
 from deixis.reasoning.constraints.paths import ShortestPaths
 from deixis.reasoning.constraints.proof import Proof, Rule
-from deixis.reasoning.entailment.bounds import Bound, Bounds, Conjunction, Order, bounds_of, denial, meaning
+from deixis.reasoning.entailment.bounds import Bound, Conjunction, EndpointBounds, Order, bounds_of, denial, meaning
 from deixis.reasoning.entailment.closed import order_graph
 from deixis.reasoning.entailment.closing import consistent
 from deixis.reasoning.entailment.demands import Choice, Demands, demands_of, demands_of_facts
 
 
 @dataclass(frozen=True, slots=True)
-class Impossible:
+class ImpossibleCase:
     """The claim that an assumption cannot hold, and in words why."""
 
     reason: str
@@ -37,13 +37,13 @@ class Impossible:
         return f"impossible: {self.reason}"
 
 
-Claim = Fact | Order | Impossible
+Claim = Fact | Order | ImpossibleCase
 Derivation = Proof[Claim]
 
 Path = tuple[int, ...]
 """Premises in the order in which they lead from the subject of a bound to its object, or the other way round."""
 
-_TRIED = 40
+_MAX_TRIED = 40
 """Facts of a union of paths that are tried one by one for being superfluous."""
 
 
@@ -59,7 +59,7 @@ class OrderDerivations:
         vocabulary: Relations,
         names: Sequence[str],
         premises: Sequence[Fact | Order],
-        bounds: Bounds,
+        bounds: EndpointBounds,
         assumed: int,
     ) -> None:
         self._vocabulary = vocabulary
@@ -75,11 +75,12 @@ class OrderDerivations:
         assert self._paths.reverse is not None
 
     def circle(self) -> Path | None:
-        """The premises of the contradiction that takes the fewest; None where they agree."""
+        """Return the premises of the contradiction that takes the fewest; None where they agree."""
         return self._graph.shortest_cycle()
 
     def costs(self, bound: Bound, subject: int, objects: NDArray[np.int64]) -> NDArray[np.int64]:
-        """How many premises a bound takes from a subject to each of some objects, ``FAR`` where it does not follow."""
+        """Return how many premises a bound takes from a subject to each of some objects, ``FAR`` where it does not
+        follow."""
         n, onward = len(self._names), bound.tail == 0
         root = bound.points(subject, subject, n)[0 if onward else 1]
         points = (2 * bound.axis + (bound.head_side if onward else bound.tail_side)) * n + objects
@@ -99,37 +100,33 @@ class OrderDerivations:
                 stated.setdefault((fact.subject, fact.relation_set, fact.object), k)
         return stated
 
-    def chains(self, relation: Relation, subject: str, object: str) -> dict[Bound, Path] | None:
-        """For every bound of a relation the facts that lead to it, as few as found; None where one has none."""
-        stated = self._stated.get((subject, relation.bit, object))
+    def chains(self, relation: Relation, subject: str, obj: str) -> dict[Bound, Path] | None:
+        """Return for every bound of a relation the facts that lead to it, as few as found; None where one has none."""
+        stated = self._stated.get((subject, relation.bit, obj))
         if stated is not None:
             return dict.fromkeys(meaning(relation)[0], (stated,))
-        found = _chains(self._paths, meaning(relation), self._index[subject], self._index[object], len(self._names))
+        found = _chains(self._paths, meaning(relation), self._index[subject], self._index[obj], len(self._names))
         if found is None or len(set(found.values())) < 2:
             return found
-        return self._fewer(found, relation, subject, object)
-
-    def _fewer(self, found: dict[Bound, Path], relation: Relation, subject: str, object: str) -> dict[Bound, Path]:
-        """One chain for all bounds where there is one; else the chains without superfluous facts."""
-        ends = (relation, subject, object)
+        ends = (relation, subject, obj)
         used = sorted({premise for path in found.values() for premise in path})
         for path in sorted(set(found.values()), key=len):
             alone = self._among(path, *ends)
             if alone is not None:
                 return alone
-        if len(used) <= _TRIED:
+        if len(used) <= _MAX_TRIED:
             for premise in reversed(used):
                 rest = self._among([other for other in used if other != premise], *ends)
                 if rest is not None:
                     used, found = [other for other in used if other != premise], rest
         return found
 
-    def _among(self, chosen: Sequence[int], relation: Relation, subject: str, object: str) -> dict[Bound, Path] | None:
-        """The paths that use no other premises than these."""
+    def _among(self, chosen: Sequence[int], relation: Relation, subject: str, obj: str) -> dict[Bound, Path] | None:
+        """Return the paths that use no other premises than these."""
         mask = np.zeros(len(self._premises), np.bool_)
         mask[list(chosen)] = True
         few = self._bounds.of_premises(mask)
-        involved = dict.fromkeys([subject, object])
+        involved = dict.fromkeys([subject, obj])
         for premise in chosen:
             involved.update(dict.fromkeys((self._premises[premise].subject, self._premises[premise].object)))
         place = np.zeros(len(self._names), np.int64)
@@ -140,36 +137,42 @@ class OrderDerivations:
         paths = ShortestPaths(order_graph(replace(few, tail=tail, head=head), len(nodes)))
         return _chains(paths, meaning(relation), int(place[nodes[0]]), int(place[nodes[1]]), len(nodes))
 
-    def derive(self, relation: Relation, subject: str, object: str) -> Derivation | None:
-        """A derivation of the fact; None where no path leads to it."""
-        found = self.chains(relation, subject, object)
-        return None if found is None else self.of_chains(found, relation, subject, object)
+    def derive(self, relation: Relation, subject: str, obj: str) -> Derivation | None:
+        """Return a derivation of the fact; None where no path leads to it."""
+        found = self.chains(relation, subject, obj)
+        return None if found is None else self.of_chains(found, relation, subject, obj)
 
-    def of_chains(self, chains: dict[Bound, Path], relation: Relation, subject: str, object: str) -> Derivation:
-        """The derivation whose bounds go by these chains."""
+    def of_chains(self, chains: dict[Bound, Path], relation: Relation, subject: str, obj: str) -> Derivation:
+        """Return the derivation whose bounds go by these chains."""
         groups: dict[Path, list[Bound]] = {}
         for bound, path in chains.items():
             groups.setdefault(path, []).append(bound)
-        goal = Fact(subject, (relation,), object)
+        goal = Fact(subject, (relation,), obj)
         if len(groups) == 1:
             return self._chain(goal, relation, next(iter(groups)))
         parts = [
             self._chain(claim, named, path)
             for path, bounds in groups.items()
-            for claim, named in self._claims(bounds, subject, object)
+            for claim, named in self._claims(bounds, subject, obj)
         ]
         return Proof(goal, Rule.CONJUNCTION, tuple(parts))
 
-    def _claims(self, bounds: list[Bound], subject: str, object: str) -> list[tuple[Fact | Order, Relation | None]]:
-        """A relation that says just these bounds, or every bound by itself."""
+    def _claims(self, bounds: list[Bound], subject: str, obj: str) -> list[tuple[Fact | Order, Relation | None]]:
+        """Return a relation that says just these bounds, or every bound by itself."""
         for relation in self._vocabulary.of_reading(Reading.WIDE):
             if len(meaning(relation)) == 1 and set(meaning(relation)[0]) == set(bounds):
-                return [(Fact(subject, (relation,), object), relation)]
-        return [(Order(subject, object, bound), None) for bound in bounds]
+                return [(Fact(subject, (relation,), obj), relation)]
+        return [(Order(subject, obj, bound), None) for bound in bounds]
 
     def _chain(self, claim: Fact | Order, relation: Relation | None, path: Path) -> Derivation:
-        """One claim from the facts that link its subject to its object."""
-        steps = self._steps(path, claim.subject)
+        """Return one claim from the facts that link its subject to its object."""
+        steps, here = [], claim.subject
+        for premise in path:
+            fact = self._premises[premise]
+            leaf = _leaf(fact, assumed=premise >= self._assumed)
+            onward = fact.subject == here
+            steps.append(leaf if onward else self._turned(fact, leaf))
+            here = fact.object if onward else fact.subject
         if relation is None:
             return Proof(claim, Rule.MEANING if len(steps) == 1 else Rule.COMPOSITION, tuple(steps))
         wrapped = [_widened(step, relation) for step in steps]
@@ -180,19 +183,8 @@ class OrderDerivations:
                 return Proof(claim, Rule.TRANSITIVITY, tuple(step for step in wrapped if step is not None))
         return Proof(claim, Rule.MEANING if len(steps) == 1 else Rule.COMPOSITION, tuple(steps))
 
-    def _steps(self, path: Path, start: str) -> list[Derivation]:
-        """The premises of a path, each read in the direction in which it is passed."""
-        steps, here = [], start
-        for premise in path:
-            fact = self._premises[premise]
-            leaf = _leaf(fact, assumed=premise >= self._assumed)
-            onward = fact.subject == here
-            steps.append(leaf if onward else self._turned(fact, leaf))
-            here = fact.object if onward else fact.subject
-        return steps
-
     def _turned(self, fact: Fact | Order, leaf: Derivation) -> Derivation:
-        """The premise with its ends exchanged; an order of edges is the same claim from either end."""
+        """Return the premise with its ends exchanged; an order of edges is the same claim from either end."""
         if isinstance(fact, Order):
             return Proof(Order(fact.object, fact.subject, fact.bound.reversed()), leaf.rule)
         inverse = tuple(self._vocabulary[relation.inverse] for relation in fact.relations)
@@ -200,7 +192,7 @@ class OrderDerivations:
 
 
 def _chains(paths: ShortestPaths, parts: Sequence[Conjunction], s: int, o: int, n: int) -> dict[Bound, Path] | None:
-    """The fewest premises by which each bound holds of two of n objects; None where one does not."""
+    """Return the fewest premises by which each bound holds of two of n objects; None where one does not."""
     if len(parts) != 1 or s == o:
         return None
     found: dict[Bound, Path] = {}
@@ -220,7 +212,7 @@ def _leaf(claim: Fact | Order, assumed: bool = False) -> Derivation:
 
 
 def _widened(step: Derivation, relation: Relation) -> Derivation | None:
-    """The step as one of the relation: itself, or what it is a sub-property of; None where it is neither."""
+    """Return the step as one of the relation: itself, or what it is a sub-property of; None where it is neither."""
     fact = step.claim
     if not isinstance(fact, Fact) or not fact.plain:
         return None
@@ -235,7 +227,7 @@ def _widened(step: Derivation, relation: Relation) -> Derivation | None:
 
 
 def follows(facts: Sequence[Fact], goal: Fact, vocabulary: Relations, deadline: Deadline) -> bool:
-    """Whether a plain fact holds in every picture of the facts, of which there is one or none.
+    """Return whether a plain fact holds in every picture of the facts, of which there is one or none.
 
     Exact for every relation: what the goal denies is a list of choices, and none of them may have a picture. Raises
     OutOfTimeError.
@@ -244,7 +236,7 @@ def follows(facts: Sequence[Fact], goal: Fact, vocabulary: Relations, deadline: 
 
 
 def needed_facts(facts: Sequence[Fact], goal: Fact, vocabulary: Relations, deadline: Deadline) -> list[Fact]:
-    """Facts from which a goal that follows from all of them follows, and none of which can be spared.
+    """Return facts from which a goal that follows from all of them follows, and none of which can be spared.
 
     Raises OutOfTimeError.
     """
@@ -253,7 +245,7 @@ def needed_facts(facts: Sequence[Fact], goal: Fact, vocabulary: Relations, deadl
 
 
 def derive_by_cases(facts: Sequence[Fact], goal: Fact, vocabulary: Relations, deadline: Deadline) -> Derivation | None:
-    """A proof of a plain fact from facts, among them choices; None where it does not follow.
+    """Return a proof of a plain fact from facts, among them choices; None where it does not follow.
 
     It rests on facts of which none can be spared. Raises OutOfTimeError.
     """
@@ -263,7 +255,7 @@ def derive_by_cases(facts: Sequence[Fact], goal: Fact, vocabulary: Relations, de
     ends = Fact(goal.subject, goal.relations, goal.object)
     names = dict.fromkeys(name for fact in [*needed, ends] for name in (fact.subject, fact.object))
     graph = RelationGraph.from_facts(vocabulary, tuple(names), needed)
-    return _Proof(demands_of(graph), ends, deadline).run()
+    return _ProofSearch(demands_of(graph), ends, deadline).run()
 
 
 @dataclass(frozen=True, eq=False)
@@ -276,7 +268,7 @@ class _Assumption:
     object: int
 
 
-class _Proof:
+class _ProofSearch:
     """Proves one goal from few facts, splitting choices until every case is settled by orders alone."""
 
     def __init__(self, demands: Demands, goal: Fact, deadline: Deadline) -> None:
@@ -296,7 +288,10 @@ class _Proof:
         orders = self._orders(assumed)
         circle = orders.circle()
         if circle is not None:
-            return self._contradiction(circle, assumed)
+            given = len(self._facts)
+            leaves = [_leaf(self._facts[k]) if k < given else _leaf(assumed[k - given].claim, True) for k in circle]
+            told = [str(leaf.claim) for leaf in leaves if leaf.rule is Rule.ASSUMED]
+            return Proof(ImpossibleCase(" and ".join(told)), Rule.CONTRADICTION, tuple(leaves))
         goal = self._goal
         found = orders.derive(goal.relations[0], goal.subject, goal.object)
         if found is not None:
@@ -313,15 +308,9 @@ class _Proof:
             for k, case in enumerate(assumed)
             for bound in case.conjunction
         ]
-        bounds: Bounds = self._demands.bounds.joined(bounds_of(rows))
+        bounds: EndpointBounds = self._demands.bounds.joined(bounds_of(rows))
         claims = [*self._facts, *(case.claim for case in assumed)]
         return OrderDerivations(self._vocabulary, self._graph.nodes, claims, bounds, given)
-
-    def _contradiction(self, circle: Sequence[int], assumed: Sequence[_Assumption]) -> Derivation:
-        given = len(self._facts)
-        leaves = [_leaf(self._facts[k]) if k < given else _leaf(assumed[k - given].claim, True) for k in circle]
-        told = [str(leaf.claim) for leaf in leaves if leaf.rule is Rule.ASSUMED]
-        return Proof(Impossible(" and ".join(told)), Rule.CONTRADICTION, tuple(leaves))
 
     def _cases(self, choice: Choice) -> list[_Assumption]:
         fact = self._facts[choice.premise]
@@ -331,17 +320,13 @@ class _Proof:
         ]
 
     def _claim(self, fact: Fact, conjunction: Conjunction) -> Fact | Order:
-        """An alternative in words: a relation of the fact, the denial of one, or an order of edges."""
+        """Return an alternative in words: a relation of the fact, the denial of one, or an order of edges."""
         if fact.positive:
             for relation in fact.relations:
                 if meaning(relation) == (conjunction,):
                     return Fact(fact.subject, (relation,), fact.object)
-        denied = _denied_by(conjunction, self._vocabulary)
+        wide = self._vocabulary.of_reading(Reading.WIDE)
+        denied = next((other for other in wide if denial(other) == (conjunction,)), None)
         if denied is not None:
             return Fact(fact.subject, (denied,), fact.object, positive=False)
         return Order(fact.subject, fact.object, conjunction[0])
-
-
-def _denied_by(conjunction: Conjunction, vocabulary: Relations) -> Relation | None:
-    wide = vocabulary.of_reading(Reading.WIDE)
-    return next((relation for relation in wide if denial(relation) == (conjunction,)), None)

@@ -78,31 +78,31 @@ class Implications:
         """Whether everything that all pictures share was found."""
         return self.closed.complete
 
-    def holds(self, relation: Relation, subject: str, object: str) -> bool:
-        """Whether the fact holds in every picture."""
-        s, o = self.graph.index(subject), self.graph.index(object)
+    def holds(self, relation: Relation, subject: str, obj: str) -> bool:
+        """Return whether the fact holds in every picture."""
+        s, o = self.graph.index(subject), self.graph.index(obj)
         alternatives = meaning(relation)
         if self.closed.orders is None or s == o or len(alternatives) != 1:
             return False
         orders = self.closed.orders
         return all(orders.implies(bound, s, o) for bound in alternatives[0])
 
-    def derive(self, relation: Relation, subject: str, object: str) -> Derivation | None:
-        """The shortest derivation found of a fact, or None where it does not follow.
+    def derive(self, relation: Relation, subject: str, obj: str) -> Derivation | None:
+        """Return the shortest derivation found of a fact, or None where it does not follow.
 
         Raises OutOfTimeError where it takes choices, and the time limit strikes.
         """
-        if not self.holds(relation, subject, object):
+        if not self.holds(relation, subject, obj):
             return None
-        found = self._derivations.derive(relation, subject, object)
-        return found if found is not None else self._by_cases(Fact(subject, (relation,), object))
+        found = self._derivations.derive(relation, subject, obj)
+        return found if found is not None else self._by_cases(Fact(subject, (relation,), obj))
 
     def _by_cases(self, goal: Fact) -> Derivation | None:
         facts = [self.graph.fact(edge) for edge in self._edges_around(goal.subject)]
         return derive_by_cases(facts, goal, self.vocabulary, Deadline.after(self.time_limit))
 
     def _edges_around(self, name: str) -> list[int]:
-        """The firm facts of everything that is connected with an object."""
+        """Return the firm facts of everything that is connected with an object."""
         label, firm = self.closed.groups.label, self.demands.firm
         edges: list[int] = firm[label[self.graph.subjects[firm]] == label[self.graph.index(name)]].tolist()
         return edges
@@ -113,42 +113,45 @@ class Implications:
         return OrderDerivations(self.vocabulary, self.graph.nodes, facts, self.demands.bounds, len(facts))
 
     def prepare_explanations(self) -> None:
-        """Builds the graph in which derivations are searched; the first derivation does it otherwise."""
+        """Build the graph in which derivations are searched; the first derivation does it otherwise."""
         self._derivations.prepare()
 
     def pairs(self, relation: Relation) -> NDArray[np.int64]:
-        """The pairs of nodes of which the relation holds in every picture, shape (k, 2), by subject, then by object."""
+        """Return the pairs of nodes of which the relation holds in every picture, shape (k, 2), by subject, then by
+        object."""
         orders = self.closed.orders
         return np.empty((0, 2), np.int64) if orders is None else orders.pairs(relation)
 
     def triples(self) -> Iterator[tuple[Relation, str, str]]:
-        """Every fact that is stated or implied, by relation, subject and object in node order."""
+        """Yield every fact that is stated or implied, by relation, subject and object in node order."""
         nodes = self.graph.nodes
         for relation in self.vocabulary.values():
-            for subject, object in self.pairs(relation).tolist():
-                yield relation, nodes[subject], nodes[object]
+            for subject, obj in self.pairs(relation).tolist():
+                yield relation, nodes[subject], nodes[obj]
 
     def ntriples(self) -> str:
-        """Every fact that is stated firmly or implied, a plain N-Triples line each, with the IRIs of the Turtle."""
+        """Return every fact that is stated firmly or implied, a plain N-Triples line each, with the IRIs of the
+        Turtle."""
         iris = node_iris(self.graph)
         return "".join(pairs_to_ntriples(r, self.pairs(r), iris) for r in self.vocabulary.values())
 
     def inferred(self) -> Iterator[Derivation]:
-        """Every implied fact that is not stated itself, with its shortest derivation."""
+        """Yield every implied fact that is not stated itself, with its shortest derivation."""
         for fact in self.implied():
             derivation = self.derive(fact.relations[0], fact.subject, fact.object)
             assert derivation is not None
             yield derivation
 
     def implied(self) -> Iterator[Fact]:
-        """Every implied fact that is not stated itself, without its derivation: cheap, however long that may be."""
+        """Yield every implied fact that is not stated itself, without its derivation: cheap, however long that may
+        be."""
         nodes = self.graph.nodes
         for relation in self.vocabulary.values():
-            for subject, object in self._unstated(relation).tolist():
-                yield Fact(nodes[subject], (relation,), nodes[object])
+            for subject, obj in self._unstated(relation).tolist():
+                yield Fact(nodes[subject], (relation,), nodes[obj])
 
     def unstated(self) -> int:
-        """How many facts are implied without being stated."""
+        """Return how many facts are implied without being stated."""
         return sum(len(self._unstated(relation)) for relation in self.vocabulary.values())
 
     def _unstated(self, relation: Relation) -> NDArray[np.int64]:
@@ -159,7 +162,7 @@ class Implications:
         return pairs[~np.isin(pairs[:, 0] * n + pairs[:, 1], stated)]
 
     def implied_with_steps(self) -> Iterator[tuple[Fact, int]]:
-        """Every implied fact that is not stated, and how many facts the longest of its shortest paths takes.
+        """Yield every implied fact that is not stated, and how many facts the longest of its shortest paths takes.
 
         0 stands for one that follows by no path, but by cases.
         """
@@ -169,29 +172,26 @@ class Implications:
             begins = np.flatnonzero(np.diff(pairs[:, 0], prepend=-1))
             for some in np.split(pairs, begins[1:]) if len(pairs) else ():
                 subject, objects = int(some[0, 0]), some[:, 1]
-                steps = self._steps(relation, subject, objects)
-                for object, count in zip(objects.tolist(), steps.tolist(), strict=True):
-                    yield Fact(nodes[subject], (relation,), nodes[object]), count
-
-    def _steps(self, relation: Relation, subject: int, objects: NDArray[np.int64]) -> NDArray[np.int64]:
-        costs = np.stack([self._derivations.costs(bound, subject, objects) for bound in meaning(relation)[0]]).max(
-            axis=0
-        )
-        return np.where(costs > len(self.graph), 0, costs)
+                costs = np.stack(
+                    [self._derivations.costs(bound, subject, objects) for bound in meaning(relation)[0]]
+                ).max(axis=0)
+                steps = np.where(costs > len(self.graph), 0, costs)
+                for obj, count in zip(objects.tolist(), steps.tolist(), strict=True):
+                    yield Fact(nodes[subject], (relation,), nodes[obj]), count
 
     def support(self, fact: Fact, deadline: Deadline | None = None) -> Support:
-        """By what rule an implied fact follows last, and the edges of the graph that its derivation rests on.
+        """Return by what rule an implied fact follows last, and the edges of the graph that its derivation rests on.
 
         The same as :meth:`derive` says. A search ends at ``deadline`` (without one, after the time limit). Raises
         GraphError where the fact does not follow, and OutOfTimeError.
         """
-        relation, subject, object = fact.relations[0], fact.subject, fact.object
-        if not self.holds(relation, subject, object):
+        relation, subject, obj = fact.relations[0], fact.subject, fact.object
+        if not self.holds(relation, subject, obj):
             raise GraphError(f"{fact} does not follow")
-        chains = self._derivations.chains(relation, subject, object)
+        chains = self._derivations.chains(relation, subject, obj)
         if chains is not None:
             used = dict.fromkeys(edge for path in chains.values() for edge in path)
-            return Support(self._derivations.of_chains(chains, relation, subject, object).rule, tuple(used))
+            return Support(self._derivations.of_chains(chains, relation, subject, obj).rule, tuple(used))
         until = Deadline.after(self.time_limit) if deadline is None else deadline
         edges = self._edges_around(subject)
         facts = [self.graph.fact(edge) for edge in edges]
@@ -199,10 +199,10 @@ class Implications:
         return Support(Rule.CASES, tuple(e for e, f in zip(edges, facts, strict=True) if id(f) in needed))
 
     def counts(self) -> dict[Relation, int]:
-        """How many pairs are stated or implied to bear each relation."""
+        """Return how many pairs are stated or implied to bear each relation."""
         orders = self.closed.orders
         return {relation: 0 if orders is None else orders.count(relation) for relation in self.vocabulary.values()}
 
     def count(self) -> int:
-        """How many facts are stated or implied."""
+        """Return how many facts are stated or implied."""
         return sum(self.counts().values())

@@ -12,7 +12,7 @@ from numba import njit
 
 @njit(cache=True)
 def connected(first_ends, second_ends, n):  # type: ignore[no-untyped-def]
-    """The connected part of each of n nodes, numbered in the order of their least nodes."""
+    """Return the connected part of each of n nodes, numbered in the order of their least nodes."""
     parent = np.arange(n)
     for k in range(len(first_ends)):
         a, b = first_ends[k], second_ends[k]
@@ -42,7 +42,7 @@ def connected(first_ends, second_ends, n):  # type: ignore[no-untyped-def]
 
 @njit(cache=True)
 def close(first, heads, strict, part, members, bit, start, width, weak, strong):  # type: ignore[no-untyped-def]
-    """Fills the bit rows of what lies not before (``weak``) and after (``strong``) each point.
+    """Fill the bit rows of what lies not before (``weak``) and after (``strong``) each point.
 
     ``bit[u]`` is point u's place in its group's rows, ``start[u]`` where its row begins in the flat arrays,
     ``width[u]`` its length in words. Parts are taken in the order of ``members``, so that what they lead to is
@@ -80,7 +80,7 @@ def close(first, heads, strict, part, members, bit, start, width, weak, strong):
 
 @njit(cache=True)
 def and_block(target, rows, sizes, target_start, rows_start, row_side, column_side, transposed):  # type: ignore[no-untyped-def]
-    """Intersects each group's (objects, objects) bit matrix with a block of its (points, points) one.
+    """Intersect each group's (objects, objects) bit matrix with a block of its (points, points) one.
 
     The block's rows are the low (0) or high (1) edges, as are its columns; ``transposed`` exchanges the two.
     """
@@ -135,7 +135,7 @@ def count_bits(target):  # type: ignore[no-untyped-def]
 
 @njit(cache=True)
 def list_pairs(target, sizes, target_start, objects_start, nodes, pairs):  # type: ignore[no-untyped-def]
-    """Writes the pairs of a flat bit matrix as node numbers into ``pairs``, by group and row."""
+    """Write the pairs of a flat bit matrix as node numbers into ``pairs``, by group and row."""
     found = 0
     for group in range(len(sizes)):
         n = sizes[group]

@@ -41,7 +41,7 @@ class WhyNot:
 
 
 def why_not(implied: Implications, fact: Fact) -> WhyNot:
-    """Why a plain fact does not follow from consistent facts.
+    """Return why a plain fact does not follow from consistent facts.
 
     Raises GraphError where the facts are not consistent or the fact is not plain or relates a thing to itself, and
     OutOfTimeError where the time limit strikes.
@@ -85,7 +85,7 @@ def _with(graph: RelationGraph, fact: Fact) -> RelationGraph:
 
 
 def _counter_example(implied: Implications, fact: Fact) -> CounterExample:
-    """The objects that facts connect with the two, in a picture without the fact."""
+    """Return the objects that facts connect with the two, in a picture without the fact."""
     graph = _with(implied.graph, replace(fact, positive=False))
     demands = demands_of(graph)
     groups = groups_of(graph.subjects[demands.firm], graph.objects[demands.firm], len(graph.nodes))

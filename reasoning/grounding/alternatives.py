@@ -22,7 +22,7 @@ MAX_LISTED_GROUP = 100
 def alternatives(
     evidence: Evidence, alignment: Alignment, i: int, groups: tuple[tuple[str, ...], ...]
 ) -> tuple[Alternative, ...]:
-    """What else an object could be, the best first: by probability, else by similarity."""
+    """Return what else an object could be, the best first: by probability, else by similarity."""
     found = (
         _similar(evidence, alignment, i, groups) if alignment.posterior is None else _probable(evidence, alignment, i)
     )
@@ -44,7 +44,8 @@ def _probable(evidence: Evidence, alignment: Alignment, i: int) -> list[Alternat
 def _similar(
     evidence: Evidence, alignment: Alignment, i: int, groups: tuple[tuple[str, ...], ...]
 ) -> list[Alternative]:
-    """Interchangeable fellows' things, which cost nothing, if not too many; and the engine's next best choice."""
+    """Return interchangeable fellows' things, which cost nothing, if not too many; and the engine's next best
+    choice."""
     name = evidence.description.nodes[i]
     found: dict[str, float] = {}
     for group in groups:
@@ -58,7 +59,7 @@ def _similar(
 
 
 def left_out_objects(evidence: Evidence, alignment: Alignment, names: tuple[str, ...]) -> tuple[LeftOut, ...]:
-    """The objects that are no thing, by ``names`` in their order: why, and what they could be."""
+    """Return the objects that are no thing, by ``names`` in their order: why, and what they could be."""
     reasons = {}
     for i in np.flatnonzero(alignment.assignment == UNMATCHED):
         if not len(evidence.scene.nodes):
@@ -76,7 +77,7 @@ def left_out_objects(evidence: Evidence, alignment: Alignment, names: tuple[str,
 
 
 def left_out_things(evidence: Evidence, alignment: Alignment, ids: tuple[str, ...]) -> tuple[LeftOut, ...]:
-    """The things that nobody is, by ``ids`` in their order, and why."""
+    """Return the things that nobody is, by ``ids`` in their order, and why."""
     taken = set(alignment.assignment.tolist()) - {UNMATCHED}
     reasons = {}
     for p, thing in enumerate(evidence.scene.nodes):

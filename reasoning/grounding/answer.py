@@ -168,7 +168,7 @@ class Grounding:
         return self.of(Outcome.SATISFIED)
 
     def noting(self, notes: tuple[str, ...]) -> Grounding:
-        """The same answer with notes before its own."""
+        """Return the same answer with notes before its own."""
         return replace(self, notes=notes + self.notes)
 
     @property

@@ -15,7 +15,7 @@ from deixis.reasoning.grounding.options import EngineName, Select
 
 
 def engine_named(name: str, select: Select = Select.FACTS) -> Engine:
-    """The engine of that name (:class:`EngineName`); raises UnknownTermError for another."""
+    """Return the engine of that name (:class:`EngineName`); raises UnknownTermError for another."""
     from deixis.reasoning.grounding.map_engines import BaselineEngine, ExactEngine, ScalableEngine
     from deixis.reasoning.grounding.matching.baselines import blondel_similarity, heymans_singh_similarity
 

@@ -31,15 +31,15 @@ DEFAULT_TIME_LIMIT = 10.0
 SENSITIVITY_SHARE = 0.1
 """Share of the time limit for finding out what would change without each fact."""
 
-NO_TIME = "there was no time to find out what rests on which fact"
+SENSITIVITY_OUT_OF_TIME = "there was no time to find out what rests on which fact"
 
-NOT_ASKED = "whether it would be so without one of the facts was not looked for"
+SENSITIVITY_NOT_ASKED = "whether it would be so without one of the facts was not looked for"
 
 
 def ground(
     evidence: Evidence, engine: Engine, deadline: Deadline = Deadline.never(), notes: tuple[str, ...] = ()
 ) -> Grounding:
-    """Aligns, and says what the alignment rests on.
+    """Align, and say what the alignment rests on.
 
     The evidence is first put in the order of its names, so that the answer does not depend on the order in which
     objects and facts were stated or things perceived: where the evidence leaves several answers, names decide, and
@@ -79,7 +79,7 @@ def ground(
 
 
 def _facts_in_order(evidence: Evidence) -> tuple[Evidence, NDArray[np.int64]]:
-    """The same evidence with its facts by what they say, and where each was stated (edges,).
+    """Return the same evidence with its facts by what they say, and where each was stated (edges,).
 
     Sums in another order could break a tie by rounding.
     """
@@ -100,7 +100,7 @@ def _facts_in_order(evidence: Evidence) -> tuple[Evidence, NDArray[np.int64]]:
 
 
 def _outcomes(evidence: Evidence, alignment: Alignment, stated: NDArray[np.int64]) -> tuple[FactOutcome, ...]:
-    """What became of the facts that can be compared, in the order in which they were stated."""
+    """Return what became of the facts that can be compared, in the order in which they were stated."""
     degrees = evidence.degrees(alignment.assignment)
     outcomes = []
     for edge, degree in zip(evidence.facts, degrees, strict=True):
@@ -153,7 +153,7 @@ def _matches(
 
 
 def _decided(evidence: Evidence, alignment: Alignment, i: int, grouped: bool) -> bool:
-    """Whether a match is probable enough; without probabilities, whether nothing else is as similar."""
+    """Return whether a match is probable enough; without probabilities, whether nothing else is as similar."""
     if alignment.posterior is None:
         similar = alignment.margins is not None and bool(alignment.margins[i] > 1e-9)
         return bool(evidence.allowed[i].sum() == 1) or (similar and not grouped)
@@ -164,7 +164,7 @@ def _decided(evidence: Evidence, alignment: Alignment, i: int, grouped: bool) ->
 def _pivotal(
     evidence: Evidence, alignment: Alignment, matches: dict[str, Match], deadline: Deadline
 ) -> tuple[Pivotal, ...] | None:
-    """The facts without which something would be otherwise; None where there was no time to look at all.
+    """Return the facts without which something would be otherwise; None where there was no time to look at all.
 
     None, too, where nothing was found as of another scene: the likeliest maps without a fact do not say whether it
     would be so still.
@@ -188,14 +188,15 @@ def _pivotal(
 
 
 def _why_not_pivotal(evidence: Evidence, alignment: Alignment) -> tuple[str, ...]:
-    """What is to be said where a proved answer, with its probabilities, is without the facts that it rests on."""
+    """Return what is to be said where a proved answer, with its probabilities, is without the facts that it rests
+    on."""
     if (
         len(evidence.description.nodes) > MAX_SENSITIVITY_OBJECTS
         or alignment.posterior is None
         or not alignment.proved_best
     ):
         return ()
-    return (NOT_ASKED if alignment.of_another else NO_TIME,)
+    return (SENSITIVITY_NOT_ASKED if alignment.of_another else SENSITIVITY_OUT_OF_TIME,)
 
 
 def _without(evidence: Evidence, alignment: Alignment, matches: dict[str, Match], dropped: WithoutFact) -> Pivotal:

@@ -90,7 +90,8 @@ def _answer(
     finished: bool,
     gap: float = math.inf,
 ) -> Alignment:
-    """The map with its probability, where the time sufficed for one, and the paper's similarity for comparison."""
+    """Return the map with its probability, where the time sufficed for one, and the paper's similarity for
+    comparison."""
     matrix, converged, unknown = _similarity(evidence, deadline.share(SIMILARITY_SHARE))
     unrelated = _of_another_scene(evidence, assignment, deadline)
     probable = posterior(evidence.problem, deadline, start=assignment)
@@ -98,7 +99,9 @@ def _answer(
     notes += unknown
     if unrelated > 0.5:
         assignment, probable = np.full_like(assignment, UNMATCHED), probable.mixed_with_absence(unrelated)
-        notes += (UNRELATED_NOTE.format(_besides_facts(evidence)),)
+        colours = evidence.colours is not None and evidence.colours.any()
+        used = ["how large such things usually are"] * bool(evidence.sizes.any()) + ["their colours"] * bool(colours)
+        notes += (UNRELATED_NOTE.format(f", with {' and '.join(used)}," if used else ""),)
     notes += () if known else ("there was no time to find out how probable the matches are",)
     return Alignment(
         engine=engine,
@@ -114,15 +117,8 @@ def _answer(
     )
 
 
-def _besides_facts(evidence: Evidence) -> str:
-    """What was used besides the facts, as a part of a sentence, empty where nothing was."""
-    colours = evidence.colours is not None and evidence.colours.any()
-    used = ["how large such things usually are"] * bool(evidence.sizes.any()) + ["their colours"] * bool(colours)
-    return f", with {' and '.join(used)}," if used else ""
-
-
 def _of_another_scene(evidence: Evidence, assignment: NDArray[np.int64], deadline: Deadline) -> float:
-    """How probable it is that the description has nothing to do with the scene; 0 where that is not known.
+    """Return how probable it is that the description has nothing to do with the scene; 0 where that is not known.
 
     Labels say themselves what is there, whatever is wrong on the table; and where nothing was found, nothing is to say.
     """
@@ -132,7 +128,8 @@ def _of_another_scene(evidence: Evidence, assignment: NDArray[np.int64], deadlin
 
 
 def _similarity(evidence: Evidence, deadline: Deadline) -> tuple[NDArray[np.float64], bool, tuple[str, ...]]:
-    """The paper's similarity (n1, n2) and whether it converged; zeros and a note where there is no time to begin."""
+    """Return the paper's similarity (n1, n2) and whether it converged; zeros and a note where there is no time to
+    begin."""
     cells = len(evidence.description.vocabulary) * len(evidence.scene.nodes) ** 2
     if cells / SIMILARITY_CELLS_PER_SECOND > deadline.left + MAX_LATENESS:
         return np.zeros(evidence.allowed.shape), False, ("there was no time for the paper's similarity: it says 0",)

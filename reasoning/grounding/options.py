@@ -46,7 +46,7 @@ DECIDED_LOWER_BOUND = 0.975
 
 
 def is_decided(probability: NDArray[np.float64], error: float) -> NDArray[np.bool_]:
-    """Which of these probabilities (…,) are high enough, and known well enough, to call a match decided.
+    """Return which of these probabilities (…,) are high enough, and known well enough, to call a match decided.
 
     >>> import numpy as np
     >>> is_decided(np.array([0.98, 0.995]), 0.01).tolist(), is_decided(np.array([0.995]), 0.05).tolist()

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 
 def with_same_word(graph: RelationGraph, most: int, consistent: bool | None = None) -> RelationGraph:
-    """The graph with the firm facts that inverses and transitivity of single words add, after the stated ones.
+    """Return the graph with the firm facts that inverses and transitivity of single words add, after the stated ones.
 
     Facts that contradict each other imply everything, so that then nothing is added; nor is it where there would be
     more than ``most`` facts. ``consistent`` says whether the firm facts can hold together, where that is known.
@@ -68,36 +68,32 @@ def with_same_word(graph: RelationGraph, most: int, consistent: bool | None = No
 
 
 def _added(graph: RelationGraph) -> Iterator[tuple[Relation, NDArray[np.int64]]]:
-    """By relation the pairs that its facts and those of its inverse add."""
+    """Yield by relation the pairs that its facts and those of its inverse add."""
     firm = graph.positive & ~graph.optional & (graph.weights >= 1.0)
     for relation in graph.vocabulary.values():
         inverse = graph.vocabulary[relation.inverse]
         same = np.flatnonzero(firm & np.isin(graph.relation_sets, (relation.bit, inverse.bit)))
         if len(same):
-            yield relation, _implied(graph, same, relation)
-
-
-def _implied(graph: RelationGraph, edges: NDArray[np.int64], relation: Relation) -> NDArray[np.int64]:
-    """The pairs of which the relation follows from these facts alone, without those of which it is stated."""
-    stated = graph.relation_sets[edges] == relation.bit
-    ends = np.stack([graph.subjects[edges], graph.objects[edges]], axis=1).astype(np.int64)
-    n = len(graph.nodes)
-    if relation.transitive:
-        few = RelationGraph(
-            vocabulary=graph.vocabulary,
-            nodes=graph.nodes,
-            subjects=graph.subjects[edges],
-            objects=graph.objects[edges],
-            relation_sets=graph.relation_sets[edges],
-            positive=graph.positive[edges],
-            optional=graph.optional[edges],
-            weights=graph.weights[edges],
-        )
-        pairs = Implications(few).pairs(relation)
-    else:
-        pairs = np.unique(ends[~stated][:, ::-1], axis=0)
-    known = ends[stated, 0] * n + ends[stated, 1]
-    return pairs[~np.isin(pairs[:, 0] * n + pairs[:, 1], known)]
+            # the pairs of which the relation follows from these facts alone, without those of which it is stated
+            stated = graph.relation_sets[same] == relation.bit
+            ends = np.stack([graph.subjects[same], graph.objects[same]], axis=1).astype(np.int64)
+            n = len(graph.nodes)
+            if relation.transitive:
+                few = RelationGraph(
+                    vocabulary=graph.vocabulary,
+                    nodes=graph.nodes,
+                    subjects=graph.subjects[same],
+                    objects=graph.objects[same],
+                    relation_sets=graph.relation_sets[same],
+                    positive=graph.positive[same],
+                    optional=graph.optional[same],
+                    weights=graph.weights[same],
+                )
+                pairs = Implications(few).pairs(relation)
+            else:
+                pairs = np.unique(ends[~stated][:, ::-1], axis=0)
+            known = ends[stated, 0] * n + ends[stated, 1]
+            yield relation, pairs[~np.isin(pairs[:, 0] * n + pairs[:, 1], known)]
 
 
 TOLERANCE = 1e-8
@@ -105,7 +101,7 @@ ITERATIONS = 500
 
 
 @dataclass(frozen=True, eq=False)
-class NodeSimilarity:
+class SimilarityMatrices:
     """Similarity matrices of Frobenius norm 1 (0 where collapsed), one for each of b sub-graphs of the first graph."""
 
     matrices: NDArray[np.float64]  # (b, n1, n2); rows of nodes outside the sub-graph are 0
@@ -117,8 +113,8 @@ class NodeSimilarity:
         """Where nothing in the two graphs is alike, shape (b,)."""
         return np.logical_not(self.matrices.any(axis=(1, 2)))
 
-    def transposed(self) -> NodeSimilarity:
-        """The same with the graphs exchanged."""
+    def transposed(self) -> SimilarityMatrices:
+        """Return the same with the graphs exchanged."""
         return replace(self, matrices=self.matrices.transpose(0, 2, 1))
 
 
@@ -130,8 +126,8 @@ def node_similarity(
     tolerance: float = TOLERANCE,
     iterations: int = ITERATIONS,
     deadline: Deadline = Deadline.never(),
-) -> NodeSimilarity:
-    """Iterates equations 5 to 9 for induced sub-graphs of ``first`` against the whole of ``second``.
+) -> SimilarityMatrices:
+    """Iterate equations 5 to 9 for induced sub-graphs of ``first`` against the whole of ``second``.
 
     ``members`` (b, n1) says which nodes each sub-graph has (default: one, of all nodes). ``prior`` (n1, n2), at least
     0, multiplies equation 5: 0 forbids a pair, 1 leaves it. At the ``deadline`` it stops.
@@ -142,7 +138,7 @@ def node_similarity(
     [[0.707, 0.0], [0.0, 0.707]]
     """
     kept = np.ones((1, len(first.vertices)), dtype=bool) if members is None else members
-    step = _Step(first, second, kept)
+    step = _Iteration(first, second, kept)
     weight = np.ones((len(first.vertices), len(second.vertices))) if prior is None else prior
     base = step.degree_overlap() * weight[:, None, :]
     matrices = _normalised(base)
@@ -153,17 +149,17 @@ def node_similarity(
         converged = np.abs(following - matrices).max(axis=(0, 2), initial=0.0) <= tolerance
         matrices = following
         done += 1
-    return NodeSimilarity(matrices.transpose(1, 0, 2), converged, done)
+    return SimilarityMatrices(matrices.transpose(1, 0, 2), converged, done)
 
 
 def _normalised(matrices: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Equation 9; a zero matrix stays zero."""
+    """Return equation 9; a zero matrix stays zero."""
     norms = np.sqrt(np.einsum("abc,abc->b", matrices, matrices))[None, :, None]
     normalised: NDArray[np.float64] = np.divide(matrices, norms, out=np.zeros_like(matrices), where=norms > 0)
     return normalised
 
 
-class _Step:
+class _Iteration:
     """Equations 5 to 7 on arrays of shape (n1, b, n2): b sub-graphs of the first graph, L shared labels.
 
     Nodes of the first graph come first, so that what its edges of one label carry is two products of matrices, one of
@@ -174,27 +170,28 @@ class _Step:
         shared = np.intersect1d(first.edge_labels, second.edge_labels)
         self._kept = kept.T.copy()
         self._sizes = kept.sum(axis=1) * len(second.vertices)
-        self._edges = _labelled_edges(first, shared)
+        position = {int(label): i for i, label in enumerate(shared)}
+        self._edges = [
+            (start, end, position[label])
+            for (start, end), label in zip(first.edges.tolist(), first.edge_labels.tolist(), strict=True)
+            if label in position
+        ]
         self._forward, self._backward = self._by_label(len(shared))
         adjacency = second.adjacency()[shared]
-        self._in1, self._out1 = self._degrees(len(shared))
+        incoming, outgoing = np.zeros((2, len(shared), *self._kept.shape))
+        for a, b, k in self._edges:
+            present = self._kept[a] & self._kept[b]
+            incoming[k, b] += present
+            outgoing[k, a] += present
+        self._in1, self._out1 = incoming, outgoing
         self._in2, self._out2 = adjacency.sum(axis=1), adjacency.sum(axis=2)
         self._into = adjacency * _inverse(self._in2)[:, None, :]
         self._out_of = (adjacency * _inverse(self._out2)[:, :, None]).transpose(0, 2, 1).copy()
         self._in_scale, self._out_scale = _inverse(self._in1), _inverse(self._out1)
         self._both_zero = self._zero_pairs(self._in1, self._in2) + self._zero_pairs(self._out1, self._out2)
 
-    def _degrees(self, labels: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """In- and out-degree by label in each sub-graph: shapes (L, n1, b)."""
-        incoming, outgoing = np.zeros((2, labels, *self._kept.shape))
-        for start, end, label in self._edges:
-            present = self._kept[start] & self._kept[end]
-            incoming[label, end] += present
-            outgoing[label, start] += present
-        return incoming, outgoing
-
     def _by_label(self, labels: int) -> tuple[list[csr_array], list[csr_array]]:
-        """The first graph's edges of each label, from start to end and back: sparse, (n1, n1)."""
+        """Return the first graph's edges of each label, from start to end and back: sparse, (n1, n1)."""
         from scipy.sparse import csr_array
 
         n1 = len(self._kept)
@@ -205,14 +202,14 @@ class _Step:
         return forward, [csr_array(edges.T) for edges in forward]
 
     def _zero_pairs(self, degrees1: NDArray[np.float64], degrees2: NDArray[np.float64]) -> NDArray[np.float64]:
-        """For how many of the labels that a sub-graph uses both degrees are zero, shape (n1, b, n2)."""
+        """Return for how many of the labels that a sub-graph uses both degrees are zero, shape (n1, b, n2)."""
         used = (self._in1.sum(axis=1) > 0)[:, None, :]
         zero1 = ((degrees1 == 0) & self._kept & used).astype(float)
         pairs: NDArray[np.float64] = np.einsum("lab,lc->abc", zero1, (degrees2 == 0).astype(float))
         return pairs
 
     def degree_overlap(self) -> NDArray[np.float64]:
-        """Equation 5, shape (n1, b, n2)."""
+        """Return equation 5, shape (n1, b, n2)."""
         total: NDArray[np.float64] = np.zeros((*self._kept.shape, self._into.shape[1]))
         for degrees1, degrees2 in ((self._in1, self._in2), (self._out1, self._out2)):
             for one, two in zip(degrees1, degrees2, strict=True):
@@ -220,7 +217,7 @@ class _Step:
         return total
 
     def neighbourhood(self, matrices: NDArray[np.float64]) -> NDArray[np.float64]:
-        """The mean of equations 6 and 7, shape (n1, b, n2)."""
+        """Return the mean of equations 6 and 7, shape (n1, b, n2)."""
         mean = matrices.sum(axis=(0, 2)) / np.maximum(self._sizes, 1)
         total: NDArray[np.float64] = mean[:, None] * self._both_zero
         n1, b, n2 = matrices.shape
@@ -234,24 +231,14 @@ class _Step:
         return total
 
 
-def _labelled_edges(graph: PaperGraph, shared: NDArray[np.int8]) -> list[tuple[int, int, int]]:
-    """The edges with a shared label: from, to, position of the label among the shared ones."""
-    position = {int(label): i for i, label in enumerate(shared)}
-    return [
-        (start, end, position[label])
-        for (start, end), label in zip(graph.edges.tolist(), graph.edge_labels.tolist(), strict=True)
-        if label in position
-    ]
-
-
 def _inverse(degrees: NDArray[np.float64]) -> NDArray[np.float64]:
-    """1 over each degree, 0 where it is 0."""
+    """Return 1 over each degree, 0 where it is 0."""
     inverse: NDArray[np.float64] = np.divide(1.0, degrees, out=np.zeros_like(degrees), where=degrees > 0)
     return inverse
 
 
 def assign(matrix: NDArray[np.float64], allowed: NDArray[np.bool_]) -> NDArray[np.int64]:
-    """The assignment of rows to columns with the largest sum (the Hungarian method, through scipy).
+    """Return the assignment of rows to columns with the largest sum (the Hungarian method, through scipy).
 
     ``matrix`` and ``allowed`` have shape (n1, n2). As many rows as possible are matched to allowed columns; the
     others are ``UNMATCHED``. Returns shape (n1,).
@@ -272,7 +259,7 @@ def assign(matrix: NDArray[np.float64], allowed: NDArray[np.bool_]) -> NDArray[n
 
 
 def graph_similarity(matrix: NDArray[np.float64], assignment: NDArray[np.int64]) -> float:
-    """The overall similarity of two graphs under an assignment, which the paper leaves open.
+    """Return the overall similarity of two graphs under an assignment, which the paper leaves open.
 
     The sum of the matched entries of the normalised matrix over the square root of how many are matched: at most 1,
     and 1 only where the matrix is a perfect one-to-one map.

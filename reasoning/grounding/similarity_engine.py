@@ -22,7 +22,7 @@ from deixis.reasoning.grounding.matching.problem import UNMATCHED
 from deixis.reasoning.grounding.options import Select
 from deixis.reasoning.grounding.similarity import (
     ITERATIONS,
-    NodeSimilarity,
+    SimilarityMatrices,
     assign,
     graph_similarity,
     node_similarity,
@@ -47,32 +47,29 @@ MAX_DESCRIBED = 20_000
 
 
 def described(description: RelationGraph, consistent: bool | None = None) -> PaperGraph:
-    """The description as the paper's matcher sees it: with the inverses and what single words imply by transitivity."""
+    """Return the description as the paper's matcher sees it: with the inverses and what single words imply by
+    transitivity."""
     return with_same_word(description, MAX_DESCRIBED, consistent).paper_view()
 
 
 def paper_similarity(
     evidence: Evidence, members: NDArray[np.bool_] | None = None, deadline: Deadline = Deadline.never()
-) -> NodeSimilarity:
-    """Equations 5 to 9 for the evidence: certain labels forbid pairs, uncertain ones multiply equation 5."""
+) -> SimilarityMatrices:
+    """Return equations 5 to 9 for the evidence: certain labels forbid pairs, uncertain ones multiply equation 5."""
     first, second = described(evidence.description, evidence.consistent), evidence.scene.paper_view()
-    iterations = _iterations(first, second)
+    n2 = len(second.vertices)
+    work = 2 * len(first.labels) * len(first.vertices) * n2 * n2 + 2000 * len(first.edges)
+    affordable = _MAX_MULTIPLICATIONS / max(work, 1)
+    iterations = 0 if affordable < 1 else int(np.clip(affordable, 5, ITERATIONS))
     return node_similarity(first, second, members, _prior(evidence), iterations=iterations, deadline=deadline)
 
 
 def _prior(evidence: Evidence) -> NDArray[np.float64]:
-    """By what labels multiply the similarity, (n1, n2): 1 for what a label names best, 0 for what it rules out."""
+    """Return the factors (n1, n2) of labels for the similarity: 1 for what it names best, 0 for what it rules out."""
     named = evidence.allowed | ~evidence.identified
     best = evidence.labels.max(axis=0, where=named, initial=-np.inf)
     prior: NDArray[np.float64] = np.exp(evidence.labels - np.where(np.isneginf(best), 0.0, best))
     return prior * named
-
-
-def _iterations(first: PaperGraph, second: PaperGraph) -> int:
-    n2 = len(second.vertices)
-    work = 2 * len(first.labels) * len(first.vertices) * n2 * n2 + 2000 * len(first.edges)
-    affordable = _MAX_MULTIPLICATIONS / max(work, 1)
-    return 0 if affordable < 1 else int(np.clip(affordable, 5, ITERATIONS))
 
 
 @dataclass(frozen=True)
@@ -89,18 +86,30 @@ class SimilarityEngine:
         larger, smaller = max(n1, n2), min(n1, n2)
         count = math.comb(larger, smaller)
         if count > MAX_SUBGRAPHS:
-            return self._narrowed(evidence, count, deadline)
+            found = paper_similarity(evidence, deadline=deadline)
+            assignment = assign(found.matrices[0], evidence.allowed)
+            note = (
+                f"{count} sub-graphs are too many to try all: the assignment on the whole graphs chose one (heuristic)"
+            )
+            if len(evidence.description.nodes) > len(evidence.scene.nodes):
+                kept = assignment != UNMATCHED
+                found = paper_similarity(evidence, kept[None, :], deadline)
+                assignment = assign(found.matrices[0], evidence.allowed & kept[:, None])
+            return _in_time(self._alignment(evidence, found, assignment, (note,)), deadline)
         return self._all_subgraphs(evidence, larger, smaller, deadline)
 
     def _all_subgraphs(self, evidence: Evidence, larger: int, smaller: int, deadline: Deadline) -> Alignment:
-        """The best of all sub-graphs of the larger side that have as many objects as the smaller one."""
+        """Return the best of all sub-graphs of the larger side that have as many objects as the smaller one."""
         flipped = len(evidence.description.nodes) == smaller
         prior = _prior(evidence)
         first, second = described(evidence.description, evidence.consistent), evidence.scene.paper_view()
         best: tuple[tuple[float, ...], Alignment] | None = None
-        for members in _blocks(larger, smaller):
+        chosen = combinations(range(larger), smaller)
+        while rows := list(islice(chosen, _SUBGRAPHS_PER_BLOCK)):
             if best is not None and deadline.passed:
                 return _cut_short(best[1])
+            members = np.zeros((len(rows), larger), dtype=bool)
+            members[np.arange(len(rows))[:, None], np.array(rows, dtype=np.int64).reshape(len(rows), smaller)] = True
             if flipped:
                 found = node_similarity(second, first, members, prior.T, deadline=deadline).transposed()
             else:
@@ -113,17 +122,6 @@ class SimilarityEngine:
                     best = key, self._alignment(evidence, found, assignment, number=number)
         assert best is not None
         return _in_time(best[1], deadline)
-
-    def _narrowed(self, evidence: Evidence, count: int, deadline: Deadline) -> Alignment:
-        """Too many sub-graphs: the assignment on the whole chooses one, and is repeated on it until it stays."""
-        found = paper_similarity(evidence, deadline=deadline)
-        assignment = assign(found.matrices[0], evidence.allowed)
-        note = f"{count} sub-graphs are too many to try all: the assignment on the whole graphs chose one (heuristic)"
-        if len(evidence.description.nodes) > len(evidence.scene.nodes):
-            kept = assignment != UNMATCHED
-            found = paper_similarity(evidence, kept[None, :], deadline)
-            assignment = assign(found.matrices[0], evidence.allowed & kept[:, None])
-        return _in_time(self._alignment(evidence, found, assignment, (note,)), deadline)
 
     def _key(
         self, evidence: Evidence, matrix: NDArray[np.float64], assignment: NDArray[np.int64]
@@ -141,7 +139,7 @@ class SimilarityEngine:
     def _alignment(
         self,
         evidence: Evidence,
-        found: NodeSimilarity,
+        found: SimilarityMatrices,
         assignment: NDArray[np.int64],
         notes: tuple[str, ...] = (),
         number: int = 0,
@@ -154,7 +152,7 @@ class SimilarityEngine:
 
 
 def _in_time(aligned: Alignment, deadline: Deadline) -> Alignment:
-    """The same, said to be cut short where the iteration was still under way at the deadline."""
+    """Return the same, said to be cut short where the iteration was still under way at the deadline."""
     return aligned if aligned.converged or not deadline.passed else _cut_short(aligned)
 
 
@@ -162,21 +160,10 @@ def _cut_short(aligned: Alignment) -> Alignment:
     return replace(aligned, notes=(*aligned.notes, CUT_SHORT), finished=False)
 
 
-def _blocks(n: int, k: int) -> list[NDArray[np.bool_]]:
-    """All choices of k of n as membership rows, in blocks."""
-    chosen = combinations(range(n), k)
-    blocks = []
-    while rows := list(islice(chosen, _SUBGRAPHS_PER_BLOCK)):
-        members = np.zeros((len(rows), n), dtype=bool)
-        members[np.arange(len(rows))[:, None], np.array(rows, dtype=np.int64).reshape(len(rows), k)] = True
-        blocks.append(members)
-    return blocks
-
-
 def _similarity_margins(
     matrix: NDArray[np.float64], assignment: NDArray[np.int64], allowed: NDArray[np.bool_]
 ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """By how much each match's similarity leads over the next best entry of its row."""
+    """Return by how much each match's similarity leads over the next best entry of its row."""
     margins = np.full(len(assignment), np.nan)
     runners_up = np.full(len(assignment), UNMATCHED, dtype=np.int64)
     for i in np.flatnonzero(assignment != UNMATCHED):

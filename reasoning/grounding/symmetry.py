@@ -27,7 +27,7 @@ _Edges = tuple[tuple[tuple[int, Hashable], ...], ...]
 
 
 def interchangeable(graph: RelationGraph, colours: Sequence[Hashable]) -> list[tuple[str, ...]]:
-    """The groups of two and more objects that the description cannot tell apart, in node order.
+    """Return the groups of two and more objects that the description cannot tell apart, in node order.
 
     ``colours`` holds what else is known of each node; only nodes of equal colour can be interchangeable.
 
@@ -54,7 +54,7 @@ def interchangeable(graph: RelationGraph, colours: Sequence[Hashable]) -> list[t
 
 
 def _stable(graph: RelationGraph, colours: Sequence[int]) -> NDArray[np.int64]:
-    """The stable colouring of the whole graph, shape (n,), by hashes of what each node's neighbours are.
+    """Return the stable colouring of the whole graph, shape (n,), by hashes of what each node's neighbours are.
 
     Two hashes that happen to be equal could only leave more to be proved, never claim what is not so.
     """
@@ -69,21 +69,19 @@ def _stable(graph: RelationGraph, colours: Sequence[int]) -> NDArray[np.int64]:
     count = int(current.max(initial=-1)) + 1
     while True:
         seen = np.zeros(len(current), np.uint64)
-        np.add.at(seen, nodes, _mixed(current[others], sides))
+        # a 64-bit hash of a neighbour's colour and the edge to it (the finaliser of SplitMix64, Steele et al. 2014)
+        value = (
+            current[others].astype(np.uint64) * np.uint64(0x9E3779B97F4A7C15) + sides.astype(np.uint64) + np.uint64(1)
+        )
+        value = (value ^ (value >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
+        value = (value ^ (value >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
+        np.add.at(seen, nodes, value ^ (value >> np.uint64(31)))
         keys = np.stack([current.astype(np.uint64), seen], axis=1)
         finer = np.unique(keys, axis=0, return_inverse=True)[1].ravel()
         fresh = int(finer.max(initial=-1)) + 1
         if fresh == count:
             return current
         current, count = finer, fresh
-
-
-def _mixed(colours: NDArray[np.int64], sides: NDArray[np.int64]) -> NDArray[np.uint64]:
-    """A 64-bit hash of a neighbour's colour and the edge to it (the finaliser of SplitMix64, Steele et al. 2014)."""
-    value = colours.astype(np.uint64) * np.uint64(0x9E3779B97F4A7C15) + sides.astype(np.uint64) + np.uint64(1)
-    value = (value ^ (value >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
-    value = (value ^ (value >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
-    return value ^ (value >> np.uint64(31))
 
 
 def _edges(graph: RelationGraph) -> _Edges:
@@ -123,11 +121,23 @@ class _Automorphisms:
     def __init__(self, edges: _Edges) -> None:
         self._edges = edges
         self._bags = [Counter(neighbours) for neighbours in edges]
-        self._part = _parts(edges)
+        # for each node the nodes of its connected part, in order
+        parts: list[list[int]] = [[] for _ in edges]
+        for start in range(len(edges)):
+            if not parts[start]:
+                found, todo = {start}, [start]
+                while todo:
+                    fresh = {j for j, _ in edges[todo.pop()]} - found
+                    found |= fresh
+                    todo += fresh
+                members = sorted(found)
+                for node in members:
+                    parts[node] = members
+        self._part = parts
         self._budget = BUDGET
 
     def refine(self, colours: _Colouring) -> _Colouring:
-        """The coarsest stable colouring that is finer; numbers depend on structure alone, not on node order."""
+        """Return the coarsest stable colouring that is finer; numbers depend on structure alone, not on node order."""
         count = len(set(colours.values()))
         while True:
             self._budget -= len(colours)
@@ -142,21 +152,18 @@ class _Automorphisms:
             count = len(ranks)
 
     def exchangeable(self, a: int, b: int, stable: _Colouring) -> bool:
-        """Whether some automorphism takes ``a`` to ``b``."""
-        if self._twins(a, b):
+        """Return whether some automorphism takes ``a`` to ``b``."""
+        # an automorphism may swap the two and leave all others
+        swap = {a: b, b: a}
+        swapped = Counter({(swap.get(j, j), c): count for (j, c), count in self._bags[a].items()})
+        if swapped == self._bags[b]:
             return True
         first = {node: stable[node] for node in self._part[a]}
         second = {node: stable[node] for node in self._part[b]}
         return len(first) == len(second) and self._extends(_marked(first, a), _marked(second, b))
 
-    def _twins(self, a: int, b: int) -> bool:
-        """Whether swapping the two and leaving all others is an automorphism."""
-        swap = {a: b, b: a}
-        swapped = Counter({(swap.get(j, j), c): count for (j, c), count in self._bags[a].items()})
-        return swapped == self._bags[b]
-
     def _extends(self, first: _Colouring, second: _Colouring) -> bool:
-        """Whether the one coloured part can be laid on the other."""
+        """Return whether the one coloured part can be laid on the other."""
         if self._budget <= 0:
             return False
         first, second = self.refine(first), self.refine(second)
@@ -165,37 +172,18 @@ class _Automorphisms:
             return False
         cell = next((colour for colour, count in sorted(sizes.items()) if count > 1), None)
         if cell is None:
-            return self._agree(first, second)
+            # laying nodes on those of their colour must take edges to edges
+            position = {colour: node for node, colour in second.items()}
+            image = {node: position[colour] for node, colour in first.items()}
+            return all(
+                Counter({(image[j], c): count for (j, c), count in self._bags[node].items()}) == self._bags[image[node]]
+                for node in first
+            )
         chosen = _marked(first, next(node for node, colour in first.items() if colour == cell))
         choices = (node for node, colour in second.items() if colour == cell)
         return any(self._extends(chosen, _marked(second, node)) for node in choices)
 
-    def _agree(self, first: _Colouring, second: _Colouring) -> bool:
-        """Whether laying nodes on those of their colour takes edges to edges."""
-        position = {colour: node for node, colour in second.items()}
-        image = {node: position[colour] for node, colour in first.items()}
-        return all(
-            Counter({(image[j], c): count for (j, c), count in self._bags[node].items()}) == self._bags[image[node]]
-            for node in first
-        )
-
 
 def _marked(colours: _Colouring, node: int) -> _Colouring:
-    """The colouring with one node set apart."""
+    """Return the colouring with one node set apart."""
     return {other: 2 * colour + (other == node) for other, colour in colours.items()}
-
-
-def _parts(edges: _Edges) -> list[list[int]]:
-    """For each node the nodes of its connected part, in order."""
-    parts: list[list[int]] = [[] for _ in edges]
-    for start in range(len(edges)):
-        if not parts[start]:
-            found, todo = {start}, [start]
-            while todo:
-                fresh = {j for j, _ in edges[todo.pop()]} - found
-                found |= fresh
-                todo += fresh
-            members = sorted(found)
-            for node in members:
-                parts[node] = members
-    return parts

@@ -86,7 +86,8 @@ class Viewpoints:
 
 
 def turned(boxes: Array, angle: float, mirrored: bool = False) -> Array:
-    """Boxes (n, 2, d) as seen when the scene is turned about the origin; heights stay. Raises GraphError for none.
+    """Return boxes (n, 2, d) as seen when the scene is turned about the origin; heights stay. Raises GraphError for
+    none.
 
     >>> cup = np.array([[[1.0, 0.0], [3.0, 1.0]]])
     >>> turned(cup, math.pi / 2).tolist()
@@ -99,32 +100,26 @@ def turned(boxes: Array, angle: float, mirrored: bool = False) -> Array:
         flip = np.array([-1.0, 1.0])
         low, high = np.minimum(low * flip, high * flip), np.maximum(low * flip, high * flip)
     if abs(quarters - round(quarters)) < 1e-9:
-        low, high = _quarter_turned(low, high, round(quarters) % 4)
+        lower = low
+        upper = high
+        for _ in range(round(quarters) % 4):
+            lower, upper = np.stack([-upper[:, 1], lower[:, 0]], axis=1), np.stack([-lower[:, 1], upper[:, 0]], axis=1)
+        low, high = lower + 0.0, upper + 0.0
     else:
-        low, high = _freely_turned(low, high, angle)
+        cos, sin = math.cos(angle), math.sin(angle)
+        centres = (low + high) / 2 @ np.array([[cos, sin], [-sin, cos]])
+        width, height = (high - low).T
+        total, difference = width + height, width - height
+        spread, contrast = abs(cos) + abs(sin), abs(cos) - abs(sin)
+        sum_, limit = total / spread, total / spread
+        apart = np.clip(difference / contrast, -limit, limit) if abs(contrast) > 1e-9 else np.zeros(len(total))
+        oblong = np.abs(difference) > MAX_ROUND_CONTRAST * total
+        extents = np.stack([sum_ + apart, sum_ - apart], axis=1) / 2
+        halves = np.where(oblong[:, None], extents, np.stack([width, height], axis=1)) / 2
+        low, high = centres - halves, centres + halves
     result = boxes.astype(np.float64, copy=True)
     result[:, 0, :2], result[:, 1, :2] = low, high
     return result
-
-
-def _quarter_turned(low: Array, high: Array, quarters: int) -> tuple[Array, Array]:
-    for _ in range(quarters):
-        low, high = np.stack([-high[:, 1], low[:, 0]], axis=1), np.stack([-low[:, 1], high[:, 0]], axis=1)
-    return low + 0.0, high + 0.0  # no negative zeros
-
-
-def _freely_turned(low: Array, high: Array, angle: float) -> tuple[Array, Array]:
-    cos, sin = math.cos(angle), math.sin(angle)
-    centres = (low + high) / 2 @ np.array([[cos, sin], [-sin, cos]])
-    width, height = (high - low).T
-    total, difference = width + height, width - height
-    spread, contrast = abs(cos) + abs(sin), abs(cos) - abs(sin)
-    sum_, limit = total / spread, total / spread
-    apart = np.clip(difference / contrast, -limit, limit) if abs(contrast) > 1e-9 else np.zeros(len(total))
-    oblong = np.abs(difference) > MAX_ROUND_CONTRAST * total
-    extents = np.stack([sum_ + apart, sum_ - apart], axis=1) / 2
-    halves = np.where(oblong[:, None], extents, np.stack([width, height], axis=1)) / 2
-    return centres - halves, centres + halves
 
 
 def recover_viewpoint(
@@ -135,7 +130,7 @@ def recover_viewpoint(
     mirror: bool = True,
     deadline: Deadline = Deadline.never(),
 ) -> Viewpoints:
-    """The posterior over viewpoints, quarter turns or (``any_angle``) any, until ``deadline``.
+    """Return the posterior over viewpoints, quarter turns or (``any_angle``) any, until ``deadline``.
 
     The scene is first looked at as it stands, deadline or not, then quarter turned, then from the other sides. Sides
     for which there was no time are taken to be as likely, but for the prior, as the best that was looked from.
@@ -189,7 +184,7 @@ class _AngleSearch:
     deadline: Deadline
 
     def at(self, tried: Sequence[_Angle]) -> list[_AngleEvidence]:
-        """The best map of each until the deadline; where that is not hopeless, the evidence of all maps.
+        """Return the best map of each until the deadline; where that is not hopeless, the evidence of all maps.
 
         Each has its share of the time that is left, lest the first search takes it all; the first is always looked at.
         """
@@ -219,7 +214,8 @@ class _AngleSearch:
         return _AngleEvidence(one.tried, _log_sum(maps.values.tolist()), maps.assignments[0], maps.complete)
 
     def closer(self, looked: Sequence[_AngleEvidence]) -> tuple[list[_AngleEvidence], bool]:
-        """Every angle that is worth it replaced by finer ones over the same arc, and whether there was time for all."""
+        """Return every angle that is worth it replaced by finer ones over the same arc, and whether there was time
+        for all."""
         best = max(one.log_evidence for one in looked)
         worth = [one.tried for one in looked if one.log_evidence >= best - REFINEMENT_MARGIN]
         if self.deadline.passed:
@@ -233,14 +229,14 @@ class _AngleSearch:
 
 
 def _finer(one: _Angle) -> list[_Angle]:
-    """The angles of a finer grid over the same arc."""
+    """Return the angles of a finer grid over the same arc."""
     share = one.share / FINE_PER_COARSE
     angles = [one.angle + (k - (FINE_PER_COARSE - 1) / 2) * 2 * math.pi * share for k in range(FINE_PER_COARSE)]
     return [_Angle(angle % (2 * math.pi), one.mirrored, share) for angle in angles]
 
 
 def _modes(looked: Sequence[_AngleEvidence]) -> list[list[_AngleEvidence]]:
-    """Neighbouring angles that are one viewpoint: those on the slopes of one peak, or with one best map."""
+    """Return neighbouring angles that are one viewpoint: those on the slopes of one peak, or with one best map."""
     modes: list[list[_AngleEvidence]] = []
     for side in (False, True):
         ring = sorted((one for one in looked if one.tried.mirrored is side), key=lambda one: one.tried.angle)
@@ -252,7 +248,7 @@ def _modes(looked: Sequence[_AngleEvidence]) -> list[list[_AngleEvidence]]:
 
 
 def _homes(ring: list[_AngleEvidence]) -> list[int]:
-    """For each angle of a circle the number of its group."""
+    """Return for each angle of a circle the number of its group."""
     n = len(ring)
     homes = list(range(n))
     for i in range(n):
@@ -267,7 +263,7 @@ def _homes(ring: list[_AngleEvidence]) -> list[int]:
 
 
 def _viewpoint(mode: list[_AngleEvidence], mirror: bool) -> tuple[Viewpoint, float]:
-    """A peak as one viewpoint at its mean angle, and the logarithm of its prior times its evidence."""
+    """Return a peak as one viewpoint at its mean angle, and the logarithm of its prior times its evidence."""
     prior = _prior(mode[0].tried.mirrored, mirror)
     peak = max(mode, key=lambda one: (round(one.log_evidence, 9), -one.tried.angle))
     shares = [one.log_evidence + math.log(one.tried.share) for one in mode]
@@ -278,12 +274,12 @@ def _viewpoint(mode: list[_AngleEvidence], mirror: bool) -> tuple[Viewpoint, flo
 
 
 def _prior(mirrored: bool, mirror: bool) -> float:
-    """Of a side of the mirror, where ``mirror`` leaves the choice."""
+    """Return the prior of a side of the mirror, where ``mirror`` leaves the choice."""
     return (MIRROR_PRIOR if mirrored else 1 - MIRROR_PRIOR) if mirror else 1.0
 
 
 def _mean_angle(mode: list[_AngleEvidence]) -> tuple[float, float]:
-    """The circular mean by evidence and the mean resultant length; of a single angle just that, and 1."""
+    """Return the circular mean by evidence and the mean resultant length; of a single angle just that, and 1."""
     if len(mode) == 1:
         return mode[0].tried.angle, 1.0
     most = max(one.log_evidence for one in mode)
@@ -328,12 +324,14 @@ class FromSides:
         return replace(found, posterior=_mixed(parts), sides=len(parts), notes=(*found.notes, note))
 
     def _others(self, evidence: Evidence, deadline: Deadline) -> list[tuple[float, Posterior]]:
-        """From each other side, as far as the time allows: its probability, and what it makes of the matches."""
+        """Return from each other side, as far as the time allows: its probability, and what it makes of the matches."""
         found = []
         for number, side in enumerate(self.others):
             if deadline.passed:
                 break
-            seen = side.evidence.reordered(*_as_in(evidence, side.evidence)).problem
+            rows = [side.evidence.description.index(name) for name in evidence.description.nodes]
+            columns = [side.evidence.scene.index(name) for name in evidence.scene.nodes]
+            seen = side.evidence.reordered(np.array(rows, dtype=np.int64), np.array(columns, dtype=np.int64)).problem
             there = posterior(seen, deadline.share(1 / (len(self.others) - number)))
             if np.isfinite(there.error):
                 found.append((side.probability, there))
@@ -341,15 +339,9 @@ class FromSides:
 
 
 def _mixed(parts: list[tuple[float, Posterior]]) -> Posterior:
-    """The sum by probabilities; sides that nobody looked from add nothing, so that it is at least so probable."""
+    """Return the sum by probabilities; sides that nobody looked from add nothing, so that it is at least so
+    probable."""
     marginals = np.sum([share * there.marginals for share, there in parts], axis=0)
     return Posterior(
         marginals, all(there.exact for _, there in parts), sum(share * there.error for share, there in parts)
     )
-
-
-def _as_in(evidence: Evidence, other: Evidence) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Where the objects and the things of one evidence stand in another."""
-    rows = [other.description.index(name) for name in evidence.description.nodes]
-    columns = [other.scene.index(name) for name in evidence.scene.nodes]
-    return np.array(rows, dtype=np.int64), np.array(columns, dtype=np.int64)

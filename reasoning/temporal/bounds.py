@@ -16,24 +16,24 @@ from deixis.reasoning.errors import SettingError
 TICKS = 1_000_000
 """Ticks in a second; a time between two ticks is rounded to the nearest."""
 
-FARTHEST = 4e9
+MAX_SECONDS = 4e9
 """Seconds from the origin that a bound may lie at the most (some 126 years), so that all sums stay exact."""
 
 
 def to_ticks(seconds: float) -> int:
-    """The nearest whole number of microseconds.
+    """Return the nearest whole number of microseconds.
 
-    Raises SettingError where the time is no finite number, or farther away than ``FARTHEST``.
+    Raises SettingError where the time is no finite number, or farther away than ``MAX_SECONDS``.
     """
     if not math.isfinite(seconds):
         raise SettingError(f"a time must be a finite number of seconds, not {seconds}")
-    if abs(seconds) > FARTHEST:
-        raise SettingError(f"a time of {seconds:g} s is beyond {FARTHEST:g} s; is the unit or the origin right?")
+    if abs(seconds) > MAX_SECONDS:
+        raise SettingError(f"a time of {seconds:g} s is beyond {MAX_SECONDS:g} s; is the unit or the origin right?")
     return round(Fraction(seconds) * TICKS)
 
 
 def encode(seconds: float, strict: bool = False) -> int:
-    """The code of *x <= seconds*, or of *x < seconds*; infinity is no bound.
+    """Return the code of *x <= seconds*, or of *x < seconds*; infinity is no bound.
 
     >>> encode(0.0) == ZERO, encode(0.0, strict=True) < encode(0.0) < encode(0.000001, strict=True)
     (True, True)
@@ -44,7 +44,7 @@ def encode(seconds: float, strict: bool = False) -> int:
 
 
 def text_of_ticks(ticks: int) -> str:
-    """Microseconds as seconds, as short as they can be written.
+    """Return microseconds as seconds, as short as they can be written.
 
     >>> text_of_ticks(2_500_000), text_of_ticks(-3_000_000), text_of_ticks(1700000000_250000)
     ('2.5', '-3', '1700000000.25')
@@ -55,7 +55,7 @@ def text_of_ticks(ticks: int) -> str:
 
 
 def bound_text(tail: str, head: str, code: int, origin: str) -> str:
-    """In words that ``head - tail`` is bounded by a code; a difference to the origin is a time.
+    """Say in words that ``head - tail`` is bounded by a code; a difference to the origin is a time.
 
     >>> bound_text("a.finish", "b.start", encode(5), "origin"), bound_text("a.start", "origin", encode(-2), "origin")
     ('b.start <= a.finish + 5', 'a.start >= 2')
@@ -101,7 +101,7 @@ class Bounds:
 
     @classmethod
     def from_codes(cls, at_least: int, at_most: int) -> Bounds:
-        """The bounds that two codes stand for."""
+        """Return the bounds that two codes stand for."""
         lower = -math.inf if at_least >= UNBOUNDED else -(at_least >> 1) / TICKS
         upper = math.inf if at_most >= UNBOUNDED else (at_most >> 1) / TICKS
         return cls(lower, upper, at_least < UNBOUNDED and not at_least & 1, at_most < UNBOUNDED and not at_most & 1)

@@ -33,7 +33,7 @@ class Status(StrEnum):
     UNDECIDED = "undecided"  # the time limit came first
 
 
-class Order(StrEnum):
+class TemporalOrder(StrEnum):
     """What is certain of the order of two fluents."""
 
     PRECEDES = "precedes"  # the first has finished when the second starts
@@ -78,63 +78,65 @@ class Chronology:
     def _places(self) -> dict[str, int]:
         return {fluent.id: place for place, fluent in enumerate(self.fluents)}
 
-    def _place(self, id: str) -> int:
+    def _place(self, fluent_id: str) -> int:
         try:
-            return self._places[id]
+            return self._places[fluent_id]
         except KeyError:
-            raise UnknownFluentError("fluent", id, self._places) from None
+            raise UnknownFluentError("fluent", fluent_id, self._places) from None
 
-    def start(self, id: str) -> Bounds:
-        """The tightened bounds of a fluent's start, in seconds."""
-        return self._bounds(id, _ORIGIN, _START)
+    def start(self, fluent_id: str) -> Bounds:
+        """Return the tightened bounds of a fluent's start, in seconds."""
+        return self._bounds(fluent_id, _ORIGIN, _START)
 
-    def finish(self, id: str) -> Bounds:
-        """The tightened bounds of a fluent's finish, in seconds."""
-        return self._bounds(id, _ORIGIN, _FINISH)
+    def finish(self, fluent_id: str) -> Bounds:
+        """Return the tightened bounds of a fluent's finish, in seconds."""
+        return self._bounds(fluent_id, _ORIGIN, _FINISH)
 
-    def duration(self, id: str) -> Bounds:
-        """The tightened bounds of the time from a fluent's start to its finish, in seconds."""
-        return self._bounds(id, _START, _FINISH)
+    def duration(self, fluent_id: str) -> Bounds:
+        """Return the tightened bounds of the time from a fluent's start to its finish, in seconds."""
+        return self._bounds(fluent_id, _START, _FINISH)
 
-    def _bounds(self, id: str, tail: int, head: int) -> Bounds:
-        span = self.spans[:, self._place(id)].max(axis=0)
+    def _bounds(self, fluent_id: str, tail: int, head: int) -> Bounds:
+        span = self.spans[:, self._place(fluent_id)].max(axis=0)
         return Bounds.from_codes(int(span[head, tail]), int(span[tail, head]))
 
     def held_at(self, time: float, pattern: Pattern = ANYTHING) -> tuple[Fluent, ...]:
-        """The fluents that certainly held at a time: start <= time < finish in every scenario.
+        """Return the fluents that certainly held at a time: start <= time < finish in every scenario.
 
         Raises SettingError for a time that is not finite, as :meth:`may_have_held` does.
         """
         return self._chosen(self._certain(*_at(time)), pattern)
 
     def may_have_held(self, time: float, pattern: Pattern = ANYTHING) -> tuple[Fluent, ...]:
-        """The fluents that may have held at a time: start <= time < finish in some scenario."""
+        """Return the fluents that may have held at a time: start <= time < finish in some scenario."""
         return self._chosen(self._possible(*_at(time)), pattern)
 
     def held_throughout(self, window: Window, pattern: Pattern = ANYTHING) -> tuple[Fluent, ...]:
-        """The fluents that certainly held all the window: start <= begin and end <= finish in every scenario."""
+        """Return the fluents that certainly held all the window: start <= begin and end <= finish in every scenario."""
         return self._chosen(self._certain(*_throughout(window)), pattern)
 
     def may_have_held_throughout(self, window: Window, pattern: Pattern = ANYTHING) -> tuple[Fluent, ...]:
-        """The fluents that may have held all the window: start <= begin and end <= finish in some scenario."""
+        """Return the fluents that may have held all the window: start <= begin and end <= finish in some scenario."""
         return self._chosen(self._possible(*_throughout(window)), pattern)
 
     def held_within(self, window: Window, pattern: Pattern = ANYTHING) -> tuple[Fluent, ...]:
-        """The fluents that certainly held at some time in the window: start < end and begin < finish in every one."""
+        """Return the fluents that certainly held at some time in the window: start < end and begin < finish in every
+        one."""
         return self._chosen(self._certain(*_within(window)), pattern)
 
     def may_have_held_within(self, window: Window, pattern: Pattern = ANYTHING) -> tuple[Fluent, ...]:
-        """The fluents that may have held at some time in the window: start < end and begin < finish in some one."""
+        """Return the fluents that may have held at some time in the window: start < end and begin < finish in some
+        one."""
         return self._chosen(self._possible(*_within(window)), pattern)
 
     def _certain(self, start: int, finish: int) -> NDArray[np.bool_]:
-        """Whether start is under a bound, and the negated finish under another, in all cases: shape (n,)."""
+        """Return whether start is under a bound, and the negated finish under another, in all cases: shape (n,)."""
         below = self.spans[:, :, _ORIGIN, _START] <= start
         certain = below & (self.spans[:, :, _FINISH, _ORIGIN] <= finish)
         return np.asarray(certain.all(axis=0))
 
     def _possible(self, start: int, finish: int) -> NDArray[np.bool_]:
-        """Whether both bounds can be added without a negative cycle in some case: shape (n,).
+        """Return whether both bounds can be added without a negative cycle in some case: shape (n,).
 
         There are three simple cycles through new constraints: through the one, through the other, through both.
         """
@@ -149,21 +151,26 @@ class Chronology:
         )
 
     def relations(self, a: str, b: str) -> tuple[Allen, ...]:
-        """The Allen relations that fluent a may bear to fluent b; where it is one, it is certain."""
+        """Return the Allen relations that fluent a may bear to fluent b; where it is one, it is certain."""
         return members(int(self.masks[self._place(a), self._place(b)]))
 
-    def certain_order(self, a: str, b: str) -> Order | None:
-        """What is certain of the order of two fluents; None where nothing is.
+    def certain_order(self, a: str, b: str) -> TemporalOrder | None:
+        """Return what is certain of the order of two fluents; None where nothing is.
 
         PRECEDES where a.finish <= b.start in every scenario, FOLLOWS where b.finish <= a.start, CONCURRENT where they
         share a time in every scenario.
         """
-        return _order(int(self.masks[self._place(a), self._place(b)]))
+        mask = int(self.masks[self._place(a), self._place(b)])
+        if not mask & ~_PRECEDES:
+            return TemporalOrder.PRECEDES
+        if not mask & ~_FOLLOWS:
+            return TemporalOrder.FOLLOWS
+        return None if mask & (_PRECEDES | _FOLLOWS) else TemporalOrder.CONCURRENT
 
     def certain_orders(
         self, window: Window | None = None, pattern: Pattern = ANYTHING
-    ) -> tuple[tuple[Fluent, Order, Fluent], ...]:
-        """The certain order of each two fluents; given a window, of those that may have held at some time in it.
+    ) -> tuple[tuple[Fluent, TemporalOrder, Fluent], ...]:
+        """Return the certain order of each two fluents; given a window, of those that may have held at some time in it.
 
         Each two fluents come once, the first as listed first, unless it follows: then they are exchanged.
         """
@@ -173,33 +180,25 @@ class Chronology:
         for position, a in enumerate(chosen):
             for b in chosen[position + 1 :]:
                 order = self.certain_order(a.id, b.id)
-                if order is Order.FOLLOWS:
-                    found.append((b, Order.PRECEDES, a))
+                if order is TemporalOrder.FOLLOWS:
+                    found.append((b, TemporalOrder.PRECEDES, a))
                 elif order is not None:
                     found.append((a, order, b))
         return tuple(found)
 
 
-def _order(mask: int) -> Order | None:
-    if not mask & ~_PRECEDES:
-        return Order.PRECEDES
-    if not mask & ~_FOLLOWS:
-        return Order.FOLLOWS
-    return None if mask & (_PRECEDES | _FOLLOWS) else Order.CONCURRENT
-
-
 def _at(time: float) -> tuple[int, int]:
-    """The bounds on start and on the negated finish that say: at the time."""
+    """Return the bounds on start and on the negated finish that say: at the time."""
     if not isfinite(time):
         raise SettingError(f"a time is a finite number of seconds, not {time}")
     return encode(time), encode(-time, strict=True)
 
 
 def _throughout(window: Window) -> tuple[int, int]:
-    """The bounds on start and on the negated finish that say: throughout the window."""
+    """Return the bounds on start and on the negated finish that say: throughout the window."""
     return encode(window.begin), encode(-window.end)
 
 
 def _within(window: Window) -> tuple[int, int]:
-    """The bounds on start and on the negated finish that say: at some time in the window."""
+    """Return the bounds on start and on the negated finish that say: at some time in the window."""
     return encode(window.end, strict=True), encode(-window.begin, strict=True)

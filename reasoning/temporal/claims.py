@@ -11,7 +11,7 @@ from deixis.reasoning.constraints.proof import Proof, Rule
 from deixis.reasoning.geometry.allen import convex_pieces
 from deixis.reasoning.temporal.bounds import Bounds, bound_text
 from deixis.reasoning.temporal.endpoints import necessary_orders
-from deixis.reasoning.temporal.fluent import ORIGIN, AllenStatement, Difference, Fluent
+from deixis.reasoning.temporal.fluent import ORIGIN, AllenStatement, EndDifference, Fluent
 from deixis.reasoning.temporal.network import DifferenceConstraint, SimpleTemporalNetwork, difference
 
 
@@ -61,18 +61,18 @@ class Claim:
 
 
 def ends(fluent: str) -> tuple[str, str]:
-    """The names of a fluent's two ends."""
+    """Return the names of a fluent's two ends."""
     return f"{fluent}.start", f"{fluent}.finish"
 
 
 def proper_interval(fluent: str) -> DifferenceConstraint:
-    """That a fluent starts before it finishes."""
+    """Return the constraint that a fluent starts before it finishes."""
     start, finish = ends(fluent)
     return DifferenceConstraint(finish, start, STRICT, Proof(f"{start} < {finish}", Rule.PROPER_INTERVAL))
 
 
 def allen_constraints(a: str, relations: int, b: str, why: Proof[str]) -> tuple[DifferenceConstraint, ...]:
-    """The difference constraints that a convex set of Allen relations is, by definition of it."""
+    """Return the difference constraints that a convex set of Allen relations is, by definition of it."""
     names = ends(a) + ends(b)
     found = []
     for tail, head, code in necessary_orders(relations):
@@ -81,11 +81,11 @@ def allen_constraints(a: str, relations: int, b: str, why: Proof[str]) -> tuple[
     return tuple(found)
 
 
-def claims_of(item: Fluent | AllenStatement | Difference) -> tuple[Claim, ...]:
-    """What a fluent's bounds, a difference or a relation claim, statement by statement."""
+def claims_of(item: Fluent | AllenStatement | EndDifference) -> tuple[Claim, ...]:
+    """Return what a fluent's bounds, a difference or a relation claim, statement by statement."""
     if isinstance(item, AllenStatement):
         return (_allen_claim(item),) if item.relations != ALL_ALLEN else ()
-    if isinstance(item, Difference):
+    if isinstance(item, EndDifference):
         return _bounds_claim(item.tail, item.head, item.bounds, str(item), item.source)
     start, finish = item.points
     places = [f"{item.source}.{end}" if item.source else None for end in ("start", "finish")]
@@ -96,7 +96,7 @@ def claims_of(item: Fluent | AllenStatement | Difference) -> tuple[Claim, ...]:
 
 
 def _bounds_claim(tail: str, head: str, bounds: Bounds, text: str, source: str | None) -> tuple[Claim, ...]:
-    """The claim that a difference lies within bounds; none where nothing bounds it."""
+    """Return the claim that a difference lies within bounds; none where nothing bounds it."""
     constraints = difference(tail, head, bounds, source)
     if len(constraints) < 2:
         return tuple(Claim(constraint.why, (constraint,)) for constraint in constraints)
@@ -111,7 +111,7 @@ def _allen_claim(item: AllenStatement) -> Claim:
 
 
 def network_of(fluents: Iterable[str]) -> SimpleTemporalNetwork:
-    """A network with the ends of fluents, each of which starts before it finishes."""
+    """Return a network with the ends of fluents, each of which starts before it finishes."""
     network = SimpleTemporalNetwork()
     for fluent in fluents:
         add_fluent(network, fluent)
@@ -119,12 +119,12 @@ def network_of(fluents: Iterable[str]) -> SimpleTemporalNetwork:
 
 
 def add_fluent(network: SimpleTemporalNetwork, fluent: str) -> None:
-    """Adds a fluent's two ends, of which nothing else is known."""
+    """Add a fluent's two ends, of which nothing else is known."""
     for point in ends(fluent):
         network.add_point(point)
     network.add([proper_interval(fluent)])
 
 
 def disjunctions(claims: Iterable[Claim]) -> Iterator[Disjunction]:
-    """The claims that are disjunctions."""
+    """Return the claims that are disjunctions."""
     return (claim.disjunction for claim in claims if claim.disjunction is not None)

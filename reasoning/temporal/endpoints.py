@@ -25,7 +25,7 @@ Constraint = tuple[int, int, int]
 
 @cache
 def necessary_orders(mask: int) -> tuple[Constraint, ...]:
-    """As few orders of end points as say the convex hull of a mask, as difference constraints.
+    """Return as few orders of end points as say the convex hull of a mask, as difference constraints.
 
     >>> necessary_orders(1 << Allen.BEFORE) == ((START_B, FINISH_A, 0),)  # a.finish - b.start < 0
     True
@@ -35,7 +35,7 @@ def necessary_orders(mask: int) -> tuple[Constraint, ...]:
 
 @cache
 def _definitions() -> NDArray[np.int64]:
-    """The constraints that define each Allen relation, shape (13, k, 3), padded with unbounded ones."""
+    """Return the constraints that define each Allen relation, shape (13, k, 3), padded with unbounded ones."""
     rows = [necessary_orders(1 << relation) for relation in Allen]
     table = np.full((13, max(map(len, rows)), 3), UNBOUNDED, dtype=np.int64)
     for relation, row in enumerate(rows):
@@ -44,7 +44,7 @@ def _definitions() -> NDArray[np.int64]:
 
 
 def masks_of_pairs(distances: NDArray[np.int64], pairs: NDArray[np.int64]) -> NDArray[np.uint16]:
-    """The Allen relations that pairs of fluents may bear to each other, by minimal distances between points.
+    """Return the Allen relations that pairs of fluents may bear to each other, by minimal distances between points.
 
     ``distances`` (m, m) must be closed; ``pairs`` (p, 4) holds the indices of START_A, FINISH_A, START_B, FINISH_B.
     Returns 13-bit masks, shape (p,). A relation is in the mask just where some choice of times within the distances
@@ -60,7 +60,7 @@ def masks_of_pairs(distances: NDArray[np.int64], pairs: NDArray[np.int64]) -> ND
 def allen_masks(
     distances: NDArray[np.int64], starts: NDArray[np.int64], finishes: NDArray[np.int64]
 ) -> NDArray[np.uint16]:
-    """The same for all ordered pairs of n fluents, given the points of their ends: shape (n, n)."""
+    """Return the same for all ordered pairs of n fluents, given the points of their ends: shape (n, n)."""
     n = len(starts)
     first, second = np.triu_indices(n, 1)
     pairs = np.stack([starts[first], finishes[first], starts[second], finishes[second]], axis=1).astype(np.int64)
@@ -71,7 +71,7 @@ def allen_masks(
 
 
 def converse_masks(masks: NDArray[np.uint16]) -> NDArray[np.uint16]:
-    """The converse of each mask: bit i goes to bit 12 - i."""
+    """Return the converse of each mask: bit i goes to bit 12 - i."""
     found = np.zeros_like(masks)
     for code in range(13):
         found |= ((masks >> code) & 1) << (12 - code)
@@ -79,7 +79,7 @@ def converse_masks(masks: NDArray[np.uint16]) -> NDArray[np.uint16]:
 
 
 def masks_from_bounds(starts: list[Bounds], finishes: list[Bounds]) -> NDArray[np.uint16]:
-    """The Allen relations that n fluents admit by the bounds of their starts and finishes alone: shape (n, n).
+    """Return the Allen relations that n fluents admit by the bounds of their starts and finishes alone: shape (n, n).
 
     Exact: a relation is in the mask just where some times within the bounds, each start before its finish, realise it.
 
@@ -95,7 +95,7 @@ def masks_from_bounds(starts: list[Bounds], finishes: list[Bounds]) -> NDArray[n
 
 
 def distances_from_bounds(starts: list[Bounds], finishes: list[Bounds]) -> NDArray[np.int64]:
-    """Closed distances among the origin (0), n starts (1 to n) and n finishes: shape (2 n + 1, 2 n + 1)."""
+    """Return closed distances among the origin (0), n starts (1 to n) and n finishes: shape (2 n + 1, 2 n + 1)."""
     n = len(starts)
     upper = np.array([ZERO, *(b.at_most for b in (*starts, *finishes))], dtype=np.int64)
     lower = np.array([ZERO, *(b.at_least for b in (*starts, *finishes))], dtype=np.int64)

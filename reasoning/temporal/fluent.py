@@ -47,7 +47,7 @@ class Pattern:
     object: str | None = None
 
     def matches(self, statement: Statement) -> bool:
-        """Whether a statement is one of them."""
+        """Return whether a statement is one of them."""
         return (
             self.subject in (None, statement.subject)
             and self.predicate in (None, statement.predicate)
@@ -124,12 +124,12 @@ class AllenStatement:
 
 
 @dataclass(frozen=True, slots=True)
-class Difference:
+class EndDifference:
     """That the time from one point to another lies within bounds, in seconds.
 
     A point is ``ID.start`` or ``ID.finish`` of a fluent, or ``origin``. Raises FluentError where both are the same.
 
-    >>> str(Difference("f1.finish", "f2.start", Bounds(0, 5)))
+    >>> str(EndDifference("f1.finish", "f2.start", Bounds(0, 5)))
     'f2.start - f1.finish in [0, 5]'
     """
 
@@ -152,7 +152,7 @@ class Difference:
         return f"{self.head} - {self.tail} in {self.bounds}"
 
 
-TemporalRelation = AllenStatement | Difference
+TemporalRelation = AllenStatement | EndDifference
 
 
 def _place(source: str | None) -> str:
@@ -160,7 +160,7 @@ def _place(source: str | None) -> str:
 
 
 def allen_text(a: str, mask: int, b: str) -> str:
-    """A set of Allen relations between two fluents, in words."""
+    """Return a set of Allen relations between two fluents, in words."""
     if mask == ALL_ALLEN:
         return f"any relation({a}, {b})"
     return " or ".join(relation.name.lower() for relation in members(mask)) + f"({a}, {b})"

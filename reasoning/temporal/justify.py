@@ -21,25 +21,25 @@ from deixis.reasoning.temporal.network import SimpleTemporalNetwork
 from deixis.reasoning.temporal.search import ScenarioSearch
 
 
-class Question(Protocol):
+class TimeQuestion(Protocol):
     """Something certain that a network can be asked for, as an integer, and the reasons for it."""
 
     def answer(self, network: SimpleTemporalNetwork) -> int:
-        """What the network says."""
+        """Return what the network says."""
 
     def joined(self, answers: Sequence[int]) -> int:
-        """What can still be said where it is one of several answers."""
+        """Return what can still be said where it is one of several answers."""
 
     def text(self, answer: int) -> str:
-        """An answer in words."""
+        """Return an answer in words."""
 
     def explain(self, network: SimpleTemporalNetwork) -> Proof[str] | None:
-        """Why the network says so; None where it says nothing."""
+        """Return why the network says so; None where it says nothing."""
 
     def restricted(
-        self, why: Proof[str] | None, network: SimpleTemporalNetwork, open: Sequence[Disjunction]
+        self, why: Proof[str] | None, network: SimpleTemporalNetwork, undecided: Sequence[Disjunction]
     ) -> Proof[str] | None:
-        """The explanation by the network, and by open disjunctions taken each by itself."""
+        """Return the explanation by the network, and by open disjunctions taken each by itself."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,9 +62,9 @@ class BoundQuestion:
         return network.explain(self.tail, self.head)
 
     def restricted(
-        self, why: Proof[str] | None, network: SimpleTemporalNetwork, open: Sequence[Disjunction]
+        self, why: Proof[str] | None, network: SimpleTemporalNetwork, undecided: Sequence[Disjunction]
     ) -> Proof[str] | None:
-        """An open choice by itself bounds no time."""
+        """Leave the answer as it is: an open choice by itself bounds no time."""
         return why
 
 
@@ -86,7 +86,8 @@ class RelationQuestion:
         return allen_text(self.a, answer, self.b)
 
     def explain(self, network: SimpleTemporalNetwork) -> Proof[str] | None:
-        """The orders of end points that say it; a relation that only several orders exclude together is refuted."""
+        """Return the orders of end points that say it; a relation that only several orders exclude together is
+        refuted."""
         mask = self.answer(network)
         if self.a == self.b:
             return Proof(self.text(mask), Rule.DEFINITION)
@@ -104,12 +105,12 @@ class RelationQuestion:
         return Proof(self.text(mask), Rule.DEFINITION, tuple(premises))
 
     def restricted(
-        self, why: Proof[str] | None, network: SimpleTemporalNetwork, open: Sequence[Disjunction]
+        self, why: Proof[str] | None, network: SimpleTemporalNetwork, undecided: Sequence[Disjunction]
     ) -> Proof[str] | None:
-        """What is stated of the two fluents counts too."""
+        """Return the answer that counts what is stated of the two fluents too."""
         left = before = self.answer(network)
         premises = [] if why is None else [why]
-        for disjunction in open:
+        for disjunction in undecided:
             if {disjunction.a, disjunction.b} != {self.a, self.b}:
                 continue
             stated = np.array([disjunction.relations], dtype=np.uint16)
@@ -121,13 +122,14 @@ class RelationQuestion:
 
 
 def justify(
-    question: Question,
+    question: TimeQuestion,
     network: SimpleTemporalNetwork,
     disjunctions: Sequence[Disjunction],
     deadline: Deadline,
     most: int,
 ) -> Proof[str] | None:
-    """Why the answer to a question is what it is; None where there is nothing to say, or the disjunctions conflict.
+    """Return why the answer to a question is what it is; None where there is nothing to say, or the disjunctions
+    conflict.
 
     Disjunctions that stay open are gone through case by case, up to ``most`` cases and until the deadline, and where
     the cases agree on more than the network alone says, they are the explanation. The network is changed.
@@ -135,7 +137,7 @@ def justify(
     forced = ScenarioSearch(network, disjunctions, deadline, explain=True)
     if forced.propagate() is SearchOutcome.REFUTED:
         return None
-    open = forced.still_open()
+    undecided = forced.still_open()
     answers: list[int] = []
     cases: list[Proof[str]] = []
 
@@ -145,10 +147,12 @@ def justify(
         if case is not None:
             cases.append(case)
 
-    found, complete = ScenarioSearch(network, open, deadline, explain=True).visit(look, most) if open else (0, False)
+    found, complete = (
+        ScenarioSearch(network, undecided, deadline, explain=True).visit(look, most) if undecided else (0, False)
+    )
     if complete and len(cases) == found > 0:
         joined = question.joined(answers)
         if joined != question.answer(network):
-            premises = (*(disjunction.why for disjunction in open), *cases)
+            premises = (*(disjunction.why for disjunction in undecided), *cases)
             return Proof(question.text(joined), Rule.CASES, premises)
-    return question.restricted(question.explain(network), network, open)
+    return question.restricted(question.explain(network), network, undecided)

@@ -12,7 +12,8 @@ _UNBOUNDED = 1 << 62
 
 @njit(cache=True)
 def _realisable(four, constraints):  # type: ignore[no-untyped-def]
-    """Whether constraints (k, 3: tail, head, code) can be added to a closed network of four points; changes it."""
+    """Return whether constraints (k, 3: tail, head, code) can be added to a closed network of four points; changes
+    it."""
     for k in range(len(constraints)):
         tail, head, code = constraints[k]
         if code >= _UNBOUNDED or code >= four[tail, head]:
@@ -30,7 +31,7 @@ def _realisable(four, constraints):  # type: ignore[no-untyped-def]
 
 @njit(cache=True)
 def admitted(distances, pairs, definitions):  # type: ignore[no-untyped-def]
-    """The Allen relations that each pair of fluents may bear: masks, shape (p,) uint16.
+    """Return the Allen relations that each pair of fluents may bear: masks, shape (p,) uint16.
 
     ``distances`` (m, m) are the tightest bounds on *column point minus row point*, as codes. ``pairs`` (p, 4) holds the
     points of start and finish of the first fluent and of the second; ``definitions`` (13, k, 3) the constraints that

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from deixis.reasoning.constraints.difference import UNBOUNDED, Difference, DifferenceNetwork, add
 from deixis.reasoning.constraints.proof import Proof, Rule
 from deixis.reasoning.errors import LimitError
-from deixis.reasoning.temporal.bounds import FARTHEST, TICKS, Bounds, bound_text
+from deixis.reasoning.temporal.bounds import MAX_SECONDS, TICKS, Bounds, bound_text
 from deixis.reasoning.temporal.errors import TemporalConflictError, UnknownFluentError
 from deixis.reasoning.temporal.fluent import ORIGIN
 
@@ -74,14 +74,14 @@ class SimpleTemporalNetwork:
         return distances
 
     def index(self, point: str) -> int:
-        """The row of a point; raises UnknownFluentError where there is none."""
+        """Return the row of a point; raises UnknownFluentError where there is none."""
         try:
             return self._index[point]
         except KeyError:
             raise UnknownFluentError("time point", point, self._index) from None
 
     def add_point(self, point: str) -> None:
-        """Adds a point, if it is not there yet; raises LimitError beyond ``MAX_POINTS``."""
+        """Add a point, if it is not there yet; raise LimitError beyond ``MAX_POINTS``."""
         if point in self._index:
             return
         if len(self._index) == MAX_POINTS:
@@ -90,15 +90,15 @@ class SimpleTemporalNetwork:
         self.differences.add_point()
 
     def code(self, tail: str, head: str) -> int:
-        """The tightest upper bound on ``head - tail``, as a code."""
+        """Return the tightest upper bound on ``head - tail``, as a code."""
         return int(self.distances[self.index(tail), self.index(head)])
 
     def bounds(self, tail: str, head: str) -> Bounds:
-        """The tightest bounds on ``head - tail``, in seconds."""
+        """Return the tightest bounds on ``head - tail``, in seconds."""
         return Bounds.from_codes(self.code(head, tail), self.code(tail, head))
 
     def add(self, constraints: Sequence[DifferenceConstraint]) -> None:
-        """Takes in constraints, all or none.
+        """Take in constraints, all or none.
 
         Raises TemporalConflictError, with the negative cycle, where they contradict what is there; LimitError where
         differences add up to more than can be told exactly. Nothing is changed then.
@@ -107,8 +107,13 @@ class SimpleTemporalNetwork:
             raise TemporalConflictError(self.refutation(constraints), minimal=False)
 
     def try_add(self, constraints: Sequence[DifferenceConstraint]) -> bool:
-        """The same; False, and nothing changed, where a negative cycle would close."""
-        self._require_summable(constraints)
+        """Return the same; False, and nothing changed, where a negative cycle would close."""
+        for each in constraints:
+            self.index(each.tail), self.index(each.head)
+        # a simple path passes every constraint at most once, so their sum bounds its length
+        total = self._between + sum(map(_size, constraints))
+        if total > MAX_TOTAL or any(abs(c.code >> 1) > MAX_SECONDS * TICKS for c in constraints):
+            raise LimitError("the stated times are too long to be added up exactly; is the unit right?")
         length = len(self._constraints)
         if all(self._take_in(constraint) for constraint in constraints):
             return True
@@ -125,33 +130,25 @@ class SimpleTemporalNetwork:
     def _difference(self, constraint: DifferenceConstraint) -> Difference:
         return Difference(0, self.index(constraint.tail), self.index(constraint.head), constraint.code)
 
-    def _require_summable(self, constraints: Sequence[DifferenceConstraint]) -> None:
-        """A simple path passes every constraint once at the most, so their sum bounds its length."""
-        for constraint in constraints:
-            self.index(constraint.tail), self.index(constraint.head)
-        total = self._between + sum(map(_size, constraints))
-        if total > MAX_TOTAL or any(abs(c.code >> 1) > FARTHEST * TICKS for c in constraints):
-            raise LimitError("the stated times are too long to be added up exactly; is the unit right?")
-
     def back(self, length: int) -> None:
-        """Takes back the constraints added last, until ``length`` are left, as far as :meth:`keep` allows."""
+        """Take back the constraints added last, until ``length`` are left, as far as :meth:`keep` allows."""
         self.differences.back(length)
         self._between -= sum(map(_size, self._constraints[length:]))
         del self._constraints[length:]
 
     def keep(self) -> None:
-        """Forgets how to take back what was added so far, and the memory that it takes."""
+        """Forget how to take back what was added so far, and the memory that it takes."""
         self.differences.keep()
 
     def retract(self, constraints: Iterable[DifferenceConstraint]) -> None:
-        """Takes constraints away, each once, and works everything out again."""
+        """Take constraints away, each once, and work everything out again."""
         for constraint in constraints:
             self._constraints.remove(constraint)
         self._between = sum(map(_size, self._constraints))
         self.differences.replace([self._difference(constraint) for constraint in self._constraints])
 
     def copy(self) -> SimpleTemporalNetwork:
-        """A network with the same points and constraints, that changes by itself."""
+        """Return a network with the same points and constraints, that changes by itself."""
         other = SimpleTemporalNetwork()
         other.differences = self.differences.copy()
         other._index = dict(self._index)
@@ -160,7 +157,8 @@ class SimpleTemporalNetwork:
         return other
 
     def explain(self, tail: str, head: str) -> Proof[str] | None:
-        """Why ``head - tail`` is bounded as it is: the fewest constraints that add up to it; None where it is not."""
+        """Return why ``head - tail`` is bounded as it is: the fewest constraints that add up to it; None where it is
+        not."""
         code = self.code(tail, head)
         if code >= UNBOUNDED or tail == head:
             return None
@@ -169,7 +167,7 @@ class SimpleTemporalNetwork:
         return path[0] if len(path) == 1 and path[0].claim == text else Proof(text, Rule.SHORTEST_PATH, tuple(path))
 
     def refutation(self, constraints: Sequence[DifferenceConstraint]) -> Proof[str]:
-        """The negative cycle that constraints would close, which :meth:`try_add` refuses; changes nothing.
+        """Return the negative cycle that constraints would close, which :meth:`try_add` refuses; changes nothing.
 
         The cycle is simple: it passes each of its points once.
         """
@@ -180,24 +178,24 @@ class SimpleTemporalNetwork:
         return proof
 
     def cycle(self, refused: DifferenceConstraint) -> Proof[str]:
-        """The negative cycle that a constraint closes with those that are there."""
+        """Return the negative cycle that a constraint closes with those that are there."""
         cycle = [refused, *(self._constraints[k] for k in self.differences.cycle(self._difference(refused)))]
         code = add(self.code(refused.head, refused.tail), refused.code)
         point = next((c.tail for c in cycle if c.tail != ORIGIN), ORIGIN)
         return Proof(bound_text(point, point, code, ORIGIN), Rule.NEGATIVE_CYCLE, tuple(c.why for c in cycle))
 
     def record(self, length: int, constraints: Sequence[DifferenceConstraint]) -> None:
-        """Says what the differences are, from the one of that number on, that a search has added by itself."""
+        """Say what the differences are, from the one of that number on, that a search has added by itself."""
         self._constraints[length:] = constraints
 
 
 def _size(constraint: DifferenceConstraint) -> int:
-    """What a constraint can add to a path beyond the two that touch the origin."""
+    """Return what a constraint can add to a path beyond the two that touch the origin."""
     return 0 if ORIGIN in (constraint.tail, constraint.head) else abs(constraint.code >> 1)
 
 
 def difference(tail: str, head: str, bounds: Bounds, source: str | None = None) -> tuple[DifferenceConstraint, ...]:
-    """The constraints, at most two, that say that ``head - tail`` lies within bounds, as stated ones."""
+    """Return the constraints, at most two, that say that ``head - tail`` lies within bounds, as stated ones."""
     found = []
     for start, end, code in ((tail, head, bounds.at_most), (head, tail, bounds.at_least)):
         if code < UNBOUNDED:

@@ -42,11 +42,11 @@ class ScenarioSearch(Search):
         self._against: dict[Level, list[Proof[str]]] = {}  # why the pieces that were tried fail
 
     def still_open(self) -> list[Disjunction]:
-        """The disjunctions that are neither decided nor implied."""
+        """Return the disjunctions that are neither decided nor implied."""
         return [self._disjunctions[k] for k in self.open()]
 
     def visit(self, look: Callable[[], None], most: int) -> tuple[int, bool]:
-        """Calls ``look`` while the network holds each scenario, ``most`` at the most.
+        """Call ``look`` while the network holds each scenario, ``most`` at the most.
 
         Returns how many there were, and whether these are all. The network is as before in the end.
         """
@@ -110,7 +110,7 @@ def _clause(network: SimpleTemporalNetwork, disjunction: Disjunction) -> Clause:
 
 
 def refuted(claims: Sequence[Claim], deadline: Deadline) -> Proof[str] | None:
-    """The proof that claims cannot all hold; None where they can, or where the deadline comes first."""
+    """Return the proof that claims cannot all hold; None where they can, or where the deadline comes first."""
     network = network_of(dict.fromkeys(fluent for claim in claims for fluent in claim.fluents))
     for claim in claims:
         if not network.try_add(claim.constraints):
@@ -120,7 +120,7 @@ def refuted(claims: Sequence[Claim], deadline: Deadline) -> Proof[str] | None:
 
 
 def minimal_conflict(claims: Sequence[Claim], proof: Proof[str], deadline: Deadline) -> TemporalConflictError:
-    """The error for claims that a proof refutes, with every claim dropped that the contradiction does without.
+    """Return the error for claims that a proof refutes, with every claim dropped that the contradiction does without.
 
     Only what the proof rests on is looked at. At the deadline dropping stops, and the error says that
     it may not be minimal.

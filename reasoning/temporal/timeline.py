@@ -18,7 +18,7 @@ from deixis.reasoning.temporal.claims import Claim, Disjunction, add_fluent, cla
 from deixis.reasoning.temporal.endpoints import allen_masks, converse_masks
 from deixis.reasoning.temporal.errors import FluentError, TemporalConflictError, UnknownFluentError
 from deixis.reasoning.temporal.fluent import Fluent, TemporalRelation
-from deixis.reasoning.temporal.justify import BoundQuestion, Question, RelationQuestion, justify
+from deixis.reasoning.temporal.justify import BoundQuestion, RelationQuestion, TimeQuestion, justify
 from deixis.reasoning.temporal.network import SimpleTemporalNetwork
 from deixis.reasoning.temporal.search import ScenarioSearch, minimal_conflict, refuted
 
@@ -30,11 +30,11 @@ class Timeline:
     """Fluents, and what is stated of their times.
 
     >>> from deixis.reasoning.temporal.bounds import Bounds
-    >>> from deixis.reasoning.temporal.fluent import AllenStatement, Difference, Statement
+    >>> from deixis.reasoning.temporal.fluent import AllenStatement, EndDifference, Statement
     >>> timeline = Timeline([Fluent("f1", Statement("cup", "on", "tray"), Bounds(0, 2), Bounds(5, 9))])
     >>> timeline.add(Fluent("f2", Statement("cup", "on", "table")))
     >>> timeline.add(AllenStatement("f1", 0b11, "f2"))  # before or meets
-    >>> timeline.add(Difference("f1.finish", "f2.start", Bounds(1, 2)))
+    >>> timeline.add(EndDifference("f1.finish", "f2.start", Bounds(1, 2)))
     >>> str(timeline.chronology().start("f2"))
     '[6, 11]'
 
@@ -60,7 +60,7 @@ class Timeline:
         return self._network
 
     def add(self, item: Fluent | TemporalRelation, time_limit: float = 10.0) -> None:
-        """Takes in a fluent or a relation; one that is stated already changes nothing.
+        """Take in a fluent or a relation; one that is stated already changes nothing.
 
         The time limit, in seconds, is for making the explanation of a contradiction minimal.
         """
@@ -83,38 +83,35 @@ class Timeline:
         if isinstance(item, Fluent):
             self._fluents[item.id] = item
 
-    def fluent(self, id: str) -> Fluent:
-        """A fluent by its id; raises UnknownFluentError where there is none."""
+    def fluent(self, fluent_id: str) -> Fluent:
+        """Return a fluent by its id; raises UnknownFluentError where there is none."""
         try:
-            return self._fluents[id]
+            return self._fluents[fluent_id]
         except KeyError:
-            raise UnknownFluentError("fluent", id, self._fluents) from None
+            raise UnknownFluentError("fluent", fluent_id, self._fluents) from None
 
     def retract(self, item: Fluent | TemporalRelation) -> None:
-        """Takes back what was stated, and works the rest out again.
+        """Take back what was stated, and work the rest out again.
 
         Raises UnknownFluentError where it was not stated, FluentError for a fluent to which relations are stated.
         """
         if item not in self._claims:
             raise UnknownFluentError("statement", str(item), map(str, self._claims))
         if isinstance(item, Fluent):
-            self._require_unrelated(item.id)
+            related = [other for other in self._claims if not isinstance(other, Fluent) and item.id in other.fluents]
+            if related:
+                raise FluentError(f"take back '{related[0]}' first: it is about the fluent '{item.id}'")
             del self._fluents[item.id], self._claims[item]
             self._network = network_of(self._fluents)
             self._network.add([c for claim in self._all_claims() for c in claim.constraints])
         else:
             self._network.retract(c for claim in self._claims.pop(item) for c in claim.constraints)
 
-    def _require_unrelated(self, fluent: str) -> None:
-        related = [item for item in self._claims if not isinstance(item, Fluent) and fluent in item.fluents]
-        if related:
-            raise FluentError(f"take back '{related[0]}' first: it is about the fluent '{fluent}'")
-
     def _all_claims(self) -> list[Claim]:
         return [claim for claims in self._claims.values() for claim in claims]
 
     def chronology(self, time_limit: float = 10.0) -> Chronology:
-        """What follows of the times of all fluents: tightened bounds, and the relations left to every pair.
+        """Return what follows of the times of all fluents: tightened bounds, and the relations left to every pair.
 
         Raises TemporalConflictError where the disjunctions cannot be satisfied together; to prove it in as few
         statements as can be may take as long again. Where the time limit, in seconds, comes before that is known, the
@@ -126,22 +123,23 @@ class Timeline:
         forced = ScenarioSearch(network, list(disjunctions(claims)), deadline)
         if forced.propagate() is SearchOutcome.REFUTED:
             raise self._conflict(claims, time_limit)
-        open = forced.still_open()
+        undecided = forced.still_open()
         views = _Views(self.fluents, network)
-        if not open:
+        if not undecided:
             views.look()
             return views.chronology(Status.CONSISTENT, exact=True)
-        found, complete = ScenarioSearch(network, open, deadline).visit(views.look, MAX_SCENARIOS)
+        found, complete = ScenarioSearch(network, undecided, deadline).visit(views.look, MAX_SCENARIOS)
         if complete and not found:
             raise self._conflict(claims, time_limit)
         if not complete:
             views.forget()
             views.look()
-            views.restrict(open)
+            views.restrict(undecided)
         return views.chronology(Status.CONSISTENT if found else Status.UNDECIDED, complete)
 
     def _conflict(self, claims: list[Claim], time_limit: float) -> TemporalConflictError:
-        """The conflict between disjunctions: proved again with its reasons, then made minimal, as time allows."""
+        """Return the conflict between disjunctions: proved again with its reasons, then made minimal, as time
+        allows."""
         deadline = Deadline.after(time_limit)
         proof = refuted(claims, deadline)
         if proof is None:
@@ -151,11 +149,11 @@ class Timeline:
         return minimal_conflict(claims, proof, deadline)
 
     def explain_relation(self, a: str, b: str, time_limit: float = 10.0) -> Proof[str] | None:
-        """Why fluent a bears to fluent b one of the relations that are left to them; None where all are."""
+        """Return why fluent a bears to fluent b one of the relations that are left to them; None where all are."""
         return self._justify(RelationQuestion(self.fluent(a).id, self.fluent(b).id), time_limit)
 
     def explain_bound(self, tail: str, head: str, time_limit: float = 10.0) -> Proof[str] | None:
-        """Why ``head - tail`` is at most what it is, for two points; None where nothing bounds it.
+        """Return why ``head - tail`` is at most what it is, for two points; None where nothing bounds it.
 
         A point is ``ID.start`` or ``ID.finish``, or ``origin``: the upper bound of a fluent's start is
         ``explain_bound("origin", "f1.start")``, its lower bound ``explain_bound("f1.start", "origin")``.
@@ -163,7 +161,7 @@ class Timeline:
         self._network.index(tail), self._network.index(head)
         return self._justify(BoundQuestion(tail, head), time_limit)
 
-    def _justify(self, question: Question, time_limit: float) -> Proof[str] | None:
+    def _justify(self, question: TimeQuestion, time_limit: float) -> Proof[str] | None:
         deadline = Deadline.after(time_limit)
         return justify(question, self._network.copy(), list(disjunctions(self._all_claims())), deadline, MAX_SCENARIOS)
 
@@ -189,7 +187,7 @@ class _Views:
         self._masks |= allen_masks(distances, self._starts, self._finishes)
 
     def restrict(self, disjunctions: Iterable[Disjunction]) -> None:
-        """Leaves to the pairs of disjunctions no more than these say."""
+        """Leave to the pairs of disjunctions no more than these say."""
         places = {fluent.id: place for place, fluent in enumerate(self._fluents)}
         for disjunction in disjunctions:
             a, b = places[disjunction.a], places[disjunction.b]

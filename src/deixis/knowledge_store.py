@@ -38,26 +38,28 @@ class KnowledgeStore(Closing):
         return self._memory.path
 
     def close(self) -> None:
-        """Lets go of the memory; what would need it afterwards raises MemoryFormatError."""
+        """Let go of the memory; what would need it afterwards raises MemoryFormatError."""
         self._meaning = None
         self._memory.close()
 
     def require_usable(self) -> None:
-        """Raises MemoryFormatError where this was closed."""
+        """Raise MemoryFormatError where this was closed."""
         self._memory.require_usable()
 
     def exists(self) -> bool:
-        """Whether there is a memory at the path; raises MemoryFormatError where something else or a damaged one is."""
-        from deixis.memory.folder import State, inspect
+        """Return whether there is a memory at the path; raises MemoryFormatError where something else or a damaged
+        one is."""
+        from deixis.memory.folder import FolderState, inspect
 
-        return self._memory.is_open or inspect(self.path) not in (State.ABSENT, State.EMPTY)
+        return self._memory.is_open or inspect(self.path) not in (FolderState.ABSENT, FolderState.EMPTY)
 
     def memory(self, create: bool = False) -> SemanticMemory:
-        """The open memory; raises DeixisError where there is none and ``create`` is not set."""
+        """Return the open memory; raises DeixisError where there is none and ``create`` is not set."""
         return self._memory.get(create)
 
     def meaning(self) -> Meaning:
-        """The words and sizes in force: what is shipped, but for what was learned; where there is no memory, all of it.
+        """Return the words and sizes in force: what is shipped, but for what was learned; where there is no memory, all
+        of it.
 
         Raises OntologyError where a learned model in the memory is not whole, MemoryBusyError where another process
         has the memory.
@@ -77,7 +79,7 @@ class KnowledgeStore(Closing):
         return Meaning(shipped_models().replaced(*words) if words else None, sizes)
 
     def recollection(self) -> Recollection:
-        """All lessons of the memory, ready to be learned from; none where there is no memory."""
+        """Return all lessons of the memory, ready to be learned from; none where there is no memory."""
         from deixis.learning.recollection import Recollection
         from deixis.learning.update import remembered
 
@@ -91,7 +93,7 @@ class KnowledgeStore(Closing):
         self._meaning = None
 
     def learn_relations(self, examples: Sequence[tuple[Script, Scene]] = (), strength: float = 3.0) -> LearnedWords:
-        """Fits what relation words mean to everything remembered, and to examples: scripts, each with a labelled scene.
+        """Fit what relation words mean to everything remembered, and to examples: scripts, each with a labelled scene.
 
         The examples are kept as lessons, and the models take the place of those that were learned before. Raises
         NothingFoundError, having changed nothing, where there is nothing to learn from; SettingError for a strength
@@ -100,7 +102,7 @@ class KnowledgeStore(Closing):
         from deixis.learning.update import keep_words
         from deixis.learning.words import new_lessons
 
-        taken = self.memory().knows if self.exists() else lambda id: False
+        taken = self.memory().knows if self.exists() else lambda view_id: False
         lessons, left_out = new_lessons(examples, self.recollection(), taken)
         if not lessons and not self.exists():
             none = f"nothing is remembered at {self.path}, and no example teaches anything"
@@ -110,14 +112,14 @@ class KnowledgeStore(Closing):
         return replace(learned, kept=tuple(lesson.id for lesson in lessons), left_out=(*learned.left_out, *left_out))
 
     def forget_relations(self) -> None:
-        """Takes the learned models of relation words away: the shipped ones are in force again. Lessons stay."""
+        """Take the learned models of relation words away: the shipped ones are in force again. Lessons stay."""
         from deixis.memory.semantic.rdf.graphs import ModelSet
 
         self.memory().keep_models({ModelSet.WORDS: []})
         self._meaning = None
 
     def forget(self, lesson: str) -> None:
-        """Takes back one lesson, with everything that follows from it alone, and what it taught of words and sizes.
+        """Take back one lesson, with everything that follows from it alone, and what it taught of words and sizes.
 
         What it kept of how things look stays.
         """
@@ -127,7 +129,7 @@ class KnowledgeStore(Closing):
         self._meaning = None
 
     def import_(self, file: str | Path) -> None:
-        """Takes in what another memory exported, or plain triples; what is there stays.
+        """Take in what another memory exported, or plain triples; what is there stays.
 
         Raises InconsistencyError, having changed nothing, where what is there and what comes contradict each other.
         """
@@ -139,30 +141,31 @@ class KnowledgeStore(Closing):
         take_in(file, self.path, self.ontology)
 
     def layouts(self) -> tuple[LayoutConcept, ...]:
-        """Every learned layout."""
+        """Return every learned layout."""
         from deixis.memory.semantic.rdf.graphs import GraphName
         from deixis.ontology.lessons.read import layouts
 
         return layouts(self.memory().triples(GraphName.LEARNED), self.ontology.relations)
 
     def layout(self, name: str) -> LayoutConcept:
-        """The layout of that name, learned last, or of the lesson with that id; raises UnknownTermError for none."""
+        """Return the layout of that name, learned last, or of the lesson with that id; raises UnknownTermError for
+        none."""
         from deixis.learning.recollection import find_layout
 
         return find_layout(self.memory(), name, self.ontology.relations)
 
     def show(self, name: str) -> str:
-        """A learned layout as a script again."""
+        """Return a learned layout as a script again."""
         from deixis.grammar.format import layout_script
 
         return layout_script(self.layout(name), self.ontology)
 
     def query(self, sparql: str) -> QueryResult:
-        """Asks SPARQL of everything remembered: SELECT, ASK, CONSTRUCT or DESCRIBE; nothing else is let in."""
+        """Ask SPARQL of everything remembered: SELECT, ASK, CONSTRUCT or DESCRIBE; nothing else is let in."""
         return self.memory().query(sparql)
 
     def owl(self) -> ObjectView:
-        """The ontology with everything learned as owlready2's objects: see :class:`ObjectView`.
+        """Return the ontology with everything learned as owlready2's objects: see :class:`ObjectView`.
 
         It has what is stated and what follows as they are now, and knows of no later change. Where there is no memory,
         it has the ontology alone.

@@ -43,21 +43,22 @@ class ViewStore(Closing):
         return self._memory.path
 
     def close(self) -> None:
-        """Lets go of the memory; what would need it afterwards raises MemoryFormatError."""
+        """Let go of the memory; what would need it afterwards raises MemoryFormatError."""
         self._memory.close()
 
     def exists(self) -> bool:
-        """Whether anything was ever taught."""
+        """Return whether anything was ever taught."""
         from deixis.memory.perceptual.in_folder import has_views
 
         return self._memory.is_open or has_views(self.path)
 
     def memory(self, create: bool = False) -> LevelMemory:
-        """The open perceptual memory; raises DeixisError where there is none and ``create`` is not set."""
+        """Return the open perceptual memory; raises DeixisError where there is none and ``create`` is not set."""
         return self._memory.get(create)
 
     def category_meant(self, name: str) -> str:
-        """The known category of that name, else the first that differs from it only in case, else the name itself."""
+        """Return the known category of that name, else the first that differs from it only in case, else the name
+        itself."""
         if not self.exists():
             return name
         known = self._despite_damage(self.memory(), lambda memory: memory.categories())
@@ -65,14 +66,14 @@ class ViewStore(Closing):
         return name if name in alike or not alike else alike[0]
 
     def keep(self, views: Sequence[View]) -> tuple[Taught, ...]:
-        """Keeps views, all or none. A damaged one in the way teaches nothing, and is mended where it is kept again."""
+        """Keep views, all or none. A damaged one in the way teaches nothing, and is mended where it is kept again."""
         from deixis.learning.views import keep_views
 
         memory = self.memory(create=True)
         return self._despite_damage(memory, lambda readable: keep_views(readable, views))
 
     def but_for_taught(self, views: Sequence[View]) -> tuple[list[View], tuple[StandingWord, ...]]:
-        """The views of a grounding that no teacher has named, and what is named otherwise."""
+        """Return the views of a grounding that no teacher has named, and what is named otherwise."""
         from deixis.learning.views import StandingWord, taught_by_hand
 
         named = taught_by_hand(self.memory(), views) if self.exists() else {}
@@ -86,7 +87,7 @@ class ViewStore(Closing):
 
     @contextmanager
     def keeping(self, views: Sequence[View]) -> Iterator[tuple[Taught, ...]]:
-        """Keeps views for what is done within, and takes them back where that fails.
+        """Keep views for what is done within, and take them back where that fails.
 
         Ended by force in between, it leaves the views: what they are called is what the grounding decided, and kept
         again they are the same views.
@@ -117,7 +118,7 @@ class ViewStore(Closing):
     def _despite_damage(
         self, memory: LevelMemory, work: Callable[[LevelMemory], Done], left_out: Callable[[str], None] | None = None
     ) -> Done:
-        """What is done with all views, or, where some are damaged, with the others."""
+        """Return what is done with all views, or, where some are damaged, with the others."""
         from deixis.memory.errors import DamagedMemoryError
         from deixis.memory.perceptual.in_folder import open_undamaged
 
@@ -132,7 +133,7 @@ class ViewStore(Closing):
             return done
 
     def categories(self, left_out: Callable[[str], None] | None = None) -> dict[str, int]:
-        """The names of what was taught, each with its number of views; ``left_out`` as in :meth:`known`."""
+        """Return the names of what was taught, each with its number of views; ``left_out`` as in :meth:`known`."""
         if not self.exists():
             return {}
         return self._despite_damage(self.memory(), _counted, left_out)
@@ -149,7 +150,7 @@ def _counted(memory: LevelMemory) -> dict[str, int]:
 
 
 def views_of_matches(scene: Scene, matches: Iterable[Match]) -> list[View]:
-    """What each decided thing looks like, where the scene has its cloud, under the name of its object.
+    """Return what each decided thing looks like, where the scene has its cloud, under the name of its object.
 
     Raises SceneError where two things have the same points.
     """
@@ -167,18 +168,19 @@ def views_of_matches(scene: Scene, matches: Iterable[Match]) -> list[View]:
     return views
 
 
-def view_of_thing(scene: Scene, object: str, category: str, teacher: str) -> View:
+def view_of_thing(scene: Scene, object_id: str, category: str, teacher: str) -> View:
     """Return a view of a thing of a scene, ready to be kept; raises SceneError where the scene has no points of it."""
     from deixis.learning.views import view_of
 
     file = scene.file if scene.file.startswith("<") else os.path.abspath(scene.file)
     boxes = hashlib.sha256(scene.boxes.tobytes()).hexdigest()[:16]
-    metadata = {"scene": file, "boxes": boxes, "object": object, "teacher": teacher}
-    return view_of(scene.cloud_of(object), scene.frame, category, datetime.now(UTC), metadata)
+    metadata = {"scene": file, "boxes": boxes, "object": object_id, "teacher": teacher}
+    return view_of(scene.cloud_of(object_id), scene.frame, category, datetime.now(UTC), metadata)
 
 
 def category_name(text: str) -> str:
-    """A category's name as scripts write it: ``dinner fork`` is ``dinner_fork``; raises SettingError for nothing."""
+    """Return a category's name as scripts write it: ``dinner fork`` is ``dinner_fork``; raises SettingError for
+    nothing."""
     from deixis.reasoning.errors import SettingError
 
     if not isinstance(text, str):
@@ -190,8 +192,8 @@ def category_name(text: str) -> str:
 
 
 def new_category_name(text: str) -> str:
-    """The same for what is to be taught; raises SettingError also for what no scene can have as a label, and for the
-    word that says that a thing is of no category."""
+    """Return the same for what is to be taught; raises SettingError also for what no scene can have as a label, and
+    for the word that says that a thing is of no category."""
     from deixis.reasoning.errors import SettingError
 
     name = category_name(text)

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def dataset_view(store: ox.Store) -> rdflib.Dataset:
-    """A view of a store's canonical graphs; the copies that say who contributed what are hidden."""
+    """Return a view of a store's canonical graphs; the copies that say who contributed what are hidden."""
     import rdflib
     from oxrdflib import OxigraphStore
     from oxrdflib._converter import from_ox, to_ox_quad_pattern
@@ -25,7 +25,7 @@ def dataset_view(store: ox.Store) -> rdflib.Dataset:
 
     class CanonicalGraphs(OxigraphStore):
         def triples(self, triple_pattern: Any, context: Any = None) -> Iterator[Any]:
-            if context is not None and not _is_union(context):
+            if context is not None and str(getattr(context, "identifier", context)) != "urn:x-rdflib:default":
                 return super().triples(triple_pattern, context)
             return self._union(triple_pattern)
 
@@ -77,7 +77,3 @@ class _Canonical:
         graphs = [*default_graph(self._store), *(graph for graph, name in CANONICAL.items() if name not in UNION)]
         kwargs |= {"use_default_graph_as_union": False, "default_graph": graphs, "named_graphs": [*CANONICAL]}
         return self._store.query(query, **kwargs)
-
-
-def _is_union(context: Any) -> bool:
-    return str(getattr(context, "identifier", context)) == "urn:x-rdflib:default"

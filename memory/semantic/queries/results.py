@@ -48,7 +48,7 @@ class QueryResult:
     def of(
         cls, kind: QueryKind, answer: ox.QuerySolutions | ox.QueryBoolean | ox.QueryTriples, ordered: bool
     ) -> QueryResult:
-        """What Oxigraph answers, read to its end."""
+        """Return what Oxigraph answers, read to its end."""
         if isinstance(answer, ox.QueryBoolean):
             return cls(kind, boolean=bool(answer))
         if isinstance(answer, ox.QuerySolutions):
@@ -57,11 +57,11 @@ class QueryResult:
         return cls(kind, triples=tuple(sorted(set(answer), key=str)))
 
     def printed(self) -> Sequence[Sequence[Term | None]]:
-        """The rows in the order in which they are printed."""
+        """Return the rows in the order in which they are printed."""
         return self.rows if self.ordered else sorted(self.rows, key=_row_key)
 
     def to_table(self) -> list[str]:
-        """Lines of aligned plain text; IRIs by their known prefixes."""
+        """Return lines of aligned plain text; IRIs by their known prefixes."""
         if self.kind is QueryKind.ASK:
             return ["yes" if self.boolean else "no"]
         if self.kind is not QueryKind.SELECT:
@@ -69,10 +69,12 @@ class QueryResult:
         cells = [[_readable(term) for term in row] for row in self.printed()]
         widths = [max(map(len, column)) for column in zip(self.variables, *cells, strict=True)]
         lines = [self.variables, ["-" * width for width in widths], *cells]
-        return [_padded(line, widths) for line in lines]
+        return [
+            "  ".join(cell.ljust(width) for cell, width in zip(line, widths, strict=True)).rstrip() for line in lines
+        ]
 
     def to_json(self) -> str:
-        """SPARQL 1.1 results as JSON; of a graph, its triples in N-Triples."""
+        """Return SPARQL 1.1 results as JSON; of a graph, its triples in N-Triples."""
         if self.kind is QueryKind.ASK:
             answer: dict[str, Any] = {"head": {}, "boolean": self.boolean}
         elif self.kind is QueryKind.SELECT:
@@ -84,7 +86,7 @@ class QueryResult:
         return json.dumps(answer, indent=2, ensure_ascii=False)
 
     def to_csv(self) -> str:
-        """SPARQL 1.1 results as CSV. Raises QueryError for what has no rows."""
+        """Return SPARQL 1.1 results as CSV. Raises QueryError for what has no rows."""
         if self.kind is not QueryKind.SELECT:
             raise QueryError(f"{self.kind.upper()} has no rows to write as CSV; use SELECT")
         out = io.StringIO()
@@ -94,7 +96,7 @@ class QueryResult:
         return out.getvalue()
 
     def to_turtle(self) -> str:
-        """The triples in Turtle. Raises QueryError for what has none."""
+        """Return the triples in Turtle. Raises QueryError for what has none."""
         if self.kind not in (QueryKind.CONSTRUCT, QueryKind.DESCRIBE):
             raise QueryError(f"{self.kind.upper()} has no triples to write as Turtle; use CONSTRUCT or DESCRIBE")
         triples = with_blank_nodes(self.triples)
@@ -103,10 +105,6 @@ class QueryResult:
 
 def _row_key(row: Sequence[Term | None]) -> tuple[str, ...]:
     return tuple("" if term is None else str(term) for term in row)
-
-
-def _padded(cells: Sequence[str], widths: Sequence[int]) -> str:
-    return "  ".join(cell.ljust(width) for cell, width in zip(cells, widths, strict=True)).rstrip()
 
 
 def _readable(term: Term | None, quoted: bool = False) -> str:
@@ -121,7 +119,7 @@ def _readable(term: Term | None, quoted: bool = False) -> str:
 
 
 def _printable(text: str) -> str:
-    """Without line ends and other characters that would move a terminal's cursor."""
+    """Return a text without line ends and other characters that would move a terminal's cursor."""
     return "".join(letter if letter.isprintable() else letter.encode("unicode_escape").decode() for letter in text)
 
 

@@ -11,7 +11,7 @@ import pyoxigraph as ox
 
 from deixis.memory.errors import QueryError
 from deixis.memory.semantic.queries.results import QueryKind, QueryResult
-from deixis.memory.semantic.queries.tokens import Kind, Token, ambiguous, decoded, given_offset, tokens
+from deixis.memory.semantic.queries.tokens import Token, TokenKind, ambiguous, decoded, given_offset, tokens
 from deixis.memory.semantic.queries.union import default_graph
 from deixis.memory.semantic.rdf.files import PREFIXES
 from deixis.memory.semantic.rdf.graphs import CANONICAL
@@ -23,7 +23,7 @@ _PROLOGUE = {"PREFIX", "BASE"}
 
 
 @dataclass(frozen=True)
-class Checked:
+class CheckedQuery:
     """A query that may be run: its text, its form, and what it says of graphs and order."""
 
     text: str
@@ -42,7 +42,7 @@ class _Text:
         self.text, self._places = decoded(given)
 
     def error(self, offset: int, message: str) -> QueryError:
-        """An error at an offset of the decoded text, with the line and a caret."""
+        """Return an error at an offset of the decoded text, with the line and a caret."""
         offset = given_offset(offset, self._places)
         before = self.given[:offset]
         line = before.count("\n") + 1
@@ -52,13 +52,13 @@ class _Text:
         return QueryError(f"query:{line}:{offset - start + 1}: {message}\n  {shown}\n  {caret}")
 
     def offset(self, line: int, column: int) -> int:
-        """The offset in the decoded text of a line and a column in it."""
+        """Return the offset in the decoded text of a line and a column in it."""
         lines = self.text.split("\n")
         return min(sum(len(before) + 1 for before in lines[: line - 1]) + column - 1, len(self.text))
 
 
 def run_query(store: ox.Store, sparql: str, union: list[ox.NamedNode] | None = None) -> QueryResult:
-    """Runs a query over a memory's store. Raises QueryError for what is refused or cannot be understood.
+    """Run a query over a memory's store. Raises QueryError for what is refused or cannot be understood.
 
     ``union`` is what :func:`deixis.memory.semantic.queries.union.default_graph` says of the store, where the caller
     knows it already.
@@ -77,86 +77,78 @@ def run_query(store: ox.Store, sparql: str, union: list[ox.NamedNode] | None = N
 
 
 @lru_cache(maxsize=256)
-def _admitted(sparql: str) -> Checked:
-    """What :func:`check_query` says of a query, looked at once: programs ask the same again and again."""
+def _admitted(sparql: str) -> CheckedQuery:
+    """Return what :func:`check_query` says of a query, looked at once: programs ask the same again and again."""
     return check_query(sparql)
 
 
-def check_query(sparql: str, prefixes: Mapping[str, str] = PREFIXES) -> Checked:
-    """What a query would do, without running it; ``prefixes`` need no declaration.
+def check_query(sparql: str, prefixes: Mapping[str, str] = PREFIXES) -> CheckedQuery:
+    """Return what a query would do, without running it; ``prefixes`` need no declaration.
 
     Raises QueryError for what is refused.
 
     >>> check_query("ASK { ?s ?p ?o }").kind
     <QueryKind.ASK: 'ask'>
     """
-    return _check(_Text(sparql), prefixes)
-
-
-def _check(text: _Text, prefixes: Mapping[str, str]) -> Checked:
+    text = _Text(sparql)
     found = list(tokens(text.text))
-    declared = _declared(found)
+    declared = {}
+    for word, name, iri in zip(found, found[1:], found[2:], strict=False):
+        if word.kind is TokenKind.WORD and word.upper == "PREFIX" and name.text.endswith(":"):
+            declared[name.text[:-1]] = iri.text[1:-1]
     known = {**prefixes, **declared}
     for position, token in enumerate(found):
-        _refuse(text, token, found[position - 1 : position], found[position + 1 : position + 2], known)
-    form = next((token for token in _body(found) if token.kind is Kind.WORD and token.upper in _FORMS), None)
+        before = found[position - 1 : position]
+        after = found[position + 1 : position + 2]
+        if token.kind is TokenKind.WORD:
+            if "SERVICE" in token.upper:
+                raise text.error(token.start, "SERVICE is refused: a query stays in the memory and asks no other")
+            if token.upper in _UPDATES:
+                raise text.error(token.start, f"{token.upper} is refused: a query asks and changes nothing")
+        elif token.kind is TokenKind.NAME and not token.text.startswith("_:"):
+            given_prefix = token.text.partition(":")[0]
+            opens = after and after[0].text == "{" and not (before and before[0].upper == "GRAPH")
+            if "SERVICE" in given_prefix.upper() and opens:
+                raise text.error(token.start, "SERVICE is refused: a query stays in the memory and asks no other")
+            if given_prefix not in known and not (before and before[0].upper == "PREFIX"):
+                near = nearest(given_prefix, sorted(known))
+                hint = (
+                    f"did you mean '{near}:'?"
+                    if near
+                    else f"known without being declared are {', '.join(sorted(PREFIXES))};"
+                )
+                raise text.error(
+                    token.start,
+                    f"the prefix '{given_prefix}:' is not known; {hint} else declare it: PREFIX {given_prefix}: <…>",
+                )
+        elif token.kind is TokenKind.IRI and ambiguous(token, set(known)):
+            raise text.error(
+                token.start,
+                "this can be read as an IRI or as a comparison: write the IRI in full, or put spaces around '<'",
+            )
+    form = next((token for token in _body(found) if token.kind is TokenKind.WORD and token.upper in _FORMS), None)
     if form is None:
         raise text.error(0, "no query: it must begin with SELECT, ASK, CONSTRUCT or DESCRIBE")
     names_graphs = _check_from(text, found, known)
-    asks_graphs = any(token.kind is Kind.WORD and token.upper == "GRAPH" for token in found)
-    used = {token.text.partition(":")[0] for token in found if token.kind is Kind.NAME}
+    asks_graphs = any(token.kind is TokenKind.WORD and token.upper == "GRAPH" for token in found)
+    used = {token.text.partition(":")[0] for token in found if token.kind is TokenKind.NAME}
     mine = {prefix: base for prefix, base in prefixes.items() if prefix in used and prefix not in declared}
-    return Checked(text.text, QueryKind(form.text.lower()), names_graphs, asks_graphs, _ordered(found), mine)
-
-
-def _declared(found: list[Token]) -> dict[str, str]:
-    """The prefixes that a query declares."""
-    declared = {}
-    for word, name, iri in zip(found, found[1:], found[2:], strict=False):
-        if word.kind is Kind.WORD and word.upper == "PREFIX" and name.text.endswith(":"):
-            declared[name.text[:-1]] = iri.text[1:-1]
-    return declared
+    return CheckedQuery(text.text, QueryKind(form.text.lower()), names_graphs, asks_graphs, _ordered(found), mine)
 
 
 def _body(found: list[Token]) -> list[Token]:
-    """The tokens after the prologue."""
+    """Return the tokens after the prologue."""
     start = 0
     while start < len(found) and found[start].upper in _PROLOGUE:
         start += 3 if found[start].upper == "PREFIX" else 2
     return found[start:]
 
 
-def _refuse(text: _Text, token: Token, before: list[Token], after: list[Token], known: dict[str, str]) -> None:
-    if token.kind is Kind.WORD:
-        if "SERVICE" in token.upper:
-            raise text.error(token.start, "SERVICE is refused: a query stays in the memory and asks no other")
-        if token.upper in _UPDATES:
-            raise text.error(token.start, f"{token.upper} is refused: a query asks and changes nothing")
-    elif token.kind is Kind.NAME and not token.text.startswith("_:"):
-        prefix = token.text.partition(":")[0]
-        opens = after and after[0].text == "{" and not (before and before[0].upper == "GRAPH")
-        if "SERVICE" in prefix.upper() and opens:
-            raise text.error(token.start, "SERVICE is refused: a query stays in the memory and asks no other")
-        if prefix not in known and not (before and before[0].upper == "PREFIX"):
-            raise text.error(token.start, _unknown_prefix(prefix, known))
-    elif token.kind is Kind.IRI and ambiguous(token, set(known)):
-        raise text.error(
-            token.start,
-            "this can be read as an IRI or as a comparison: write the IRI in full, or put spaces around '<'",
-        )
-
-
-def _unknown_prefix(prefix: str, known: dict[str, str]) -> str:
-    near = nearest(prefix, sorted(known))
-    hint = f"did you mean '{near}:'?" if near else f"known without being declared are {', '.join(sorted(PREFIXES))};"
-    return f"the prefix '{prefix}:' is not known; {hint} else declare it: PREFIX {prefix}: <…>"
-
-
 def _check_from(text: _Text, found: list[Token], known: dict[str, str]) -> bool:
-    """Whether the query names its graphs with FROM; raises QueryError for any but the memory's own."""
+    """Return whether the query names its graphs with FROM; raises QueryError for any but the memory's own."""
     own, named = {iri.value for iri in CANONICAL}, False
     for position, token in enumerate(found):
-        if token.kind is not Kind.WORD or token.upper != "FROM":
+        if token.kind is not TokenKind.WORD or token.upper != "FROM":
             continue
         rest = found[position + 1 :]
         graph = rest[1] if rest and rest[0].upper == "NAMED" and len(rest) > 1 else rest[0] if rest else token
@@ -168,19 +160,19 @@ def _check_from(text: _Text, found: list[Token], known: dict[str, str]) -> bool:
 
 
 def _iri(token: Token, known: dict[str, str]) -> str:
-    if token.kind is Kind.IRI:
+    if token.kind is TokenKind.IRI:
         return token.text[1:-1]
     prefix, _, local = token.text.partition(":")
     return known.get(prefix, "") + local
 
 
 def _ordered(found: list[Token]) -> bool:
-    """Whether the outermost query states an order."""
+    """Return whether the outermost query states an order."""
     depth = 0
     for token in found:
-        if token.kind is Kind.SIGN:
+        if token.kind is TokenKind.SIGN:
             depth += (token.text == "{") - (token.text == "}")
-        elif token.kind is Kind.WORD and token.upper == "ORDER" and depth == 0:
+        elif token.kind is TokenKind.WORD and token.upper == "ORDER" and depth == 0:
             return True
     return False
 
@@ -194,7 +186,7 @@ def _syntax_error(text: _Text, error: SyntaxError) -> QueryError:
 
 
 def _expected(what: str) -> str:
-    """Of what the parser expected, the part that helps: its words, and not its character classes."""
+    """Return the helpful part of what the parser expected: its words, and not its character classes."""
     names = re.sub(r"\[[^\]]*\]( \|)?|'[^']*'\.\.='[^']*'", "", what.removeprefix("expected ").removeprefix("one of "))
     told = next((name for name in names.split(", ") if " " in name.strip() and "not found" not in name), None)
     if told:

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 
-class Kind(StrEnum):
+class TokenKind(StrEnum):
     """What a token is."""
 
     COMMENT = "comment"
@@ -34,7 +34,7 @@ class Kind(StrEnum):
 class Token:
     """A token, and where it begins."""
 
-    kind: Kind
+    kind: TokenKind
     text: str
     start: int
 
@@ -77,15 +77,15 @@ _SKIPPED = re.compile(rf"(?:#[^\n\r]*|{_IRI}|{_STRINGS})|(?P<escape>{_ESCAPE})",
 
 
 def tokens(text: str) -> Iterator[Token]:
-    """The tokens of a decoded query, without comments."""
+    """Yield the tokens of a decoded query, without comments."""
     for match in _TOKEN.finditer(text):
-        kind = Kind(match.lastgroup or "sign")
-        if kind is not Kind.COMMENT:
+        kind = TokenKind(match.lastgroup or "sign")
+        if kind is not TokenKind.COMMENT:
             yield Token(kind, match.group(), match.start())
 
 
 def decoded(text: str) -> tuple[str, list[tuple[int, int]]]:
-    r"""The text with codepoint escapes outside strings, comments and IRIs as the letters that they stand for.
+    r"""Return the text with codepoint escapes outside strings, comments and IRIs as the letters that they stand for.
 
     Also pairs of offsets, in the decoded and in the given text, to translate places by. Escapes of anything but
     letters, digits and ``_:?$-`` are left standing: they are no SPARQL.
@@ -114,13 +114,13 @@ def _letter(escape: str) -> str | None:
 
 
 def given_offset(offset: int, places: list[tuple[int, int]]) -> int:
-    """The offset in the text as given, of an offset in the decoded one."""
+    """Return the offset in the text as given, of an offset in the decoded one."""
     here, there = max(place for place in places if place[0] <= offset)
     return there + offset - here
 
 
 def ambiguous(token: Token, prefixes: set[str]) -> bool:
-    """Whether an IRI might be a comparison that hides the beginning of a comment, a string or a SERVICE.
+    """Return whether an IRI might be a comparison that hides the beginning of a comment, a string or a SERVICE.
 
     An IRI that begins with a scheme is one, unless the scheme is a prefix of the query.
     """

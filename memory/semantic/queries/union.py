@@ -22,7 +22,8 @@ BUILD = (
 
 
 def default_graph(store: ox.Store) -> list[ox.NamedNode]:
-    """The graphs that a query without GRAPH looks at, without a triple in two of them, and without empty ones."""
+    """Return the graphs that a query without GRAPH looks at, without a triple in two of them, and without empty
+    ones."""
     if store.contains_named_graph(MERGED):
         return [MERGED]
     graphs = [graph_iri(name) for name in UNION]
@@ -30,8 +31,7 @@ def default_graph(store: ox.Store) -> list[ox.NamedNode]:
 
 
 def merging(store: ox.Store, added: Triples, removed: Triples) -> Iterator[Operation]:
-    """The operations that keep the union right under a change, where there is one; they come after those of the change
-    itself."""
+    """Yield the operations that keep the union right under a change; they come after those of the change itself."""
     if store.contains_named_graph(MERGED):
         gone = {triple for name in UNION for triple in removed.get(name, ())}
         yield from deletion(MERGED, [t for t in gone if not any(_after(store, n, t, added, removed) for n in UNION)])
@@ -61,14 +61,14 @@ def overlapping(store: ox.Store, added: Triples, removed: Triples) -> bool:
 
 
 def _after(store: ox.Store, name: GraphName, triple: ox.Triple, added: Triples, removed: Triples) -> bool:
-    """Whether a graph will hold a triple after the change."""
+    """Return whether a graph will hold a triple after the change."""
     if triple in added.get(name, ()):
         return True
     return triple not in removed.get(name, ()) and quad_of(triple, graph_iri(name)) in store
 
 
 def merge_if_overlapping(store: ox.Store) -> None:
-    """Builds the union of a store that was filled in bulk, where the three graphs overlap."""
+    """Build the union of a store that was filled in bulk, where the three graphs overlap."""
     if store.contains_named_graph(MERGED):
         return
     by_size = sorted(UNION, key=lambda name: _size(store, name))

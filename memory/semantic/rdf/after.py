@@ -37,21 +37,21 @@ class After:
         name: GraphName,
         subject: Node | None = None,
         predicate: ox.NamedNode | None = None,
-        object: Node | None = None,
+        obj: Node | None = None,
     ) -> Iterator[ox.Triple]:
         """Yield the triples of a graph with that subject, predicate and object; all where none of the three is given.
 
         What the change adds comes last.
         """
         gone = self.change.removed.get(name)
-        for quad in self.store.quads_for_pattern(subject, predicate, object, self._graphs[name]):  # type: ignore[arg-type]
+        for quad in self.store.quads_for_pattern(subject, predicate, obj, self._graphs[name]):  # type: ignore[arg-type]
             triple = quad.triple
             if not gone or triple not in gone:
                 yield triple
         if subject is not None:
-            yield from (triple for triple in self.coming(name, subject, predicate) if object in (None, triple.object))
-        elif object is not None:
-            yield from self.arriving(name, predicate, object)
+            yield from (triple for triple in self.coming(name, subject, predicate) if obj in (None, triple.object))
+        elif obj is not None:
+            yield from self.arriving(name, predicate, obj)
         elif predicate is not None:
             yield from self._index(name, "predicate").get(predicate, ())
         else:
@@ -62,9 +62,9 @@ class After:
         triples = self._index(name, "subject").get(subject, ())
         return (triple for triple in triples if predicate in (None, triple.predicate))
 
-    def arriving(self, name: GraphName, predicate: ox.NamedNode | None, object: Node) -> Iterator[ox.Triple]:
+    def arriving(self, name: GraphName, predicate: ox.NamedNode | None, obj: Node) -> Iterator[ox.Triple]:
         """Yield what the change adds that leads to an object."""
-        triples = self._index(name, "object").get(object, ())
+        triples = self._index(name, "object").get(obj, ())
         return (triple for triple in triples if predicate in (None, triple.predicate))
 
     def _index(self, name: GraphName, by: str) -> dict[object, list[ox.Triple]]:

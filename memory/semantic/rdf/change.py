@@ -30,7 +30,7 @@ class Change:
 
 
 def together(*changes: Change) -> Change:
-    """Changes that are written in one step, in this order."""
+    """Return one change that makes these in one step, in this order."""
     added: dict[GraphName, frozenset[ox.Triple]] = {}
     removed: dict[GraphName, frozenset[ox.Triple]] = {}
     for change in changes:
@@ -42,14 +42,14 @@ def together(*changes: Change) -> Change:
 
 
 def arriving(store: ox.Store, lesson: str, said: Mapping[GraphName, Sequence[ox.Triple]]) -> Change:
-    """The change that a new lesson makes, but for what follows from it."""
+    """Return the change that a new lesson makes, but for what follows from it."""
     held = {name: ledger.held(store, graph_iri(name), triples) for name, triples in said.items()}
     added = {name: frozenset(triples).difference(held[name]) for name, triples in said.items()}
     return Change(added=added, operations=tuple(ledger.arrival(store, lesson, said, held)))
 
 
 def departing(store: ox.Store, lesson: str) -> Change:
-    """The change that forgetting a lesson makes, but for what followed from it."""
+    """Return the change that forgetting a lesson makes, but for what followed from it."""
     removed: dict[GraphName, frozenset[ox.Triple]] = {}
     operations: list[ledger.Operation] = []
     for name, triples in ledger.copies(store, lesson).items():
@@ -61,7 +61,7 @@ def departing(store: ox.Store, lesson: str) -> Change:
 
 
 def concluding(store: ox.Store, inferred: Iterable[ox.Triple]) -> Change:
-    """The change that replaces the inferred graph."""
+    """Return the change that replaces the inferred graph."""
     graph = graph_iri(GraphName.INFERRED)
     gone, come = ledger.difference(store, graph, named("inferred", inferred))
     operations = (*ledger.deletion(graph, gone), *ledger.insertion(graph, come))
@@ -69,7 +69,7 @@ def concluding(store: ox.Store, inferred: Iterable[ox.Triple]) -> Change:
 
 
 def modelling(store: ox.Store, models: Models) -> Change:
-    """The change that replaces sets of learned models."""
+    """Return the change that replaces sets of learned models."""
     return together(*(_modelling(store, models_graph(which), triples) for which, triples in models.items()))
 
 
@@ -78,7 +78,7 @@ def _modelling(store: ox.Store, copy: ox.NamedNode, triples: Iterable[ox.Triple]
 
 
 def remodelling(store: ox.Store, copy: ox.NamedNode, gone: Sequence[ox.Triple], come: Sequence[ox.Triple]) -> Change:
-    """The change that takes triples out of a copy of learned models and puts others in."""
+    """Return the change that takes triples out of a copy of learned models and puts others in."""
     only = ledger.only_of(store, copy, GraphName.LEARNED, gone)
     return Change(
         {GraphName.LEARNED: frozenset(come).difference(ledger.held(store, graph_iri(GraphName.LEARNED), come))},
@@ -88,14 +88,14 @@ def remodelling(store: ox.Store, copy: ox.NamedNode, gone: Sequence[ox.Triple], 
 
 
 def reconcluding(gone: Iterable[ox.Triple], come: Iterable[ox.Triple]) -> Change:
-    """The change that takes triples out of the inferred graph and puts others in; those go that are there."""
+    """Return the change that takes triples out of the inferred graph and puts others in; those go that are there."""
     graph, gone, come = graph_iri(GraphName.INFERRED), frozenset(gone), frozenset(come)
     operations = (*ledger.deletion(graph, sorted(gone, key=str)), *ledger.insertion(graph, sorted(come, key=str)))
     return Change({GraphName.INFERRED: come}, {GraphName.INFERRED: gone}, operations)
 
 
 def incoming(lesson: str, contributions: Mapping[GraphName, Iterable[ox.Triple]]) -> dict[GraphName, list[ox.Triple]]:
-    """Contributions as they will be stored. Raises RejectedWriteError for what no lesson may say."""
+    """Return contributions as they will be stored. Raises RejectedWriteError for what no lesson may say."""
     if not lesson.strip():
         raise RejectedWriteError("a lesson needs a name")
     if GraphName.INFERRED in contributions:
@@ -105,15 +105,16 @@ def incoming(lesson: str, contributions: Mapping[GraphName, Iterable[ox.Triple]]
 
 
 def named(key: str, triples: Iterable[ox.Triple]) -> Iterable[ox.Triple]:
-    """Triples whose blank nodes have become names under ``key``; raises RejectedWriteError for triples in triples."""
+    """Yield triples whose blank nodes have become names under ``key``; raises RejectedWriteError for triples in
+    triples."""
     for triple in triples:
-        subject, object = triple.subject, triple.object
-        if isinstance(subject, ox.NamedNode) and isinstance(object, ox.NamedNode | ox.Literal):
+        subject, obj = triple.subject, triple.object
+        if isinstance(subject, ox.NamedNode) and isinstance(obj, ox.NamedNode | ox.Literal):
             yield triple
         else:
             named_subject = _name(key, subject)
             assert not isinstance(named_subject, ox.Literal)
-            yield ox.Triple(named_subject, triple.predicate, _name(key, object))
+            yield ox.Triple(named_subject, triple.predicate, _name(key, obj))
 
 
 def _name(key: str, term: ox.NamedNode | ox.BlankNode | ox.Literal | ox.Triple) -> ox.NamedNode | ox.Literal:

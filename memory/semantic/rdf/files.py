@@ -42,7 +42,7 @@ _SAFE_LOCAL = re.compile(r"[A-Za-z_][A-Za-z0-9_-]*")
 
 
 def short(iri: str) -> str:
-    """An IRI for people to read: by prefix where there is one, else in angle brackets.
+    """Return an IRI for people to read: by prefix where there is one, else in angle brackets.
 
     >>> short("https://w3id.org/deixis/learned/layout/dinner-1")
     'lx:layout/dinner-1'
@@ -54,7 +54,7 @@ def short(iri: str) -> str:
 
 
 def turtle_name(iri: str) -> str:
-    """An IRI in Turtle: by prefix where what follows is plain, else in angle brackets.
+    """Return an IRI in Turtle: by prefix where what follows is plain, else in angle brackets.
 
     >>> turtle_name("https://w3id.org/deixis/learned/layout/dinner-1")
     '<https://w3id.org/deixis/learned/layout/dinner-1>'
@@ -69,12 +69,12 @@ _STRINGS = {PREFIXES["xsd"] + "string", PREFIXES["rdf"] + "langString", PREFIXES
 
 
 def turtle(triples: Iterable[ox.Triple]) -> str:
-    """A Turtle document; names that stand for blank nodes become blank nodes."""
+    """Return a Turtle document; names that stand for blank nodes become blank nodes."""
     return "\n".join([*_prefixes(), "", *_statements(triples, "")]) + "\n"
 
 
 def trig(graphs: Iterable[tuple[ox.NamedNode, Iterable[ox.Triple]]]) -> str:
-    """A TriG document of named graphs, in the order given; empty ones are left out."""
+    """Return a TriG document of named graphs, in the order given; empty ones are left out."""
     lines = [*_prefixes()]
     for graph, triples in graphs:
         statements = list(_statements(triples, "    "))
@@ -92,7 +92,7 @@ def _statements(triples: Iterable[ox.Triple], indent: str) -> Iterator[str]:
     subject, predicate, term = cache(_subject), cache(_predicate), cache(_term)  # most terms stand in many triples
     rows = sorted({(subject(t.subject), predicate(t.predicate), term(t.object)) for t in triples})
     for (_, name), about in groupby(rows, key=lambda row: row[0]):
-        said = [f"{verb} {object}" for _, (_, verb), object in about]
+        said = [f"{verb} {obj}" for _, (_, verb), obj in about]
         yield indent + name
         for line in said[:-1]:
             yield f"{indent}    {line} ;"
@@ -100,12 +100,12 @@ def _statements(triples: Iterable[ox.Triple], indent: str) -> Iterator[str]:
 
 
 def _subject(term: ox.NamedNode | ox.BlankNode) -> tuple[bool, str]:
-    """Named subjects first."""
+    """Return the sort key and the text of a subject; named ones come first."""
     return isinstance(with_blank(term), ox.BlankNode), _term(term)
 
 
 def _predicate(term: ox.NamedNode) -> tuple[bool, str]:
-    """The type first."""
+    """Return the sort key and the text of a predicate; the type comes first."""
     return (False, "a") if term.value == W3C.RDF_TYPE else (True, turtle_name(term.value))
 
 
@@ -145,14 +145,22 @@ _BARE = ((b"<\0\0\0", "utf-32-le"), (b"\0\0\0<", "utf-32-be"), (b"<\0", "utf-16-
 
 
 def read_quads(file: Path) -> Iterator[ox.Quad]:
-    """The statements of a file. Raises ImportFormatError, with the place where it is malformed."""
-    format = FORMATS.get(file.suffix.lower())
-    if format is None:
+    """Yield the statements of a file. Raises ImportFormatError, with the place where it is malformed."""
+    file_format = FORMATS.get(file.suffix.lower())
+    if file_format is None:
         raise ImportFormatError(f"{file}: of no known format; it must end in {', '.join(FORMATS)}; views in .zip")
-    content = _bytes(file)
-    text = _xml(file, content) if format is ox.RdfFormat.RDF_XML else content
+    if not file.is_file():
+        raise ImportFormatError(f"{file}: there is no such file")
+    size = file.stat().st_size
+    if size > MAX_BYTES:
+        raise ImportFormatError(f"{file}: {size} bytes are too many; at most {MAX_BYTES} are read, so split the file")
     try:
-        yield from ox.parse(input=text, format=format, base_iri=_BASE + quote(file.stem, safe="") + "/")
+        content = file.read_bytes()
+    except OSError as error:
+        raise ImportFormatError(f"{file}: cannot be read: {error.strerror}") from error
+    text = _xml(file, content) if file_format is ox.RdfFormat.RDF_XML else content
+    try:
+        yield from ox.parse(input=text, format=file_format, base_iri=_BASE + quote(file.stem, safe="") + "/")
     except SyntaxError as error:
         place = f"{error.lineno}:{error.offset}: " if error.lineno else ""
         raise ImportFormatError(f"{file}:{place or ' '}{' '.join(str(error.msg).split())}") from None
@@ -160,32 +168,8 @@ def read_quads(file: Path) -> Iterator[ox.Quad]:
         raise ImportFormatError(f"{file}: {error}") from error
 
 
-def _bytes(file: Path) -> bytes:
-    if not file.is_file():
-        raise ImportFormatError(f"{file}: there is no such file")
-    size = file.stat().st_size
-    if size > MAX_BYTES:
-        raise ImportFormatError(f"{file}: {size} bytes are too many; at most {MAX_BYTES} are read, so split the file")
-    try:
-        return file.read_bytes()
-    except OSError as error:
-        raise ImportFormatError(f"{file}: cannot be read: {error.strerror}") from error
-
-
 def _xml(file: Path, content: bytes) -> str:
-    """XML as text, in whatever encoding; refused where it has a DTD or is in an encoding that could hide one."""
-    text = _decoded(file, content)
-    found = _DTD.search(text)
-    if found:
-        line = text.count("\n", 0, found.start()) + 1
-        column = found.start() - text.rfind("\n", 0, found.start())
-        raise ImportFormatError(
-            f"{file}:{line}:{column}: a DTD (<!{found.group(1)}) is refused; take it out of the file"
-        )
-    return text
-
-
-def _decoded(file: Path, content: bytes) -> str:
+    """Return XML as text, in whatever encoding; refused where it has a DTD or is in an encoding that could hide one."""
     start = next(((len(bom), name) for bom, name in _BOMS if content.startswith(bom)), None)
     start = start or next(((0, name) for bare, name in _BARE if content.startswith(bare)), (0, "utf-8"))
     try:
@@ -196,9 +180,14 @@ def _decoded(file: Path, content: bytes) -> str:
     named = _ENCODING.search(declaration.group()) if declaration else None
     if named and named.group(1).lower() not in ("utf-8", "us-ascii", start[1], start[1][:6]):
         raise ImportFormatError(f"{file}: the encoding '{named.group(1)}' is not read; save it as UTF-8")
-    # the text is handed on as UTF-8, whatever it was: its declaration goes, and lines stay where they are
-    return (
-        text[: declaration.start()] + "\n" * declaration.group().count("\n") + text[declaration.end() :]
-        if declaration
-        else text
-    )
+    if declaration:
+        # the text is handed on as UTF-8, whatever it was: its declaration goes, and lines stay where they are
+        text = text[: declaration.start()] + "\n" * declaration.group().count("\n") + text[declaration.end() :]
+    found = _DTD.search(text)
+    if found:
+        line = text.count("\n", 0, found.start()) + 1
+        column = found.start() - text.rfind("\n", 0, found.start())
+        raise ImportFormatError(
+            f"{file}:{line}:{column}: a DTD (<!{found.group(1)}) is refused; take it out of the file"
+        )
+    return text

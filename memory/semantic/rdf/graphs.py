@@ -57,7 +57,7 @@ MERGED = ox.NamedNode(GRAPHS + "merged")
 
 
 def graph_iri(name: GraphName) -> ox.NamedNode:
-    """The IRI of a canonical graph."""
+    """Return the IRI of a canonical graph."""
     return ox.NamedNode(GRAPHS + name)
 
 
@@ -66,7 +66,7 @@ CANONICAL = {graph_iri(name): name for name in GraphName}
 
 
 def lesson_graph(lesson: str, name: GraphName) -> ox.NamedNode:
-    """The graph that holds what one lesson contributed to a canonical one.
+    """Return the graph that holds what one lesson contributed to a canonical one.
 
     >>> lesson_graph("set 1", GraphName.LEARNED).value
     'https://w3id.org/deixis/graph/lesson/set%201/learned'
@@ -75,17 +75,17 @@ def lesson_graph(lesson: str, name: GraphName) -> ox.NamedNode:
 
 
 def package_graph(name: GraphName) -> ox.NamedNode:
-    """The graph that holds what the package itself contributes: the ontology and the shapes."""
+    """Return the graph that holds what the package itself contributes: the ontology and the shapes."""
     return ox.NamedNode(PACKAGE + name)
 
 
 def loaded_graph(name: GraphName) -> ox.NamedNode:
-    """The graph of the triples that were loaded in bulk and that a lesson contributes too."""
+    """Return the graph of the triples that were loaded in bulk and that a lesson contributes too."""
     return ox.NamedNode(LOADED + name)
 
 
 def models_graph(models: ModelSet) -> ox.NamedNode:
-    """The graph that holds a set of models as the learned graph has it.
+    """Return the graph that holds a set of models as the learned graph has it.
 
     >>> models_graph(ModelSet.SIZES).value
     'https://w3id.org/deixis/graph/models/sizes'
@@ -94,13 +94,13 @@ def models_graph(models: ModelSet) -> ox.NamedNode:
 
 
 def models_of_graph(iri: str) -> ModelSet | None:
-    """The set of models that a copy's IRI names, or None where it names none."""
+    """Return the set of models that a copy's IRI names, or None where it names none."""
     name = iri.removeprefix(MODELS)
     return ModelSet(name) if iri.startswith(MODELS) and name in list(ModelSet) else None
 
 
 def lesson_of_graph(iri: str) -> tuple[str, GraphName] | None:
-    """The lesson and the graph that a copy's IRI names, or None where it names none.
+    """Return the lesson and the graph that a copy's IRI names, or None where it names none.
 
     >>> lesson_of_graph("https://w3id.org/deixis/graph/lesson/set%201/learned")
     ('set 1', <GraphName.LEARNED: 'learned'>)
@@ -123,12 +123,13 @@ KEPT_UP = ox.NamedNode(STATISTICS + "kept-up")
 
 
 def share_graph(lesson: str) -> ox.NamedNode:
-    """The graph that holds what one lesson adds to the statistics."""
+    """Return the graph that holds what one lesson adds to the statistics."""
     return ox.NamedNode(f"{STATISTICS}lesson/{quote(lesson, safe='')}")
 
 
 def copied_graph(iri: str) -> GraphName | None:
-    """The canonical graph that a copy, of a lesson, models, the package or loaded, contributes to; None for no copy."""
+    """Return the canonical graph that a copy, of a lesson, models, the package or loaded, contributes to; None for
+    no copy."""
     found = lesson_of_graph(iri)
     if found:
         return found[1]

@@ -57,18 +57,19 @@ NEVER = datetime.min.replace(tzinfo=UTC)
 
 
 def lessons(store: ox.Store) -> tuple[str, ...]:
-    """The lessons that a store holds, in the order learned: by when they started, then by id."""
+    """Return the lessons that a store holds, in the order learned: by when they started, then by id."""
     found = {known[0] for graph in store.named_graphs() if (known := lesson_of_graph(graph.value))}
     return tuple(sorted(found, key=lambda lesson: (started(store, lesson), lesson)))
 
 
 def knows(store: ox.Store, lesson: str) -> bool:
-    """Whether a store holds a lesson."""
+    """Return whether a store holds a lesson."""
     return any(store.contains_named_graph(lesson_graph(lesson, name)) for name in CONTRIBUTED)
 
 
 def started(store: ox.Store, lesson: str) -> datetime:
-    """When a lesson started; as text, times do not sort, since the store drops zeros at the end of a fraction."""
+    """Return when a lesson started; as text, times do not sort, since the store drops zeros at the end of a
+    fraction."""
     node, episodes = ox.NamedNode(learned_iri("lesson", lesson)), graph_iri(GraphName.EPISODES)
     times = (getattr(quad.object, "value", "") for quad in store.quads_for_pattern(node, _STARTED, None, episodes))
     return min((time for text in times if (time := _time(text)) is not None), default=NEVER)
@@ -83,29 +84,29 @@ def _time(text: str) -> datetime | None:
 
 
 def triples_in(store: ox.Store, graph: ox.NamedNode) -> Iterator[ox.Triple]:
-    """The triples of one graph."""
+    """Yield the triples of one graph."""
     for quad in store.quads_for_pattern(None, None, None, graph):
         yield quad.triple
 
 
 def quad_of(triple: ox.Triple, graph: ox.NamedNode) -> ox.Quad:
-    """The triple in a graph."""
+    """Return the triple in a graph."""
     return ox.Quad(triple.subject, triple.predicate, triple.object, graph)
 
 
 def quads_of(store: ox.Store, triple: ox.Triple) -> Iterator[ox.Quad]:
-    """The triple in every graph that holds it."""
+    """Return the triple in every graph that holds it."""
     return store.quads_for_pattern(triple.subject, triple.predicate, triple.object, None)
 
 
 def copies(store: ox.Store, lesson: str) -> dict[GraphName, list[ox.Triple]]:
-    """What one lesson contributed, by graph."""
+    """Return what one lesson contributed, by graph."""
     found = {name: list(triples_in(store, lesson_graph(lesson, name))) for name in CONTRIBUTED}
     return {name: triples for name, triples in found.items() if triples}
 
 
 def only_of(store: ox.Store, copy: ox.NamedNode, name: GraphName, triples: Iterable[ox.Triple]) -> list[ox.Triple]:
-    """Those of the triples that no copy but this one contributes to the graph of that name."""
+    """Return those of the triples that no copy but this one contributes to the graph of that name."""
     return [triple for triple in triples if not _held_elsewhere(store, copy, name, triple)]
 
 
@@ -115,12 +116,12 @@ def _held_elsewhere(store: ox.Store, copy: ox.NamedNode, name: GraphName, triple
 
 
 def held(store: ox.Store, graph: ox.NamedNode, triples: Iterable[ox.Triple]) -> list[ox.Triple]:
-    """Those of the triples that a graph holds."""
+    """Return those of the triples that a graph holds."""
     return [triple for triple in triples if quad_of(triple, graph) in store]
 
 
 def arrival(store: ox.Store, lesson: str, contributions: Contributions, known: Contributions) -> Iterator[Operation]:
-    """The operations that write a lesson: its contributions, and the copies of them.
+    """Yield the operations that write a lesson: its contributions, and the copies of them.
 
     ``known`` are those of the contributions that the canonical graphs hold already.
     """
@@ -131,7 +132,7 @@ def arrival(store: ox.Store, lesson: str, contributions: Contributions, known: C
 
 
 def _unowned(store: ox.Store, name: GraphName, triples: Iterable[ox.Triple]) -> Iterator[ox.Triple]:
-    """Those of a canonical graph's triples that were loaded in bulk: no copy has them."""
+    """Yield those of a canonical graph's triples that were loaded in bulk: no copy has them."""
     for triple in triples:
         if not any(_copies(quad.graph_name, name) for quad in quads_of(store, triple)):
             yield triple
@@ -142,7 +143,7 @@ def _copies(graph: ox.NamedNode | ox.BlankNode | ox.DefaultGraph, name: GraphNam
 
 
 def package_update(store: ox.Store, packaged: Contributions) -> Iterator[Operation]:
-    """The operations that bring the packaged ontology and shapes up to date; none where they are."""
+    """Yield the operations that bring the packaged ontology and shapes up to date; none where they are."""
     for name, triples in packaged.items():
         copy = package_graph(name)
         gone, come = difference(store, copy, triples)
@@ -152,7 +153,7 @@ def package_update(store: ox.Store, packaged: Contributions) -> Iterator[Operati
 def difference(
     store: ox.Store, graph: ox.NamedNode, triples: Iterable[ox.Triple]
 ) -> tuple[list[ox.Triple], list[ox.Triple]]:
-    """What must go from a graph, and what must come, so that it holds just these triples."""
+    """Return what must go from a graph, and what must come, so that it holds just these triples."""
     old, new = set(triples_in(store, graph)), set(as_stored(triples))
     return sorted(old - new, key=str), sorted(new - old, key=str)
 
@@ -160,7 +161,7 @@ def difference(
 def replacement(
     store: ox.Store, copy: ox.NamedNode, name: GraphName, gone: Sequence[ox.Triple], come: Sequence[ox.Triple]
 ) -> Iterator[Operation]:
-    """The operations that exchange triples of a copy and of the canonical graph that it contributes to."""
+    """Yield the operations that exchange triples of a copy and of the canonical graph that it contributes to."""
     yield from deletion(graph_iri(name), only_of(store, copy, name, gone))
     yield from deletion(copy, gone)
     yield from insertion(graph_iri(name), come)
@@ -168,20 +169,21 @@ def replacement(
 
 
 def as_stored(triples: Iterable[ox.Triple]) -> list[ox.Triple]:
-    """The triples as a store gives them back: numbers, times and language tags in one spelling, sorted."""
+    """Return the triples as a store gives them back: numbers, times and language tags in one spelling, sorted."""
     store = ox.Store()
     store.extend(ox.Quad(t.subject, t.predicate, t.object) for t in triples)
     return sorted((quad.triple for quad in store), key=str)
 
 
 def kept_up(store: ox.Store) -> str | None:
-    """The rules by which a store's inferred graph and statistics are right, None where they are to be made anew."""
+    """Return the rules by which a store's inferred graph and statistics are right, None where they are to be made
+    anew."""
     found = list(store.quads_for_pattern(COUNTED, KEPT_UP, None, COUNTED))
     return found[0].object.value if len(found) == 1 and isinstance(found[0].object, ox.Literal) else None
 
 
 def keeping_up(store: ox.Store, rules: str | None) -> Iterator[Operation]:
-    """The operations that say by which rules they are right from now on; None: by none."""
+    """Yield the operations that say by which rules they are right from now on; None: by none."""
     old = {quad.triple for quad in store.quads_for_pattern(COUNTED, KEPT_UP, None, COUNTED)}
     new = {ox.Triple(COUNTED, KEPT_UP, ox.Literal(rules))} if rules is not None else set()
     yield from deletion(COUNTED, old - new)
@@ -189,19 +191,19 @@ def keeping_up(store: ox.Store, rules: str | None) -> Iterator[Operation]:
 
 
 def insertion(graph: ox.NamedNode, triples: Iterable[ox.Triple]) -> Iterator[Operation]:
-    """The operation that puts triples into a graph, none where there are none."""
+    """Yield the operation that puts triples into a graph, none where there are none."""
     if some := tuple(triples):
         yield Operation("INSERT", graph, some)
 
 
 def deletion(graph: ox.NamedNode, triples: Iterable[ox.Triple]) -> Iterator[Operation]:
-    """The operation that takes triples out of a graph, none where there are none."""
+    """Yield the operation that takes triples out of a graph, none where there are none."""
     if some := tuple(triples):
         yield Operation("DELETE", graph, some)
 
 
 def drop(graph: ox.NamedNode) -> Operation:
-    """The operation that takes a graph away, where there is one."""
+    """Return the operation that takes a graph away, where there is one."""
     return Operation("DROP", graph)
 
 

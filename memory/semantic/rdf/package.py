@@ -17,13 +17,13 @@ SHAPES_FILE = TBOX_FILES[0].with_name("shapes.ttl")
 
 @lru_cache(maxsize=1)
 def packaged() -> dict[GraphName, tuple[ox.Triple, ...]]:
-    """The packaged ontology and shapes as triples, blank nodes as names that stay the same."""
+    """Return the packaged ontology and shapes as triples, blank nodes as names that stay the same."""
     return {name: tuple(_read(name, turtle)) for name, turtle in _texts().items()}
 
 
 @lru_cache(maxsize=1)
 def packaged_quads() -> tuple[ox.Quad, ...]:
-    """The same where a memory keeps them: in the graph that they make up, and as the package's copy."""
+    """Return the same where a memory keeps them: in the graph that they make up, and as the package's copy."""
     return tuple(
         ox.Quad(triple.subject, triple.predicate, triple.object, graph)
         for name, triples in packaged().items()
@@ -33,7 +33,7 @@ def packaged_quads() -> tuple[ox.Quad, ...]:
 
 
 def package_digest() -> str:
-    """A digest of the packaged texts, to see whether a memory has them already."""
+    """Return a digest of the packaged texts, to see whether a memory has them already."""
     return hashlib.sha256("".join(_texts().values()).encode()).hexdigest()
 
 

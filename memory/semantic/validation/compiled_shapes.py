@@ -20,13 +20,13 @@ from deixis.errors import OntologyError
 from deixis.memory.semantic.rdf.after import Node
 from deixis.memory.semantic.rdf.package import SHAPES_FILE
 from deixis.memory.semantic.validation.constraints import CONSTRAINTS, Values
-from deixis.memory.semantic.validation.focus_data import TYPE, View
+from deixis.memory.semantic.validation.focus_data import TYPE, FocusData
 
 SH = "http://www.w3.org/ns/shacl#"
 _FIRST = ox.NamedNode("http://www.w3.org/1999/02/22-rdf-syntax-ns#first")
 _REST = ox.NamedNode("http://www.w3.org/1999/02/22-rdf-syntax-ns#rest")
 
-Check = Callable[[View, Node], bool]
+Check = Callable[[FocusData, Node], bool]
 Said = dict[ox.NamedNode, list[Node]]
 
 
@@ -49,20 +49,20 @@ class Shape:
     objects_of: tuple[ox.NamedNode, ...]
     checks: tuple[Check, ...]
 
-    def targets(self, view: View, node: Node) -> bool:
-        """Whether a node is one of its focus nodes."""
+    def targets(self, view: FocusData, node: Node) -> bool:
+        """Return whether a node is one of its focus nodes."""
         return (
             not view.classes(node).isdisjoint(self.classes)
             or any(view.some(node, predicate, 1) for predicate in self.subjects_of)
             or any(view.leads_here(predicate, node) for predicate in self.objects_of)
         )
 
-    def sure(self, view: View, node: Node) -> bool:
-        """Whether a focus node surely conforms."""
+    def sure(self, view: FocusData, node: Node) -> bool:
+        """Return whether a focus node surely conforms."""
         return all(check(view, node) for check in self.checks)
 
-    def focus(self, view: View) -> set[Node]:
-        """All its focus nodes."""
+    def focus(self, view: FocusData) -> set[Node]:
+        """Return all focus nodes."""
         found = {node for kind in self.classes for node in view.instances(kind)}
         for predicate in self.subjects_of:
             found |= view.subjects_of(predicate)
@@ -83,8 +83,8 @@ class Shapes:
     def objects_of(self) -> frozenset[ox.NamedNode]:
         return frozenset(predicate for shape in self.shapes for predicate in shape.objects_of)
 
-    def sure(self, view: View, node: Node) -> bool:
-        """Whether a node surely conforms to every shape that targets it.
+    def sure(self, view: FocusData, node: Node) -> bool:
+        """Return whether a node surely conforms to every shape that targets it.
 
         Of a node of which much is said, only what changes is looked at; a shape that did not target it before doubts.
         """
@@ -97,12 +97,12 @@ class Shapes:
 
 @lru_cache(maxsize=1)
 def packaged_shapes() -> Shapes:
-    """The shapes that come with the package, compiled once."""
+    """Return the shapes that come with the package, compiled once."""
     return compile_shapes(SHAPES_FILE)
 
 
 def compile_shapes(file: Path) -> Shapes:
-    """Compiles a Turtle file of shapes. Raises OntologyError for a constraint that is not known here."""
+    """Compile a Turtle file of shapes. Raises OntologyError for a constraint that is not known here."""
     compiler = _Compiler(ox.parse(path=file, format=ox.RdfFormat.TURTLE))
     shapes = tuple(compiler.node_shape(said) for said in compiler.node_shapes())
     targets = {kind for shape in shapes for kind in shape.classes}
@@ -130,7 +130,7 @@ class _Compiler:
         )
 
     def _shape(self, said: Said) -> list[Check]:
-        """The checks of a node shape or a property shape, if it rejects anything."""
+        """Return the checks of a node shape or a property shape, if it rejects anything."""
         if said[_sh("severity")] not in ([], [_sh("Violation")]):
             return []
         path = said[_sh("path")]
@@ -171,7 +171,8 @@ class _Compiler:
         return lambda view, node: any(case(view, node) for case in cases)
 
     def _case(self, said: Said, outer_path: list[Node]) -> Check:
-        """One alternative of sh:or, asked of one value; a class that it asks for is one of the outer path's values."""
+        """Return one alternative of sh:or, asked of one value; a class that it asks for is one of the outer path's
+        values."""
         if said[_sh("path")] or not outer_path:
             return _all_of(self._shape(said))
         placed: Said = defaultdict(list, {**said, _sh("path"): outer_path})
@@ -192,10 +193,10 @@ def _names(nodes: Iterable[Node]) -> tuple[ox.NamedNode, ...]:
 class _Itself:
     """The node alone: no path."""
 
-    def __call__(self, view: View, node: Node) -> Iterable[Node]:
+    def __call__(self, view: FocusData, node: Node) -> Iterable[Node]:
         return (node,)
 
-    def some(self, view: View, node: Node, number: int) -> Iterable[Node]:
+    def some(self, view: FocusData, node: Node, number: int) -> Iterable[Node]:
         return (node,)[:number]
 
     fresh = __call__
@@ -207,13 +208,13 @@ class _Forwards:
 
     predicate: ox.NamedNode
 
-    def __call__(self, view: View, node: Node) -> Iterable[Node]:
+    def __call__(self, view: FocusData, node: Node) -> Iterable[Node]:
         return view.values(node, self.predicate)
 
-    def some(self, view: View, node: Node, number: int) -> Iterable[Node]:
+    def some(self, view: FocusData, node: Node, number: int) -> Iterable[Node]:
         return view.some(node, self.predicate, number)
 
-    def fresh(self, view: View, node: Node) -> Iterable[Node]:
+    def fresh(self, view: FocusData, node: Node) -> Iterable[Node]:
         return view.fresh(node, self.predicate)
 
 
@@ -223,10 +224,10 @@ class _Backwards:
 
     predicate: ox.NamedNode
 
-    def __call__(self, view: View, node: Node) -> Iterable[Node]:
+    def __call__(self, view: FocusData, node: Node) -> Iterable[Node]:
         return view.subjects(self.predicate, node)
 
-    def some(self, view: View, node: Node, number: int) -> Iterable[Node]:
+    def some(self, view: FocusData, node: Node, number: int) -> Iterable[Node]:
         return list(view.subjects(self.predicate, node))[:number]
 
     fresh = __call__

@@ -14,23 +14,23 @@ from typing import Protocol
 import pyoxigraph as ox
 
 from deixis.memory.semantic.rdf.after import Node
-from deixis.memory.semantic.validation.focus_data import View
+from deixis.memory.semantic.validation.focus_data import FocusData
 
 
 class Values(Protocol):
     """What a path leads to from a node."""
 
-    def __call__(self, view: View, node: Node) -> Iterable[Node]:
-        """All of it."""
+    def __call__(self, view: FocusData, node: Node) -> Iterable[Node]:
+        """Return the nodes that the path leads to."""
 
-    def some(self, view: View, node: Node, number: int) -> Iterable[Node]:
-        """So many at the most."""
+    def some(self, view: FocusData, node: Node, number: int) -> Iterable[Node]:
+        """Return so many of them at the most."""
 
-    def fresh(self, view: View, node: Node) -> Iterable[Node]:
-        """Those whose class may be another than before the change."""
+    def fresh(self, view: FocusData, node: Node) -> Iterable[Node]:
+        """Return those whose class may be another than before the change."""
 
 
-Check = Callable[[View, Node], bool]
+Check = Callable[[FocusData, Node], bool]
 Make = Callable[[Values, Sequence[Node]], Check]
 
 _XSD = "http://www.w3.org/2001/XMLSchema#"
@@ -68,7 +68,7 @@ def _number(node: Node) -> float | None:
 
 
 def _moment(node: Node) -> datetime | None:
-    """The time that a literal names; None for one without a zone, which cannot be compared with the rest."""
+    """Return the time that a literal names; None for one without a zone, which cannot be compared with the rest."""
     if isinstance(node, ox.Literal) and node.datatype == _DATE_TIME:
         try:
             moment = datetime.fromisoformat(node.value)

@@ -16,15 +16,15 @@ from deixis.ontology.vocabulary import W3C
 TYPE = ox.NamedNode(W3C.RDF_TYPE)
 SUB_CLASS_OF = ox.NamedNode(W3C.RDFS_SUB_CLASS_OF)
 
-MANY = 48
-"""Statements about a node, those of lessons' copies too, from which on they are read predicate by predicate.
+MAX_READ_AT_ONCE = 48
+"""Maximum number of statements about a node, lessons' copies included, to read at once.
 
-A category that a thousand lessons taught, or the size of a kind from a thousand scenes, leads to all of them; a check
-must not read them all for one lesson more.
+More are read predicate by predicate. A category that a thousand lessons taught, or the size of a kind from a thousand
+scenes, leads to all of them; a check must not read them all for one lesson more.
 """
 
 
-class View:
+class FocusData:
     """The union of the data graphs of a store after a change that is not written yet."""
 
     def __init__(self, store: ox.Store, change: Change | None = None) -> None:
@@ -35,16 +35,16 @@ class View:
         self._classes: dict[Node, frozenset[Node]] = {}
 
     @cached_property
-    def before(self) -> View:
+    def before(self) -> FocusData:
         """The data as it is before the change."""
-        return View(self._store)
+        return FocusData(self._store)
 
     def says_much(self, node: Node) -> bool:
-        """Whether so much is said of a node that it is read predicate by predicate."""
+        """Return whether so much is said of a node that it is read predicate by predicate."""
         return self._few(node) is None
 
     def about(self, node: Node) -> dict[ox.NamedNode, set[Node]]:
-        """What is said of a node, by predicate."""
+        """Return what is said of a node, by predicate."""
         found = self._few(node)
         if found is None:
             found = defaultdict(set)
@@ -54,7 +54,7 @@ class View:
         return found
 
     def _few(self, node: Node) -> dict[ox.NamedNode, set[Node]] | None:
-        """What is said of a node, by predicate; None where that is much."""
+        """Return what is said of a node, by predicate; None where that is much."""
         if node not in self._about:
             self._about[node] = self._read(node)
         return self._about[node]
@@ -62,8 +62,8 @@ class View:
     def _read(self, node: Node) -> dict[ox.NamedNode, set[Node]] | None:
         found: dict[ox.NamedNode, set[Node]] = defaultdict(set)
         if isinstance(node, ox.NamedNode | ox.BlankNode):
-            quads = list(islice(self._store.quads_for_pattern(node, None, None, None), MANY + 1))
-            if len(quads) > MANY:
+            quads = list(islice(self._store.quads_for_pattern(node, None, None, None), MAX_READ_AT_ONCE + 1))
+            if len(quads) > MAX_READ_AT_ONCE:
                 return None
             for triple in self._after.of_data(quads):
                 found[triple.predicate].add(triple.object)
@@ -73,7 +73,7 @@ class View:
         return found
 
     def values(self, node: Node, predicate: ox.NamedNode) -> Iterable[Node]:
-        """The objects of a node under a predicate."""
+        """Return the objects of a node under a predicate."""
         few = self._few(node)
         if few is not None:
             return few.get(predicate, ())
@@ -84,7 +84,7 @@ class View:
         return known
 
     def some(self, node: Node, predicate: ox.NamedNode, number: int) -> Iterable[Node]:
-        """The objects of a node under a predicate, so many of them at the most."""
+        """Return the objects of a node under a predicate, so many of them at the most."""
         few = self._few(node)
         if few is not None:
             return list(few.get(predicate, ()))[:number]
@@ -95,14 +95,15 @@ class View:
         return found
 
     def _objects(self, node: Node, predicate: ox.NamedNode) -> Iterator[Node]:
-        """The objects of a node of which much is said, graph by graph; one may come twice."""
+        """Yield the objects of a node of which much is said, graph by graph; one may come twice."""
         if self._after.says(node, predicate):
             for name in DATA:
                 for triple in self._after.triples(name, node, predicate):
                     yield triple.object
 
     def fresh(self, node: Node, predicate: ox.NamedNode) -> Iterable[Node]:
-        """The objects of a node under a predicate whose class the change may have altered: new ones, and changed ones.
+        """Return the objects of a node under a predicate whose class the change may have altered: new ones, and changed
+        ones.
 
         All of them where they are few, and where there is no change.
         """
@@ -125,40 +126,40 @@ class View:
         return found
 
     def subjects(self, predicate: ox.NamedNode, node: Node) -> set[Node]:
-        """The nodes that lead to this one under a predicate."""
+        """Return the nodes that lead to this one under a predicate."""
         return {triple.subject for triple in self.leading(node, predicate)}
 
     def leads_here(self, predicate: ox.NamedNode, node: Node) -> bool:
-        """Whether any node leads to this one under a predicate."""
+        """Return whether any node leads to this one under a predicate."""
         return any(True for _ in self.leading(node, predicate))
 
     def leading(self, node: Node, predicate: ox.NamedNode | None = None) -> Iterator[ox.Triple]:
-        """What leads to a node, under any predicate or that one; a triple may come twice."""
+        """Yield what leads to a node, under any predicate or that one; a triple may come twice."""
         if isinstance(node, ox.NamedNode | ox.Literal | ox.BlankNode):
             yield from self._after.of_data(self._store.quads_for_pattern(None, predicate, node, None))
             for name in DATA:
                 yield from self._after.arriving(name, predicate, node)
 
     def is_a(self, node: Node, kind: Node) -> bool:
-        """Whether a node is an instance of a class, or of a narrower one."""
+        """Return whether a node is an instance of a class, or of a narrower one."""
         return kind in self.classes(node)
 
     def classes(self, node: Node) -> frozenset[Node]:
-        """The classes that a node is an instance of, the broader ones too."""
+        """Return the classes that a node is an instance of, the broader ones too."""
         known = self._classes.get(node)
         if known is None:
             known = self._classes[node] = frozenset[Node]().union(*map(self.broader, self.values(node, TYPE)))
         return known
 
     def broader(self, kind: Node) -> frozenset[Node]:
-        """A class and all that it is a sub-class of."""
+        """Return a class and all that it is a sub-class of."""
         known = self._broader.get(kind)
         if known is None:
             known = self._broader[kind] = frozenset(self._closure(kind, upwards=True))
         return known
 
     def narrower(self, kind: Node) -> frozenset[Node]:
-        """A class and all of its sub-classes."""
+        """Return a class and all of its sub-classes."""
         return frozenset(self._closure(kind, upwards=False))
 
     def _closure(self, kind: Node, upwards: bool) -> set[Node]:
@@ -172,14 +173,14 @@ class View:
         return seen
 
     def instances(self, kind: Node) -> Iterator[Node]:
-        """The instances of a class and of its sub-classes."""
+        """Yield the instances of a class and of its sub-classes."""
         for narrower in self.narrower(kind):
             yield from self.subjects(TYPE, narrower)
 
     def subjects_of(self, predicate: ox.NamedNode) -> set[Node]:
-        """The nodes of which a predicate is used."""
+        """Return the nodes of which a predicate is used."""
         return {triple.subject for name in DATA for triple in self._after.triples(name, None, predicate)}
 
     def objects_of(self, predicate: ox.NamedNode) -> set[Node]:
-        """The nodes that a predicate leads to."""
+        """Return the nodes that a predicate leads to."""
         return {triple.object for name in DATA for triple in self._after.triples(name, None, predicate)}

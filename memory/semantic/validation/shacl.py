@@ -21,14 +21,14 @@ if TYPE_CHECKING:
 
 @lru_cache(maxsize=1)
 def shapes_graph() -> rdflib.Graph:
-    """The packaged shapes, parsed once."""
+    """Return the packaged shapes, parsed once."""
     import rdflib
 
     return rdflib.Graph().parse(SHAPES_FILE, format="turtle")
 
 
 def violations(triples: Iterable[ox.Triple], focus: Collection[str] | None = None) -> list[ShapeResult]:
-    """What breaks the packaged shapes, of these focus nodes or of all; warnings left out, sorted."""
+    """Return what breaks the packaged shapes, of these focus nodes or of all; warnings left out, sorted."""
     triples = list(triples)
     try:
         results = validate(triples, focus)
@@ -46,7 +46,7 @@ def _incomparable(node: str = "somewhere") -> ShapeResult:
 
 
 def validate(triples: Iterable[ox.Triple], focus: Collection[str] | None = None) -> list[ShapeResult]:
-    """Every result of validating these triples, of whatever severity; about some focus nodes or about all."""
+    """Return every result of validating these triples, of whatever severity; about some focus nodes or about all."""
     import pyshacl
     import rdflib
 
@@ -74,7 +74,7 @@ def _results(found: rdflib.Graph) -> Iterator[rdflib.term.Node]:
 
 
 def _asked(about: rdflib.term.Node | None, focus: Collection[str]) -> bool:
-    """Whether a result is about one of these nodes; a literal, which rdflib spells its own way, always is."""
+    """Return whether a result is about one of these nodes; a literal, which rdflib spells its own way, always is."""
     import rdflib
 
     return isinstance(about, rdflib.Literal) or str(about) in focus
@@ -82,7 +82,7 @@ def _asked(about: rdflib.term.Node | None, focus: Collection[str]) -> bool:
 
 @contextmanager
 def _quiet() -> Iterator[None]:
-    """Without rdflib's log of each literal that is ill-typed, which the report names, and its warnings about itself."""
+    """Silence rdflib's log of each literal that is ill-typed, which the report names, and its warnings about itself."""
     logger = logging.getLogger("rdflib.term")
     level = logger.level
     logger.setLevel(logging.CRITICAL)

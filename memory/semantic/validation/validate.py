@@ -14,26 +14,26 @@ from deixis.memory.errors import RejectedWriteError, ShapeResult
 from deixis.memory.semantic.rdf.after import DATA, Node
 from deixis.memory.semantic.rdf.change import Change
 from deixis.memory.semantic.validation.compiled_shapes import Shapes, packaged_shapes
-from deixis.memory.semantic.validation.focus_data import SUB_CLASS_OF, TYPE, View
+from deixis.memory.semantic.validation.focus_data import SUB_CLASS_OF, TYPE, FocusData
 
 BATCH = 200
 """How many doubtful nodes pyshacl is asked about at a time; the first batch with violations ends the search."""
 
 
 def check_change(store: ox.Store, change: Change) -> None:
-    """Raises RejectedWriteError where a change would leave something in the store that breaks the shapes."""
-    shapes, view = packaged_shapes(), View(store, change)
+    """Raise RejectedWriteError where a change would leave something in the store that breaks the shapes."""
+    shapes, view = packaged_shapes(), FocusData(store, change)
     _check(shapes, view, touched(shapes, view, change))
 
 
 def check_store(store: ox.Store) -> None:
-    """Raises RejectedWriteError where something in the store breaks the shapes."""
-    shapes, view = packaged_shapes(), View(store)
+    """Raise RejectedWriteError where something in the store breaks the shapes."""
+    shapes, view = packaged_shapes(), FocusData(store)
     _decide(shapes, view, {node for shape in shapes.shapes for node in shape.focus(view) if not shape.sure(view, node)})
 
 
-def touched(shapes: Shapes, view: View, change: Change) -> set[Node]:
-    """The nodes whose conformance a change may alter."""
+def touched(shapes: Shapes, view: FocusData, change: Change) -> set[Node]:
+    """Return the nodes whose conformance a change may alter."""
     found: set[Node] = set()
     for side in (change.added, change.removed):
         for name in DATA:
@@ -49,17 +49,17 @@ def touched(shapes: Shapes, view: View, change: Change) -> set[Node]:
     return found
 
 
-def _leading_to(shapes: Shapes, view: View, node: Node) -> set[Node]:
-    """The nodes of which a shape asks that what they lead to be of some class."""
+def _leading_to(shapes: Shapes, view: FocusData, node: Node) -> set[Node]:
+    """Return the nodes of which a shape asks that what they lead to be of some class."""
     return {triple.subject for triple in view.leading(node) if triple.predicate in shapes.paths_to_classes}
 
 
-def _check(shapes: Shapes, view: View, nodes: Iterable[Node]) -> None:
+def _check(shapes: Shapes, view: FocusData, nodes: Iterable[Node]) -> None:
     _decide(shapes, view, {node for node in nodes if not shapes.sure(view, node)})
 
 
-def _decide(shapes: Shapes, view: View, nodes: set[Node]) -> None:
-    """Asks pyshacl about the doubtful nodes."""
+def _decide(shapes: Shapes, view: FocusData, nodes: set[Node]) -> None:
+    """Ask pyshacl about the doubtful nodes."""
     doubtful = sorted(nodes, key=str)
     for position, batch in enumerate(_batches(doubtful)):
         results = report(_copy(shapes, view, batch), batch)
@@ -76,8 +76,9 @@ def _batches(nodes: list[Node]) -> Iterator[list[Node]]:
         yield nodes[start : start + BATCH]
 
 
-def _copy(shapes: Shapes, view: View, nodes: Iterable[Node]) -> set[ox.Triple]:
-    """What the shapes reach from these nodes: what is said of them, what leads to them, and the classes of the rest."""
+def _copy(shapes: Shapes, view: FocusData, nodes: Iterable[Node]) -> set[ox.Triple]:
+    """Return what the shapes reach from these nodes: what is said of them, what leads to them, and the classes of
+    the rest."""
     copied: set[ox.Triple] = set()
     for node in nodes:
         copied.update(_about(view, node))
@@ -87,14 +88,14 @@ def _copy(shapes: Shapes, view: View, nodes: Iterable[Node]) -> set[ox.Triple]:
     return copied
 
 
-def _about(view: View, node: Node) -> Iterator[ox.Triple]:
+def _about(view: FocusData, node: Node) -> Iterator[ox.Triple]:
     for predicate, values in view.about(node).items():
         for value in values:
             yield _triple(node, predicate, value)
             yield from _classes(view, value)
 
 
-def _classes(view: View, node: Node) -> Iterator[ox.Triple]:
+def _classes(view: FocusData, node: Node) -> Iterator[ox.Triple]:
     for kind in view.values(node, TYPE):
         yield _triple(node, TYPE, kind)
         for narrow in view.broader(kind):
@@ -102,13 +103,13 @@ def _classes(view: View, node: Node) -> Iterator[ox.Triple]:
                 yield _triple(narrow, SUB_CLASS_OF, broad)
 
 
-def _triple(subject: Node, predicate: ox.NamedNode, object: Node) -> ox.Triple:
+def _triple(subject: Node, predicate: ox.NamedNode, obj: Node) -> ox.Triple:
     assert not isinstance(subject, ox.Literal)
-    return ox.Triple(subject, predicate, object)
+    return ox.Triple(subject, predicate, obj)
 
 
 def report(triples: Iterable[ox.Triple], nodes: Iterable[Node] | None = None) -> list[ShapeResult]:
-    """The violations that pyshacl finds among these triples, of these focus nodes or of all."""
+    """Return the violations that pyshacl finds among these triples, of these focus nodes or of all."""
     from deixis.memory.semantic.validation.shacl import violations
 
     return violations(triples, None if nodes is None else {str(getattr(node, "value", "")) for node in nodes})

@@ -63,41 +63,41 @@ class Committee:
         return max(outlook, key=lambda name: outlook[name])
 
     def predict(self, view: ViewFeatures) -> Prediction:
-        """What the attended one says."""
+        """Return what the attended one says."""
         return self._opinions(view)[self.attended]
 
     def learn(self, category: str, view: ViewFeatures) -> None:
-        """All members are taught."""
+        """Teach all members."""
         self._changed()
         for member in self._members:
             member.learn(category, view)
 
     def correct(self, category: str, view: ViewFeatures) -> None:
-        """Notes who was right, and corrects every member."""
+        """Note who was right, and correct every member."""
         self._watch(category, view)
         for member in self._members:
             member.correct(category, view)
 
     def confirm(self, category: str, view: ViewFeatures) -> None:
-        """Notes who was right, and tells every member."""
+        """Note who was right, and tell every member."""
         self._watch(category, view)
         for member in self._members:
             member.confirm(category, view)
 
     def forget(self, category: str) -> None:
-        """In every member; success goes on being counted."""
+        """Forget the category in every member; success goes on being counted."""
         self._changed()
         for member in self._members:
             member.forget(category)
 
     def rename(self, category: str, name: str) -> None:
-        """In every member."""
+        """Rename the category in every member."""
         self._changed()
         for member in self._members:
             member.rename(category, name)
 
     def merge(self, category: str, into: str) -> None:
-        """In every member."""
+        """Merge the categories in every member."""
         self._changed()
         for member in self._members:
             member.merge(category, into)
@@ -111,26 +111,30 @@ class Committee:
         self._changed()
 
     def _opinions(self, view: ViewFeatures) -> dict[str, Prediction]:
-        """What everybody says of the view; kept, since a teacher tells about the view that was just asked for."""
+        """Return what everybody says of the view; kept, since a teacher tells about the view that was just asked
+        for."""
         if self._asked is None or self._asked[0] is not view:
             said = {member.name: member.predict(view) for member in self._members}
-            self._asked = view, {**self._combined(said), **said}
+            unknown = next(iter(said.values())).unknown
+            outlook = self.outlook
+            chosen = sorted(said, key=lambda name: -outlook[name])[: self._best]
+            support = [(said[name].best, outlook[name]) for name in chosen]
+            heard = [(category, weight) for category, weight in support if category is not None]
+            self._asked = (
+                view,
+                {
+                    **{
+                        BELIEF: Prediction.of(dempster_shafer(heard), unknown),
+                        VOTE: Prediction.of(majority(heard), unknown),
+                    },
+                    **said,
+                },
+            )
         return self._asked[1]
-
-    def _combined(self, said: dict[str, Prediction]) -> dict[str, Prediction]:
-        unknown = next(iter(said.values())).unknown
-        outlook = self.outlook
-        chosen = sorted(said, key=lambda name: -outlook[name])[: self._best]
-        support = [(said[name].best, outlook[name]) for name in chosen]
-        heard = [(category, weight) for category, weight in support if category is not None]
-        return {
-            BELIEF: Prediction.of(dempster_shafer(heard), unknown),
-            VOTE: Prediction.of(majority(heard), unknown),
-        }
 
 
 def majority(support: Sequence[tuple[str, float]]) -> dict[str, float]:
-    """Votes by category; of as many votes the earlier voter's category is ahead, by less than a vote.
+    """Return votes by category; of as many votes the earlier voter's category is ahead, by less than a vote.
 
     >>> votes = majority([("cup", 0.9), ("mug", 0.6), ("mug", 0.5)])
     >>> max(votes, key=votes.__getitem__)
@@ -142,7 +146,8 @@ def majority(support: Sequence[tuple[str, float]]) -> dict[str, float]:
 
 
 def dempster_shafer(support: Sequence[tuple[str, float]]) -> dict[str, float]:
-    """Combined masses of categories, each of (category, mass) leaving the rest of its mass to ignorance; masses < 1.
+    """Return combined masses of categories, each of (category, mass) leaving the rest of its mass to ignorance; masses
+    < 1.
 
     >>> masses = dempster_shafer([("cup", 0.5), ("mug", 0.5)])
     >>> round(masses["cup"], 3), round(masses["mug"], 3)

@@ -47,7 +47,7 @@ class InstanceBased(TaughtViews):
         self._number = 0
 
     def predict(self, view: ViewFeatures) -> Prediction:
-        """Ranks by ND, or by D_C; categories without a view that can be compared are left out."""
+        """Rank the categories by ND, or by D_C; categories without a view that can be compared are left out."""
         found = self._recogniser.recognise(self._described(view)).candidates
         usable = [candidate for candidate in found if candidate.nearest is not None]
         if not usable:

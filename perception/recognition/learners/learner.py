@@ -28,7 +28,7 @@ class Prediction:
 
     @classmethod
     def of(cls, scores: dict[str, float], unknown: float) -> Prediction:
-        """Of equal scores the first name goes first."""
+        """Return the categories by score; of equal scores the first name goes first."""
         ranked = sorted(scores.items(), key=lambda item: (-item[1], item[0]))
         return cls(tuple(ranked), unknown) if ranked else cls()
 
@@ -59,29 +59,29 @@ class Learner(Protocol):
         ...
 
     def learn(self, category: str, view: ViewFeatures) -> None:
-        """The teacher says what a view shows."""
+        """Learn what a view shows, as the teacher says it."""
         ...
 
     def predict(self, view: ViewFeatures) -> Prediction:
-        """What the view may be; nothing is learnt from being asked."""
+        """Return what the view may be; nothing is learnt from being asked."""
         ...
 
     def correct(self, category: str, view: ViewFeatures) -> None:
-        """The answer to the view was wrong: it shows the category."""
+        """Learn that the answer to the view was wrong: it shows the category."""
         ...
 
     def confirm(self, category: str, view: ViewFeatures) -> None:
-        """The answer to the view was right: it shows the category."""
+        """Learn that the answer to the view was right: it shows the category."""
         ...
 
     def forget(self, category: str) -> None: ...
 
     def rename(self, category: str, name: str) -> None:
-        """Raises RecognitionError where the new name is another category's."""
+        """Raise RecognitionError where the new name is another category's."""
         ...
 
     def merge(self, category: str, into: str) -> None:
-        """What was known of one category is from now on known of the other."""
+        """Move what is known of one category to another."""
         ...
 
 
@@ -108,33 +108,33 @@ class TaughtViews(ABC):
         return sum(map(len, self._views.values()))
 
     def learn(self, category: str, view: ViewFeatures) -> None:
-        """Keeps the view."""
+        """Keep the view."""
         self._views[category] = (*self._views.get(category, ()), view)
         self._added(category, view)
 
     def correct(self, category: str, view: ViewFeatures) -> None:
-        """Keeps the view, as if it had been taught."""
+        """Keep the view, as if it had been taught."""
         self.learn(category, view)
 
     def confirm(self, category: str, view: ViewFeatures) -> None:
-        """Keeps nothing; raises RecognitionError where the category is not known."""
+        """Keep nothing; raise RecognitionError where the category is not known."""
         require_known(category, self._views)
 
     def forget(self, category: str) -> None:
-        """Drops the category with all its views."""
+        """Drop the category with all its views."""
         require_known(category, self._views)
         del self._views[category]
         self._rebuilt(category, ())
 
     def rename(self, category: str, name: str) -> None:
-        """Keeps the category's place in the order."""
+        """Keep the category's place in the order."""
         require_free(category, name, self._views)
         self._views = {name if old == category else old: views for old, views in self._views.items()}
         self._rebuilt(category, ())
         self._rebuilt(name, self._views[name])
 
     def merge(self, category: str, into: str) -> None:
-        """The views of the second, and then those of the first."""
+        """Keep the views of the second category, and then those of the first."""
         require_two(category, into, self._views)
         self._views[into] += self._views.pop(category)
         self._rebuilt(category, ())
@@ -142,32 +142,32 @@ class TaughtViews(ABC):
 
     @abstractmethod
     def predict(self, view: ViewFeatures) -> Prediction:
-        """What the view may be."""
+        """Return what the view may be."""
 
     @abstractmethod
     def _added(self, category: str, view: ViewFeatures) -> None:
-        """One view more is kept of a category."""
+        """Take in one more view of a category."""
 
     @abstractmethod
     def _rebuilt(self, category: str, views: tuple[ViewFeatures, ...]) -> None:
-        """A category has these views from now on; without any it is gone."""
+        """Replace the views of a category; without any it is gone."""
 
 
 def require_known(category: str, known: Collection[str]) -> None:
-    """Raises RecognitionError, with the names there are, where the category is none of them."""
+    """Raise RecognitionError, with the names there are, where the category is none of them."""
     if category not in known:
         raise RecognitionError(f"there is no category '{category}'; known are: {', '.join(known) or 'none'}")
 
 
 def require_free(category: str, name: str, known: Collection[str]) -> None:
-    """Raises RecognitionError unless the category is known and the name is its own or nobody's."""
+    """Raise RecognitionError unless the category is known and the name is its own or nobody's."""
     require_known(category, known)
     if name in known and name != category:
         raise RecognitionError(f"there is a category '{name}' already; merge '{category}' into it instead")
 
 
 def require_two(category: str, into: str, known: Collection[str]) -> None:
-    """Raises RecognitionError unless two different known categories are named."""
+    """Raise RecognitionError unless two different known categories are named."""
     require_known(category, known)
     require_known(into, known)
     if category == into:

@@ -33,7 +33,7 @@ class Codebook:
     def of(
         cls, views: Iterable[ViewFeatures], words: int = 80, descriptor: str = "spin_images", seed: int = 0
     ) -> Codebook:
-        """Clusters of the views' descriptors, by k-means from k-means++ (Arthur and Vassilvitskii 2007).
+        """Return clusters of the views' descriptors, by k-means from k-means++ (Arthur and Vassilvitskii 2007).
 
         No categories are asked for. There are fewer words where there are fewer different descriptors. Raises
         RecognitionError for a number of words below 1, and for views without a descriptor.
@@ -57,7 +57,7 @@ class Codebook:
         return len(self.centres)
 
     def counts(self, view: ViewFeatures) -> NDArray[np.float64]:
-        """How often each word occurs in a view, (w,): each descriptor is its nearest word."""
+        """Return how often each word occurs in a view, (w,): each descriptor is its nearest word."""
         rows = roots(view[self.descriptor])
         distances = (self.centres**2).sum(axis=1) - 2.0 * rows @ self.centres.T
         return np.bincount(distances.argmin(axis=1), minlength=len(self)).astype(np.float64)
@@ -87,7 +87,7 @@ class NaiveBayes(TaughtViews):
         self._counts: dict[str, NDArray[np.float64]] = {}  # (w,) each
 
     def predict(self, view: ViewFeatures) -> Prediction:
-        """Ranks by the posterior."""
+        """Rank the categories by the posterior."""
         if not self._counts or not view.has(self._codebook.descriptor):
             return Prediction()
         words = self._codebook.counts(view)

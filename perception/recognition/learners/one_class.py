@@ -53,7 +53,7 @@ class SupportVectorDescription(TaughtViews):
         self._machines: dict[str, Any] = {}
 
     def predict(self, view: ViewFeatures) -> Prediction:
-        """Ranks by how deep within each word's description the view lies; unknown is one less the best score."""
+        """Rank the categories by how deep within their descriptions the view lies; unknown is 1 - the best score."""
         vector = pooled(view, self._descriptors)
         if vector is None or not self._machines:
             return Prediction()

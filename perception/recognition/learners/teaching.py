@@ -15,7 +15,7 @@ import numpy as np
 
 from deixis.perception.errors import RecognitionError
 from deixis.perception.recognition.calibration import auroc
-from deixis.perception.recognition.learners.learner import Learner, Prediction
+from deixis.perception.recognition.learners.learner import Learner
 from deixis.perception.recognition.learners.view_features import ViewFeatures
 
 
@@ -50,7 +50,7 @@ class End(Enum):
 
 
 @dataclass(frozen=True)
-class Answer:
+class TaughtAnswer:
     """One question: what was shown, what the learner said and its doubt that it was any known category, how many
     categories it knew, how many instances it had stored afterwards, and the share of right answers that the teacher
     watches."""
@@ -75,7 +75,7 @@ class Course:
 
     learner: str
     order: tuple[str, ...]
-    answers: tuple[Answer, ...]
+    answers: tuple[TaughtAnswer, ...]
     introduced: tuple[int, ...]
     doubts: tuple[float, ...]
     learnt: int
@@ -117,7 +117,7 @@ def teach(
     seed: int = 0,
     tick: Callable[[], None] = lambda: None,
 ) -> Course:
-    """Teaches categories in that order; each view is shown once at most, those of a category in the order given.
+    """Teach categories in that order; each view is shown once at most, those of a category in the order given.
 
     Questions go round: each known category is asked for once, in random order, then again. A wrong answer is
     corrected, a right one confirmed. ``tick`` is called after each answer. Raises RecognitionError where the order is
@@ -127,7 +127,7 @@ def teach(
     settings = teaching or Teaching()
     _require(learner, views, order, settings)
     rng, unseen = np.random.default_rng(seed), {name: iter(views[name]) for name in order}
-    answers: list[Answer] = []
+    answers: list[TaughtAnswer] = []
     introduced: list[int] = []
     doubts: list[float] = []
     learnt, end = 0, End.LEARNT
@@ -154,10 +154,10 @@ def _practise(
     known: Sequence[str],
     settings: Teaching,
     rng: np.random.Generator,
-    answers: list[Answer],
+    answers: list[TaughtAnswer],
     tick: Callable[[], None],
 ) -> End | None:
-    """Asks about the known categories until the share of right answers passes; else why it did not."""
+    """Ask about the known categories until the share of right answers passes; else why it did not."""
     right: list[bool] = []
     while len(right) < settings.patience or len(right) < len(known):
         for place in rng.permutation(len(known)):
@@ -165,25 +165,20 @@ def _practise(
             view = next(unseen[category], None)
             if view is None:
                 return End.NO_VIEWS
-            found = _ask(learner, category, view)
+            found = learner.predict(view)
+            if found.best == category:
+                learner.confirm(category, view)
+            else:
+                learner.correct(category, view)
             right.append(found.best == category)
             accuracy = float(np.mean(right[-settings.window * len(known) :]))
-            answers.append(Answer(category, found.best, found.unknown, len(known), learner.stored, accuracy))
+            answers.append(TaughtAnswer(category, found.best, found.unknown, len(known), learner.stored, accuracy))
             tick()
             if len(right) >= len(known) and accuracy > settings.threshold:
                 return None
             if len(right) >= max(settings.patience, len(known)):
                 break
     return End.FRUITLESS
-
-
-def _ask(learner: Learner, category: str, view: ViewFeatures) -> Prediction:
-    found = learner.predict(view)
-    if found.best == category:
-        learner.confirm(category, view)
-    else:
-        learner.correct(category, view)
-    return found
 
 
 def _require(

@@ -92,7 +92,7 @@ class VectorQuantisation:
         return sum(len(one.places) for one in self._known.values() if one is not None)
 
     def predict(self, view: ViewFeatures) -> Prediction:
-        """Ranks by the nearest prototype."""
+        """Rank the categories by the nearest prototype."""
         vector = pooled(view, self._descriptors)
         nearest = {} if vector is None else self._nearest(vector)
         if not nearest:
@@ -102,14 +102,14 @@ class VectorQuantisation:
         )
 
     def learn(self, category: str, view: ViewFeatures) -> None:
-        """A view that would be named wrongly is a correction, another a confirmation."""
+        """Correct with a view that would be named wrongly, else confirm."""
         if category in self._known and self.predict(view).best == category:
             self.confirm(category, view)
         else:
             self.correct(category, view)
 
     def correct(self, category: str, view: ViewFeatures) -> None:
-        """A prototype more, where the view is; the one that it was taken for moves away."""
+        """Add a prototype where the view is, and move the one that it was taken for away."""
         vector = pooled(view, self._descriptors)
         if vector is None:
             self._known.setdefault(category, None)
@@ -124,7 +124,7 @@ class VectorQuantisation:
             known.moved = np.append(known.moved, 0)
 
     def confirm(self, category: str, view: ViewFeatures) -> None:
-        """The category's nearest prototype moves toward the view."""
+        """Move the category's nearest prototype toward the view."""
         require_known(category, self.categories)
         vector = pooled(view, self._descriptors)
         if vector is None:
@@ -135,17 +135,17 @@ class VectorQuantisation:
             self._move(category, found[1], vector, 1.0)
 
     def forget(self, category: str) -> None:
-        """Drops its prototypes and its features."""
+        """Drop its prototypes and its features."""
         require_known(category, self.categories)
         del self._known[category]
 
     def rename(self, category: str, name: str) -> None:
-        """Keeps the category's place in the order."""
+        """Keep the category's place in the order."""
         require_free(category, name, self.categories)
         self._known = {name if old == category else old: one for old, one in self._known.items()}
 
     def merge(self, category: str, into: str) -> None:
-        """The prototypes of both, and features that set both apart."""
+        """Join the prototypes of both, and the features that set both apart."""
         require_two(category, into, self.categories)
         one, other = self._known[into], self._known.pop(category)
         if one is None or other is None:
@@ -164,7 +164,7 @@ class VectorQuantisation:
             known.moments = _Moments.sum([known.moments, seen])
 
     def _nearest(self, vector: Vector) -> dict[str, tuple[float, int]]:
-        """The nearest prototype of each category: its distance and its place."""
+        """Return the nearest prototype of each category: its distance and its place."""
         known = {name: one for name, one in self._known.items() if one is not None}
         if not known:
             return {}
@@ -178,7 +178,7 @@ class VectorQuantisation:
         return found
 
     def _selected(self, own: _Moments, everything: _Moments) -> NDArray[np.int64]:
-        """The features (f,) that set a category apart; all of them while there is nothing else."""
+        """Return the features (f,) that set a category apart; all of them while there is nothing else."""
         others, size = everything.without(own), len(own.total)
         if not others.count or self._features >= size:
             return np.arange(size)

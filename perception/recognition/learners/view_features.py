@@ -36,24 +36,25 @@ class ViewFeatures:
         object.__setattr__(self, "descriptors", MappingProxyType(dict(self.descriptors)))
 
     def __getitem__(self, name: str) -> NDArray[np.float32]:
-        """The descriptors of that name; raises RecognitionError, with the names there are, where there are none."""
+        """Return the descriptors of that name; raises RecognitionError, with the names there are, where there are
+        none."""
         if name not in self.descriptors:
             known = ", ".join(self.descriptors) or "nothing"
             raise RecognitionError(f"the view was not described by '{name}', only by {known}")
         return self.descriptors[name]
 
     def has(self, name: str) -> bool:
-        """Whether there is at least one descriptor of that name."""
+        """Return whether there is at least one descriptor of that name."""
         return name in self.descriptors and len(self.descriptors[name]) > 0
 
 
 def features_of(cloud: PointCloud, describers: Iterable[Describer], thing: str | None = None) -> ViewFeatures:
-    """A view of one thing as every describer describes it."""
+    """Return a view of one thing as every describer describes it."""
     return ViewFeatures({describer.name: describer.describe(cloud) for describer in describers}, thing)
 
 
 def roots(descriptors: NDArray[np.float32]) -> NDArray[np.float32]:
-    """The square roots of descriptors; numbers below 0, which no histogram has, count as 0.
+    """Return the square roots of descriptors; numbers below 0, which no histogram has, count as 0.
 
     The Euclidean distance between square roots of histograms is Hellinger's, in which a few full bins do not drown
     the others.
@@ -62,7 +63,7 @@ def roots(descriptors: NDArray[np.float32]) -> NDArray[np.float32]:
 
 
 def pooled(view: ViewFeatures, names: Iterable[str]) -> NDArray[np.float64] | None:
-    """One vector for a view: the mean over keypoints of the roots of its descriptors, one name after the other.
+    """Return one vector for a view: the mean over keypoints of the roots of its descriptors, one name after the other.
 
     None where a name has no descriptor.
 

@@ -20,11 +20,11 @@ from deixis.reasoning.entailment.realisation.things import Things
 SIZE, ROUND, GAP, NEAR, MIDDLE, INSIDE, IN_LINE, TABLE = 8.0, 30.0, 20.0, 1.0, 3.0, 5.0, 0.7, 0.8
 """What a millimetre costs by which a wish is not met."""
 
-PULLS = 4.0
+MAX_PULLS = 4.0
 """How many facts about one thing count in full for where it is: all together, more do not count for more. Else the
 many that want to be near would press together what lies between, which :data:`SIZE` should withstand."""
 
-RIM = 5
+MIN_RIM = 5
 """Millimetres that are liked between the edge of a thing and what lies on it."""
 
 
@@ -47,12 +47,12 @@ class _Program:
     rows: list[tuple[dict[int, float], float]] = field(default_factory=list)
 
     def at_least(self, terms: dict[int, float], bound: float, cost: float) -> None:
-        """The sum of terms should be at least ``bound``; what lacks is paid for."""
+        """Ask that the sum of terms be at least ``bound``, and charge for what lacks."""
         slack = self._variable(cost)
         self.rows.append(({**{v: -c for v, c in terms.items()}, slack: -1.0}, -bound))
 
     def equal(self, terms: dict[int, float], value: float, cost: float) -> None:
-        """The sum of terms should be ``value``; what lacks or is too much is paid for."""
+        """Ask that the sum of terms be ``value``, and charge for what lacks or is too much."""
         slack = self._variable(cost)
         self.rows.append(({**terms, slack: -1.0}, value))
         self.rows.append(({**{v: -c for v, c in terms.items()}, slack: -1.0}, -value))
@@ -75,7 +75,7 @@ class _Program:
 
 
 def compose(network: DifferenceNetwork, wishes: Wishes, deadline: Deadline) -> NDArray[np.int64]:
-    """Places of all edges in millimetres, shape (2, 2 n), which satisfy every constraint exactly.
+    """Return places of all edges in millimetres, shape (2, 2 n), which satisfy every constraint exactly.
 
     What the program finds is rounded, and then moved to the nearest solution of the constraints, so that nothing
     rests on its arithmetic. Where it finds nothing before the deadline, the things stand where
@@ -88,18 +88,12 @@ def compose(network: DifferenceNetwork, wishes: Wishes, deadline: Deadline) -> N
     found = _program(network, wishes, points).solution(deadline) if not deadline.passed else None
     if found is None:
         return network.nearest(np.zeros((2, points), dtype=np.int64))
-    return _made_round(network, wishes.things, _whole(found[: 2 * points].reshape(2, points)))
-
-
-def _whole(edges: NDArray[np.float64]) -> NDArray[np.int64]:
-    """Edges (2, 2 n) in whole millimetres, so that sides are rounded rather than both their ends."""
+    edges = found[: 2 * points].reshape(2, points)
+    # whole millimetres, so that sides are rounded rather than both their ends
     whole = np.rint(edges)
     whole[:, 1::2] = whole[:, 0::2] + np.rint(edges[:, 1::2] - edges[:, 0::2])
-    return whole.astype(np.int64)
-
-
-def _made_round(network: DifferenceNetwork, things: Things, wanted: NDArray[np.int64]) -> NDArray[np.int64]:
-    for thing in np.flatnonzero(things.round).tolist():
+    wanted = whole.astype(np.int64)
+    for thing in np.flatnonzero(wishes.things.round).tolist():
         side = int(np.min(wanted[:, high(thing)] - wanted[:, low(thing)]))
         length = len(network)
         fixed = [
@@ -121,40 +115,31 @@ def _program(network: DifferenceNetwork, wishes: Wishes, points: int) -> _Progra
     for axis in (0, 1):
         for thing in range(points // 2):
             program.rows.append(({axis * points + high(thing): 1.0, 2 * points + axis: -1.0}, 0.0))
-    _wish_sizes(program, wishes, points)
+    things = wishes.things
+    for each in range(len(things)):
+        sides = [{k * points + high(each): 1.0, k * points + low(each): -1.0} for k in (0, 1)]
+        along = (1, 0) if wishes.lengthwise[each] else (0, 1)
+        for k in (0, 1):
+            program.equal(sides[k], float(things.wanted[each, along[k]]), SIZE)
+        if things.round[each]:
+            program.equal({**sides[0], **{v: -c for v, c in sides[1].items()}}, 0.0, ROUND)
     for a, b in wishes.apart:
         _wish_gap(program, network, a, b, wishes.gap)
     partners = np.bincount(np.array(wishes.related, dtype=np.int64).reshape(-1), minlength=points // 2)
-    pulls = np.minimum(1.0, PULLS / np.maximum(partners, 1))
+    pulls = np.minimum(1.0, MAX_PULLS / np.maximum(partners, 1))
     for axis in (0, 1):
-        apart = _between(network, axis)
+        # pairs (n, n) of things between which a third lies: it is near to both, and they need not be
+        before = network.distances[axis, 0::2, 1::2].T <= ZERO  # [first, second]: see _before
+        chains = before.astype(np.float32) @ before.astype(np.float32)
+        apart: NDArray[np.bool_] = (chains > 0) | (chains.T > 0)
         for a, b in wishes.related:
             if not apart[a, b]:
                 _wish_near(program, network, wishes, axis, a, b, float(min(pulls[a], pulls[b])))
     return program
 
 
-def _between(network: DifferenceNetwork, axis: int) -> NDArray[np.bool_]:
-    """The pairs (n, n) of things between which a third lies: it is near to both, and they need not be."""
-    before = network.distances[axis, 0::2, 1::2].T <= ZERO  # [first, second]: see _before
-    chains = before.astype(np.float32) @ before.astype(np.float32)
-    found: NDArray[np.bool_] = (chains > 0) | (chains.T > 0)
-    return found
-
-
-def _wish_sizes(program: _Program, wishes: Wishes, points: int) -> None:
-    things = wishes.things
-    for thing in range(len(things)):
-        sides = [{axis * points + high(thing): 1.0, axis * points + low(thing): -1.0} for axis in (0, 1)]
-        along = (1, 0) if wishes.lengthwise[thing] else (0, 1)
-        for axis in (0, 1):
-            program.equal(sides[axis], float(things.wanted[thing, along[axis]]), SIZE)
-        if things.round[thing]:
-            program.equal({**sides[0], **{v: -c for v, c in sides[1].items()}}, 0.0, ROUND)
-
-
 def _before(network: DifferenceNetwork, axis: int, first: int, second: int) -> bool:
-    """Whether ``first`` ends where ``second`` begins, or before."""
+    """Return whether ``first`` ends where ``second`` begins, or before."""
     return bool(network.distances[axis, low(second), high(first)] <= ZERO)
 
 
@@ -170,7 +155,7 @@ def _wish_gap(program: _Program, network: DifferenceNetwork, a: int, b: int, gap
 def _wish_near(
     program: _Program, network: DifferenceNetwork, wishes: Wishes, axis: int, a: int, b: int, pull: float
 ) -> None:
-    """Two things that a fact relates: near where they are apart, else in line, or one in the middle of the other."""
+    """Wish two related things near where they are apart, else in line, or one in the middle of the other."""
     points = network.points
     start = axis * points
     for first, second in ((a, b), (b, a)):
@@ -183,8 +168,8 @@ def _wish_near(
     for inner, outer in ((a, b), (b, a)):
         if within(network, axis, inner, outer):
             program.equal(centres, 0.0, MIDDLE * pull)
-            program.at_least({start + low(inner): 1.0, start + low(outer): -1.0}, RIM, INSIDE)
-            program.at_least({start + high(outer): 1.0, start + high(inner): -1.0}, RIM, INSIDE)
+            program.at_least({start + low(inner): 1.0, start + low(outer): -1.0}, MIN_RIM, INSIDE)
+            program.at_least({start + high(outer): 1.0, start + high(inner): -1.0}, MIN_RIM, INSIDE)
             return
     oblong = ~wishes.things.round[[a, b]] & wishes.lengthwise[[a, b]]
     if axis == 1 and oblong.all():
@@ -194,11 +179,11 @@ def _wish_near(
 
 
 def within(network: DifferenceNetwork, axis: int, inner: int, outer: int) -> bool:
-    """Whether the constraints say that one projection lies within another."""
+    """Return whether the constraints say that one projection lies within another."""
     begins = network.distances[axis, low(inner), low(outer)] <= ZERO
     return bool(begins and network.distances[axis, high(outer), high(inner)] <= ZERO)
 
 
 def in_line(pairs: Iterable[tuple[int, int]]) -> tuple[tuple[int, int], ...]:
-    """Pairs each once, whichever way round."""
+    """Return pairs each once, whichever way round."""
     return tuple(dict.fromkeys((min(pair), max(pair)) for pair in pairs if pair[0] != pair[1]))

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from deixis.ontology.allen import Allen
 from deixis.ontology.graph import Fact, RelationGraph
-from deixis.ontology.relation import Reading, Relations
+from deixis.ontology.relation import Reading
 from deixis.reasoning.constraints.difference import Difference
 from deixis.reasoning.constraints.disjunctive import Clause
 from deixis.reasoning.entailment.realisation.pieces import Piece, choice, region
@@ -57,17 +57,17 @@ def high(thing: int) -> int:
 
 
 def at_most(axis: int, tail: int, head: int, bound: int) -> Difference:
-    """``x[head] - x[tail] <= bound`` on an axis, in whole millimetres."""
+    """Return ``x[head] - x[tail] <= bound`` on an axis, in whole millimetres."""
     return Difference(axis, tail, head, 2 * bound + 1)
 
 
 def proper_boxes(things: int) -> tuple[Clause, ...]:
-    """Every box has sides of a millimetre at least."""
+    """Return every box has sides of a millimetre at least."""
     return tuple(Clause(((at_most(axis, high(i), low(i), -MARGIN),),)) for i in range(things) for axis in (0, 1))
 
 
 def fact_demands(graph: RelationGraph) -> tuple[Demand, ...]:
-    """One demand for every edge of the graph, in their order."""
+    """Return one demand for every edge of the graph, in their order."""
     facts = [graph.fact(edge) for edge in range(len(graph))]
     return tuple(
         Demand(About.FACT, (edge,), _clauses(graph, edge, region(fact)), fact.weight) for edge, fact in enumerate(facts)
@@ -75,24 +75,19 @@ def fact_demands(graph: RelationGraph) -> tuple[Demand, ...]:
 
 
 def name_demands(graph: RelationGraph, edges: Sequence[int]) -> tuple[Demand, ...]:
-    """For every denial among the edges: the pair's atom settles its exact name.
+    """Return for every denial among the edges: the pair's atom settles its exact name.
 
     Boxes that overlap in part are named by the offset of their centres. That name may be one that is denied, though
     the atom is not.
     """
-    settled = _settled(graph.vocabulary)
+    # the atoms (13, 13) that just one exact relation admits
+    exact = [relation.admits() for relation in graph.vocabulary.of_reading(Reading.EXACT)]
+    settled: NDArray[np.bool_] = np.sum(exact, axis=0) == 1
     denials = [(edge, graph.fact(edge)) for edge in edges if not graph.positive[edge]]
     return tuple(
         Demand(About.NAME, (edge,), _clauses(graph, edge, region(fact) & settled), fact.weight)
         for edge, fact in denials
     )
-
-
-def _settled(vocabulary: Relations) -> NDArray[np.bool_]:
-    """The atoms (13, 13) that just one exact relation admits."""
-    exact = [relation.admits() for relation in vocabulary.of_reading(Reading.EXACT)]
-    settled: NDArray[np.bool_] = np.sum(exact, axis=0) == 1
-    return settled
 
 
 def _clauses(graph: RelationGraph, edge: int, wanted: NDArray[np.bool_]) -> tuple[Clause, ...]:
@@ -110,7 +105,8 @@ def _differences(piece: Piece, subject: int, thing: int) -> tuple[Difference, ..
 
 
 def size_demands(things: Things) -> tuple[Demand, ...]:
-    """One demand for every thing: that its sides are usual, one way round or the other, the preferred way first."""
+    """Return one demand for every thing: that its sides are usual, one way round or the other, the preferred way
+    first."""
     return tuple(Demand(About.SIZE, (i,), _size_clauses(things, i)) for i in range(len(things)))
 
 
@@ -123,7 +119,7 @@ def _size_clauses(things: Things, thing: int) -> tuple[Clause, ...]:
 
 
 def _sides(thing: int, least: NDArray[np.int64], greatest: NDArray[np.int64]) -> tuple[Difference, ...]:
-    """The sides along x and y lie between these."""
+    """Return the bounds of the sides along x and y."""
     return tuple(
         difference
         for axis in (0, 1)
@@ -135,7 +131,7 @@ def _sides(thing: int, least: NDArray[np.int64], greatest: NDArray[np.int64]) ->
 
 
 def apart_demand(a: int, b: int, edges: NDArray[np.int64], noise: NDArray[np.float64]) -> Demand:
-    """That two boxes do not overlap: the side to which the least is to be moved comes first.
+    """Return the constraint that two boxes do not overlap: the side to which the least is to be moved comes first.
 
     ``edges`` (2, points) is where the boxes are now; ``noise`` (4,) is added to the four ways, in millimetres.
     """
@@ -147,5 +143,5 @@ def apart_demand(a: int, b: int, edges: NDArray[np.int64], noise: NDArray[np.flo
 
 
 def is_firm(fact: Fact) -> bool:
-    """Whether a fact must hold: neither optional nor hedged."""
+    """Return whether a fact must hold: neither optional nor hedged."""
     return not fact.optional and fact.weight >= 1

@@ -39,7 +39,7 @@ ROUNDS = 25
 """How often things that overlap are told apart before the rest is left as it is."""
 
 
-MOST = 500
+MAX_PICTURED = 500
 """Objects of a picture: the memory grows with their square, the time somewhat faster."""
 
 
@@ -97,15 +97,17 @@ def realise(
     deadline: Deadline = Deadline.never(),
     rng: np.random.Generator | None = None,
 ) -> Picture | Impossible | Undecided:
-    """Boxes that satisfy every firm fact of a graph, in the stated reading; or the proof that there are none.
+    """Return boxes that satisfy every firm fact of a graph, in the stated reading; or the proof that there are none.
 
     ``sizes`` has one range a node; with ``any_size`` they are only liked. ``lying`` says which things rather lie
     along x. ``rng`` draws sizes, gaps and arrangements; without it the picture is the same each time. Facts that are
     optional or hedged hold where they can, the heavier ones first. The answer comes at about the ``deadline`` at the
-    latest. Raises LimitError for more than ``MOST`` objects, whose edges cannot all be related in bounded memory.
+    latest. Raises LimitError for more than ``MAX_PICTURED`` objects, whose edges cannot be related in bounded memory.
     """
-    if len(graph.nodes) > MOST:
-        raise LimitError(f"a picture of {len(graph.nodes)} objects is more than can be worked out; {MOST} are the most")
+    if len(graph.nodes) > MAX_PICTURED:
+        raise LimitError(
+            f"a picture of {len(graph.nodes)} objects is more than can be worked out; {MAX_PICTURED} are the most"
+        )
     things = things_of(sizes, lying if lying is not None else [False] * len(graph.nodes), rng)
     task = _Task(graph, things, any_size, rng)
     impossible = task.impossible(deadline)
@@ -124,7 +126,8 @@ class _Task:
         self.gap = 12.0 if rng is None else float(rng.uniform(8, 25))
 
     def impossible(self, deadline: Deadline) -> Impossible | Undecided | None:
-        """The proof that there is no picture: with whatever sizes if it can be, else with those that are usual."""
+        """Return the proof that there is no picture: with whatever sizes if it can be, else with those that are
+        usual."""
         found = satisfy(self.points, self.base, [*self.firm, *self.sizes], deadline)
         if found is None:
             return Undecided()
@@ -137,14 +140,26 @@ class _Task:
         return _impossible(minimised(self.points, self.base, found, deadline))
 
     def picture(self, deadline: Deadline) -> Picture:
-        """Boxes, made better in rounds: what overlaps is told apart, and all is put in its place again."""
+        """Return boxes, made better in rounds: what overlaps is told apart, and all is put in its place again."""
         named = name_demands(self.graph, [d.key[0] for d in self.firm])
         best = self._liked([*self.soft, *named], deadline)
         soft, apart = [d for d in best.kept if d.about is not About.APART], list[Demand]()
         edges, finished = self._composed(best, apart, deadline), best.finished
         dropped = list(best.dropped)
         for _ in range(ROUNDS):
-            new = self._overlaps(edges, best.network, {d.key for d in apart})
+            # tell apart what overlaps, but for what is said to lie on one another and what was tried
+            known = {d.key for d in apart}
+            boxes = _boxes(edges)
+            low_corner, high_corner = boxes[:, 0], boxes[:, 1]
+            sharing = ((low_corner[:, None] < high_corner[None]) & (low_corner[None] < high_corner[:, None])).all(
+                axis=2
+            )
+            new = []
+            for a, b in np.argwhere(np.triu(sharing, 1)).tolist():
+                nested = any(all(within(best.network, k, i, o) for k in (0, 1)) for i, o in ((a, b), (b, a)))
+                if not nested and (a, b) not in known:
+                    noise = np.zeros(4) if self.rng is None else self.rng.uniform(0, 60, 4)
+                    new.append(apart_demand(a, b, edges, noise))
             if not new or not finished:
                 break
             apart += new
@@ -159,7 +174,8 @@ class _Task:
         return self._checked(edges, dropped, finished)
 
     def _liked(self, soft: Sequence[Demand], deadline: Deadline) -> Relaxed:
-        """What of all that is liked holds; what is known to be possible where there is nothing more or no time."""
+        """Return what of all that is liked holds; what is known to be possible where there is nothing more or no
+        time."""
         found = self._relaxed(soft, deadline) if soft else Relaxed(self.solved, (), ())
         return Relaxed(self.solved, (), (), finished=False) if found is None else found
 
@@ -177,45 +193,27 @@ class _Task:
             for edge in sorted(kept)
             if self.graph.positive[edge]
         ]
+        # which things have their length along y: as was chosen, or as is preferred where it was not
+        lengthwise = np.ones(len(self.things), dtype=np.bool_)
+        for thing in range(len(self.things)):
+            tall = -(network.distances[:, high(thing), low(thing)] >> 1)  # the least sides that follow
+            least = self.things.least[thing]
+            rather = not self.things.lying[thing]
+            if not self.sizes or least[0] == least[1]:
+                lengthwise[thing] = rather
+            else:
+                lengthwise[thing] = tall[1] >= least[0] if rather else not tall[0] >= least[0]
         wishes = Wishes(
             things=self.things,
-            lengthwise=self._lengthwise(network),
+            lengthwise=lengthwise,
             related=in_line(related),
             apart=tuple((d.key[0], d.key[1]) for d in apart),
             gap=self.gap,
         )
         return compose(network, wishes, deadline)
 
-    def _lengthwise(self, network: DifferenceNetwork) -> NDArray[np.bool_]:
-        """Which things have their length along y: as was chosen, or as is preferred where it was not."""
-        found = np.ones(len(self.things), dtype=np.bool_)
-        for thing in range(len(self.things)):
-            tall = -(network.distances[:, high(thing), low(thing)] >> 1)  # the least sides that follow
-            least = self.things.least[thing]
-            rather = not self.things.lying[thing]
-            if not self.sizes or least[0] == least[1]:
-                found[thing] = rather
-            else:
-                found[thing] = tall[1] >= least[0] if rather else not tall[0] >= least[0]
-        return found
-
-    def _overlaps(
-        self, edges: NDArray[np.int64], network: DifferenceNetwork, known: set[tuple[int, ...]]
-    ) -> list[Demand]:
-        """Demands to tell apart what overlaps, but for what is said to lie on one another and what was tried."""
-        boxes = _boxes(edges)
-        low_corner, high_corner = boxes[:, 0], boxes[:, 1]
-        share = ((low_corner[:, None] < high_corner[None]) & (low_corner[None] < high_corner[:, None])).all(axis=2)
-        found = []
-        for a, b in np.argwhere(np.triu(share, 1)).tolist():
-            nested = any(all(within(network, k, i, o) for k in (0, 1)) for i, o in ((a, b), (b, a)))
-            if not nested and (a, b) not in known:
-                noise = np.zeros(4) if self.rng is None else self.rng.uniform(0, 60, 4)
-                found.append(apart_demand(a, b, edges, noise))
-        return found
-
     def _checked(self, edges: NDArray[np.int64], dropped: Sequence[Dropped], finished: bool) -> Picture:
-        """The picture, after a look at every fact."""
+        """Return the picture, after a look at every fact."""
         boxes = _boxes(edges - edges.min(axis=1, keepdims=True) if self.points else edges) / 1000.0
         held, named = facts_that_hold(self.graph, boxes), facts_that_are_named(self.graph, boxes)
         wrong = [d.key[0] for d in self.firm if not held[d.key[0]]]
@@ -235,12 +233,12 @@ class _Task:
 
 
 def _boxes(edges: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Edges (2, 2 n) as corners (n, 2, 2)."""
+    """Return edges (2, 2 n) as corners (n, 2, 2)."""
     return np.moveaxis(edges.reshape(2, -1, 2), 0, 2)
 
 
 def _keys(demands: Sequence[Demand]) -> tuple[tuple[int, ...], tuple[int, ...]]:
-    """The edges of the facts and the objects of the sizes among demands."""
+    """Return the edges of the facts and the objects of the sizes among demands."""
     edges = sorted(d.key[0] for d in demands if d.about is About.FACT)
     return tuple(edges), tuple(sorted(d.key[0] for d in demands if d.about is About.SIZE))
 

@@ -16,7 +16,6 @@ from numpy.typing import NDArray
 
 from deixis.ontology.allen import mask_array
 from deixis.ontology.graph import Fact
-from deixis.ontology.relation import Relation
 from deixis.reasoning.geometry.allen import ConvexSet, EndOrder, admitted, convex_hull, convex_sets
 
 X, Y = 0, 1
@@ -35,7 +34,7 @@ Piece = tuple[Inequality, ...]
 
 
 def region(fact: Fact) -> NDArray[np.bool_]:
-    """The atoms that a fact admits, shape (13, 13), axes x and y, by Allen code.
+    """Return the atoms that a fact admits, shape (13, 13), axes x and y, by Allen code.
 
     Where a relation and its inverse share an atom, heights tell them apart: of two boxes that are alike one lies on
     the other, and a plan does not say which. No fact is pictured by such an atom. Nothing is lost by that: where a
@@ -47,25 +46,21 @@ def region(fact: Fact) -> NDArray[np.bool_]:
         own = relation.admits()
         admitted |= own
         if relation.inverse != relation.name:
-            shared |= own & _converse(relation)
+            # the inverse admits the converse atoms: the code of a converse is 12 minus the code
+            shared |= own & relation.admits()[::-1, ::-1]
     return (admitted if fact.positive else ~admitted) & ~shared
 
 
-def _converse(relation: Relation) -> NDArray[np.bool_]:
-    """The atoms that the inverse of a relation admits: the code of a converse is 12 minus the code."""
-    return relation.admits()[::-1, ::-1]
-
-
 @dataclass(frozen=True, slots=True)
-class Choice:
+class PieceChoice:
     """What holds in any case, and pieces of which one holds besides: none where nothing is admitted."""
 
     always: Piece
     pieces: tuple[Piece, ...]
 
 
-def choice(wanted: NDArray[np.bool_]) -> Choice:
-    """Inequalities that admit just the wanted atoms (13, 13): those of the convex hull, and a choice of pieces.
+def choice(wanted: NDArray[np.bool_]) -> PieceChoice:
+    """Return inequalities that admit just the wanted atoms (13, 13): those of the convex hull, and a choice of pieces.
 
     Pieces may overlap, and the largest come first: the cover is greedy, each piece admits as many atoms that are not
     yet covered as any can. What the hull says already is left out of them.
@@ -78,14 +73,14 @@ def choice(wanted: NDArray[np.bool_]) -> Choice:
 
 
 @lru_cache(maxsize=4096)
-def _choice(key: bytes) -> Choice:
+def _choice(key: bytes) -> PieceChoice:
     wanted = np.frombuffer(key, dtype=np.bool_).reshape(13, 13)
     if not wanted.any():
-        return Choice((), ())
+        return PieceChoice((), ())
     used_x, used_y = np.flatnonzero(wanted.any(axis=1)), np.flatnonzero(wanted.any(axis=0))
     always = _inequalities(X, convex_hull(_mask(used_x))) + _inequalities(Y, convex_hull(_mask(used_y)))
     pieces = tuple(tuple(i for i in piece if i not in always) for piece in _cover(wanted))
-    return Choice(always, ((),) if () in pieces else pieces)
+    return PieceChoice(always, ((),) if () in pieces else pieces)
 
 
 def _mask(codes: NDArray[np.int64]) -> int:
@@ -104,17 +99,16 @@ def _cover(wanted: NDArray[np.bool_]) -> Iterator[Piece]:
     while left.any():
         gain = np.where(outside == 0, member @ left.astype(np.int64) @ member.T, 0)
         best = np.argwhere(gain == gain.max())
-        x, y = max(best.tolist(), key=lambda pair: (_size(sets[pair[0]], sets[pair[1]]), -pair[0], -pair[1]))
+        x, y = max(
+            best.tolist(),
+            key=lambda pair: (sets[pair[0]].mask.bit_count() * sets[pair[1]].mask.bit_count(), -pair[0], -pair[1]),
+        )
         yield _inequalities(X, sets[x]) + _inequalities(Y, sets[y])
         left &= ~(member[x][:, None] & member[y][None, :]).astype(np.bool_)
 
 
-def _size(x: ConvexSet, y: ConvexSet) -> int:
-    return x.mask.bit_count() * y.mask.bit_count()
-
-
 def admitted_by(piece: Piece) -> NDArray[np.bool_]:
-    """The atoms that inequalities admit together, shape (13, 13): the inverse of :func:`choice`."""
+    """Return the atoms that inequalities admit together, shape (13, 13): the inverse of :func:`choice`."""
     masks = [admitted(tuple(EndOrder(*i[1:]) for i in piece if i.axis == axis)) for axis in (X, Y)]
     found: NDArray[np.bool_] = mask_array(masks[X])[:, None] & mask_array(masks[Y])[None, :]
     return found

@@ -34,7 +34,7 @@ class Relaxed:
 def satisfy(
     points: int, base: Sequence[Clause], demands: Sequence[Demand], deadline: Deadline
 ) -> DifferenceNetwork | tuple[Demand, ...] | None:
-    """A solution of the base and all demands; or demands that have none; or None where the time was up."""
+    """Return a solution of the base and all demands; or demands that have none; or None where the time was up."""
     clauses = [*base, *(clause for demand in demands for clause in demand.clauses)]
     owners = [-1] * len(base) + [position for position, demand in enumerate(demands) for _ in demand.clauses]
     found = solve(points, 2, clauses, deadline)
@@ -44,7 +44,7 @@ def satisfy(
 
 
 def minimised(points: int, base: Sequence[Clause], demands: Sequence[Demand], deadline: Deadline) -> Minimal[Demand]:
-    """Demands that cannot all hold, made minimal as far as there is time."""
+    """Return demands that cannot all hold, made minimal as far as there is time."""
 
     def refuted(chosen: Sequence[Demand]) -> tuple[Demand, ...] | None:
         found = satisfy(points, base, chosen, deadline)
@@ -56,7 +56,8 @@ def minimised(points: int, base: Sequence[Clause], demands: Sequence[Demand], de
 def relaxed(
     points: int, base: Sequence[Clause], firm: Sequence[Demand], soft: Sequence[Demand], deadline: Deadline
 ) -> Relaxed | tuple[Demand, ...] | None:
-    """A solution of all firm demands and of as many soft ones as can be kept, the first ones rather than the last.
+    """Return a solution of all firm demands and of as many soft ones as can be kept, the first ones rather than the
+    last.
 
     Of soft demands that cannot hold beside the others the last one is given up, until the rest can; then those that
     were given up are tried again. Firm demands that cannot hold by themselves are returned; None where the time was
@@ -78,7 +79,7 @@ def relaxed(
 
 
 def _retried(points: int, base: Sequence[Clause], firm: Sequence[Demand], best: Relaxed, deadline: Deadline) -> Relaxed:
-    """Takes back in what was given up for the sake of something that was itself given up later."""
+    """Take back in what was given up for the sake of something that was itself given up later."""
     for dropped in _worth_trying(best):
         demands = [*firm, *best.kept, dropped.demand]
         found = satisfy(points, base, demands, deadline) if not deadline.passed else None

@@ -28,27 +28,24 @@ class Things:
         return len(self.least)
 
     def ways(self, thing: int) -> tuple[tuple[int, int], ...]:
-        """Which way round it may be laid, the preferred way first; one way where it makes no difference."""
+        """Return which way round it may be laid, the preferred way first; one way where it makes no difference."""
         if (self.least[thing, 0], self.greatest[thing, 0]) == (self.least[thing, 1], self.greatest[thing, 1]):
             return (UPRIGHT,)
         return (LYING, UPRIGHT) if self.lying[thing] else (UPRIGHT, LYING)
 
 
 def things_of(ranges: Sequence[SizeRange], lying: Sequence[bool], rng: np.random.Generator | None = None) -> Things:
-    """The things whose sizes are in these ranges: of typical size, or with ``rng`` of a size drawn from the range."""
+    """Return the things whose sizes are in these ranges: of typical size, or with ``rng`` of a size drawn from the
+    range."""
     extents = [(size.length, size.width) for size in ranges]
     metres = np.array([[(e.least, e.typical, e.greatest) for e in pair] for pair in extents]).reshape(-1, 2, 3)
     least, wanted, greatest = np.moveaxis(np.rint(1000 * metres).astype(np.int64), 2, 0)
-    round = np.array([size.outline is Outline.CIRCLE for size in ranges], dtype=np.bool_)
+    turn = np.array([size.outline is Outline.CIRCLE for size in ranges], dtype=np.bool_)
     if rng is not None:
-        wanted = np.rint(_drawn(least, wanted, greatest, rng)).astype(np.int64)
-        wanted[round, 1] = wanted[round, 0]
-    return Things(np.maximum(least, 1), wanted, greatest, round, np.array(lying, dtype=np.bool_))
-
-
-def _drawn(
-    least: NDArray[np.int64], typical: NDArray[np.int64], greatest: NDArray[np.int64], rng: np.random.Generator
-) -> NDArray[np.float64]:
-    """From the middle of each range, most often near what is typical: the ends of wide ranges are odd sizes."""
-    left, right = (typical + least) / 2, np.minimum((typical + greatest) / 2, 1.3 * typical)
-    return rng.triangular(left, typical, np.maximum(right, left + 1e-6)) if len(least) else typical.astype(np.float64)
+        # from the middle of each range, mostly near what is typical: the ends of wide ranges are odd sizes
+        left, right = (wanted + least) / 2, np.minimum((wanted + greatest) / 2, 1.3 * wanted)
+        wanted = np.rint(
+            rng.triangular(left, wanted, np.maximum(right, left + 1e-6)) if len(least) else wanted.astype(np.float64)
+        ).astype(np.int64)
+        wanted[turn, 1] = wanted[turn, 0]
+    return Things(np.maximum(least, 1), wanted, greatest, turn, np.array(lying, dtype=np.bool_))

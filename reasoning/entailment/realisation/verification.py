@@ -11,11 +11,13 @@ from deixis.reasoning.geometry.rectangle import box_relations
 
 
 def facts_that_hold(graph: RelationGraph, boxes: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Which edges of a graph hold of the boxes of its nodes (n, 2, 2), as what each relation admits says.
+    """Return which edges of a graph hold of the boxes of its nodes (n, 2, 2), as what each relation admits says.
 
     Of two boxes that are alike nothing holds that says which lies on the other.
     """
-    x, y = _atoms(graph, boxes)
+    a, b = boxes[graph.subjects], boxes[graph.objects]
+    codes = [allen_relations(a[:, 0, axis], a[:, 1, axis], b[:, 0, axis], b[:, 1, axis]) for axis in (0, 1)]
+    x, y = codes[0], codes[1]
     held = np.zeros(len(graph), dtype=np.bool_)
     for edge in range(len(graph)):
         atom = (x[edge], y[edge])
@@ -26,14 +28,8 @@ def facts_that_hold(graph: RelationGraph, boxes: NDArray[np.float64]) -> NDArray
     return held
 
 
-def _atoms(graph: RelationGraph, boxes: NDArray[np.float64]) -> tuple[NDArray[np.int8], NDArray[np.int8]]:
-    a, b = boxes[graph.subjects], boxes[graph.objects]
-    codes = [allen_relations(a[:, 0, axis], a[:, 1, axis], b[:, 0, axis], b[:, 1, axis]) for axis in (0, 1)]
-    return codes[0], codes[1]
-
-
 def facts_that_are_named(graph: RelationGraph, boxes: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Which edges hold as grounding and checking see it: by the one exact name of each pair.
+    """Return which edges hold as grounding and checking see it: by the one exact name of each pair.
 
     It differs from :func:`facts_that_hold` only for boxes that overlap in part or are alike.
     """
@@ -52,7 +48,8 @@ def facts_that_are_named(graph: RelationGraph, boxes: NDArray[np.float64]) -> ND
 
 
 def partly_overlapping(boxes: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Which ordered pairs of boxes (n, 2, 2) share a part of the plan, neither within the other, shape (n, n)."""
+    """Return which ordered pairs of boxes (n, 2, 2) share a part of the plan, neither within the other, shape (n,
+    n)."""
     low, high = boxes[:, 0], boxes[:, 1]
     share = ((low[:, None] < high[None]) & (low[None] < high[:, None])).all(axis=2)
     inside = ((low[:, None] >= low[None]) & (high[:, None] <= high[None])).all(axis=2)

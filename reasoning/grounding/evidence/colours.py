@@ -26,7 +26,8 @@ TO_XYZ = np.array([[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 
 
 
 def lab_of_srgb(rgb: NDArray[np.float64]) -> Array:
-    """CIELAB of colours in sRGB, 0 to 255, shape (…, 3): L 0 to 100, a towards red, b towards yellow; NaN stays NaN.
+    """Return CIELAB of colours in sRGB, 0 to 255, shape (…, 3): L 0 to 100, a towards red, b towards yellow; NaN stays
+    NaN.
 
     IEC 61966-2-1 for sRGB, CIE 15 for CIELAB under the white of sRGB (D65).
 
@@ -43,7 +44,7 @@ def lab_of_srgb(rgb: NDArray[np.float64]) -> Array:
 
 
 def colour_evidence(described: Sequence[str | None], seen: NDArray[np.float64], colours: Colours) -> Array:
-    """What colours say of n1 objects described in some (IRIs) being each of n2 things, shape (n1, n2), finite.
+    """Return what colours say of n1 objects described in some (IRIs) being each of n2 things, shape (n1, n2), finite.
 
     ``seen`` holds the things' colours in sRGB, 0 to 255, shape (n2, 3), a row of NaN where none is known; that thing
     says nothing, nor does an object of which no colour is described. Otherwise it is
@@ -56,7 +57,13 @@ def colour_evidence(described: Sequence[str | None], seen: NDArray[np.float64], 
         return evidence
     lab, terms = lab_of_srgb(seen[known]), list(colours)
     densities = np.stack([_log_density(lab, term) for term in terms], axis=1)
-    chance = np.logaddexp.reduce(densities + np.log(_shares(densities, len(seen))), axis=1)
+    # the share (k,) of each term among the things of the scene, from the log densities of those that have a colour
+    things = len(seen)
+    named_terms = densities.shape[1]
+    naming = np.exp(densities - np.logaddexp.reduce(densities, axis=1, keepdims=True))
+    unknown = things - len(densities) + 1
+    shares: Array = (naming.sum(axis=0) + unknown / named_terms) / (things + 1)
+    chance = np.logaddexp.reduce(densities + np.log(shares), axis=1)
     ratios = np.logaddexp(np.log1p(-OUTLIERS) + densities - chance[:, None], np.log(OUTLIERS))
     column = {term.iri: position for position, term in enumerate(terms)}
     for row, iri in enumerate(described):
@@ -66,7 +73,8 @@ def colour_evidence(described: Sequence[str | None], seen: NDArray[np.float64], 
 
 
 def other_colours(described: Sequence[str | None], seen: NDArray[np.float64], colours: Colours) -> list[Colour | None]:
-    """The colours that n things plainly are instead of those in which they are described (IRIs), None for the others.
+    """Return the colours that n things plainly are instead of those in which they are described (IRIs), None for the
+    others.
 
     ``seen``, shape (n, 3), is as for :func:`colour_evidence`. Between neighbours such as red and orange either word may
     do: p(seen | described) has to be ``MAX_OTHER_RATIO`` of the greatest density at the most. What others there are
@@ -84,20 +92,8 @@ def other_colours(described: Sequence[str | None], seen: NDArray[np.float64], co
     return found
 
 
-def _shares(densities: Array, things: int) -> Array:
-    """The share of each of k terms among the things of a scene, shape (k,), from the log densities (n, k) of n of them.
-
-    Each thing counts by how likely each term is to be its name; the others, and one thing more, for all terms alike.
-    """
-    terms = densities.shape[1]
-    naming = np.exp(densities - np.logaddexp.reduce(densities, axis=1, keepdims=True))
-    unknown = things - len(densities) + 1
-    shares: Array = (naming.sum(axis=0) + unknown / terms) / (things + 1)
-    return shares
-
-
 def _log_density(lab: Array, term: Colour) -> Array:
-    """Log density of colours (n, 3) under a term's normal distribution, up to a constant, shape (n,)."""
+    """Return log density of colours (n, 3) under a term's normal distribution, up to a constant, shape (n,)."""
     apart = lab - lab_of_srgb(np.array(term.prototype, dtype=np.float64))
     precision = np.linalg.inv(term.matrix())
     result: Array = -0.5 * np.einsum("ni,ij,nj->n", apart, precision, apart) + 0.5 * np.linalg.slogdet(precision)[1]

@@ -25,7 +25,8 @@ BLOCK = 1 << 14  # numbers that fit a processor's cache several times
 
 
 def degree_of_view(model: RelationModel, features: View) -> Array:
-    """exp of the sum of terms, shape (n, n), in (0, 1]; terms of features that are not there count as fitting."""
+    """Return exp of the sum of terms, shape (n, n), in (0, 1]; terms of features that are not there count as
+    fitting."""
     logs = [_log_degree(term, features[term.feature]) for term in model.terms if term.feature in features]
     if not logs:
         return np.ones_like(next(iter(features.values())))
@@ -35,7 +36,7 @@ def degree_of_view(model: RelationModel, features: View) -> Array:
 
 
 def _log_degree(term: Term, feature: Array) -> Array:
-    """What ``np.interp`` gives, up to rounding, as a sum of hinges: one for every knot where the slope bends.
+    """Return what ``np.interp`` gives, up to rounding, as a sum of hinges: one for every knot where the slope bends.
 
     Block by block of rows, so that what is at work stays in the cache: twice as fast for a million pairs.
     """
@@ -54,7 +55,7 @@ def _log_degree(term: Term, feature: Array) -> Array:
 
 
 def word_degree(pairs: PairGeometry, word: str, models: RelationModels) -> Array:
-    """How well one of the ten words describes each ordered pair, wide reading, shape (n, n), in (0, 1].
+    """Return how well one of the ten words describes each ordered pair, wide reading, shape (n, n), in (0, 1].
 
     >>> import numpy as np
     >>> from deixis.reasoning.geometry.pairs import pair_geometry
@@ -75,14 +76,15 @@ class WordDegrees:
         self._found: dict[str, Array] = {}
 
     def of_word(self, word: str) -> Array:
-        """As :func:`word_degree`."""
+        """See :func:`word_degree`."""
         if word not in self._found:
             inverse = self._found.get(INVERSES[word])
             self._found[word] = word_degree(self._pairs, word, self._models) if inverse is None else inverse.T
         return self._found[word]
 
     def of(self, relation: Relation) -> Array:
-        """The degree of a relation, shape (n, n), in [0, 1]; raises UnknownTermError where its word has no model.
+        """Return the degree of a relation, shape (n, n), in [0, 1]; raises UnknownTermError where its word has no
+        model.
 
         In the exact reading the word has to fit better than the other nine: its degree times its share of the best.
         """
@@ -96,17 +98,18 @@ class WordDegrees:
 
 
 def relation_degree(pairs: PairGeometry, relation: Relation, models: RelationModels) -> Array:
-    """The degree of one relation: see :meth:`WordDegrees.of`."""
+    """Return the degree of one relation: see :meth:`WordDegrees.of`."""
     return WordDegrees(pairs, models).of(relation)
 
 
 def saying_degree(pairs: PairGeometry, models: RelationModels) -> Array:
-    """How readily people speak of a pair with this one of the two as the subject, whatever the word, shape (n, n)."""
+    """Return how readily people speak of a pair with this one of the two as the subject, whatever the word, shape
+    (n, n)."""
     return degree_of_view(models[SAYING], view(pairs, SAYING))
 
 
 def log_likelihood_ratio(degree: Array, outliers: float, chance: float) -> Array:
-    """log P(said | pair) - log P(said | random pair), natural logarithm, finite.
+    """Return log P(said | pair) - log P(said | random pair), natural logarithm, finite.
 
     >>> log_likelihood_ratio(np.array([1.0, 0.0]), outliers=0.01, chance=0.1).round(2).tolist()
     [2.22, -2.39]
@@ -116,6 +119,7 @@ def log_likelihood_ratio(degree: Array, outliers: float, chance: float) -> Array
 
 
 def relation_evidence(pairs: PairGeometry, relation: Relation, models: RelationModels) -> Array:
-    """The log-likelihood ratio of a word alone, shape (n, n): that of ``left`` is that of ``right`` transposed."""
+    """Return the log-likelihood ratio of a word alone, shape (n, n): that of ``left`` is that of ``right``
+    transposed."""
     model = models.of(relation)
     return log_likelihood_ratio(relation_degree(pairs, relation, models), model.outliers, model.chance)

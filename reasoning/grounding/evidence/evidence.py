@@ -84,7 +84,18 @@ class Evidence:
         absent = np.where(self.present, PRESENT_LOG_ODDS, absence(*self.labels.shape))
         boxes = self.scene.boxes
         if boxes is None or not self.meaning.graded:
-            return Problem(*self._literal_tables(), self.unary, absent, self.allowed)
+            # the crisp reading, chance being one pair for each of the names
+            graph, edges = self.description, self.facts
+            said = np.column_stack([self.degree_table, graph.net_weights[edges]])
+            rows, kinds = np.unique(said, axis=0, return_inverse=True)
+            exact = [relation.index for relation in graph.vocabulary.of_reading(Reading.EXACT)]
+            tables = np.zeros((len(rows), len(self.scene.nodes), len(self.scene.nodes)), dtype=np.float32)
+            for table, row in zip(tables, rows, strict=True):
+                degrees = row[:-1][self.scene.names]
+                table[:] = hedged(log_likelihood_ratio(degrees, OUTLIERS, float(row[exact].mean())), float(row[-1]))
+                np.fill_diagonal(table, 0.0)
+            ends = np.stack([graph.subjects[edges], graph.objects[edges]], axis=1).astype(np.int64)
+            return Problem(ends, kinds.ravel().astype(np.int64), tables, self.unary, absent, self.allowed)
         unary = self.unary
         facts = fact_tables(
             self.description,
@@ -97,27 +108,13 @@ class Evidence:
         )
         return Problem(facts.ends, facts.kinds, facts.tables, unary, absent, self.allowed)
 
-    def _literal_tables(self) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float32]]:
-        """Ends, kinds and tables of the facts in the crisp reading, chance being one pair for each of the names."""
-        graph, edges = self.description, self.facts
-        said = np.column_stack([self.degree_table, graph.net_weights[edges]])
-        rows, kinds = np.unique(said, axis=0, return_inverse=True)
-        exact = [relation.index for relation in graph.vocabulary.of_reading(Reading.EXACT)]
-        tables = np.zeros((len(rows), len(self.scene.nodes), len(self.scene.nodes)), dtype=np.float32)
-        for table, row in zip(tables, rows, strict=True):
-            degrees = row[:-1][self.scene.names]
-            table[:] = hedged(log_likelihood_ratio(degrees, OUTLIERS, float(row[exact].mean())), float(row[-1]))
-            np.fill_diagonal(table, 0.0)
-        ends = np.stack([graph.subjects[edges], graph.objects[edges]], axis=1).astype(np.int64)
-        return ends, kinds.ravel().astype(np.int64), tables
-
     @cached_property
     def facts(self) -> NDArray[np.int64]:
         """The edges of the description that can be compared: all but those of an object to itself."""
         return np.flatnonzero(self.description.subjects != self.description.objects)
 
     def firm(self) -> NDArray[np.bool_]:
-        """Which comparable facts must hold: neither optional nor hedged."""
+        """Return which comparable facts must hold: neither optional nor hedged."""
         must: NDArray[np.bool_] = ~self.description.optional[self.facts] & (self.description.weights[self.facts] >= 1)
         return must
 
@@ -133,7 +130,7 @@ class Evidence:
         return np.concatenate([table, np.zeros((len(table), 1))], axis=1)
 
     def degrees(self, assignment: NDArray[np.int64]) -> NDArray[np.float64]:
-        """How far each comparable fact holds, 0 where an object of it is unmatched.
+        """Return how far each comparable fact holds, 0 where an object of it is unmatched.
 
         ``assignment`` has shape (…, n1), the result (…, facts).
         """
@@ -145,11 +142,11 @@ class Evidence:
         return degrees
 
     def total(self, assignment: NDArray[np.int64]) -> float:
-        """The sum of degrees times weights, plus what labels say for each match."""
+        """Return the sum of degrees times weights, plus what labels say for each match."""
         return float(self.totals(assignment[None])[0])
 
     def totals(self, assignments: NDArray[np.int64]) -> NDArray[np.float64]:
-        """The total of each of k assignments (k, n1)."""
+        """Return the total of each of k assignments (k, n1)."""
         matched = assignments != UNMATCHED
         totals: NDArray[np.float64] = self.degrees(assignments) @ self.description.affirmed_weights[self.facts]
         if self.labels.size:
@@ -158,7 +155,7 @@ class Evidence:
         return totals
 
     def reordered(self, rows: NDArray[np.int64], columns: NDArray[np.int64]) -> Evidence:
-        """The same evidence with the objects and the perceived things in another order."""
+        """Return the same evidence with the objects and the perceived things in another order."""
         both = np.ix_(rows, columns)
         return replace(
             self,
@@ -173,7 +170,7 @@ class Evidence:
 
 
 def absence(objects: int, things: int) -> float:
-    """What leaving one of n1 objects out is worth in log-likelihood, beside n2 things.
+    """Return what leaving one of n1 objects out is worth in log-likelihood, beside n2 things.
 
     Whoever leaves an object out says that it is not there, and that one thing more was not described. The odds of
     either are those of Jeffreys' rule, (k + 1/2) / (n - k + 1/2), for the k that there are at least: all but as many
@@ -192,7 +189,7 @@ def absence(objects: int, things: int) -> float:
 
 
 def no_unary_evidence(description: RelationGraph, scene: SceneRelations, meaning: Meaning = SHIPPED) -> Evidence:
-    """The evidence of the facts alone: everything is allowed, and nothing else speaks for a match."""
+    """Return the evidence of the facts alone: everything is allowed, and nothing else speaks for a match."""
     nothing = np.zeros((len(description.nodes), len(scene.nodes)))
     return Evidence(description, scene, nothing, nothing, meaning)
 
@@ -209,7 +206,8 @@ def evidence_from(
     seen: NDArray[np.float64] | None = None,
     colours: Colours | None = None,
 ) -> Evidence:
-    """Facts, labels, sizes and colours together, each by its weight; ``metric`` where the scene's boxes are in metres.
+    """Return facts, labels, sizes and colours together, each by its weight; ``metric`` where the scene's boxes are in
+    metres.
 
     ``seen`` are the things' colours in sRGB, shape (n2, 3), NaN where not known; ``colours`` are the known terms.
     """

@@ -72,7 +72,7 @@ def fact_tables(
     allowed: NDArray[np.bool_] | None = None,
     names: NDArray[np.integer] | None = None,
 ) -> FactTables:
-    """The evidence of every fact for every ordered pair of n2 boxes (n2, 2, d).
+    """Return the evidence of every fact for every ordered pair of n2 boxes (n2, 2, d).
 
     ``saying`` takes into account which pairs people speak of; without it only the words count. ``literal`` is the share
     of facts that are meant literally; where it is None, it is judged from the description by the shipped models, with
@@ -136,7 +136,7 @@ class _FactRatios:
         self.literal = [self._literal(relations, positive) for relations, positive, _ in self.said]
 
     def tables(self, share: float, order: NDArray[np.int64] | None = None) -> NDArray[np.float32]:
-        """The evidence where ``share`` of facts is meant literally, shape (k, n2, n2), 0 on the diagonals.
+        """Return the evidence where ``share`` of facts is meant literally, shape (k, n2, n2), 0 on the diagonals.
 
         ``order`` (n2,) lists the things as they shall stand.
         """
@@ -156,7 +156,7 @@ class _FactRatios:
         return tables
 
     def _graded(self, relations: tuple[Relation, ...], positive: bool) -> NDArray[np.float32]:
-        """By pair, shape (n2, n2)."""
+        """Return degrees by pair, shape (n2, n2)."""
         outliers = float(np.mean([self.models.of(relation).outliers for relation in relations]))
         chances = np.array([self.models.of(relation).chance for relation in relations])
         fitting = [self.degrees.of(relation) for relation in relations]
@@ -174,7 +174,7 @@ class _FactRatios:
         return ratio
 
     def _literal(self, relations: tuple[Relation, ...], positive: bool) -> Array:
-        """By the exact name of the pair, shape (relations + 1,): the last one of no name, -1."""
+        """Return degrees by the exact name of the pair, shape (relations + 1,): the last one of no name, -1."""
         names = np.append(np.arange(len(self.vocabulary)), -1)
         degree = literal_degree(relations, positive, names, self.vocabulary, IMPLIED)
         chance = min(LITERAL_CHANCE * len(relations), 1.0)
@@ -188,7 +188,7 @@ def literal_degree(
     vocabulary: Relations,
     implied: float = 0.5,
 ) -> Array:
-    """By the exact name that each pair bears (-1: none), shape (n2, n2): 1, ``implied`` by it, or 0."""
+    """Return degrees by the exact name that each pair bears (-1: none), shape (n2, n2): 1, ``implied`` by it, or 0."""
     best = vocabulary.degrees[[relation.index for relation in relations]].max(axis=0)
     degree = np.where((best > 0) & (best < 1), implied, best) if positive else (best == 0).astype(np.float64)
     result: Array = np.where(names >= 0, degree[names], 0.0)
@@ -196,7 +196,7 @@ def literal_degree(
 
 
 def combined(degrees: Sequence[Array] | Array, positive: bool) -> Array:
-    """The degree of a choice between words (axis 0), or of the denial of all of them.
+    """Return the degree of a choice between words (axis 0), or of the denial of all of them.
 
     >>> combined(np.array([0.8, 0.2]), True).item(), round(combined(np.array([0.8, 0.5]), False).item(), 3)
     (0.5, 0.1)
@@ -207,7 +207,7 @@ def combined(degrees: Sequence[Array] | Array, positive: bool) -> Array:
 
 
 def hedged(evidence: Array, weight: float) -> Array:
-    """The evidence of a fact that holds with probability ``weight`` and otherwise says nothing.
+    """Return the evidence of a fact that holds with probability ``weight`` and otherwise says nothing.
 
     >>> hedged(np.array([3.0, -3.0]), 1.0).tolist(), hedged(np.array([3.0, -3.0]), 0.8).round(2).tolist()
     ([3.0, -3.0], [2.79, -1.43])
@@ -223,7 +223,7 @@ def hedged(evidence: Array, weight: float) -> Array:
 
 
 def crisp_tables(description: RelationGraph, names: NDArray[np.integer]) -> FactTables:
-    """The crisp reading as the special case: 1, 0.5 or 0 by the pair's exact name, times the weight.
+    """Return the crisp reading as the special case: 1, 0.5 or 0 by the pair's exact name, times the weight.
 
     ``names`` (n2, n2): relation indices, -1 on the diagonal, as
     :class:`deixis.reasoning.geometry.rectangle.SceneRelations` has.

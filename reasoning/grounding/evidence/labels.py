@@ -26,7 +26,8 @@ from deixis.ontology.triples import category_iri
 
 
 def spare_rows(pairs: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Which rows some largest matching leaves over, shape (n,), of the ``pairs`` that may be matched, shape (n, m).
+    """Return which rows some largest matching leaves over, shape (n,), of the ``pairs`` that may be matched, shape (n,
+    m).
 
     From one largest matching, all others are reached by alternating paths from what it leaves over (Dulmage and
     Mendelsohn 1958).
@@ -70,7 +71,7 @@ class Naming:
 
 
 def naming(description: RelationGraph, labels: Sequence[Label | None], kinds: Kinds) -> Naming:
-    """What the labels of all things of a scene name, one label (or None) a thing."""
+    """Return what the labels of all things of a scene name, one label (or None) a thing."""
     said = [label.text if label is not None and label.confidence > 0 else None for label in labels]
     nothing = np.zeros(len(description.nodes), dtype=bool)
     texts = {
@@ -82,52 +83,38 @@ def naming(description: RelationGraph, labels: Sequence[Label | None], kinds: Ki
     named = np.array([column[0] for column in columns], dtype=bool).reshape(shape).T
     fitting = np.array([column[1] for column in columns], dtype=bool).reshape(shape).T
     sureness = np.array([label.confidence if label is not None else 0.0 for label in labels])
-    named = named | _left_over(named & fitting, fitting & ~named, sureness)
-    return Naming(named, named & fitting)
-
-
-def _left_over(
-    by_name: NDArray[np.bool_], narrower: NDArray[np.bool_], sureness: NDArray[np.float64]
-) -> NDArray[np.bool_]:
-    """Of the objects that labels are narrower than, which they name (n1, n2): the spare objects, by the spare things.
-
-    Against a label count the names that are at least as sure.
-    """
+    by_name = named & fitting
+    narrower = fitting & ~named
     found = np.zeros_like(narrower)
     for level in np.unique(sureness[narrower.any(axis=0)]):
         claims, at_level = by_name & (sureness >= level), sureness == level
         spare = spare_rows(claims)[:, None] & spare_rows(claims.T)[None, :]
         found[:, at_level] = (narrower & spare)[:, at_level]
-    return found
+    named = named | found
+    return Naming(named, named & fitting)
 
 
 def _columns(description: RelationGraph, label: str, kinds: Kinds) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
-    """Which objects a label by itself names, by name or as the broader word; and which it fits; each of shape (n1,)."""
+    """Return which objects a label by itself names, by name or as the broader word; and which it fits; each of shape
+    (n1,)."""
     called, kind = objects_called(description, label), kinds.of_word(label)
-    fitting = called | _fitting(description, label, kinds)
+    bare, k = plain_name(label), kinds.of_word(plain_name(label))
+    found = []
+    for node, name in zip(description.nodes, _kinds(description), strict=True):
+        if _plain(plain_name(node)) == _plain(bare):
+            found.append(bare == label or plain_name(node) == node)
+        else:
+            found.append(k is not None and name is not None and kinds.is_a(k, kinds[name]))
+    fitting = called | np.array(found, dtype=bool)
     if called.any() or kind is None:
         return called, fitting
     known = (None if iri is None else kinds[iri] for iri in _kinds(description))
     return np.array([told is not None and kinds.is_a(told, kind) for told in known], dtype=bool), fitting
 
 
-def _fitting(description: RelationGraph, label: str, kinds: Kinds) -> NDArray[np.bool_]:
-    """Which objects a thing can be that is what a label says, its number aside, shape (n1,).
-
-    A number tells things of one name apart, so that ``fork_2`` is a ``fork``, but no ``fork_1``.
-    """
-    bare, kind = plain_name(label), kinds.of_word(plain_name(label))
-    found = []
-    for node, iri in zip(description.nodes, _kinds(description), strict=True):
-        if _plain(plain_name(node)) == _plain(bare):
-            found.append(bare == label or plain_name(node) == node)
-        else:
-            found.append(kind is not None and iri is not None and kinds.is_a(kind, kinds[iri]))
-    return np.array(found, dtype=bool)
-
-
 def objects_called(description: RelationGraph, name: str) -> NDArray[np.bool_]:
-    """Which objects bear a name, or a number of it: ``wine_glass`` calls ``wine_glass_1`` and ``wine_glass_2``."""
+    """Return which objects bear a name, or a number of it: ``wine_glass`` calls ``wine_glass_1`` and
+    ``wine_glass_2``."""
     plain = _plain(name)
     same = np.array([_plain(node) == plain for node in description.nodes], dtype=bool)
     if same.any():
@@ -136,7 +123,8 @@ def objects_called(description: RelationGraph, name: str) -> NDArray[np.bool_]:
 
 
 def category_of(name: str) -> str:
-    """The class of things that bear a name, with whatever number: the category that is learned where it is no kind's.
+    """Return the class of things that bear a name, with whatever number: the category that is learned where it is no
+    kind's.
 
     >>> category_of("fish_knife_2") == category_of("Fish knife")
     True
@@ -145,7 +133,7 @@ def category_of(name: str) -> str:
 
 
 def classes(description: RelationGraph) -> tuple[str, ...]:
-    """The class of each object of a description, an IRI: its kind, else the category of its name."""
+    """Return the class of each object of a description, an IRI: its kind, else the category of its name."""
     return tuple(kind or category_of(node) for kind, node in zip(_kinds(description), description.nodes, strict=True))
 
 

@@ -35,7 +35,7 @@ MAX_JUDGED_OBJECTS = 60
 
 
 def literal_share(graded: Problem, literal: Problem, objects: Order) -> float:
-    """The share of facts to be taken literally: that of a literal speaker times the probability that one speaks.
+    """Return the share of facts to be taken literally: that of a literal speaker times the probability that one speaks.
 
     ``graded`` and ``literal`` are the same problem with the facts of either speaker. ``objects`` (n1,) lists one side
     in an order that does not depend on how it was given, and the problems' things stand in such an order: the search is
@@ -52,7 +52,7 @@ def literal_share(graded: Problem, literal: Problem, objects: Order) -> float:
 
 
 def _part(problem: Problem, order: Order) -> Problem:
-    """The problem with its objects in that order, or a connected part of it, and its facts sorted."""
+    """Return the problem with its objects in that order, or a connected part of it, and its facts sorted."""
     chosen = _connected(problem.ends, order) if len(order) > MAX_JUDGED_OBJECTS else order
     place = np.full(len(order), -1)
     place[chosen] = np.arange(len(chosen))
@@ -71,7 +71,8 @@ def _part(problem: Problem, order: Order) -> Problem:
 
 
 def _connected(ends: NDArray[np.int64], order: Order) -> Order:
-    """The first ``MAX_JUDGED_OBJECTS`` objects that facts lead to, breadth first, from the one that has most facts."""
+    """Return the first ``MAX_JUDGED_OBJECTS`` objects that facts lead to, breadth first, from the one that has most
+    facts."""
     near: dict[int, list[int]] = {i: [] for i in order.tolist()}
     for a, b in ends.tolist():
         near[a].append(b)
@@ -89,7 +90,7 @@ def _connected(ends: NDArray[np.int64], order: Order) -> Order:
 
 
 def _best_value(problem: Problem) -> float:
-    """What the best map is worth; of many objects about, by a short search."""
+    """Return what the best map is worth; of many objects about, by a short search."""
     from deixis.reasoning.grounding.matching.exact import exact
     from deixis.reasoning.grounding.matching.scalable import scalable
 

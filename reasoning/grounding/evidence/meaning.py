@@ -29,14 +29,14 @@ CHANCE = {"horizontal": 0.074, "vertical": 0.074, "diagonal": 0.038, "support": 
 
 
 def falling_with_angle(half: float) -> Term:
-    """``deviation``: exp(k (cos a - 1)), a half at ``half`` radians."""
+    """Return ``deviation``: exp(k (cos a - 1)), a half at ``half`` radians."""
     angles = np.radians([0.0, 22.5, 45.0, 67.5, 90.0, 135.0, 180.0])
     values = BORDER * (1 - np.cos(angles)) / (1 - np.cos(half))
     return Term("deviation", tuple(angles.tolist()), tuple(np.maximum(values, 2 * EXTREME).tolist()), Trend.FALLING)
 
 
 def direction_terms(half: float, abreast: Trend) -> tuple[Term, ...]:
-    """The terms of a direction word whose neighbours' borders lie ``half`` radians off."""
+    """Return the terms of a direction word whose neighbours' borders lie ``half`` radians off."""
     beside = (BORDER, 0.0) if abreast is Trend.RISING else (0.0, BORDER)
     return (
         falling_with_angle(half),
@@ -52,7 +52,7 @@ def direction_terms(half: float, abreast: Trend) -> tuple[Term, ...]:
 
 
 def support_terms() -> tuple[Term, ...]:
-    """The terms of ``on``: within the bearer's outline, its foot there, and higher where heights are known."""
+    """Return the terms of ``on``: within the bearer's outline, its foot there, and higher where heights are known."""
     return (
         Term("across", (0.0, 0.5, 1.0), (EXTREME, BORDER, 0.0), Trend.RISING),
         # what reaches below its bearer is not borne: half at a quarter of the depth; what reaches above may stand on it
@@ -64,7 +64,8 @@ def support_terms() -> tuple[Term, ...]:
 
 
 def saying_terms() -> tuple[Term, ...]:
-    """Which pairs are spoken of: neighbours, three times as readily as the farthest; the larger as the reference."""
+    """Return which pairs are spoken of: neighbours, three times as readily as the farthest; the larger as the
+    reference."""
     sizes = np.linspace(-1.0, 1.0, 9)
     chosen = np.log(np.maximum((1 + sizes) / 2, 0.05))
     return (
@@ -75,7 +76,7 @@ def saying_terms() -> tuple[Term, ...]:
 
 @lru_cache(maxsize=1)
 def shipped_models() -> RelationModels:
-    """The models of all ten words, and of what is spoken of.
+    """Return the models of all ten words, and of what is spoken of.
 
     >>> [term.feature for term in shipped_models()["support"].terms]
     ['across', 'foot', 'gap', 'rise']

@@ -33,7 +33,7 @@ MIN_DIRECTION_OFFSET = 0.5
 
 
 def view(pairs: PairGeometry, word: str) -> View:
-    """The features of every ordered pair for a word of the ten, or for ``saying``; arrays of shape (n, n).
+    """Return the features of every ordered pair for a word of the ten, or for ``saying``; arrays of shape (n, n).
 
     Of a direction: ``deviation`` (radians from where the word points), ``clear`` (how far the near edges are apart),
     ``trail`` and ``lead`` (which is less, which more far along: the starts or the ends of the boxes), ``forward`` and
@@ -106,17 +106,17 @@ class _Features(Mapping[str, Array]):
 
 
 def _clear(pairs: PairGeometry, axis: int, sign: int) -> Array:
-    """Near edges along one axis."""
+    """Return the features of near edges along one axis."""
     return _along(pairs.edges[0, :, :, axis], sign)
 
 
 def _trail(pairs: PairGeometry, axis: int, sign: int) -> Array:
-    """The lesser of the offsets of starts and ends."""
+    """Return the lesser of the offsets of starts and ends."""
     return np.minimum(_along(pairs.edges[1, :, :, axis], sign), _along(pairs.edges[2, :, :, axis], sign))
 
 
 def _lead(pairs: PairGeometry, axis: int, sign: int) -> Array:
-    """The greater of the two."""
+    """Return the greater of the two."""
     return np.maximum(_along(pairs.edges[1, :, :, axis], sign), _along(pairs.edges[2, :, :, axis], sign))
 
 
@@ -125,7 +125,7 @@ def _along(distances: Array, sign: int) -> Array:
 
 
 def _support(pairs: PairGeometry) -> View:
-    """How the subject lies on the object.
+    """Return how the subject lies on the object.
 
     ``across`` and ``along``: shares of its extents on x and y within the object's; ``bears`` and
     ``spans``: shares of the object's within its own; ``foot`` and, with heights, ``rise``: see the geometry; ``rest``:

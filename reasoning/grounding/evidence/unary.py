@@ -21,7 +21,7 @@ from deixis.reasoning.errors import SettingError
 from deixis.reasoning.geometry.pairs import pair_geometry
 from deixis.reasoning.grounding.evidence.labels import Label, naming
 from deixis.reasoning.grounding.evidence.sizes import (
-    Look,
+    SizeMixture,
     beside_each_other,
     from_above,
     in_image_from_above,
@@ -52,7 +52,8 @@ class UnaryWeights:
 
 
 def log_sizes(boxes: NDArray[np.float64], relative: bool) -> Array:
-    """Natural logarithms of length and aspect of n boxes, shape (n, 2); of nothing's length, a millionth is taken.
+    """Return natural logarithms of length and aspect of n boxes, shape (n, 2); of nothing's length, a millionth is
+    taken.
 
     The aspect is the shorter by the longer side. ``relative``, as for an image: lengths are in units of their median,
     and the aspect is height by width.
@@ -74,7 +75,7 @@ def size_evidence(
     learned: Mapping[str, SizeModel] | None = None,
     metric: bool = True,
 ) -> Array:
-    """What sizes say of n1 objects of some kinds (class IRIs) being each of n2 boxes, shape (n1, n2), finite.
+    """Return what sizes say of n1 objects of some kinds (class IRIs) being each of n2 boxes, shape (n1, n2), finite.
 
     A learned model takes the place of the usual size; a kind of which no size is known says nothing. Where units are
     pixels (not ``metric``), sizes in metres say how large the objects are beside each other, seen from above or from
@@ -88,7 +89,14 @@ def size_evidence(
     if metric:
         looks = {kind: from_above(model, _reach(kind, sizes, learned)) for kind, model in known.items()}
         return np.where(too_high(kinds, boxes, sizes, learned), np.log(OUTLIERS), _ratios(kinds, boxes, looks))
-    return _whichever_view([_ratios(kinds, boxes, looks) for looks in looks_in_image(kinds, sizes, learned)])
+    # the mixture of the views, each as likely as the whole scene fits it by its best assignment
+    views = [_ratios(kinds, boxes, looks) for looks in looks_in_image(kinds, sizes, learned)]
+    from scipy.optimize import linear_sum_assignment
+
+    fits = np.array([view[linear_sum_assignment(view, maximize=True)].sum() for view in views])
+    shares = fits - np.logaddexp.reduce(fits)
+    mixed: Array = np.logaddexp.reduce([share + view for share, view in zip(shares, views, strict=True)], axis=0)
+    return mixed
 
 
 def too_high(
@@ -97,7 +105,7 @@ def too_high(
     sizes: Sizes,
     learned: Mapping[str, SizeModel] | None = None,
 ) -> NDArray[np.bool_]:
-    """Which of n2 boxes in metres are plainly higher than things of n1 kinds (class IRIs) usually are, (n1, n2).
+    """Return which of n2 boxes in metres are plainly higher than things of n1 kinds (class IRIs) usually are, (n1, n2).
 
     Lower than usual is whatever something else hides in part. Of flat boxes no height is known, and of kinds whose size
     was learned none is usual.
@@ -115,8 +123,9 @@ def too_high(
 
 def looks_in_image(
     kinds: Sequence[str], sizes: Sizes, learned: Mapping[str, SizeModel] | None = None
-) -> tuple[dict[str, Look], dict[str, Look]]:
-    """How the known ones of some objects' kinds look beside each other: in an image from above, and from aside."""
+) -> tuple[dict[str, SizeMixture], dict[str, SizeMixture]]:
+    """Return how the known ones of some objects' kinds look beside each other: in an image from above, and from
+    aside."""
     known = _known(kinds, sizes, learned)
     above = {kind: in_image_from_above(model) for kind, model in known.items()}
     aside = {kind: in_image_from_aside(kind, model, sizes) for kind, model in known.items()}
@@ -129,31 +138,21 @@ def _known(kinds: Sequence[str], sizes: Sizes, learned: Mapping[str, SizeModel] 
 
 
 def _reach(kind: str, sizes: Sizes, learned: Mapping[str, SizeModel] | None) -> float:
-    """How far a handle stands out that the kind's length leaves out; a learned length has it."""
+    """Return how far a handle stands out that the kind's length leaves out; a learned length has it."""
     reach = None if kind in (learned or {}) else sizes.of(kind).reach
     return 0.0 if reach is None else reach.typical
 
 
-def _whichever_view(views: Sequence[Array]) -> Array:
-    """The mixture of what is said from each view, each as likely as the whole scene fits it, by its best assignment."""
-    from scipy.optimize import linear_sum_assignment
-
-    fits = np.array([view[linear_sum_assignment(view, maximize=True)].sum() for view in views])
-    shares = fits - np.logaddexp.reduce(fits)
-    mixed: Array = np.logaddexp.reduce([share + view for share, view in zip(shares, views, strict=True)], axis=0)
-    return mixed
-
-
-def _ratios(kinds: Sequence[str], boxes: NDArray[np.float64], looks: Mapping[str, Look]) -> Array:
-    """What looks say of n1 objects being each of n2 boxes, shape (n1, n2), nothing of a kind that has none."""
+def _ratios(kinds: Sequence[str], boxes: NDArray[np.float64], looks: Mapping[str, SizeMixture]) -> Array:
+    """Return what looks say of n1 objects being each of n2 boxes, shape (n1, n2), nothing of a kind that has none."""
     measured = {relative: log_sizes(boxes, relative) for relative in {look.relative for look in looks.values()}}
     ratios = {kind: _density_ratio(measured[look.relative], look) for kind, look in looks.items()}
     silent = np.zeros(len(boxes))
     return np.array([ratios.get(kind, silent) for kind in kinds])
 
 
-def _density_ratio(measured: Array, look: Look) -> Array:
-    """log of (1 - outliers) * p(size | kind) / p(size) + outliers, for n boxes (n, 2), log n at the most.
+def _density_ratio(measured: Array, look: SizeMixture) -> Array:
+    """Return log of (1 - outliers) * p(size | kind) / p(size) + outliers, for n boxes (n, 2), log n at the most.
 
     p(size) is the mean of normal kernels at the things of the scene (Parzen 1962), their width by Scott's rule (1992),
     but never narrower than the kind's spread.
@@ -168,7 +167,7 @@ def _density_ratio(measured: Array, look: Look) -> Array:
 
 
 def _log_kernel(at: Array, centres: Array, spread: Array) -> Array:
-    """Log density of n places (n, 2) under k normal kernels (k, 2), up to a constant, shape (n, k)."""
+    """Return log density of n places (n, 2) under k normal kernels (k, 2), up to a constant, shape (n, k)."""
     apart = (at[:, None] - centres[None]) / spread
     result: Array = -0.5 * (apart**2).sum(axis=2) - np.log(spread).sum()
     return result
@@ -177,7 +176,8 @@ def _log_kernel(at: Array, centres: Array, spread: Array) -> Array:
 def label_ratios(
     description: RelationGraph, labels: Sequence[Label | None], kinds: Kinds
 ) -> tuple[Array, NDArray[np.bool_]]:
-    """What labels say of n1 objects being each of n2 things, and which of these matches they allow, each (n1, n2).
+    """Return what labels say of n1 objects being each of n2 things, and which of these matches they allow, each (n1,
+    n2).
 
     The log-likelihood ratios are finite: 0 for a match that a certain label rules out.
     A label of confidence c names k of n1 objects: it is right with probability c, else drawn from all objects, so that

@@ -27,7 +27,7 @@ from deixis.reasoning.grounding.fitting.parameters import Layout
 
 
 def random_scenes(count: int = 200, size: int = 8, seed: int = 1) -> list[NDArray[np.float64]]:
-    """Boxes (size, 2, 2) with centres anywhere in the unit square and extents between 0.02 and 0.3."""
+    """Return boxes (size, 2, 2) with centres anywhere in the unit square and extents between 0.02 and 0.3."""
     rng = np.random.default_rng(seed)
     centres = rng.uniform(0.0, 1.0, (count, size, 2))
     halves = rng.uniform(0.01, 0.15, (count, size, 2))
@@ -35,7 +35,8 @@ def random_scenes(count: int = 200, size: int = 8, seed: int = 1) -> list[NDArra
 
 
 def chance_degree(model: RelationModel, scenes: Iterable[PairGeometry]) -> float:
-    """Mean degree of a model over all ordered pairs of scenes and the words that share it; 1 where there is none."""
+    """Return mean degree of a model over all ordered pairs of scenes and the words that share it; 1 where there is
+    none."""
     words = [word for word, family in FAMILIES.items() if family == model.name] or [SAYING]
     found = []
     for pairs in scenes:
@@ -73,11 +74,23 @@ def learn_relations(
     sources: Sequence[str] = (),
     version: str = "",
 ) -> RelationModels:
-    """The models that fit the scenes and the prior best together, with their provenance.
+    """Return the models that fit the scenes and the prior best together, with their provenance.
 
     Models of which no word was said come back as they were. Raises SettingError for settings that cannot be.
     """
-    taught = {family: _count(scenes, family) for family in {*FAMILIES.values()}}
+    taught = {
+        family: (
+            float(
+                sum(
+                    weight
+                    for scene in scenes
+                    for word, weight in zip(scene.words, scene.weights.tolist(), strict=True)
+                    if FAMILIES.get(word) == family
+                )
+            )
+        )
+        for family in {*FAMILIES.values()}
+    }
     total = sum(taught.values())
     if total == 0:
         return prior
@@ -85,20 +98,16 @@ def learn_relations(
     names = [*sorted(name for name, count in taught.items() if count > 0), SAYING]
     layout = Layout([extended(prior[name]) for name in names])
     values = _maximise(Likelihood(scenes, layout, chosen.word_contrast), layout, chosen)
-    where = _provenance(sources, version, total, taught)
+    made = datetime.now(UTC)
+    where = {each: Provenance(tuple(sources), n, made, version) for each, n in {**taught, SAYING: total}.items()}
     fitted = [_fitted(model, values, layout, scenes, where[model.name]) for model in layout.models]
     return prior.replaced(*fitted)
-
-
-def _provenance(sources: Sequence[str], version: str, total: float, taught: dict[str, float]) -> dict[str, Provenance]:
-    made = datetime.now(UTC)
-    return {name: Provenance(tuple(sources), count, made, version) for name, count in {**taught, SAYING: total}.items()}
 
 
 def _fitted(
     model: RelationModel, values: Array, layout: Layout, scenes: Sequence[SaidPairs], where: Provenance
 ) -> RelationModel:
-    """The model with new values, each term's best shifted to 0.
+    """Return the model with new values, each term's best shifted to 0.
 
     What the shifts of a word and of the saying model take from the degrees, the outliers take over, so that their
     likelihood ratio stays what was fitted.
@@ -136,7 +145,7 @@ _KNOTS = {
 
 
 def extended(model: RelationModel) -> RelationModel:
-    """The same model with more knots, and with the features that the prior is blind to as terms of 0."""
+    """Return the same model with more knots, and with the features that the prior is blind to as terms of 0."""
     finer = _KNOTS[model.name if model.name in _KNOTS else "direction"]
     known = {term.feature: term for term in model.terms}
     terms = []
@@ -167,17 +176,6 @@ def _maximise(likelihood: Likelihood, layout: Layout, settings: FitSettings) -> 
 
 
 def _term(term: Term, values: Array) -> Term:
-    """The term with new values, shifted so that its best is 0."""
+    """Return the term with new values, shifted so that its best is 0."""
     shifted = values - values.max()
     return Term(term.feature, term.knots, tuple(np.minimum(shifted, 0.0).tolist()), term.trend)
-
-
-def _count(scenes: Sequence[SaidPairs], family: str) -> float:
-    return float(
-        sum(
-            weight
-            for scene in scenes
-            for word, weight in zip(scene.words, scene.weights.tolist(), strict=True)
-            if FAMILIES.get(word) == family
-        )
-    )

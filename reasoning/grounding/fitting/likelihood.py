@@ -14,7 +14,7 @@ from deixis.ontology.models.relations import FAMILIES, SAYING, RelationModel
 from deixis.reasoning.errors import SettingError
 from deixis.reasoning.geometry.pairs import PairGeometry, pair_geometry
 from deixis.reasoning.grounding.evidence.pair_features import View, view
-from deixis.reasoning.grounding.fitting.parameters import LARGEST_STEP, Layout
+from deixis.reasoning.grounding.fitting.parameters import MAX_STEP, Layout
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,7 +36,7 @@ def said_pairs(
     things: Sequence[int | None],
     confidence: Sequence[float] | Mapping[int, float] | None = None,
 ) -> SaidPairs:
-    """The pairs that a grounded description teaches.
+    """Return the pairs that a grounded description teaches.
 
     ``boxes`` (n2, 2, d); ``things[i]`` is the box of the description's i-th object, or None where it has none, and
     ``confidence`` how sure that is (0 to 1; 1 where none is given), so that a posterior of grounding can teach: a fact
@@ -55,13 +55,13 @@ def said_pairs(
     words, ends, weights = [], [], []
     index = {name: i for i, name in enumerate(description.nodes)}
     for fact in description.facts():
-        subject, object = index[fact.subject], index[fact.object]
-        first, second = things[subject], things[object]
+        subject, obj = index[fact.subject], index[fact.object]
+        first, second = things[subject], things[obj]
         said = fact.plain and not fact.optional  # what is rarely so, not plain either, shows what is not meant
         if said and first is not None and second is not None and first != second:
             words.append(fact.relations[0].word)
             ends.append((first, second))
-            weights.append(fact.weight * sure[subject] * sure[object])
+            weights.append(fact.weight * sure[subject] * sure[obj])
     return SaidPairs(pairs, tuple(words), np.array(ends, dtype=np.int64).reshape(-1, 2), np.array(weights))
 
 
@@ -80,7 +80,7 @@ class Likelihood:
         for scene in self.scenes:
             scores, slopes = {}, {}
             for word, (design, columns, outliers) in scene.designs.items():
-                degree = (1 - outliers) * np.exp(np.minimum(design @ values[columns], LARGEST_STEP))
+                degree = (1 - outliers) * np.exp(np.minimum(design @ values[columns], MAX_STEP))
                 scores[word] = np.log(outliers + degree)
                 slopes[word] = degree / (outliers + degree)
             found, pull = scene.contrast_pairs(scores)
@@ -116,7 +116,7 @@ class _Designed:
         ]
 
     def contrast_pairs(self, scores: dict[str, Array]) -> tuple[float, dict[str, Array]]:
-        """Each word's pair among all pairs of the scene: log-likelihood, and its slope by the scores."""
+        """Return each word's pair among all pairs of the scene: log-likelihood, and its slope by the scores."""
         total, pull = 0.0, {word: np.zeros_like(score) for word, score in scores.items()}
         share = {word: _softmax(score) for word, score in scores.items()}
         for word, pair, weight in self.said:
@@ -126,7 +126,7 @@ class _Designed:
         return total, pull
 
     def contrast_words(self, scores: dict[str, Array]) -> tuple[float, dict[str, Array]]:
-        """Each pair's word among all words: log-likelihood, and its slope by the scores."""
+        """Return each pair's word among all words: log-likelihood, and its slope by the scores."""
         total, pull = 0.0, {word: np.zeros_like(score) for word, score in scores.items()}
         words = list(scores)
         share = np.stack([scores[word] for word in words])
@@ -140,7 +140,7 @@ class _Designed:
 
 
 def _hats(model: RelationModel, features: View, apart: NDArray[np.bool_]) -> Array:
-    """The weight of every knot of every term for every pair, shape (p, knots): linear interpolation."""
+    """Return the weight of every knot of every term for every pair, shape (p, knots): linear interpolation."""
     parts = []
     for term in model.terms:
         knots = np.array(term.knots)

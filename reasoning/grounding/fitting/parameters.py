@@ -14,7 +14,7 @@ Array = NDArray[np.float64]
 RIDGE = 0.1
 """How much the prior holds a value itself, relative to how much it holds differences."""
 
-LARGEST_STEP = 20.0
+MAX_STEP = 20.0
 """No log degree is farther from the next one."""
 
 
@@ -37,19 +37,19 @@ class Layout:
         return next(model for model in self.models if model.name == name)
 
     def columns(self, name: str) -> NDArray[np.int64]:
-        """The positions of all values of a model."""
+        """Return the positions of all values of a model."""
         spans = [self.slices[name, term.feature] for term in self.model(name).terms]
         return np.concatenate([np.arange(span.start, span.stop) for span in spans])
 
     def steps(self) -> Array:
-        """The matrix that turns (first value, increments) of every term into values."""
+        """Return the matrix that turns (first value, increments) of every term into values."""
         from scipy.linalg import block_diag
 
         matrix: Array = block_diag(*(np.tril(np.ones((len(term.knots),) * 2)) for term in self.terms))
         return matrix
 
     def precision(self) -> Array:
-        """The prior's precision of all values: differences from knot to knot, and, more loosely, values."""
+        """Return the prior's precision of all values: differences from knot to knot, and, more loosely, values."""
         from scipy.linalg import block_diag
 
         blocks = []
@@ -60,10 +60,10 @@ class Layout:
         return matrix
 
     def bounds(self) -> list[tuple[float, float]]:
-        """What first values and increments may be: increments of a term with a trend have its sign."""
+        """Return what first values and increments may be: increments of a term with a trend have its sign."""
         found = []
         for term in self.terms:
-            low = 0.0 if term.trend is Trend.RISING else -LARGEST_STEP
-            high = 0.0 if term.trend is Trend.FALLING else LARGEST_STEP
-            found += [(-LARGEST_STEP, LARGEST_STEP)] + [(low, high)] * (len(term.knots) - 1)
+            low = 0.0 if term.trend is Trend.RISING else -MAX_STEP
+            high = 0.0 if term.trend is Trend.FALLING else MAX_STEP
+            found += [(-MAX_STEP, MAX_STEP)] + [(low, high)] * (len(term.knots) - 1)
         return found

@@ -15,20 +15,20 @@ from numpy.typing import NDArray
 
 from deixis.ontology.models.sizes import SizeModel
 from deixis.reasoning.errors import SettingError
-from deixis.reasoning.grounding.evidence.sizes import LEAST_SPREAD
+from deixis.reasoning.grounding.evidence.sizes import MIN_SPREAD
 
 Array = NDArray[np.float64]
 
 VIEWS_OF_PRIOR = 5.0
 """How many views the spread that is known before counts as."""
 
-USUAL_SPREAD = 0.2
+PRIOR_SPREAD = 0.2
 """Standard deviation of the logarithm within a kind before anything is seen: the mean over the TBox's usual sizes."""
 
-FROM_MEDIAN = 1.4826
+SD_PER_MEDIAN_DEVIATION = 1.4826
 """A normal's standard deviation over its median absolute deviation (Rousseeuw and Croux 1993)."""
 
-FROM_MEAN = 1.2533
+SD_PER_MEAN_DEVIATION = 1.2533
 """A normal's standard deviation over its mean absolute deviation."""
 
 
@@ -46,13 +46,13 @@ class SizePrior:
 
 
 def usual_prior(usual: SizeModel) -> SizePrior:
-    """A usual size as a prior: what is typical may be off by as much as things of the kind differ."""
+    """Return a usual size as a prior: what is typical may be off by as much as things of the kind differ."""
     centre, spread = np.array([usual.length, usual.aspect]).T
     return SizePrior(centre, spread, spread)
 
 
 def pooled_prior(kinds: Sequence[Array]) -> SizePrior:
-    """What the views of several kinds, each (n, 2), have in common; raises SettingError where there is none."""
+    """Return what the views of several kinds, each (n, 2), have in common; raises SettingError where there is none."""
     seen = [views for views in kinds if len(views)]
     if not seen:
         raise SettingError("a size is learned from one view at least")
@@ -63,13 +63,13 @@ def pooled_prior(kinds: Sequence[Array]) -> SizePrior:
 
 
 def pool(centre: Array, off_centre: Array, apart: Array, views: int, kinds: int) -> SizePrior:
-    """The same from sums: of how far all views are from their common median, and from that of their own kind."""
-    within = (FROM_MEAN * apart + VIEWS_OF_PRIOR * USUAL_SPREAD) / (views - kinds + VIEWS_OF_PRIOR)
-    return SizePrior(centre, np.maximum(FROM_MEAN * off_centre / views, within), within)
+    """Return the same from sums: of how far all views are from their common median, and from that of their own kind."""
+    within = (SD_PER_MEAN_DEVIATION * apart + VIEWS_OF_PRIOR * PRIOR_SPREAD) / (views - kinds + VIEWS_OF_PRIOR)
+    return SizePrior(centre, np.maximum(SD_PER_MEAN_DEVIATION * off_centre / views, within), within)
 
 
 def learn_size(views: Array, prior: SizePrior, relative: bool = False) -> SizeModel:
-    """The size of a kind from n views of things of it, (n, 2): the distribution of the next one.
+    """Return the size of a kind from n views of things of it, (n, 2): the distribution of the next one.
 
     Its spread is the views' (median absolute deviation), mixed with the prior's, which counts as
     ``VIEWS_OF_PRIOR`` views; what is typical lies between the views' median and the prior's centre, by their precision;
@@ -83,12 +83,12 @@ def learn_size(views: Array, prior: SizePrior, relative: bool = False) -> SizeMo
 
 
 def size_of(n: int, median: Array, deviation: Array, prior: SizePrior, relative: bool = False) -> SizeModel:
-    """The same from the median of n views, shape (2,), and their median absolute deviation from it."""
-    spread = FROM_MEDIAN * deviation
+    """Return the same from the median of n views, shape (2,), and their median absolute deviation from it."""
+    spread = SD_PER_MEDIAN_DEVIATION * deviation
     variance = (n * spread**2 + VIEWS_OF_PRIOR * prior.within**2) / (n + VIEWS_OF_PRIOR)
     precision = n / variance + 1 / prior.between**2
     typical = (n * median / variance + prior.centre / prior.between**2) / precision
-    doubted = np.maximum(np.sqrt(variance + 1 / precision), LEAST_SPREAD)
+    doubted = np.maximum(np.sqrt(variance + 1 / precision), MIN_SPREAD)
     length, aspect = zip(typical.tolist(), doubted.tolist(), strict=True)
     return SizeModel(length, aspect if relative else (min(aspect[0], 0.0), aspect[1]), relative, float(n))
 
@@ -96,7 +96,8 @@ def size_of(n: int, median: Array, deviation: Array, prior: SizePrior, relative:
 def learn_sizes(
     views: Mapping[str, Array], relative: bool = False, usual: Mapping[str, SizeModel] | None = None
 ) -> dict[str, SizeModel]:
-    """The sizes of kinds from views of each, (n, 2), n at least 1: near its usual size, or what all have in common."""
+    """Return the sizes of kinds from views of each, (n, 2), n at least 1: near its usual size, or what all have in
+    common."""
     if not views:
         return {}
     pooled = pooled_prior(list(views.values()))

@@ -56,14 +56,14 @@ class Candidates:
         object.__setattr__(self, "weights", weights / weights.sum())
 
     def _in_order(self) -> NDArray[np.int64]:
-        """The rows with the things of every group sorted, so that no two of them stand for the same maps."""
+        """Return the rows with the things of every group sorted, so that no two of them stand for the same maps."""
         rows = self.assignments.copy()
         for group in self.groups:
             rows[:, list(group)] = np.sort(rows[:, list(group)], axis=1)
         return rows
 
     def __len__(self) -> int:
-        """The number of rows."""
+        """Return the number of rows."""
         return len(self.weights)
 
     @cached_property
@@ -87,7 +87,7 @@ class Candidates:
         return np.array([math.log(self._orders(row)) for row in self.assignments])
 
     def _orders(self, row: NDArray[np.int64]) -> int:
-        """Different ways to give the things of a row to the members of each group."""
+        """Return different ways to give the things of a row to the members of each group."""
         total = 1
         for members in self.groups:
             total *= math.factorial(len(members)) // math.factorial(int((row[list(members)] == UNMATCHED).sum()))
@@ -124,35 +124,32 @@ class Candidates:
         return tuple(i for i in range(self.assignments.shape[1]) if i not in skipped)
 
     def pinned(self, objects: Iterable[int]) -> Candidates:
-        """The same candidates in as many rows as it takes to have these objects in no group."""
+        """Return the same candidates in as many rows as it takes to have these objects in no group."""
         result = self
         for i in objects:
             group = next((group for group in result.groups if i in group), None)
             if group is not None:
-                result = result._without(i, group)
+                rows, others = np.arange(len(result)), tuple(j for j in group if j != i)
+                swapped = []
+                for j in group:
+                    exchanged = result.assignments.copy()
+                    exchanged[rows, i], exchanged[rows, j] = result.assignments[rows, j], result.assignments[rows, i]
+                    swapped.append(exchanged)
+                left = tuple(other for other in result.groups if other != group)
+                groups = (*left, others) if len(others) > 1 else left
+                weights = np.tile(result.weights / len(group), len(group))
+                result = Candidates(np.concatenate(swapped), weights, groups, result.complete)
         return result
 
-    def _without(self, i: int, group: tuple[int, ...]) -> Candidates:
-        rows, others = np.arange(len(self)), tuple(j for j in group if j != i)
-        swapped = []
-        for j in group:
-            exchanged = self.assignments.copy()
-            exchanged[rows, i], exchanged[rows, j] = self.assignments[rows, j], self.assignments[rows, i]
-            swapped.append(exchanged)
-        left = tuple(other for other in self.groups if other != group)
-        groups = (*left, others) if len(others) > 1 else left
-        weights = np.tile(self.weights / len(group), len(group))
-        return Candidates(np.concatenate(swapped), weights, groups, self.complete)
-
     def kept(self, rows: NDArray[np.bool_]) -> Candidates:
-        """Only some of the rows; raises SettingError for none."""
+        """Return only some of the rows; raises SettingError for none."""
         return Candidates(self.assignments[rows], self.weights[rows], self.groups, self.complete)
 
 
 def candidates_of(
     problem: Problem, deadline: Deadline = Deadline.never(), *, margin: float = 0.0, limit: int = MAX_LISTED_MAPS
 ) -> Candidates:
-    """The maps worth at most ``margin`` less than the best, weighted by the exponential of their values.
+    """Return the maps worth at most ``margin`` less than the best, weighted by the exponential of their values.
 
     Where there are more than ``limit``, the things of interchangeable objects are taken as those of the best map, and
     held as groups; ``complete`` is then False, as it is where the deadline struck.
@@ -171,17 +168,13 @@ def candidates_of(
     groups = exchangeable(problem)
     if not groups or not found.limited:
         return _weighted(found, (), complete=False)
-    rest = maps_within(_held(problem, found.assignments[0], groups), margin, deadline, limit=limit)
+    best = found.assignments[0]
+    allowed = problem.allowed.copy()
+    for i in (i for group in groups for i in group):
+        allowed[i] = np.arange(allowed.shape[1]) == best[i]
+    rest = maps_within(replace(problem, allowed=allowed), margin, deadline, limit=limit)
     return _weighted(rest, groups, complete=False)
 
 
 def _weighted(maps: Maps, groups: tuple[tuple[int, ...], ...], complete: bool) -> Candidates:
     return Candidates(maps.assignments, np.exp(maps.values - maps.values.max()), groups, complete)
-
-
-def _held(problem: Problem, best: NDArray[np.int64], groups: tuple[tuple[int, ...], ...]) -> Problem:
-    """The problem with the members of groups held to their things in one map."""
-    allowed = problem.allowed.copy()
-    for i in (i for group in groups for i in group):
-        allowed[i] = np.arange(allowed.shape[1]) == best[i]
-    return replace(problem, allowed=allowed)

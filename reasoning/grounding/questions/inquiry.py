@@ -20,7 +20,7 @@ class ContradictionError(DeixisError, ValueError):
     """An answer that no candidate gives."""
 
 
-class Outcome(StrEnum):
+class ExchangeOutcome(StrEnum):
     """What an answer did."""
 
     RESOLVED = "resolved"
@@ -38,17 +38,17 @@ class Exchange:
 
     question: Question
     answer: str
-    outcome: Outcome
+    outcome: ExchangeOutcome
     against: tuple[int, ...] = ()
 
     @property
     def believed(self) -> bool:
         """Whether the answer counts."""
-        return self.outcome in (Outcome.RESOLVED, Outcome.SURPRISING)
+        return self.outcome in (ExchangeOutcome.RESOLVED, ExchangeOutcome.SURPRISING)
 
 
 def update(situation: Situation, candidates: Candidates, question: Question, answer: str) -> Candidates:
-    """The candidates that agree with an answer; all of them where it is ``DONT_KNOW``.
+    """Return the candidates that agree with an answer; all of them where it is ``DONT_KNOW``.
 
     Raises ContradictionError where none agrees.
     """
@@ -72,7 +72,7 @@ class Inquiry:
     exchanges: tuple[Exchange, ...] = ()
 
     def next_question(self) -> Question | None:
-        """The question that is expected to resolve most, or None where there is none.
+        """Return the question that is expected to resolve most, or None where there is none.
 
         None is asked twice, nor one that takes a look at what the person could not tell before. Who has not known as
         many answers in a row as there are objects (``PATIENCE`` at least), or is not understood, is asked no more.
@@ -82,28 +82,29 @@ class Inquiry:
         if len(latest) == patience and not any(exchange.believed for exchange in latest):
             return None
         barred = {exchange.question.topic for exchange in self.exchanges}
-        unknown = (exchange for exchange in self.exchanges if exchange.outcome is Outcome.UNKNOWN)
+        unknown = (exchange for exchange in self.exchanges if exchange.outcome is ExchangeOutcome.UNKNOWN)
         return best_question(self.situation, self.candidates, self.kinds, barred | {e.question.look for e in unknown})
 
     def answered(self, question: Question, answer: str) -> Inquiry:
-        """The inquiry after an answer; one with which no candidate agrees is recorded and changes nothing else."""
+        """Return the inquiry after an answer; one with which no candidate agrees is recorded and changes nothing
+        else."""
         if answer == DONT_KNOW:
-            return self._with(Exchange(question, answer, Outcome.UNKNOWN), self.candidates)
+            return self._with(Exchange(question, answer, ExchangeOutcome.UNKNOWN), self.candidates)
         try:
             left = update(self.situation, self.candidates, question, answer)
         except ContradictionError:
             against = self._against(question, answer)
             told = question.kind is not QuestionKind.RELATION and not against
-            outcome = Outcome.SURPRISING if told else Outcome.CONTRADICTORY
+            outcome = ExchangeOutcome.SURPRISING if told else ExchangeOutcome.CONTRADICTORY
             return self._with(Exchange(question, answer, outcome, against), self.candidates)
-        return self._with(Exchange(question, answer, Outcome.RESOLVED), left)
+        return self._with(Exchange(question, answer, ExchangeOutcome.RESOLVED), left)
 
     def _with(self, exchange: Exchange, candidates: Candidates) -> Inquiry:
         return replace(self, exchanges=(*self.exchanges, exchange), candidates=candidates)
 
     def _against(self, question: Question, answer: str) -> tuple[int, ...]:
-        """Earlier answers without which this one would be possible: a set from which none can be left out."""
-        blamed = [k for k, exchange in enumerate(self.exchanges) if exchange.outcome is Outcome.RESOLVED]
+        """Return earlier answers without which this one would be possible: a set from which none can be left out."""
+        blamed = [k for k, exchange in enumerate(self.exchanges) if exchange.outcome is ExchangeOutcome.RESOLVED]
         if not self._possible(question, answer, []):
             return ()
         for k in list(blamed):
@@ -126,5 +127,5 @@ class Inquiry:
 def begin(
     situation: Situation, candidates: Candidates, kinds: tuple[QuestionKind, ...] = tuple(QuestionKind)
 ) -> Inquiry:
-    """An inquiry into candidates of which nothing has been asked."""
+    """Return an inquiry into candidates of which nothing has been asked."""
     return Inquiry(situation, candidates, candidates, kinds)

@@ -16,7 +16,7 @@ from deixis.reasoning.grounding.evidence.evidence import PRESENT_LOG_ODDS, Evide
 from deixis.reasoning.grounding.matching.problem import UNMATCHED
 from deixis.reasoning.grounding.options import DECIDED
 from deixis.reasoning.grounding.questions.candidates import Candidates, candidates_of
-from deixis.reasoning.grounding.questions.inquiry import ContradictionError, Inquiry, Outcome, begin, update
+from deixis.reasoning.grounding.questions.inquiry import ContradictionError, ExchangeOutcome, Inquiry, begin, update
 from deixis.reasoning.grounding.questions.selection import ABSENT, NO, YES, QuestionKind
 from deixis.reasoning.grounding.questions.situation import Situation, situation_of
 
@@ -36,7 +36,7 @@ Hold = Callable[[Inquiry, float], Inquiry]
 
 @dataclass(frozen=True, eq=False)
 class Refinement:
-    """The evidence with the answers, the dialogue at its end, and the seconds that are left for grounding."""
+    """The evidence with the answers, the dialogue at its end, and the deadline for grounding."""
 
     evidence: Evidence
     inquiry: Inquiry
@@ -62,40 +62,35 @@ def refine(
     deadline = Deadline.after(time_limit if done.exchanges else left)
     while len(done.exchanges) > len(inquiry.exchanges):
         evidence = narrowed(evidence, done)
-        if done.exchanges[-1].outcome is not Outcome.SURPRISING and done.next_question() is not None:
+        if done.exchanges[-1].outcome is not ExchangeOutcome.SURPRISING and done.next_question() is not None:
             break  # the person ended the dialogue
-        inquiry = _relisted(evidence, done, Deadline.after(time_limit / 2))
-        most = question_limit(inquiry) if done.exchanges[-1].outcome is Outcome.SURPRISING else most
+        candidates = considered(evidence, Deadline.after(time_limit / 2))
+        for exchange in done.exchanges:
+            if exchange.believed:
+                with suppress(ContradictionError):  # what is likeliest now need not agree with every answer
+                    candidates = update(done.situation, candidates, exchange.question, exchange.answer)
+        if (candidates.likeliest_shares >= DECIDED).all():
+            candidates = candidates.kept((candidates.assignments == candidates.best).all(axis=1))
+        inquiry = replace(done, start=candidates, candidates=candidates)
+        most = question_limit(inquiry) if done.exchanges[-1].outcome is ExchangeOutcome.SURPRISING else most
         done = hold(inquiry, most)
         deadline = Deadline.after(time_limit)
     return Refinement(evidence, done, deadline)
 
 
 def question_limit(inquiry: Inquiry) -> int:
-    """One question more than yes and no take to tell the groundings apart, with those asked before."""
+    """Return one question more than yes and no take to tell the groundings apart, with those asked before."""
     return len(inquiry.exchanges) + math.ceil(math.log2(inquiry.candidates.count)) + 1
 
 
-def _relisted(evidence: Evidence, done: Inquiry, deadline: Deadline) -> Inquiry:
-    """The dialogue over what the answers have made likely; over one grounding where that leaves nothing in doubt."""
-    candidates = considered(evidence, deadline)
-    for exchange in done.exchanges:
-        if exchange.believed:
-            with suppress(ContradictionError):  # what is likeliest now need not agree with every answer
-                candidates = update(done.situation, candidates, exchange.question, exchange.answer)
-    if (candidates.likeliest_shares >= DECIDED).all():
-        candidates = candidates.kept((candidates.assignments == candidates.best).all(axis=1))
-    return replace(done, start=candidates, candidates=candidates)
-
-
 def considered(evidence: Evidence, deadline: Deadline) -> Candidates:
-    """The groundings within the widest margin of which all can be listed; half of the time is for the first."""
+    """Return the groundings within the widest margin of which all can be listed; half of the time is for the first."""
     wide = candidates_of(evidence.problem, deadline.share(0.5), margin=MARGINS[0])
     return wide if wide.complete else candidates_of(evidence.problem, deadline, margin=MARGINS[1])
 
 
 def narrowed(evidence: Evidence, done: Inquiry) -> Evidence:
-    """The evidence and what was answered; what was never considered stays as likely as it was.
+    """Return the evidence and what was answered; what was never considered stays as likely as it was.
 
     Ruled out is what an object was in some candidate before the dialogue and is in none after it, nor in one of before
     in which those asked about are what they are now. A list that was cut off at any place says nothing about the maps
@@ -104,7 +99,18 @@ def narrowed(evidence: Evidence, done: Inquiry) -> Evidence:
     labels, allowed = evidence.labels.copy(), evidence.allowed.copy()
     identified, out = evidence.identified.copy(), np.zeros(evidence.labels.shape, dtype=bool)
     if done.start.complete or done.start.groups:
-        left = _possible(done.candidates, labels.shape) | _possible_jointly(done, labels.shape)
+        resolved = [swap.question.about for swap in done.exchanges if swap.outcome is ExchangeOutcome.RESOLVED]
+        asked = sorted({i for about in resolved for i in about})
+        found = np.zeros(labels.shape, dtype=bool)
+        # a map with those asked about as in some candidate of now agrees with the answers, though it may be too
+        # unlikely to have been listed: which fork is which says nothing of the knives
+        for now in np.unique(done.candidates.assignments[:, asked], axis=0)[:MAX_JOINT_ANSWERS]:
+            rows = done.start.assignments.copy()
+            rows[:, asked] = now
+            ordered = np.sort(rows, axis=1)
+            twice = (ordered[:, 1:] == ordered[:, :-1]) & (ordered[:, 1:] != UNMATCHED)
+            found |= _matched(rows[~twice.any(axis=1)], labels.shape)
+        left = _possible(done.candidates, labels.shape) | found
         out = _possible(done.start, labels.shape) & ~left
     for exchange in done.exchanges:
         question, answer = exchange.question, exchange.answer
@@ -124,7 +130,8 @@ def narrowed(evidence: Evidence, done: Inquiry) -> Evidence:
 
 
 def _possible(candidates: Candidates, shape: tuple[int, ...]) -> NDArray[np.bool_]:
-    """Which object is which thing in some candidate, shape (n1, n2); the members of a group share their things."""
+    """Return which object is which thing in some candidate, shape (n1, n2); the members of a group share their
+    things."""
     found = _matched(candidates.assignments, shape)
     for group in candidates.groups:
         found[list(group)] = found[list(group)].any(axis=0)
@@ -132,26 +139,8 @@ def _possible(candidates: Candidates, shape: tuple[int, ...]) -> NDArray[np.bool
 
 
 def _matched(assignments: NDArray[np.int64], shape: tuple[int, ...]) -> NDArray[np.bool_]:
-    """Which object is which thing in some of k maps (k, n1), shape (n1, n2)."""
+    """Return which object is which thing in some of k maps (k, n1), shape (n1, n2)."""
     found = np.zeros(shape, dtype=bool)
     rows, objects = np.nonzero(assignments != UNMATCHED)
     found[objects, assignments[rows, objects]] = True
-    return found
-
-
-def _possible_jointly(done: Inquiry, shape: tuple[int, ...]) -> NDArray[np.bool_]:
-    """The same in the candidates of before, with those asked about being what they are in some candidate of now.
-
-    Such a map agrees with the answers, though it may be too unlikely to have been listed: which fork is which says
-    nothing of the knives.
-    """
-    resolved = [exchange.question.about for exchange in done.exchanges if exchange.outcome is Outcome.RESOLVED]
-    asked = sorted({i for about in resolved for i in about})
-    found = np.zeros(shape, dtype=bool)
-    for now in np.unique(done.candidates.assignments[:, asked], axis=0)[:MAX_JOINT_ANSWERS]:
-        rows = done.start.assignments.copy()
-        rows[:, asked] = now
-        ordered = np.sort(rows, axis=1)
-        twice = (ordered[:, 1:] == ordered[:, :-1]) & (ordered[:, 1:] != UNMATCHED)
-        found |= _matched(rows[~twice.any(axis=1)], shape)
     return found

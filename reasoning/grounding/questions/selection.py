@@ -28,7 +28,7 @@ DONT_KNOW = "don't know"
 RELATION_EFFORT, IDENTITY_EFFORT, POINTING_EFFORT = 1.0, 1.5, 2.0
 VAGUE_EFFORT = 1.0  # more, where the word is half true in every candidate
 COMPOUND_EFFORT = 0.25  # more, for a word that says two things at once: bottom left of
-APART_EFFORT = 0.5  # more, where the two lie as far apart as things do
+DISTANCE_EFFORT = 0.5  # more, where the two lie as far apart as things do
 ID_EFFORT = 1.0  # more, where a thing can be told by its id alone
 
 MAX_PAIRS = 2_000
@@ -90,7 +90,7 @@ class Question:
 
 
 def answers_of(question: Question, situation: Situation, assignments: NDArray[np.int64]) -> list[str]:
-    """How each of k maps (k, n1) answers."""
+    """Return how each of k maps (k, n1) answers."""
     things = situation.things
     subjects = assignments[:, question.subject]
     if question.kind is QuestionKind.POINTING:
@@ -109,7 +109,8 @@ def best_question(
     kinds: Collection[QuestionKind] = tuple(QuestionKind),
     barred: Collection[Topic] = (),
 ) -> Question | None:
-    """The question that is expected to resolve most, the least effort among equals; None where none resolves anything.
+    """Return the question that is expected to resolve most, the least effort among equals; None where none resolves
+    anything.
 
     ``barred``: topics and looks of questions that are not to be asked. Neither the order of candidates nor that of
     objects or things changes the question, up to which of several alike it is.
@@ -122,7 +123,7 @@ def best_question(
 def questions(
     situation: Situation, candidates: Candidates, kinds: Collection[QuestionKind] = tuple(QuestionKind)
 ) -> Iterator[Question]:
-    """Every question that resolves something, and that the description does not settle."""
+    """Yield every question that resolves something, and that the description does not settle."""
     marginals = _marginals(situation, candidates)
     asked = [i for i in candidates.stand_ins if marginals[i].max() < 1 - 1e-12]
     if QuestionKind.POINTING in kinds:
@@ -136,11 +137,25 @@ def questions(
         )
     if QuestionKind.RELATION in kinds:
         for i, j in _pairs(asked, candidates, marginals, situation):
-            yield from _relations(i, j, candidates, situation)
+            pairs, joint, absent = _joint(i, j, candidates, len(situation.things))
+            degrees = situation.degrees.reshape(len(situation.relations), -1)[:, pairs]
+            yes, vague = (degrees > 0) @ joint, (degrees == 0.5) @ joint
+            apart = float(situation.apart.ravel()[pairs] @ joint)
+            subject, obj = (spoken(situation.objects[k]) for k in (i, j))
+            for row, relation in enumerate(situation.relations):
+                if situation.settled[row, i, j]:
+                    continue
+                chances = {YES: float(yes[row]), NO: max(0.0, 1 - absent - float(yes[row])), ABSENT: absent}
+                text = f"Is the {subject} {relation.phrase} the {obj}?"
+                effort = RELATION_EFFORT + VAGUE_EFFORT * float(vague[row]) + DISTANCE_EFFORT * apart
+                effort += COMPOUND_EFFORT if relation.broader else 0.0
+                question = _question(QuestionKind.RELATION, text, (i, relation, j, -1), chances, effort)
+                if question.bits > 1e-9:
+                    yield question
 
 
 def _marginals(situation: Situation, candidates: Candidates) -> NDArray[np.float64]:
-    """The probability of each thing for each object (n1, n2 + 1); last, of its being left out."""
+    """Return the probability of each thing for each object (n1, n2 + 1); last, of its being left out."""
     n1, n2 = len(situation.objects), len(situation.things)
     found = np.zeros((n1, n2 + 1))
     for i in range(n1):
@@ -154,7 +169,8 @@ def _marginals(situation: Situation, candidates: Candidates) -> NDArray[np.float
 def _pairs(
     asked: list[int], candidates: Candidates, marginals: NDArray[np.float64], situation: Situation
 ) -> list[tuple[int, int]]:
-    """Pairs with an uncertain first object; both uncertain: by name. The least certain ones where there are many."""
+    """Return pairs with an uncertain first object; both uncertain: by name. The least certain ones where there are
+    many."""
     uncertain = set(asked)
     names, certainty = situation.objects, marginals.max(axis=1)
     found = [
@@ -177,26 +193,9 @@ def _identity(i: int, p: int, chance: float, situation: Situation) -> Question:
     return _question(QuestionKind.IDENTITY, text, (i, None, -1, p), {YES: chance, NO: 1 - chance}, effort)
 
 
-def _relations(i: int, j: int, candidates: Candidates, situation: Situation) -> Iterator[Question]:
-    pairs, joint, absent = _joint(i, j, candidates, len(situation.things))
-    degrees = situation.degrees.reshape(len(situation.relations), -1)[:, pairs]
-    yes, vague = (degrees > 0) @ joint, (degrees == 0.5) @ joint
-    apart = float(situation.apart.ravel()[pairs] @ joint)
-    subject, object = (spoken(situation.objects[k]) for k in (i, j))
-    for row, relation in enumerate(situation.relations):
-        if situation.settled[row, i, j]:
-            continue
-        chances = {YES: float(yes[row]), NO: max(0.0, 1 - absent - float(yes[row])), ABSENT: absent}
-        text = f"Is the {subject} {relation.phrase} the {object}?"
-        effort = RELATION_EFFORT + VAGUE_EFFORT * float(vague[row]) + APART_EFFORT * apart
-        effort += COMPOUND_EFFORT if relation.broader else 0.0
-        question = _question(QuestionKind.RELATION, text, (i, relation, j, -1), chances, effort)
-        if question.bits > 1e-9:
-            yield question
-
-
 def _joint(i: int, j: int, candidates: Candidates, n2: int) -> tuple[NDArray[np.int64], NDArray[np.float64], float]:
-    """The pairs of things (flat positions) that two objects can be, their probabilities, and that one is left out."""
+    """Return the pairs of things (flat positions) that two objects can be, their probabilities, and that one is left
+    out."""
     rows = candidates.pinned((i, j))
     p, q = rows.assignments[:, i], rows.assignments[:, j]
     there = (p != UNMATCHED) & (q != UNMATCHED)
@@ -215,6 +214,6 @@ def _question(
     possible = {answer: chance for answer, chance in chances.items() if chance > 1e-12}
     bits = -sum(chance * math.log2(chance) for chance in possible.values())
     ordered = sorted(possible.items(), key=lambda item: (-round(item[1], 9), item[0]))
-    subject, relation, object, thing = about
+    subject, relation, obj, thing = about
     most = math.log2(len(ordered))
-    return Question(kind, text, subject, relation, object, thing, tuple(ordered), min(max(bits, 0.0), most), effort)
+    return Question(kind, text, subject, relation, obj, thing, tuple(ordered), min(max(bits, 0.0), most), effort)

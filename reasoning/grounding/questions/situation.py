@@ -46,7 +46,7 @@ class Situation:
         return share
 
     def place(self, thing: int) -> str:
-        """How a thing is called in a question: by its place with its id, or by its id alone."""
+        """Return how a thing is called in a question: by its place with its id, or by its id alone."""
         where = self.places[thing]
         return f"the thing {where} ({self.things[thing]})" if where else f"the thing {self.things[thing]}"
 
@@ -63,11 +63,22 @@ def situation_of(description: RelationGraph, scene: SceneRelations, implied: Imp
     degrees = np.stack([table[relation.index][scene.names] for relation in relations])
     centres = scene.boxes.mean(axis=1)[:, :2]
     settled = _settled(description, relations, implied or Implications(description))
-    return Situation(description.nodes, scene.nodes, relations, degrees, settled, centres, _places(scene.boxes))
+    # the box that reaches farthest each way, and plainly so
+    found: list[str | None] = [None] * len(scene.boxes)
+    for words, axis, side in PLACES:
+        reach = side * scene.boxes[:, (1 + side) // 2, axis]
+        if len(reach) > 1:
+            order = np.argsort(-reach, kind="stable")
+            if (
+                reach[order[0]] - reach[order[1]] > MIN_REACH_SHARE * np.ptp(scene.boxes[:, :, axis])
+                and found[order[0]] is None
+            ):
+                found[order[0]] = words
+    return Situation(description.nodes, scene.nodes, relations, degrees, settled, centres, tuple(found))
 
 
 def _settled(description: RelationGraph, relations: tuple[Relation, ...], implied: Implications) -> NDArray[np.bool_]:
-    """What is known of every ordered pair of objects: what holds in all pictures, and what that excludes."""
+    """Return what is known of every ordered pair of objects: what holds in all pictures, and what that excludes."""
     n = len(description.nodes)
     holds = np.zeros((len(relations), n, n), dtype=bool)
     for row, relation in enumerate(relations):
@@ -75,15 +86,17 @@ def _settled(description: RelationGraph, relations: tuple[Relation, ...], implie
         holds[row, pairs[:, 0], pairs[:, 1]] = True
     denied = np.zeros_like(holds)
     for edge in implied.demands.firm.tolist():
-        said, subject, object = (
+        said, subject, obj = (
             int(array[edge]) for array in (description.relation_sets, description.subjects, description.objects)
         )
         for row, relation in enumerate(relations):
             if said & relation.bit and not description.positive[edge]:
-                denied[row, subject, object] = True
+                denied[row, subject, obj] = True
             elif said == relation.bit:
-                holds[row, subject, object] = True
-    excluded = np.array([[_exclude(a, b) for b in relations] for a in relations])
+                holds[row, subject, obj] = True
+    excluded = np.array(
+        [[(a.x_atoms & b.x_atoms == 0 or a.y_atoms & b.y_atoms == 0) for b in relations] for a in relations]
+    )
     ruled_out: NDArray[np.bool_] = np.einsum("ab,bij->aij", excluded.astype(np.int64), holds.astype(np.int64)) > 0
     backwards = [relations.index(description.vocabulary[relation.inverse]) for relation in relations]
     known: NDArray[np.bool_] = holds | ruled_out | denied
@@ -91,29 +104,8 @@ def _settled(description: RelationGraph, relations: tuple[Relation, ...], implie
     return both
 
 
-def _exclude(a: Relation, b: Relation) -> bool:
-    """Whether no pair of boxes bears both."""
-    return a.x_atoms & b.x_atoms == 0 or a.y_atoms & b.y_atoms == 0
-
-
-def _places(boxes: NDArray[np.float64]) -> tuple[str | None, ...]:
-    """The one of boxes (n, 2, d) that reaches farthest each way, and plainly so; one that does in two ways is told by
-    the first."""
-    found: list[str | None] = [None] * len(boxes)
-    for words, axis, side in PLACES:
-        reach = side * boxes[:, (1 + side) // 2, axis]
-        if len(reach) > 1:
-            order = np.argsort(-reach, kind="stable")
-            if (
-                reach[order[0]] - reach[order[1]] > MIN_REACH_SHARE * np.ptp(boxes[:, :, axis])
-                and found[order[0]] is None
-            ):
-                found[order[0]] = words
-    return tuple(found)
-
-
 def spoken(name: str) -> str:
-    """An object's name as it is said: ``salad_fork`` is "salad fork".
+    """Return an object's name as it is said: ``salad_fork`` is "salad fork".
 
     >>> spoken("wine_glass_2")
     'wine glass 2'

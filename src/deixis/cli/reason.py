@@ -14,7 +14,7 @@ from deixis.deadline import Deadline
 
 if TYPE_CHECKING:
     from deixis.reasoning.description_logic.justification import Justification
-    from deixis.reasoning.description_logic.materialisation import Step
+    from deixis.reasoning.description_logic.materialisation import InferenceStep
     from deixis.reasoning.description_logic.terms import Triple
 
 
@@ -102,7 +102,7 @@ def _explain(stated: list[Triple], asked: Triple, turtle: bool, time_limit: floa
     return 0
 
 
-def _steps(found: Justification) -> tuple[Step, ...]:
+def _steps(found: Justification) -> tuple[InferenceStep, ...]:
     """The steps by which the rules lead from a justification's axioms to what it justifies, if they do."""
     from deixis.reasoning.description_logic.materialisation import Materialisation
     from deixis.reasoning.description_logic.terms import read_ntriples

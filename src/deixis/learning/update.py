@@ -20,7 +20,7 @@ from deixis.learning.inferred_graph import everything_by_hermit, everything_that
 from deixis.learning.recollection import Recollection, Remembered, recollect, remembered_lesson
 from deixis.learning.sizes import Counts, Row, SizeStatistics, SizeView, size_views
 from deixis.learning.words import LearnedWords, fit, informed
-from deixis.memory.folder import State, inspect
+from deixis.memory.folder import FolderState, inspect
 from deixis.memory.semantic.exchange import import_dump, merging_dump
 from deixis.memory.semantic.rdf import ledger
 from deixis.memory.semantic.rdf.after import After
@@ -129,7 +129,7 @@ def take_in(file: str | Path, target: Path, ontology: Ontology) -> None:
         import_dump(file, Path(scratch) / "memory")
         with SemanticMemory.open(Path(scratch) / "memory") as theirs:
             brought = models_from_triples(theirs.models(ModelSet.WORDS))
-            new = inspect(target) in (State.ABSENT, State.EMPTY)
+            new = inspect(target) in (FolderState.ABSENT, FolderState.EMPTY)
             follows = _followed(theirs, ontology, Change(), anew=True) if new else None
     if follows is not None:
         import_dump(file, target)

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.memory.errors import DamagedMemoryError, UnknownViewError
-from deixis.memory.perceptual.calibrated import keep_calibration, kept_calibration
+from deixis.memory.perceptual.calibrated import read_calibration, write_calibration
 from deixis.memory.perceptual.level import LevelMemory
 from deixis.memory.perceptual.protocol import PerceptualMemory, PerceptualReading, Progress, ViewKey
 from deixis.memory.perceptual.records import Batch, CategoryRecord, View
@@ -276,11 +276,11 @@ def recogniser_of(memory: LevelMemory, frame: str, progress: Progress | None = N
             if progress is not None:  # what was imported may have no distances yet, and then this takes longest
                 progress(len(categories), len(names))
         known = Recogniser.of(categories, descriptor.settings)
-        calibration = kept_calibration(memory.path, views, str(descriptor))
+        calibration = read_calibration(memory.path, views, str(descriptor))
         if calibration is not None:
             return Known(replace(known, calibration=calibration), descriptor)
         known = known.calibrated(progress)
-        keep_calibration(memory.path, known.calibration, views, str(descriptor))
+        write_calibration(memory.path, known.calibration, views, str(descriptor))
     return Known(known, descriptor)
 
 

@@ -9,7 +9,7 @@ from typing import Any
 from deixis.memory.semantic.rdf.files import short
 from deixis.reasoning.description_logic.entailment import Entailment
 from deixis.reasoning.description_logic.justification import Justification
-from deixis.reasoning.description_logic.materialisation import Step
+from deixis.reasoning.description_logic.materialisation import InferenceStep
 from deixis.reasoning.description_logic.terms import Triple, iri_of
 from deixis.reasoning.description_logic.verbalisation import Words
 
@@ -48,7 +48,7 @@ def verdict(found: Entailment) -> str:
     return f"{held} ({found.engine}); {len(found.inferred):,} triples inferred"
 
 
-def explanation_lines(justification: Justification, steps: tuple[Step, ...], words: Words) -> Iterator[str]:
+def explanation_lines(justification: Justification, steps: tuple[InferenceStep, ...], words: Words) -> Iterator[str]:
     """Yield why a statement follows: the axioms, and the steps where rules lead from them to it."""
     assert justification.entailed is not None
     yield f"{words.triple(justification.entailed)}, because"
@@ -79,7 +79,9 @@ def entailment_to_dict(found: Entailment, words: Words) -> dict[str, Any]:
     }
 
 
-def justification_to_dict(justification: Justification, words: Words, steps: tuple[Step, ...] = ()) -> dict[str, Any]:
+def justification_to_dict(
+    justification: Justification, words: Words, steps: tuple[InferenceStep, ...] = ()
+) -> dict[str, Any]:
     """A justification as plain data: what follows (null: a contradiction), the axioms, and the steps by rules."""
     return {
         "entailed": None if justification.entailed is None else _plain(justification.entailed),

@@ -15,7 +15,7 @@ import numpy as np
 from deixis.errors import DeixisError
 from deixis.ontology.relation import nearest
 from deixis.reasoning.grounding.matching.problem import UNMATCHED
-from deixis.reasoning.grounding.questions.inquiry import Inquiry, Outcome
+from deixis.reasoning.grounding.questions.inquiry import ExchangeOutcome, Inquiry
 from deixis.reasoning.grounding.questions.selection import (
     ABSENT,
     DONT_KNOW,
@@ -103,16 +103,16 @@ def run(inquiry: Inquiry, source: AnswerSource, out: TextIO, most: float = math.
             break
         inquiry = inquiry.answered(question, answer)
         _remark(inquiry, out)
-        if inquiry.exchanges[-1].outcome is Outcome.SURPRISING:
+        if inquiry.exchanges[-1].outcome is ExchangeOutcome.SURPRISING:
             break
     return inquiry
 
 
 def _remark(inquiry: Inquiry, out: TextIO) -> None:
     exchange = inquiry.exchanges[-1]
-    if exchange.outcome is Outcome.SURPRISING:
+    if exchange.outcome is ExchangeOutcome.SURPRISING:
         print("   No grounding that was considered has it so; they are considered anew.", file=out)
-    if exchange.outcome is not Outcome.CONTRADICTORY:
+    if exchange.outcome is not ExchangeOutcome.CONTRADICTORY:
         return
     if exchange.against:
         numbers = " and ".join(str(k + 1) for k in exchange.against)

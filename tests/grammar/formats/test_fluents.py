@@ -25,7 +25,7 @@ from deixis.grammar.formats.fluents import (
 from deixis.ontology.allen import ALL_ALLEN
 from deixis.reasoning.constraints.difference import add
 from deixis.reasoning.temporal.bounds import Bounds
-from deixis.reasoning.temporal.fluent import AllenStatement, Difference, Fluent, Statement, TemporalRelation
+from deixis.reasoning.temporal.fluent import AllenStatement, EndDifference, Fluent, Statement, TemporalRelation
 
 TEXTS = st.text(st.characters(categories=["L", "N", "P", "S"]), min_size=1, max_size=8)
 TIMES = st.integers(-(10**15), 10**15).map(lambda ticks: ticks / 1e6) | st.sampled_from([0.0, 0.1, 4e9])
@@ -54,7 +54,7 @@ def content(draw: st.DrawFn) -> FluentFile:
         a, b = draw(st.permutations([fluent.id for fluent in fluents]))[:2]
         relations.append(AllenStatement(a, draw(st.integers(1, ALL_ALLEN)), b))
         tail, head = draw(st.permutations(points))[:2]
-        relations.append(Difference(tail, head, draw(some_bounds())))
+        relations.append(EndDifference(tail, head, draw(some_bounds())))
     return FluentFile(draw(TEXTS), tuple(fluents), tuple(relations))
 
 

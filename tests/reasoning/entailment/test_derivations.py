@@ -12,15 +12,15 @@ from deixis.ontology.graph import Fact, RelationGraph
 from deixis.reasoning.constraints.proof import Rule
 from deixis.reasoning.entailment.bounds import Order, meaning
 from deixis.reasoning.entailment.conflict import find_conflict
-from deixis.reasoning.entailment.derivations import Derivation, Impossible
+from deixis.reasoning.entailment.derivations import Derivation, ImpossibleCase
 from deixis.reasoning.entailment.implications import Implications
 from deixis.reasoning.geometry.allen import EndOrder, admitted
 from deixis.reasoning.qualitative.calculi.calculus import ProductCalculus
 
 
-def claimed(claim: Fact | Order | Impossible) -> int:
+def claimed(claim: Fact | Order | ImpossibleCase) -> int:
     """The atoms that a claim admits."""
-    assert not isinstance(claim, Impossible)
+    assert not isinstance(claim, ImpossibleCase)
     if isinstance(claim, Fact):
         wanted = 0
         for relation in claim.relations:
@@ -65,17 +65,17 @@ def check(derivation: Derivation, stated: list[Fact], assumed: tuple[object, ...
     elif rule is Rule.CONJUNCTION:
         together = BA.universal
         for premise in premises:
-            assert not isinstance(premise, Impossible) and not isinstance(claim, Impossible)
+            assert not isinstance(premise, ImpossibleCase) and not isinstance(claim, ImpossibleCase)
             assert (premise.subject, premise.object) == (claim.subject, claim.object)
             together &= claimed(premise)
         assert together & ~claimed(claim) == 0
     else:
         assert rule in (Rule.MEANING, Rule.TRANSITIVITY, Rule.COMPOSITION)
         assert (len(premises) == 1) == (rule is Rule.MEANING)
-        assert not isinstance(claim, Impossible)
+        assert not isinstance(claim, ImpossibleCase)
         here, composed = claim.subject, 1 << BA.identity
         for premise in premises:
-            assert not isinstance(premise, Impossible)
+            assert not isinstance(premise, ImpossibleCase)
             assert premise.subject == here
             here, composed = premise.object, BA.compose(composed, claimed(premise))
         assert here == claim.object

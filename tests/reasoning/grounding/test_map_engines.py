@@ -25,7 +25,7 @@ from deixis.reasoning.grounding.engine import Alignment
 from deixis.reasoning.grounding.engines import engine_named
 from deixis.reasoning.grounding.evidence.evidence import Evidence, no_unary_evidence
 from deixis.reasoning.grounding.evidence.meaning import LITERAL, SHIPPED
-from deixis.reasoning.grounding.ground import NOT_ASKED, ground
+from deixis.reasoning.grounding.ground import SENSITIVITY_NOT_ASKED, ground
 from deixis.reasoning.grounding.matching.problem import UNMATCHED
 
 MakeGraph = Callable[..., RelationGraph]
@@ -234,7 +234,7 @@ def test_what_makes_a_description_one_of_another_scene_is_not_said_to_be_no_fact
     found = ground(elsewhere(graph_of, boxes_of), EXACT)
     assert not found.matches
     assert found.pivotal is None
-    assert NOT_ASKED in found.notes
+    assert SENSITIVITY_NOT_ASKED in found.notes
 
 
 def test_a_description_of_another_scene_is_told_with_what_was_known_besides(

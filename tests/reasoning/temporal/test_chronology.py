@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 from deixis.ontology.allen import Allen, allen_mask
 from deixis.reasoning.errors import SettingError
 from deixis.reasoning.temporal.bounds import Bounds
-from deixis.reasoning.temporal.chronology import Order, Window
+from deixis.reasoning.temporal.chronology import TemporalOrder, Window
 from deixis.reasoning.temporal.errors import UnknownFluentError
-from deixis.reasoning.temporal.fluent import AllenStatement, Difference, Fluent, Pattern, Statement
+from deixis.reasoning.temporal.fluent import AllenStatement, EndDifference, Fluent, Pattern, Statement
 from deixis.reasoning.temporal.timeline import Timeline
 
 CUP = Statement("cup", "on", "table")
@@ -43,7 +43,7 @@ def test_answers_are_what_every_choice_of_times_gives(
     timeline = Timeline([Fluent("f", CUP, start, finish)])
     if not choices:
         return
-    timeline.add(Difference("f.start", "f.finish", Bounds(0, longest)))
+    timeline.add(EndDifference("f.start", "f.finish", Bounds(0, longest)))
     chronology = timeline.chronology()
     t, window = begin / 2, Window(begin / 2, (begin + length) / 2)
     at = [s <= t < f for s, f in choices]
@@ -68,7 +68,7 @@ def test_what_is_possible_is_possible_in_one_scenario() -> None:
     """b lasts 2 s within [0, 4) or within [10, 14): it may hold at 1 and at 11 but never from 3 to 11."""
     a = Fluent("a", CUP, Bounds(4, 4), Bounds(10, 10))
     b = Fluent("b", CUP, Bounds(0), Bounds(upper=14))
-    timeline = Timeline([a, b], [Difference("b.start", "b.finish", Bounds(2, 4))])
+    timeline = Timeline([a, b], [EndDifference("b.start", "b.finish", Bounds(2, 4))])
     timeline.add(AllenStatement("a", allen_mask([Allen.BEFORE, Allen.MEETS, Allen.MET_BY, Allen.AFTER]), "b"))
     chronology = timeline.chronology()
     assert chronology.exact
@@ -96,15 +96,15 @@ def test_orders_are_certain_where_every_relation_left_agrees() -> None:
     c = Fluent("c", CUP, Bounds(5, 7), Bounds(10))
     d = Fluent("d", CUP, Bounds(0, 20), Bounds(0, 30))
     chronology = Timeline([b, a, c, d]).chronology()
-    assert chronology.certain_order("a", "b") is Order.PRECEDES
-    assert chronology.certain_order("b", "a") is Order.FOLLOWS
-    assert chronology.certain_order("b", "c") is Order.CONCURRENT
+    assert chronology.certain_order("a", "b") is TemporalOrder.PRECEDES
+    assert chronology.certain_order("b", "a") is TemporalOrder.FOLLOWS
+    assert chronology.certain_order("b", "c") is TemporalOrder.CONCURRENT
     assert chronology.certain_order("b", "d") is None
     orders = [(first.id, order, second.id) for first, order, second in chronology.certain_orders()]
     assert orders == [
-        ("a", Order.PRECEDES, "b"),
-        ("b", Order.CONCURRENT, "c"),
-        ("a", Order.PRECEDES, "c"),
+        ("a", TemporalOrder.PRECEDES, "b"),
+        ("b", TemporalOrder.CONCURRENT, "c"),
+        ("a", TemporalOrder.PRECEDES, "c"),
     ]
     early = [(first.id, second.id) for first, _, second in chronology.certain_orders(Window(0, 5))]
     assert early == [("a", "b")]

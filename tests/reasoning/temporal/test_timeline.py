@@ -18,7 +18,7 @@ from deixis.reasoning.temporal.bounds import Bounds
 from deixis.reasoning.temporal.chronology import Status
 from deixis.reasoning.temporal.claims import claims_of
 from deixis.reasoning.temporal.errors import FluentError, TemporalConflictError, UnknownFluentError
-from deixis.reasoning.temporal.fluent import AllenStatement, Difference, Fluent, Statement, TemporalRelation
+from deixis.reasoning.temporal.fluent import AllenStatement, EndDifference, Fluent, Statement, TemporalRelation
 from deixis.reasoning.temporal.search import refuted
 from deixis.reasoning.temporal.timeline import MAX_SCENARIOS, Timeline
 
@@ -79,8 +79,8 @@ def test_orders_are_what_enumeration_finds(relations: list[AllenStatement]) -> N
 def test_a_conflict_is_a_contradiction_and_needs_all_of_it(
     relations: list[AllenStatement], times: list[tuple[str, int, int]]
 ) -> None:
-    differences = [Difference("origin", f"{id}.start", Bounds(low, low + more)) for id, low, more in times] + [
-        Difference(f"{id}.start", f"{id}.finish", Bounds(0, more)) for id, _, more in times if more
+    differences = [EndDifference("origin", f"{id}.start", Bounds(low, low + more)) for id, low, more in times] + [
+        EndDifference(f"{id}.start", f"{id}.finish", Bounds(0, more)) for id, _, more in times if more
     ]
     items: list[TemporalRelation] = [*differences, *relations]
     conflict = conflict_of(items)
@@ -166,9 +166,9 @@ def test_of_two_choices_the_one_that_fits_is_taken_and_explained() -> None:
 def test_what_every_choice_gives_is_explained_by_cases() -> None:
     """b is before or after a, and c is later than either by far."""
     timeline = Timeline([fluent("a", Bounds(10, 10), Bounds(20, 20)), fluent("b"), fluent("c")])
-    timeline.add(Difference("b.start", "b.finish", Bounds(1, 2)))
+    timeline.add(EndDifference("b.start", "b.finish", Bounds(1, 2)))
     timeline.add(AllenStatement("a", NEVER_TOGETHER, "b"))
-    timeline.add(Difference("a.finish", "c.start", Bounds(-15)))
+    timeline.add(EndDifference("a.finish", "c.start", Bounds(-15)))
     timeline.add(AllenStatement("b", allen_mask([Allen.STARTS, Allen.FINISHES]), "c"))
     chronology = timeline.chronology()
     assert chronology.exact
@@ -182,7 +182,7 @@ def test_disjunctions_that_leave_nothing_are_refuted_case_by_case() -> None:
     """Three fluents of 10 s, of which no two may overlap, do not fit into 25 s."""
     timeline = Timeline([fluent(id, Bounds(0), Bounds(upper=25)) for id in IDS])
     for id in IDS:
-        timeline.add(Difference(f"{id}.start", f"{id}.finish", Bounds(10)))
+        timeline.add(EndDifference(f"{id}.start", f"{id}.finish", Bounds(10)))
     for a, b in ("ab", "bc", "ac"):
         timeline.add(AllenStatement(a, NEVER_TOGETHER, b))
     with pytest.raises(TemporalConflictError) as caught:
@@ -274,4 +274,4 @@ def test_a_fluent_that_cannot_be_is_named() -> None:
     with pytest.raises(FluentError, match="one or more"):
         AllenStatement("a", 0, "b")
     with pytest.raises(FluentError, match="always 0"):
-        Difference("a.start", "a.start", Bounds())
+        EndDifference("a.start", "a.start", Bounds())

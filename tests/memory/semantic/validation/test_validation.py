@@ -19,7 +19,7 @@ from deixis.memory.semantic.rdf.ledger import quad_of
 from deixis.memory.semantic.rdf.package import SHAPES_FILE
 from deixis.memory.semantic.store import SemanticMemory
 from deixis.memory.semantic.validation.compiled_shapes import compile_shapes, packaged_shapes
-from deixis.memory.semantic.validation.focus_data import View
+from deixis.memory.semantic.validation.focus_data import FocusData
 from deixis.memory.semantic.validation.shacl import validate, violations
 from deixis.memory.semantic.validation.validate import check_change, report, touched
 
@@ -191,7 +191,7 @@ def test_bulk_loading_is_guarded_and_changes_nothing_when_rejected(taught: Seman
 def test_only_what_a_change_touches_is_looked_at(taught: SemanticMemory, read: Read) -> None:
     triples = read("<L/scene/s1/o1> dx:perceivedLabel 'plate' .")
     change = Change(added={GraphName.ASSERTED: frozenset(triples)})
-    nodes = touched(packaged_shapes(), View(taught.store, change), change)
+    nodes = touched(packaged_shapes(), FocusData(taught.store, change), change)
     assert {getattr(node, "value", "") for node in nodes} == {"https://w3id.org/deixis/learned/scene/s1/o1"}
 
 

@@ -16,7 +16,7 @@ from deixis.deadline import Deadline
 from deixis.ontology.graph import Fact, RelationGraph
 from deixis.ontology.sizes import Extent, Outline, SizeRange
 from deixis.ontology.tbox import default_ontology
-from deixis.reasoning.entailment.realisation.picture import MOST, Impossible, Picture, Undecided, realise
+from deixis.reasoning.entailment.realisation.picture import MAX_PICTURED, Impossible, Picture, Undecided, realise
 from deixis.reasoning.entailment.realisation.verification import facts_that_are_named, facts_that_hold
 from deixis.reasoning.errors import LimitError
 from deixis.reasoning.geometry.allen import allen_relations
@@ -259,7 +259,7 @@ def test_fifty_things_of_a_table_that_there_is_are_laid_apart_in_a_few_seconds()
 
 
 def test_more_things_than_can_be_related_are_refused() -> None:
-    names = [f"thing_{i}" for i in range(MOST + 1)]
+    names = [f"thing_{i}" for i in range(MAX_PICTURED + 1)]
     with pytest.raises(LimitError, match="501 objects"):
         realise(RelationGraph.from_facts(R, names, []), [ANY] * len(names))
 

@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 from deixis.ontology.models.sizes import SizeModel
 from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.grounding.evidence.sizes import (
-    IN_IMAGE,
-    Look,
+    IMAGE_SPREAD,
+    SizeMixture,
     beside_each_other,
     from_above,
     in_image_from_above,
@@ -32,13 +32,13 @@ def iri(word: str) -> str:
     return kind.iri
 
 
-def in_image(word: str) -> Look:
+def in_image(word: str) -> SizeMixture:
     usual = usual_size(iri(word), SIZES)
     assert usual is not None
     return in_image_from_aside(iri(word), usual, SIZES)
 
 
-def sides(look: Look) -> list[tuple[float, float]]:
+def sides(look: SizeMixture) -> list[tuple[float, float]]:
     """Length and width of the box in metres, of each way in which it looks."""
     return [(float(np.exp(length)), float(np.exp(length + aspect))) for length, aspect in look.centres]
 
@@ -120,7 +120,7 @@ def test_the_median_of_what_is_known_stands_for_the_scene() -> None:
     known = {kind: from_above(SizeModel((at, 0.1), (0.0, 0.05))) for kind, at in (("a", -2.0), ("b", 0.0))}
     few, many = (beside_each_other(known, ["a", "b"] * n) for n in (1, 20))
     assert few["a"].length == many["a"].length == -1.0 and few["b"].length == 1.0
-    assert few["a"].relative and few["a"].spread[0] > many["a"].spread[0] > IN_IMAGE
+    assert few["a"].relative and few["a"].spread[0] > many["a"].spread[0] > IMAGE_SPREAD
 
 
 def test_the_more_known_things_differ_the_less_their_median_says() -> None:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from deixis.ontology.models.sizes import SizeModel
 from deixis.reasoning.errors import SettingError
 from deixis.reasoning.grounding.fitting.sizes import (
-    USUAL_SPREAD,
+    PRIOR_SPREAD,
     VIEWS_OF_PRIOR,
     SizePrior,
     learn_size,
@@ -71,7 +71,7 @@ def test_kinds_that_differ_much_within_make_a_new_kind_wide() -> None:
 def test_of_a_single_view_of_a_single_kind_the_spread_is_the_usual_one() -> None:
     prior = pooled_prior([np.zeros((0, 2)), np.array([[-1.0, -0.3]])])
     assert prior.centre.tolist() == [-1.0, -0.3]
-    assert prior.within == pytest.approx([USUAL_SPREAD] * 2) and prior.between == pytest.approx([USUAL_SPREAD] * 2)
+    assert prior.within == pytest.approx([PRIOR_SPREAD] * 2) and prior.between == pytest.approx([PRIOR_SPREAD] * 2)
 
 
 def test_a_usual_size_is_off_by_as_much_as_its_things_differ() -> None:

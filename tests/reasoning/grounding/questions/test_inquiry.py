@@ -16,7 +16,14 @@ from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.geometry.rectangle import scene_relations
 from deixis.reasoning.grounding.matching.problem import UNMATCHED
 from deixis.reasoning.grounding.questions.candidates import Candidates
-from deixis.reasoning.grounding.questions.inquiry import PATIENCE, ContradictionError, Inquiry, Outcome, begin, update
+from deixis.reasoning.grounding.questions.inquiry import (
+    PATIENCE,
+    ContradictionError,
+    ExchangeOutcome,
+    Inquiry,
+    begin,
+    update,
+)
 from deixis.reasoning.grounding.questions.selection import (
     ABSENT,
     DONT_KNOW,
@@ -175,7 +182,7 @@ def test_who_does_not_know_is_not_asked_the_same_again(inquiry_of: Callable[...,
         seen.add(question.look)
         inquiry = inquiry.answered(question, DONT_KNOW)
         assert inquiry.candidates is inquiry.start
-        assert inquiry.exchanges[-1].outcome is Outcome.UNKNOWN
+        assert inquiry.exchanges[-1].outcome is ExchangeOutcome.UNKNOWN
 
 
 def test_who_does_not_know_an_object_by_sight_is_not_asked_to_tell_it_again(inquiry_of: Callable[..., Inquiry]) -> None:
@@ -211,7 +218,7 @@ def test_an_answer_that_contradicts_an_earlier_one_is_told_with_it() -> None:
     first = start.answered(by_text["Which one is the cup 2?"], "o2")
     second = first.answered(by_text["Which one is the cup 0?"], "o0")
     third = second.answered(by_text["Which one is the cup 1?"], "o0")
-    assert third.exchanges[-1].outcome is Outcome.CONTRADICTORY
+    assert third.exchanges[-1].outcome is ExchangeOutcome.CONTRADICTORY
     assert third.exchanges[-1].against == (1,)
     assert third.candidates.assignments.tolist() == second.candidates.assignments.tolist() == [[0, 1, 2]]
 
@@ -220,7 +227,7 @@ def test_what_is_pointed_out_against_all_candidates_is_believed_and_they_are_to_
     start = begin(row_of(3), Candidates(np.array([[0, 1, 2], [1, 0, 2]]), np.ones(2)))
     question = next(iter(questions(start.situation, start.candidates, [QuestionKind.POINTING])))
     after = start.answered(question, "o2")
-    assert (after.exchanges[0].outcome, after.exchanges[0].against) == (Outcome.SURPRISING, ())
+    assert (after.exchanges[0].outcome, after.exchanges[0].against) == (ExchangeOutcome.SURPRISING, ())
     with pytest.raises(ContradictionError, match="goes against every grounding"):
         update(start.situation, start.candidates, question, "o2")
 
