@@ -270,16 +270,6 @@ class SemanticMemory(Closing):
             named = [ox.NamedNode(str(name)) for name in properties]
             return [quad.triple for name in named for quad in self.store.quads_for_pattern(None, name, None, graph)]
 
-    def remaining(self, lesson: str) -> dict[GraphName, list[ox.Triple]]:
-        """Return what the canonical graphs would hold without that lesson; raises UnknownLessonError where there is
-        none."""
-        gone = self.departure(lesson).removed
-        with reading(self.path):
-            return {
-                name: [triple for triple in self.triples(name) if triple not in gone.get(name, frozenset())]
-                for name in GraphName
-            }
-
     def load(self, contributions: Mapping[GraphName, Iterable[ox.Triple]]) -> None:
         """Write much at once that belongs to no lesson: fast, all or nothing, guarded by the same shapes.
 

@@ -102,16 +102,11 @@ ITERATIONS = 500
 
 @dataclass(frozen=True, eq=False)
 class SimilarityMatrices:
-    """Similarity matrices of Frobenius norm 1 (0 where collapsed), one for each of b sub-graphs of the first graph."""
+    """Similarity matrices of Frobenius norm 1 (0 where nothing is alike), one for each of b sub-graphs."""
 
     matrices: NDArray[np.float64]  # (b, n1, n2); rows of nodes outside the sub-graph are 0
     converged: NDArray[np.bool_]  # (b,)
     iterations: int
-
-    @property
-    def collapsed(self) -> NDArray[np.bool_]:
-        """Where nothing in the two graphs is alike, shape (b,)."""
-        return np.logical_not(self.matrices.any(axis=(1, 2)))
 
     def transposed(self) -> SimilarityMatrices:
         """Return the same with the graphs exchanged."""
