@@ -13,6 +13,7 @@ without its Java options a run takes longer.
 
 from __future__ import annotations
 
+import math
 import re
 import subprocess
 import tempfile
@@ -206,7 +207,8 @@ def _run(reasoner: Reasoner, options: tuple[str, ...], ontologies: list[str], ti
         command = _java([*class_options(_folder(reasoner)), *_asked(reasoner, options, files)])
         try:
             # run() kills the process when its time is up, or when this one is interrupted
-            done = subprocess.run(command, capture_output=True, cwd=scratch, timeout=time_limit, check=False)
+            timeout = None if math.isinf(time_limit) else time_limit
+            done = subprocess.run(command, capture_output=True, cwd=scratch, timeout=timeout, check=False)
         except subprocess.TimeoutExpired:
             raise LimitError(f"undecided: {reasoner} did not answer within {time_limit:g} s; allow it more") from None
         except OSError as error:

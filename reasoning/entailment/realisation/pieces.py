@@ -67,7 +67,7 @@ def choice(wanted: NDArray[np.bool_]) -> PieceChoice:
 
     >>> from deixis.ontology.tbox import default_ontology
     >>> choice(default_ontology().relations["left"].admits())
-    Choice(always=(Inequality(axis=0, lesser=1, greater=2, strict=False),), pieces=((),))
+    PieceChoice(always=(Inequality(axis=0, lesser=1, greater=2, strict=False),), pieces=((),))
     """
     return _choice(np.ascontiguousarray(wanted, dtype=np.bool_).tobytes())
 

@@ -489,7 +489,7 @@ def test_two_things_with_the_same_points_are_named_before_anything_is_learned(ta
     code, out, err = deixis("learn", FULL, twice, "--memory", tmp_path / "memory")
     assert (code, out) == (2, "")
     assert "twice.scene.json: the clouds of" in err and "are the same points" in err
-    assert json.loads(deixis("category", "list", "--json", "--memory", tmp_path / "memory")[1]) == {}
+    assert not (tmp_path / "memory").exists()
 
 
 def test_the_next_table_perceived_into_the_same_file_shows_other_things(tables: Path, tmp_path: Path) -> None:
