@@ -4,7 +4,9 @@ Lessons are generated: seven things of a formal place setting, some under words 
 table laid a little differently. One warm process learns them one by one. At 10, 100 and 1,000 it measures further
 lessons, the part of learning behind the grounding, and the rest (medians of ``--runs``, 9). Then it learns 10,000 as a
 batch into another memory, says what that takes a lesson, and measures again. At the end it forgets what the first
-memory knows but for ten lessons, to see that the disk is given back. ``--quick`` stops at 20 lessons and a batch of 20.
+memory knows but for ten lessons, to see that the disk is given back. With ``--words`` it also fits relation words to
+all lessons at 10, 100 and 1,000 (``learn-relation``), and forgets lessons that they were fitted to. ``--quick`` stops
+at 20 lessons and a batch of 20.
 """
 
 from __future__ import annotations
@@ -96,6 +98,20 @@ def measure(session: Session, first: int, runs: int) -> Times:
     return times
 
 
+def measure_words(session: Session, known: int, runs: int) -> Times:
+    """The times of fitting words to all lessons, and of forgetting lessons of the fit, which are learned again."""
+    times: Times = defaultdict(list)
+    with timed(times, "fit words"):
+        session.learn_relations()
+    for lesson in session.memory().lessons()[-min(runs, known // 2) :]:
+        number = int(lesson.removeprefix("table_").split("-")[0])
+        with timed(times, "forget a lesson of the fit"):
+            session.forget(lesson)
+        session.learn(*generated(number))
+    session.forget_relations()
+    return times
+
+
 def told(lessons: int, times: Times, base: Times | None) -> str:
     """One line: medians in milliseconds, and how many times what they were with the fewest lessons."""
     parts = []
@@ -106,7 +122,7 @@ def told(lessons: int, times: Times, base: Times | None) -> str:
     return f"{lessons:>6,} lessons: " + ", ".join(parts)
 
 
-def singly(path: Path, numbers: list[int], runs: int) -> Times:
+def singly(path: Path, numbers: list[int], runs: int, words: bool) -> Times:
     """Learns one by one up to each number of lessons, and measures there; returns the times with the fewest."""
     base: Times | None = None
     with Session(path) as session:
@@ -117,6 +133,8 @@ def singly(path: Path, numbers: list[int], runs: int) -> Times:
                 session.learn(*generated(new))
             known = number
             times = measure(session, 1_000_000, runs)
+            if words:
+                times |= measure_words(session, number, runs)
             print(told(number, times, base), flush=True)
             base = base or times
     assert base is not None
@@ -170,13 +188,14 @@ def main() -> None:
     parser.add_argument("--runs", type=int, default=9)
     parser.add_argument("--batch", type=int, default=10_000)
     parser.add_argument("--most", type=int, default=1000, help="lessons learned one by one")
+    parser.add_argument("--words", action="store_true", help="also fit relation words, and forget lessons of the fit")
     parser.add_argument("--quick", action="store_true")
     options = parser.parse_args()
     if options.quick:
         options.runs, options.batch, options.most = 3, 20, 20
     with tempfile.TemporaryDirectory() as scratch:
         numbers = [number for number in (10, 100, 1000) if number < options.most]
-        base = singly(Path(scratch) / "singly", [*numbers, options.most], options.runs)
+        base = singly(Path(scratch) / "singly", [*numbers, options.most], options.runs, options.words)
         if options.batch:
             as_batch(Path(scratch) / "batch", options.batch, options.runs, base)
         forgetting(Path(scratch) / "singly", 10)

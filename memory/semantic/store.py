@@ -248,12 +248,6 @@ class SemanticMemory(Closing):
         gone = self.departure(lesson)
         self.commit(together(gone, concluding(self.store, inferred), modelling(self.store, models or {})))
 
-    def conclude(self, inferred: Sequence[ox.Triple], models: Models | None = None) -> None:
-        """Replace the inferred graph, and the models that are given, in one step."""
-        change = together(concluding(self.store, inferred), modelling(self.store, models or {}))
-        if change.operations:
-            self.commit(change)
-
     def keep_models(self, models: Models) -> None:
         """Replace the sets of learned models that are given, in one step; an empty set takes them away."""
         change = modelling(self.store, models)

@@ -78,22 +78,6 @@ def converse_masks(masks: NDArray[np.uint16]) -> NDArray[np.uint16]:
     return found
 
 
-def masks_from_bounds(starts: list[Bounds], finishes: list[Bounds]) -> NDArray[np.uint16]:
-    """Return the Allen relations that n fluents admit by the bounds of their starts and finishes alone: shape (n, n).
-
-    Exact: a relation is in the mask just where some times within the bounds, each start before its finish, realise it.
-
-    >>> from deixis.ontology.allen import members
-    >>> masks = masks_from_bounds([Bounds(0, 1), Bounds(2, 3)], [Bounds(1, 2), Bounds(5, 5)])
-    >>> [relation.symbol for relation in members(int(masks[0, 1]))]
-    ['<', 'm']
-    """
-    n = len(starts)
-    distances = distances_from_bounds(starts, finishes)
-    points = np.arange(n, dtype=np.int64)
-    return allen_masks(distances, 1 + points, 1 + n + points)
-
-
 def distances_from_bounds(starts: list[Bounds], finishes: list[Bounds]) -> NDArray[np.int64]:
     """Return closed distances among the origin (0), n starts (1 to n) and n finishes: shape (2 n + 1, 2 n + 1)."""
     n = len(starts)

@@ -113,9 +113,9 @@ class KnowledgeStore(Closing):
 
     def forget_relations(self) -> None:
         """Take the learned models of relation words away: the shipped ones are in force again. Lessons stay."""
-        from deixis.memory.semantic.rdf.graphs import ModelSet
+        from deixis.learning.update import forget_words
 
-        self.memory().keep_models({ModelSet.WORDS: []})
+        forget_words(self.memory())
         self._meaning = None
 
     def forget(self, lesson: str) -> None:

@@ -14,9 +14,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.ontology.allen import mask_array
 from deixis.ontology.graph import Fact
-from deixis.reasoning.geometry.allen import ConvexSet, EndOrder, admitted, convex_hull, convex_sets
+from deixis.reasoning.geometry.allen import ConvexSet, convex_hull, convex_sets
 
 X, Y = 0, 1
 
@@ -105,10 +104,3 @@ def _cover(wanted: NDArray[np.bool_]) -> Iterator[Piece]:
         )
         yield _inequalities(X, sets[x]) + _inequalities(Y, sets[y])
         left &= ~(member[x][:, None] & member[y][None, :]).astype(np.bool_)
-
-
-def admitted_by(piece: Piece) -> NDArray[np.bool_]:
-    """Return the atoms that inequalities admit together, shape (13, 13): the inverse of :func:`choice`."""
-    masks = [admitted(tuple(EndOrder(*i[1:]) for i in piece if i.axis == axis)) for axis in (X, Y)]
-    found: NDArray[np.bool_] = mask_array(masks[X])[:, None] & mask_array(masks[Y])[None, :]
-    return found

@@ -10,8 +10,8 @@ prior comes back. Terms with a trend keep it.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 
 import numpy as np
@@ -22,7 +22,7 @@ from deixis.reasoning.errors import SettingError
 from deixis.reasoning.geometry.pairs import PairGeometry
 from deixis.reasoning.grounding.evidence.degrees import degree_of_view
 from deixis.reasoning.grounding.evidence.pair_features import view
-from deixis.reasoning.grounding.fitting.likelihood import Likelihood, SaidPairs
+from deixis.reasoning.grounding.fitting.likelihood import Expansion, Likelihood, SaidPairs, hats
 from deixis.reasoning.grounding.fitting.parameters import Layout
 
 
@@ -37,13 +37,32 @@ def random_scenes(count: int = 200, size: int = 8, seed: int = 1) -> list[NDArra
 def chance_degree(model: RelationModel, scenes: Iterable[PairGeometry]) -> float:
     """Return mean degree of a model over all ordered pairs of scenes and the words that share it; 1 where there is
     none."""
+    found = degree_sum(model, scenes)
+    return found.total / found.count if found.count else 1.0
+
+
+@dataclass(frozen=True, eq=False)
+class DegreeSum:
+    """The degrees that :func:`chance_degree` averages: how many, their sum, and its slope by the values of all terms,
+    shape (k,)."""
+
+    count: int
+    total: float
+    slope: NDArray[np.float64]
+
+
+def degree_sum(model: RelationModel, scenes: Iterable[PairGeometry]) -> DegreeSum:
+    """Return the degrees of a model over all ordered pairs of scenes and the words that share it."""
     words = [word for word, family in FAMILIES.items() if family == model.name] or [SAYING]
-    found = []
+    count, total, slope = 0, 0.0, np.zeros(sum(len(term.knots) for term in model.terms))
     for pairs in scenes:
         apart = ~np.eye(len(pairs), dtype=bool)
-        found += [degree_of_view(model, view(pairs, word))[apart] for word in words]
-    pooled = np.concatenate(found) if found else np.zeros(0)
-    return float(pooled.mean()) if pooled.size else 1.0
+        for word in words:
+            features = view(pairs, word)
+            degrees = degree_of_view(model, features)[apart]
+            count, total = count + degrees.size, total + float(degrees.sum())
+            slope += degrees @ hats(model, features, apart)
+    return DegreeSum(count, total, slope)
 
 
 Array = NDArray[np.float64]
@@ -67,6 +86,37 @@ class FitSettings:
             raise SettingError("word_contrast is at least 0, iterations at least 1")
 
 
+@dataclass(frozen=True, eq=False)
+class FitStatistics:
+    """What a fit was made of, as sums over its scenes: scenes can be taken out without looking at the others.
+
+    ``values`` (k,) are those of all terms of the models ``names``, as fitted; ``gradient`` (k,) and ``information``
+    (k, k) are the first derivative of the scenes' log-likelihood there, and its second one negated. ``examples`` is
+    the weight of the words said of each family, ``degrees`` the sums behind each model's chance degree. ``scenes``
+    are still in the sums, of ``fitted`` that the values were fitted to.
+    """
+
+    names: tuple[str, ...]
+    values: Array
+    gradient: Array
+    information: Array
+    examples: dict[str, float]
+    degrees: dict[str, DegreeSum]
+    scenes: int
+    fitted: int
+
+
+@dataclass(frozen=True, eq=False)
+class RelationFit:
+    """Models after a fit, and its statistics.
+
+    There are none where no scene said a word, so that the models are the prior's, nor of a fit with ``word_contrast``.
+    """
+
+    models: RelationModels
+    statistics: FitStatistics | None
+
+
 def learn_relations(
     scenes: Sequence[SaidPairs],
     prior: RelationModels,
@@ -78,49 +128,122 @@ def learn_relations(
 
     Models of which no word was said come back as they were. Raises SettingError for settings that cannot be.
     """
-    taught = {
-        family: (
-            float(
-                sum(
-                    weight
-                    for scene in scenes
-                    for word, weight in zip(scene.words, scene.weights.tolist(), strict=True)
-                    if FAMILIES.get(word) == family
-                )
-            )
-        )
-        for family in {*FAMILIES.values()}
-    }
-    total = sum(taught.values())
-    if total == 0:
-        return prior
-    chosen = settings or FitSettings()
-    names = [*sorted(name for name, count in taught.items() if count > 0), SAYING]
-    layout = Layout([extended(prior[name]) for name in names])
-    values = _maximise(Likelihood(scenes, layout, chosen.word_contrast), layout, chosen)
-    made = datetime.now(UTC)
-    where = {each: Provenance(tuple(sources), n, made, version) for each, n in {**taught, SAYING: total}.items()}
-    fitted = [_fitted(model, values, layout, scenes, where[model.name]) for model in layout.models]
-    return prior.replaced(*fitted)
+    return fit_relations(scenes, prior, settings or FitSettings(), sources, version).models
 
 
-def _fitted(
-    model: RelationModel, values: Array, layout: Layout, scenes: Sequence[SaidPairs], where: Provenance
-) -> RelationModel:
-    """Return the model with new values, each term's best shifted to 0.
+def fit_relations(
+    scenes: Sequence[SaidPairs],
+    prior: RelationModels,
+    settings: FitSettings,
+    sources: Sequence[str] = (),
+    version: str = "",
+) -> RelationFit:
+    """Return what :func:`learn_relations` does, with the statistics for :func:`take_out`."""
+    examples = _examples(scenes)
+    if not examples:
+        return RelationFit(prior, None)
+    layout = _layout(prior, examples)
+    likelihood = Likelihood(scenes, layout, settings.word_contrast)
+    values = _maximise(likelihood, layout, settings)
+    models, degrees = _finished(
+        prior, layout, values, examples, lambda model: degree_sum(model, (s.pairs for s in scenes)), sources, version
+    )
+    if settings.word_contrast:
+        return RelationFit(models, None)
+    names, count = tuple(model.name for model in layout.models), len(scenes)
+    gradient, information = likelihood(values)[1], likelihood.information(values)
+    return RelationFit(models, FitStatistics(names, values, gradient, information, examples, degrees, count, count))
 
-    What the shifts of a word and of the saying model take from the degrees, the outliers take over, so that their
-    likelihood ratio stays what was fitted.
+
+FEW_SCENES = 20
+"""At most this many scenes are always fitted from nothing: it takes no longer than a constant, and nothing is lost."""
+
+
+def take_out(
+    statistics: FitStatistics, scene: SaidPairs, prior: RelationModels, settings: FitSettings, version: str = ""
+) -> RelationFit | None:
+    """Return the fit without one of its scenes, in a time that does not depend on how many there are.
+
+    The sums of the others are expanded to second order about the fitted values, and what is expanded is maximised
+    under the same prior and the same bounds: a Newton step, which for one scene of many differs from a new fit by
+    the square of that scene's share. Returns None where only a new fit will do: few scenes or fewer than half of
+    those fitted remain, or a family of words loses its last example.
+
+    Notes
+    -----
+    The Newton step for taking data out of a fitted model: Guo, Goldstein, Hannun and van der Maaten, "Certified data
+    removal from machine learning models", ICML 2020.
     """
-    own = [values[layout.slices[model.name, term.feature]] for term in model.terms]
-    spoken = [values[layout.slices[SAYING, term.feature]] for term in layout.model(SAYING).terms]
-    shift = sum(float(part.max()) for part in (own if model.name == SAYING else own + spoken))
-    odds = model.outliers / (1 - model.outliers) * float(np.exp(-shift))
-    outliers = float(np.clip(odds / (1 + odds), *OUTLIER_BOUNDS))
-    terms = tuple(_term(term, part) for term, part in zip(model.terms, own, strict=True))
-    found = RelationModel(model.name, terms, outliers, 1.0, where)
-    chance = max(chance_degree(found, (scene.pairs for scene in scenes)), 1e-6)
-    return RelationModel(model.name, terms, outliers, chance, where)
+    gone = _examples([scene])
+    examples = {name: weight - gone.get(name, 0.0) for name, weight in statistics.examples.items()}
+    scenes = statistics.scenes - 1
+    lost = any(weight < 1e-6 for weight in examples.values()) or not gone.keys() <= examples.keys()
+    if lost or scenes <= FEW_SCENES or scenes < statistics.fitted / 2:
+        return None
+    layout = _layout(prior, statistics.examples)
+    one = Likelihood([scene], layout, 0.0)
+    gradient = statistics.gradient - one(statistics.values)[1]
+    information = statistics.information - one.information(statistics.values)
+    values = _maximise(Expansion(statistics.values, gradient, information), layout, settings)
+
+    step = values - statistics.values
+
+    def others(model: RelationModel) -> DegreeSum:
+        all_of_them, its = statistics.degrees[model.name], degree_sum(model, [scene.pairs])
+        spans = [layout.slices[model.name, term.feature] for term in model.terms]
+        shift = sum(values[span].max() - statistics.values[span].max() for span in spans)
+        moved = all_of_them.slope @ np.concatenate([step[span] for span in spans])
+        scale = float(np.exp(moved / all_of_them.total - shift))  # the sum of all, at the new values
+        total = max(all_of_them.total * scale - its.total, 0.0)
+        return DegreeSum(all_of_them.count - its.count, total, all_of_them.slope * scale - its.slope)
+
+    models, degrees = _finished(prior, layout, values, examples, others, (), version)
+    gradient = gradient - information @ step
+    kept = FitStatistics(statistics.names, values, gradient, information, examples, degrees, scenes, statistics.fitted)
+    return RelationFit(models, kept)
+
+
+def _examples(scenes: Iterable[SaidPairs]) -> dict[str, float]:
+    """Return the weight of the words that were said of each family, for those of which one was said."""
+    weights: dict[str, float] = {}
+    for scene in scenes:
+        for word, weight in zip(scene.words, scene.weights.tolist(), strict=True):
+            if word in FAMILIES and weight > 0:
+                weights[FAMILIES[word]] = weights.get(FAMILIES[word], 0.0) + weight
+    return weights
+
+
+def _layout(prior: RelationModels, examples: dict[str, float]) -> Layout:
+    return Layout([extended(prior[name]) for name in (*sorted(examples), SAYING)])
+
+
+def _finished(
+    prior: RelationModels,
+    layout: Layout,
+    values: Array,
+    examples: dict[str, float],
+    degrees: Callable[[RelationModel], DegreeSum],
+    sources: Sequence[str],
+    version: str,
+) -> tuple[RelationModels, dict[str, DegreeSum]]:
+    """Return the prior with the models of a layout fitted, and the degrees behind their chance degrees.
+
+    Each term's best is shifted to 0. What the shifts of a word and of the saying model take from the degrees, the
+    outliers take over, so that their likelihood ratio stays what was fitted.
+    """
+    made, found, sums = datetime.now(UTC), [], {}
+    for model in layout.models:
+        own = [values[layout.slices[model.name, term.feature]] for term in model.terms]
+        spoken = [values[layout.slices[SAYING, term.feature]] for term in layout.model(SAYING).terms]
+        shift = sum(float(part.max()) for part in (own if model.name == SAYING else own + spoken))
+        odds = model.outliers / (1 - model.outliers) * float(np.exp(-shift))
+        outliers = float(np.clip(odds / (1 + odds), *OUTLIER_BOUNDS))
+        weight = sum(examples.values()) if model.name == SAYING else examples[model.name]
+        terms = tuple(_term(term, part) for term, part in zip(model.terms, own, strict=True))
+        fitted = RelationModel(model.name, terms, outliers, 1.0, Provenance(tuple(sources), weight, made, version))
+        of_all = sums[model.name] = degrees(fitted)
+        found.append(replace(fitted, chance=max(of_all.total / of_all.count if of_all.count else 1.0, 1e-6)))
+    return prior.replaced(*found), sums
 
 
 _UNIT, _SIGNED = np.linspace(0, 1, 5), np.array([-1.0, -0.5, -0.25, 0.0, 0.25, 0.5, 1.0])
@@ -157,7 +280,7 @@ def extended(model: RelationModel) -> RelationModel:
     return RelationModel(model.name, tuple(terms), model.outliers, model.chance, model.provenance)
 
 
-def _maximise(likelihood: Likelihood, layout: Layout, settings: FitSettings) -> Array:
+def _maximise(likelihood: Callable[[Array], tuple[float, Array]], layout: Layout, settings: FitSettings) -> Array:
     from scipy.optimize import minimize
 
     steps, precision = layout.steps(), settings.strength * layout.precision()

@@ -78,11 +78,7 @@ class Likelihood:
     def __call__(self, values: Array) -> tuple[float, Array]:
         total, gradient = 0.0, np.zeros_like(values)
         for scene in self.scenes:
-            scores, slopes = {}, {}
-            for word, (design, columns, outliers) in scene.designs.items():
-                degree = (1 - outliers) * np.exp(np.minimum(design @ values[columns], MAX_STEP))
-                scores[word] = np.log(outliers + degree)
-                slopes[word] = degree / (outliers + degree)
+            scores, slopes = scene.scores(values)
             found, pull = scene.contrast_pairs(scores)
             if self.word_contrast > 0:
                 more, also = scene.contrast_words(scores)
@@ -92,6 +88,35 @@ class Likelihood:
             for word, (design, columns, _) in scene.designs.items():
                 gradient[columns] += np.einsum("p,pk->k", pull[word] * slopes[word], design)
         return total, gradient
+
+    def information(self, values: Array) -> Array:
+        """Return the second derivative of the log-likelihood by the values, negated, shape (k, k); of the contrast
+        between pairs alone."""
+        total = np.zeros((len(values), len(values)))
+        for scene in self.scenes:
+            scores, slopes = scene.scores(values)
+            pull = scene.contrast_pairs(scores)[1]
+            weights = scene.weights()
+            for word, (design, columns, _) in scene.designs.items():
+                share, slope = _softmax(scores[word]), slopes[word]
+                sloped = slope[:, None] * design
+                mean = share @ sloped
+                spread = weights[word] * ((share[:, None] * sloped).T @ sloped - np.outer(mean, mean))
+                bend = ((pull[word] * slope * (1 - slope))[:, None] * design).T @ design
+                total[np.ix_(columns, columns)] += spread - bend
+        return total
+
+
+class Expansion:
+    """A log-likelihood expanded to second order about some values, called as :class:`Likelihood` is."""
+
+    def __init__(self, centre: Array, gradient: Array, information: Array) -> None:
+        self.centre, self.gradient, self.information = centre, gradient, information
+
+    def __call__(self, values: Array) -> tuple[float, Array]:
+        step = values - self.centre
+        bent = self.information @ step
+        return float(self.gradient @ step - 0.5 * step @ bent), self.gradient - bent
 
 
 class _Designed:
@@ -105,7 +130,7 @@ class _Designed:
         self.designs = {}
         for word in words:
             model = layout.model(FAMILIES[word])
-            parts = [_hats(model, view(scene.pairs, word), apart), _hats(layout.model(SAYING), saying, apart)]
+            parts = [hats(model, view(scene.pairs, word), apart), hats(layout.model(SAYING), saying, apart)]
             columns = np.concatenate([layout.columns(model.name), layout.columns(SAYING)])
             self.designs[word] = (np.concatenate(parts, axis=1), columns, model.outliers)
         position = np.full(apart.shape, -1)
@@ -114,6 +139,22 @@ class _Designed:
             (word, int(position[a, b]), float(weight))
             for word, (a, b), weight in zip(scene.words, scene.ends.tolist(), scene.weights.tolist(), strict=True)
         ]
+
+    def scores(self, values: Array) -> tuple[dict[str, Array], dict[str, Array]]:
+        """Return each word's log degree of every pair, outliers included, and its slope by the sum of terms."""
+        scores, slopes = {}, {}
+        for word, (design, columns, outliers) in self.designs.items():
+            degree = (1 - outliers) * np.exp(np.minimum(design @ values[columns], MAX_STEP))
+            scores[word] = np.log(outliers + degree)
+            slopes[word] = degree / (outliers + degree)
+        return scores, slopes
+
+    def weights(self) -> dict[str, float]:
+        """Return the weight with which each word was said in all."""
+        said = dict.fromkeys(self.designs, 0.0)
+        for word, _, weight in self.said:
+            said[word] += weight
+        return said
 
     def contrast_pairs(self, scores: dict[str, Array]) -> tuple[float, dict[str, Array]]:
         """Return each word's pair among all pairs of the scene: log-likelihood, and its slope by the scores."""
@@ -139,7 +180,7 @@ class _Designed:
         return total, pull
 
 
-def _hats(model: RelationModel, features: View, apart: NDArray[np.bool_]) -> Array:
+def hats(model: RelationModel, features: View, apart: NDArray[np.bool_]) -> Array:
     """Return the weight of every knot of every term for every pair, shape (p, knots): linear interpolation."""
     parts = []
     for term in model.terms:
@@ -150,10 +191,10 @@ def _hats(model: RelationModel, features: View, apart: NDArray[np.bool_]) -> Arr
         at = np.clip(features[term.feature][apart], knots[0], knots[-1])
         right = np.clip(np.searchsorted(knots, at, side="right"), 1, len(knots) - 1)
         share = (at - knots[right - 1]) / (knots[right] - knots[right - 1])
-        hats = np.zeros((len(at), len(knots)))
+        weights = np.zeros((len(at), len(knots)))
         rows = np.arange(len(at))
-        hats[rows, right - 1], hats[rows, right] = 1 - share, share
-        parts.append(hats)
+        weights[rows, right - 1], weights[rows, right] = 1 - share, share
+        parts.append(weights)
     return np.concatenate(parts, axis=1)
 
 

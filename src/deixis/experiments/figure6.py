@@ -68,7 +68,7 @@ DISPLACEMENT = 0.01
 
 
 @dataclass(frozen=True)
-class Distribution:
+class Spread:
     """A figure over repetitions."""
 
     mean: float
@@ -77,7 +77,7 @@ class Distribution:
     high: float  # 95th percentile
 
     @classmethod
-    def of(cls, values: Sequence[float] | NDArray[np.float64]) -> Distribution:
+    def of(cls, values: Sequence[float] | NDArray[np.float64]) -> Spread:
         array = np.asarray(values, dtype=float)
         low, median, high = np.percentile(array, [5, 50, 95])
         return cls(float(array.mean()), float(low), float(median), float(high))
@@ -111,10 +111,10 @@ class Panel:
     subgraphs: int
     rho_similarity: float
     rho_facts: float
-    variants_rho_similarity: Distribution
-    variants_rho_facts: Distribution
-    accuracy: dict[str, Distribution]
-    variants_accuracy: dict[str, Distribution]
+    variants_rho_similarity: Spread
+    variants_rho_facts: Spread
+    accuracy: dict[str, Spread]
+    variants_accuracy: dict[str, Spread]
 
 
 @dataclass(frozen=True)
@@ -165,11 +165,11 @@ def run(out: Path, variants: int = 50, orders: int = 200, seed: int = 1) -> Figu
             subgraphs=len(points.right),
             rho_similarity=points.rho(points.similarity),
             rho_facts=points.rho(points.facts),
-            variants_rho_similarity=Distribution.of([p.rho(p.similarity) for p, _ in varied]),
-            variants_rho_facts=Distribution.of([p.rho(p.facts) for p, _ in varied]),
-            accuracy={what: Distribution.of(values) for what, values in accuracy.items()},
+            variants_rho_similarity=Spread.of([p.rho(p.similarity) for p, _ in varied]),
+            variants_rho_facts=Spread.of([p.rho(p.facts) for p, _ in varied]),
+            accuracy={what: Spread.of(values) for what, values in accuracy.items()},
             variants_accuracy={
-                what: Distribution.of(np.concatenate([found[what] for _, found in varied])) for what in accuracy
+                what: Spread.of(np.concatenate([found[what] for _, found in varied])) for what in accuracy
             },
         )
         panels.append(panel)

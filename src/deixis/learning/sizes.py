@@ -13,14 +13,12 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
-import pyoxigraph as ox
 
-from deixis.learning.recollection import Recollection, Remembered
+from deixis.learning.recollection import Remembered
 from deixis.ontology.kinds import Kinds, plain_name
 from deixis.ontology.lessons.write import scene_text_iri
-from deixis.ontology.models.sizes import SizeModel, size_triples
+from deixis.ontology.models.sizes import SizeModel
 from deixis.ontology.sizes import Sizes
-from deixis.ontology.tbox import Ontology
 from deixis.ontology.triples import content_key
 from deixis.reasoning.grounding.evidence.labels import category_of, classes
 from deixis.reasoning.grounding.evidence.sizes import usual_size
@@ -349,17 +347,3 @@ def _same(one: SizePrior | None, other: SizePrior | None) -> bool:
         return one is other
     pairs = ((one.centre, other.centre), (one.between, other.between), (one.within, other.within))
     return all(np.array_equal(a, b) for a, b in pairs)
-
-
-def learned_size_triples(recollection: Recollection, ontology: Ontology) -> list[ox.Triple]:
-    """The sizes that lessons teach, with the scenes that they are derived from, counted from nothing."""
-    statistics = SizeStatistics(Counts(), ontology.sizes)
-    for lesson in recollection.lessons:
-        for view in size_views(lesson, ontology.kinds):
-            statistics.add(view)
-    statistics.settle()
-    triples: list[ox.Triple] = []
-    for kind, (model, _, scenes) in sorted(statistics.models().items(), key=lambda entry: entry[0]):
-        if model is not None:
-            triples += size_triples(kind, model, sorted(scenes))
-    return triples

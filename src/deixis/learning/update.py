@@ -9,7 +9,7 @@ works everything out anew.
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Iterable, Iterator, Sequence, Set
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from functools import lru_cache
 from pathlib import Path
 from urllib.parse import quote, unquote
@@ -19,7 +19,9 @@ import pyoxigraph as ox
 from deixis.learning.inferred_graph import everything_by_hermit, everything_that_follows, following
 from deixis.learning.recollection import Recollection, Remembered, recollect, remembered_lesson
 from deixis.learning.sizes import Counts, Row, SizeStatistics, SizeView, size_views
-from deixis.learning.words import LearnedWords, fit, informed
+from deixis.learning.word_statistics import kept as kept_words
+from deixis.learning.word_statistics import replacing
+from deixis.learning.words import LearnedWords, fit, informed, without
 from deixis.memory.folder import FolderState, inspect
 from deixis.memory.semantic.exchange import import_dump, merging_dump
 from deixis.memory.semantic.rdf import ledger
@@ -92,7 +94,7 @@ def keep_words(
     if not words.taught:
         told = "; ".join(("nothing to learn: no fact of a lesson has both its objects in its scene", *words.left_out))
         raise NothingFoundError(f"{told}; learn from a script with a labelled scene, or ground one ('deixis learn')")
-    models = modelling(memory.store, {ModelSet.WORDS: word_triples(words.changed)})
+    models = _worded(memory, words)
     rules = memory.kept_up()
     if lessons:
         come = [remembered_lesson(lesson, ontology) for lesson in lessons]
@@ -104,19 +106,31 @@ def keep_words(
 def forget(memory: SemanticMemory, ontology: Ontology, lesson: str) -> None:
     """Takes back one lesson, with what follows from it alone and what it taught.
 
-    Words are fitted anew where it was among the lessons that they were fitted to, from the others of those.
+    Where it was among the lessons that words were fitted to, it is taken out of the fit's statistics; where that
+    cannot be done, words are fitted anew from the others of those.
     """
+    one = _remembered_one(memory, ontology, lesson)
     change, rules = _followed(memory, ontology, memory.departure(lesson), gone=[lesson])
     known, strength = informed(models_from_triples(memory.models(ModelSet.WORDS)))
     if lesson in known:
-        others = [memory.contributions(id) for id in sorted(known - {lesson}) if memory.knows(id)]
-        learned, episodes = (
-            [triple for said in others for triple in said.get(name, ())]
-            for name in (GraphName.LEARNED, GraphName.EPISODES)
-        )
-        words = word_triples(fit(recollect(learned, episodes, ontology), strength).changed)
-        change = together(change, modelling(memory.store, {ModelSet.WORDS: words}))
+        kept = kept_words(memory.store)
+        words = without(one, kept, strength) if kept is not None and one is not None else None
+        if words is None:
+            others = [memory.contributions(id) for id in sorted(known - {lesson}) if memory.knows(id)]
+            words = fit(_recollected_from(others, ontology), strength)
+        change = together(change, _worded(memory, words))
     memory.commit(change, rules)
+
+
+def forget_words(memory: SemanticMemory) -> None:
+    """Takes the learned models of relation words away, and the statistics of their fit; lessons stay."""
+    memory.commit(_worded(memory, None), memory.kept_up())
+
+
+def _worded(memory: SemanticMemory, words: LearnedWords | None) -> Change:
+    """The change that replaces the learned words and the statistics of their fit."""
+    models = modelling(memory.store, {ModelSet.WORDS: word_triples(words.changed) if words is not None else []})
+    return together(models, Change(operations=tuple(replacing(words))))
 
 
 def take_in(file: str | Path, target: Path, ontology: Ontology) -> None:
@@ -143,7 +157,7 @@ def take_in(file: str | Path, target: Path, ontology: Ontology) -> None:
         words = Change()
         if ours and brought and informed(brought)[0] != lessons:
             both = _recollected(After(memory.store, change), ontology).of(lessons | informed(brought)[0])
-            words = modelling(memory.store, {ModelSet.WORDS: word_triples(fit(both, strength).changed)})
+            words = _worded(memory, fit(both, strength))
         change, rules = _followed(memory, ontology, change, anew=True)
         memory.commit(together(change, words), rules)
 
@@ -159,6 +173,23 @@ def _contributions(lesson: Lesson | WordLesson, ontology: Ontology) -> dict[Grap
         said[GraphName.LEARNED] = list(learned_triples(lesson, ontology.relations))
         said[GraphName.SHAPES] = list(layout_shapes(lesson.layout))
     return said
+
+
+def _remembered_one(memory: SemanticMemory, ontology: Ontology, lesson: str) -> Remembered | None:
+    """One lesson, ready to be learned from; None where it cannot be read."""
+    lessons = _recollected_from([memory.contributions(lesson)], ontology).lessons if memory.knows(lesson) else ()
+    return lessons[0] if lessons else None
+
+
+def _recollected_from(
+    contributions: Sequence[Mapping[GraphName, Sequence[ox.Triple]]], ontology: Ontology
+) -> Recollection:
+    """The lessons that contributed so much."""
+    learned, episodes = (
+        [triple for said in contributions for triple in said.get(name, ())]
+        for name in (GraphName.LEARNED, GraphName.EPISODES)
+    )
+    return recollect(learned, episodes, ontology)
 
 
 def _recollected(after: After, ontology: Ontology) -> Recollection:

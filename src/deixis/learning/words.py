@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 
 from deixis.grammar.format import layout_script
@@ -13,10 +13,11 @@ from deixis.learning.lesson import Occasion, layout_concept, layout_name
 from deixis.learning.recollection import Recollection, Remembered, labelled
 from deixis.ontology.lessons.types import WordLesson, next_lesson_id
 from deixis.ontology.models.relations import RelationModel, RelationModels
+from deixis.ontology.triples import content_key
 from deixis.perception.formats.scene_json import scene_to_dict
 from deixis.perception.scene import Scene
 from deixis.reasoning.grounding.evidence.meaning import shipped_models
-from deixis.reasoning.grounding.fitting.fit import FitSettings, learn_relations
+from deixis.reasoning.grounding.fitting.fit import FitSettings, FitStatistics, RelationFit, fit_relations, take_out
 from deixis.reasoning.grounding.fitting.likelihood import SaidPairs, said_pairs
 from deixis.version import VERSION
 
@@ -26,7 +27,8 @@ class LearnedWords:
     """The models after learning, and what they were learned from.
 
     ``taught`` are the names of the models that changed, ``lessons`` the ids that taught them, ``kept`` those of the
-    lessons that were new; ``left_out`` says, a line each, what taught nothing, and why.
+    lessons that were new; ``left_out`` says, a line each, what taught nothing, and why. ``statistics`` are the sums
+    that a lesson can be taken out of, and ``texts`` the lessons with what tells equal ones from others.
     """
 
     models: RelationModels
@@ -34,6 +36,8 @@ class LearnedWords:
     lessons: tuple[str, ...] = ()
     kept: tuple[str, ...] = ()
     left_out: tuple[str, ...] = ()
+    statistics: FitStatistics | None = None
+    texts: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def changed(self) -> tuple[RelationModel, ...]:
@@ -57,19 +61,44 @@ def fit(
     teaching = {lesson: pairs for lesson, pairs in teaching.items() if pairs.weights.sum() > 0}
     once = {one.texts: one.lesson for one in reversed(recollection.lessons) if one.lesson in teaching}
     scenes = [*(teaching[lesson] for lesson in sorted(once.values())), *more]
-    learned = learn_relations(scenes, known, FitSettings(strength), sources, VERSION)
-    taught = tuple(name for name in learned.models if learned[name] != known[name])
-    lessons = tuple(sorted(teaching))
-    marked = [_from_lessons(learned[name], lessons, strength) for name in taught]
-    return LearnedWords(learned.replaced(*marked), taught, lessons, left_out=recollection.unreadable)
+    found = fit_relations(scenes, known, FitSettings(strength), sources, VERSION)
+    texts = {one.lesson: content_key(" ".join(one.texts)) for one in recollection.lessons if one.lesson in teaching}
+    return _learned(found, known, strength, texts, recollection.unreadable)
+
+
+def without(one: Remembered, words: LearnedWords, strength: float) -> LearnedWords | None:
+    """The models without one of the lessons that they were fitted to, in a time that depends on that lesson alone.
+
+    None where they are to be fitted anew from the others: see :func:`take_out`, and where a lesson says the same.
+    """
+    if words.statistics is None or [*words.texts.values()].count(words.texts[one.lesson]) > 1:
+        return None
+    known = shipped_models()
+    found = take_out(words.statistics, _pairs(one), known, FitSettings(strength), VERSION)
+    if found is None:
+        return None
+    return _learned(found, known, strength, {id: key for id, key in words.texts.items() if id != one.lesson})
+
+
+def _learned(
+    found: RelationFit,
+    known: RelationModels,
+    strength: float,
+    texts: Mapping[str, str],
+    left_out: tuple[str, ...] = (),
+) -> LearnedWords:
+    """What was fitted, with the lessons and the strength in the provenance of the models that changed."""
+    taught = tuple(name for name in found.models.models if found.models[name] != known[name])
+    lessons, marked = tuple(sorted(texts)), []
+    for name in taught:
+        model = found.models[name]
+        marked.append(replace(model, provenance=replace(model.provenance, lessons=lessons, strength=strength)))
+    models = found.models.replaced(*marked)
+    return LearnedWords(models, taught, lessons, left_out=left_out, statistics=found.statistics, texts=texts)
 
 
 def _pairs(one: Remembered) -> SaidPairs:
     return said_pairs(one.description, one.scene.boxes, one.who.things, one.who.sureness)
-
-
-def _from_lessons(model: RelationModel, lessons: tuple[str, ...], strength: float) -> RelationModel:
-    return replace(model, provenance=replace(model.provenance, lessons=lessons, strength=strength))
 
 
 def informed(models: Iterable[RelationModel]) -> tuple[frozenset[str], float]:

@@ -14,7 +14,7 @@ import pytest
 from numpy.typing import NDArray
 
 from deixis.cli.app import main
-from deixis.experiments.figure6 import Distribution, Figure6, Points, run
+from deixis.experiments.figure6 import Figure6, Points, Spread, run
 
 CHOICES = ("facts decide", "similarity decides")
 RIGHT = {f"{what}, {choice}" for what in ("right", "right up to interchangeability") for choice in CHOICES}
@@ -89,7 +89,7 @@ def test_the_text(result: Figure6) -> None:
 
 
 def test_a_spread() -> None:
-    spread = Distribution.of([0.0, 0.5, 1.0])
+    spread = Spread.of([0.0, 0.5, 1.0])
     assert (spread.mean, spread.median) == (0.5, 0.5)
     assert str(spread) == "0.50 (5 % 0.05, median 0.50, 95 % 0.95)"
 

@@ -9,6 +9,7 @@ import pytest
 
 from deixis.examples_data import example
 from deixis.learning.inferred_graph import ENGINES
+from deixis.memory.semantic.rdf.change import concluding
 from deixis.memory.semantic.rdf.graphs import GraphName, graph_iri
 from deixis.memory.semantic.store import SemanticMemory
 from deixis.ontology.triples import with_blank_nodes
@@ -66,7 +67,7 @@ def test_a_triple_that_follows_from_nothing_is_seen_and_goes_with_the_next_lesso
         memory = session.memory()
         fork = ox.NamedNode("https://w3id.org/deixis/onto#Fork")
         false = ox.Triple(fork, ox.NamedNode("http://www.w3.org/2000/01/rdf-schema#subClassOf"), ox.NamedNode("urn:x"))
-        memory.conclude([*memory.triples(GraphName.INFERRED), false])
+        memory.commit(concluding(memory.store, [*memory.triples(GraphName.INFERRED), false]))
         assert [t.object for t in stale(memory)] == ["<urn:x>"]
         session.learn(SCRIPT1, SCENE)
         assert stale(memory) == set()

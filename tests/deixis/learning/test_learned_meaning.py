@@ -17,6 +17,7 @@ from deixis.perception.formats.scene_json import read_scene
 from deixis.perception.scene import Scene
 from deixis.reasoning.errors import NothingFoundError
 from deixis.reasoning.grounding.evidence.meaning import SHIPPED
+from deixis.reasoning.grounding.fitting.fit import FEW_SCENES
 from deixis.session import Session
 from deixis.workflows.read import read_script
 
@@ -99,6 +100,30 @@ def test_forgetting_a_lesson_takes_back_what_it_taught(tmp_path: Path) -> None:
         session.forget("words_tea-2")
         assert session.meaning().models is None
         assert session.memory().models(ModelSet.WORDS) == []
+
+
+def test_forgetting_one_of_many_lessons_looks_at_no_other(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Words are what the others teach, within a quarter of what a lesson changes that contradicts all of them."""
+    shifts = [number / 10 for number in range(FEW_SCENES + 5)]
+    gone = [(read_script(text="layout tea; spoon left of dinner_plate"), table(0.05))]
+    with taught(tmp_path / "memory", *shifts) as session:
+        session.learn_relations(gone)
+        before = session.meaning().models
+    monkeypatch.setattr("deixis.learning.update.fit", None)
+    with Session(tmp_path / "memory") as session:
+        session.forget("words_tea-26")
+        now = session.meaning().models
+    monkeypatch.undo()
+    with Session(tmp_path / "memory") as session:
+        session.learn_relations()
+        anew = session.meaning().models
+    assert before is not None
+    assert now is not None
+    assert anew is not None
+    assert now["horizontal"].provenance.lessons == anew["horizontal"].provenance.lessons
+    assert len(now["horizontal"].provenance.lessons) == FEW_SCENES + 5
+    values = [np.concatenate([term.values for term in models["horizontal"].terms]) for models in (before, now, anew)]
+    assert np.abs(values[1] - values[2]).max() < 0.25 * np.abs(values[0] - values[2]).max()
 
 
 def test_the_shipped_models_come_back_and_the_lessons_teach_again(tmp_path: Path) -> None:

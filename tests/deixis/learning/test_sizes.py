@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
+import pyoxigraph as ox
 import pytest
 
 from deixis.learning.recollection import Recollection, Remembered, Who
-from deixis.learning.sizes import FEWEST, learned_size_triples
+from deixis.learning.sizes import FEWEST, Counts, SizeStatistics, size_views
 from deixis.ontology.graph import RelationGraph
-from deixis.ontology.models.sizes import SizeModel, sizes_from_triples
-from deixis.ontology.tbox import default_ontology
+from deixis.ontology.models.sizes import SizeModel, size_triples, sizes_from_triples
+from deixis.ontology.tbox import Ontology, default_ontology
 from deixis.perception.scene import PerceivedObject, Scene
 from deixis.reasoning.grounding.evidence.labels import category_of
 
@@ -37,6 +38,20 @@ def seen(
     other = PerceivedObject("o2", (2.0, 0.0), (3.0, 1.0))
     scene, who = Scene((thing, other), unit=unit), Who((0,), (sure,), (decided,))
     return Remembered(lesson, description, scene, who, ("", lesson))
+
+
+def learned_size_triples(recollection: Recollection, ontology: Ontology) -> list[ox.Triple]:
+    """The sizes that lessons teach, with the scenes that they are derived from, counted from nothing."""
+    statistics = SizeStatistics(Counts(), ontology.sizes)
+    for lesson in recollection.lessons:
+        for view in size_views(lesson, ontology.kinds):
+            statistics.add(view)
+    statistics.settle()
+    triples: list[ox.Triple] = []
+    for kind, (model, _, scenes) in sorted(statistics.models().items(), key=lambda entry: entry[0]):
+        if model is not None:
+            triples += size_triples(kind, model, sorted(scenes))
+    return triples
 
 
 def sizes(lessons: Sequence[Remembered]) -> dict[str, SizeModel]:

@@ -6,13 +6,15 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from numpy.typing import NDArray
 
 from deixis.ontology.allen import ALL_ALLEN, Allen, members
 from deixis.reasoning.geometry.allen import allen_relations
 from deixis.reasoning.temporal.bounds import Bounds
 from deixis.reasoning.temporal.endpoints import (
+    allen_masks,
     converse_masks,
-    masks_from_bounds,
+    distances_from_bounds,
     necessary_orders,
 )
 from deixis.reasoning.temporal.fluent import Fluent, Statement
@@ -46,6 +48,14 @@ def brute_force(a: Fluent, b: Fluent) -> int:
     flat = np.stack([end.ravel() for end in ends]).astype(np.float64)
     proper = flat[:, (flat[0] < flat[1]) & (flat[2] < flat[3])]
     return sum(1 << int(code) for code in np.unique(allen_relations(*proper)))
+
+
+def masks_from_bounds(starts: list[Bounds], finishes: list[Bounds]) -> NDArray[np.uint16]:
+    """The Allen relations that n fluents admit by the bounds of their starts and finishes alone: shape (n, n)."""
+    n = len(starts)
+    distances = distances_from_bounds(starts, finishes)
+    points = np.arange(n, dtype=np.int64)
+    return allen_masks(distances, 1 + points, 1 + n + points)
 
 
 @settings(max_examples=60, deadline=None)

@@ -5,13 +5,23 @@ from __future__ import annotations
 import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from numpy.typing import NDArray
 
-from deixis.ontology.allen import Allen
+from deixis.ontology.allen import Allen, mask_array
 from deixis.ontology.graph import Fact
 from deixis.ontology.tbox import default_ontology
-from deixis.reasoning.entailment.realisation.pieces import admitted_by, choice, region
+from deixis.reasoning.entailment.realisation.pieces import Piece, X, Y, choice, region
+from deixis.reasoning.geometry.allen import EndOrder
+from deixis.reasoning.geometry.allen import admitted as admitted_atoms
 
 R = default_ontology().relations
+
+
+def admitted_by(piece: Piece) -> NDArray[np.bool_]:
+    """Return the atoms that inequalities admit together, shape (13, 13): the inverse of :func:`choice`."""
+    masks = [admitted_atoms(tuple(EndOrder(*i[1:]) for i in piece if i.axis == axis)) for axis in (X, Y)]
+    found: NDArray[np.bool_] = mask_array(masks[X])[:, None] & mask_array(masks[Y])[None, :]
+    return found
 
 
 @settings(max_examples=100, deadline=None)

@@ -15,7 +15,15 @@ from deixis.reasoning.geometry.pairs import pair_geometry
 from deixis.reasoning.grounding.evidence.degrees import relation_evidence, saying_degree, word_degree
 from deixis.reasoning.grounding.evidence.facts import fact_tables
 from deixis.reasoning.grounding.evidence.meaning import shipped_models
-from deixis.reasoning.grounding.fitting.fit import FitSettings, extended, learn_relations
+from deixis.reasoning.grounding.fitting.fit import (
+    FEW_SCENES,
+    FitSettings,
+    RelationFit,
+    extended,
+    fit_relations,
+    learn_relations,
+    take_out,
+)
 from deixis.reasoning.grounding.fitting.likelihood import Likelihood, SaidPairs, said_pairs
 from deixis.reasoning.grounding.fitting.parameters import Layout
 
@@ -150,3 +158,56 @@ def test_lessons_that_cannot_be_are_refused(
 def test_settings_that_cannot_be_are_refused(wrong: dict[str, float]) -> None:
     with pytest.raises(SettingError, match=r"strength|word_contrast"):
         FitSettings(**wrong)  # type: ignore[arg-type]
+
+
+def largest_change(one: RelationFit, other: RelationFit) -> float:
+    """The largest difference between fitted values, and between log chance degrees."""
+    assert one.statistics is not None
+    assert other.statistics is not None
+    apart = [np.abs(one.statistics.values - other.statistics.values).max()]
+    for name in one.statistics.names:
+        apart.append(abs(np.log(one.models[name].chance / other.models[name].chance)))
+    return float(max(apart))
+
+
+@pytest.mark.parametrize("gone", [1, 12])
+def test_scenes_taken_out_leave_what_others_teach(gone: int) -> None:
+    lessons, settings = alike_left(FEW_SCENES + 30), FitSettings(3.0)
+    before = now = fit_relations(lessons, PRIOR, settings)
+    for lesson in lessons[:gone]:
+        assert now.statistics is not None
+        found = take_out(now.statistics, lesson, PRIOR, settings)
+        assert found is not None
+        now = found
+    anew = fit_relations(lessons[gone:], PRIOR, settings)
+    assert largest_change(now, anew) < 0.1 * largest_change(before, anew)
+    assert now.models["horizontal"].provenance.examples == len(lessons) - gone
+    assert now.statistics is not None
+    assert (now.statistics.scenes, now.statistics.fitted) == (len(lessons) - gone, len(lessons))
+
+
+def test_few_scenes_are_fitted_anew() -> None:
+    lessons, settings = alike_left(FEW_SCENES + 1), FitSettings()
+    statistics = fit_relations(lessons, PRIOR, settings).statistics
+    assert statistics is not None
+    assert take_out(statistics, lessons[0], PRIOR, settings) is None
+
+
+def test_a_word_without_its_last_example_is_fitted_anew() -> None:
+    above = RelationGraph.from_facts(R, ["a", "b"], [Fact("a", (R["top"],), "b")])
+    boxes = np.array([[[0, 2], [1, 3]], [[0, 0], [1, 1]], [[3, 0], [4, 1]]], dtype=float)
+    only, settings = said_pairs(above, boxes, [0, 1]), FitSettings()
+    statistics = fit_relations([only, *alike_left(FEW_SCENES + 10)], PRIOR, settings).statistics
+    assert statistics is not None
+    assert take_out(statistics, only, PRIOR, settings) is None
+    assert take_out(statistics, alike_left(1)[0], PRIOR, settings) is not None
+
+
+def test_the_information_is_the_slope_of_the_gradient() -> None:
+    layout = Layout([extended(PRIOR[name]) for name in ("horizontal", SAYING)])
+    likelihood = Likelihood(alike_left(4), layout, 0.0)
+    rng = np.random.default_rng(0)
+    values = np.minimum(layout.prior + rng.normal(0, 0.2, layout.prior.shape), 0.0)
+    step = 1e-5 * rng.normal(size=values.shape)
+    bent = likelihood(values - step)[1] - likelihood(values + step)[1]
+    np.testing.assert_allclose(2 * likelihood.information(values) @ step, bent, rtol=1e-3, atol=1e-8)
