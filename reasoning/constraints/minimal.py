@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from typing import Generic, TypeVar
 
 from deixis.deadline import Deadline
+from deixis.reasoning.errors import LimitError
 
 Item = TypeVar("Item")
 
@@ -35,10 +36,6 @@ class Minimal(Generic[Item]):
     proved: bool
 
 
-class _OutOfTime(Exception):
-    """The deadline came between two tests."""
-
-
 def minimal_subset(
     items: Sequence[Item], test: Test[Item], deadline: Deadline = Deadline.never(), keep_last: bool = False
 ) -> Minimal[Item]:
@@ -56,7 +53,7 @@ def minimal_subset(
     def first_of(candidates: Iterable[list[Item]]) -> tuple[int, Sequence[Item]] | None:
         for place, candidate in enumerate(candidates):
             if deadline.passed:
-                raise _OutOfTime
+                raise LimitError("the time was up between two tests")
             core = test(candidate[::way])
             if core is not None:
                 return place, core
@@ -69,7 +66,8 @@ def minimal_subset(
 def minimal_by(items: Sequence[Item], first_of: FirstOf[Item], width: int = 1) -> Minimal[Item]:
     """Return the same by a test of several candidates in one go, about ``width`` of them.
 
-    That is for tests that are slow to start, such as a reasoner in a process of its own.
+    That is for tests that are slow to start, such as a reasoner in a process of its own. Where a test raises
+    LimitError, the items that were left then are returned, not proved to be minimal.
     """
     rest, needed = list(items), list[Item]()
     bracketing = width > 1 and len(items) > FEW  # a bracket takes one go for each needed item, deletion for each other
@@ -97,7 +95,7 @@ def minimal_by(items: Sequence[Item], first_of: FirstOf[Item], width: int = 1) -
                 low = min(low, len(rest)) if len(rest) == len(enough) else 0
             needed = [*rest[-1:], *needed]
             rest = rest[:-1]
-    except _OutOfTime:
+    except LimitError:
         return Minimal((*rest, *needed), False)
     return Minimal((*rest, *needed), True)
 

@@ -8,12 +8,12 @@ classes alone to HermiT, which is where each is good; figures are in ``docs/desc
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 
 from deixis.deadline import Deadline
 from deixis.reasoning.description_logic.axioms import Axioms, split_axioms
-from deixis.reasoning.description_logic.justification import Justification, justify
+from deixis.reasoning.description_logic.justification import Justification, justify, justify_all
 from deixis.reasoning.description_logic.materialisation import Materialisation
 from deixis.reasoning.description_logic.reasoners import Reasoner, classify
 from deixis.reasoning.description_logic.terms import (
@@ -27,7 +27,7 @@ from deixis.reasoning.description_logic.terms import (
     read_ntriples,
     write_ntriples,
 )
-from deixis.reasoning.errors import InconsistencyError, SettingError
+from deixis.reasoning.errors import InconsistencyError, LimitError, SettingError
 
 MAX_EXPLAINED = 5
 """Unsatisfiable classes that are explained; those after them usually fail for the same reasons."""
@@ -49,41 +49,65 @@ class Entailment:
     """What an engine found.
 
     ``complete`` says whether the whole of OWL 2 DL was decided: of the rules alone, an ontology without a contradiction
-    is one in which they find none. ``inferred`` is empty where the ontology is inconsistent.
+    is one in which they find none. ``inferred`` is empty where the ontology is inconsistent. ``inconsistency`` says
+    why it is, and ``impossible`` why each of the first unsatisfiable classes is, as far as :func:`explained` found out;
+    where it did not find out all that was asked, ``unexplained`` says why not.
     """
 
     engine: LogicEngine
     complete: bool
-    inferred: tuple[Triple, ...]
-    unsatisfiable: tuple[str, ...]
-    inconsistency: Justification | None
-    impossible: tuple[Justification, ...]
+    consistent: bool
+    inferred: tuple[Triple, ...] = ()
+    unsatisfiable: tuple[str, ...] = ()
+    inconsistency: tuple[Justification, ...] = ()
+    impossible: tuple[Justification, ...] = ()
+    unexplained: str | None = None
 
     @property
-    def consistent(self) -> bool:
-        return self.inconsistency is None
+    def possible(self) -> bool:
+        """Whether the ontology can hold, and something can belong to each of its classes."""
+        return self.consistent and not self.unsatisfiable
 
 
 def entail(ntriples: str, engine: LogicEngine | str = LogicEngine.AUTO, time_limit: float = 60.0) -> Entailment:
-    """Return what follows between named things, and why the ontology, or a class of it, is impossible where it is.
+    """Return what follows between named things, and whether the ontology, and each class of it, is possible.
 
-    Raises LimitError where ``time_limit`` (seconds) is up, SettingError for an engine of another name, and what
-    :func:`deixis.reasoning.description_logic.reasoners.classify` raises of bad input.
+    :func:`explained` adds why not. Raises LimitError where ``time_limit`` (seconds) is up, SettingError for an engine
+    of another name, and what :func:`deixis.reasoning.description_logic.reasoners.classify` raises of bad input.
     """
     if engine not in list(LogicEngine):
         raise SettingError(f"an engine is one of {', '.join(LogicEngine)}, not '{engine}'")
     engine = LogicEngine(engine)
-    deadline = Deadline.after(time_limit)
     complete = engine in (LogicEngine.HERMIT, LogicEngine.PELLET)
     try:
-        found = _by_reasoner(ntriples, engine, time_limit) if complete else _by_rules(ntriples, engine, deadline)
+        if complete:
+            inferred, unsatisfiable = _by_reasoner(ntriples, engine, time_limit)
+        else:
+            inferred, unsatisfiable = _by_rules(ntriples, engine, Deadline.after(time_limit))
     except InconsistencyError:
-        why = justify(ntriples, None, deadline)
-        return Entailment(engine, complete, (), (), why, ())
-    inferred, unsatisfiable = found
-    explained = [Triple(f"<{iri}>", SUB_CLASS_OF, NOTHING) for iri in unsatisfiable[:MAX_EXPLAINED]]
-    impossible = tuple(justify(ntriples, statement, deadline) for statement in explained)
-    return Entailment(engine, complete, inferred, unsatisfiable, None, impossible)
+        return Entailment(engine, complete, consistent=False)
+    return Entailment(engine, complete, True, inferred, unsatisfiable)
+
+
+def explained(ntriples: str, found: Entailment, deadline: Deadline, every: bool = False) -> Entailment:
+    """Return what was found with a justification, or with ``every``, of what is impossible.
+
+    The verdict stays whatever the time: there are as many justifications as were found in it.
+    """
+    why: list[Justification] = []
+    unexplained = None
+    asked = [Triple(f"<{iri}>", SUB_CLASS_OF, NOTHING) for iri in found.unsatisfiable[:MAX_EXPLAINED]]
+    try:
+        for statement in asked if found.consistent else [None]:
+            if every:
+                why.extend(justify_all(ntriples, statement, deadline))
+            else:
+                why.append(justify(ntriples, statement, deadline))
+    except LimitError as error:
+        unexplained = str(error)
+    if found.consistent:
+        return replace(found, impossible=tuple(why), unexplained=unexplained)
+    return replace(found, inconsistency=tuple(why), unexplained=unexplained)
 
 
 Found = tuple[tuple[Triple, ...], tuple[str, ...]]

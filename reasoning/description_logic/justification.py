@@ -17,12 +17,12 @@ expand, then contract).
 
 from __future__ import annotations
 
-from collections import defaultdict
-from collections.abc import Callable, Iterable, Sequence
+from collections import defaultdict, deque
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 from deixis.deadline import Deadline
-from deixis.reasoning.constraints.minimal import FEW, minimal_by
+from deixis.reasoning.constraints.minimal import FEW, Minimal, minimal_by
 from deixis.reasoning.description_logic.axioms import Axiom, Axioms, split_axioms
 from deixis.reasoning.description_logic.materialisation import Contradiction, Materialisation
 from deixis.reasoning.description_logic.reasoners import first_inconsistent
@@ -107,11 +107,13 @@ Oracle = Callable[[Sequence[Sequence[Axiom]]], int | None]
 class Justification:
     """Axioms from which a statement follows, or that contradict each other where there is no statement.
 
-    Take any one away, and it does not follow any more.
+    Take any one away, and it does not follow any more; unless ``minimal`` is False: then the time was up before that
+    was seen of all of them.
     """
 
     entailed: Triple | None
     axioms: tuple[Axiom, ...]
+    minimal: bool = True
 
     @property
     def ntriples(self) -> str:
@@ -125,28 +127,77 @@ def justify(ntriples: str, entailed: Triple | None = None, deadline: Deadline = 
     The statement is about named things: ``rdfs:subClassOf`` (of ``owl:Nothing``: why a class is unsatisfiable),
     ``rdfs:subPropertyOf``, ``rdfs:domain``, ``rdfs:range``, ``owl:disjointWith``, ``owl:sameAs``,
     ``owl:differentFrom``, ``rdf:type`` or a property of the ontology's own. Raises NotEntailedError where it does not
-    follow, LimitError where the deadline passes, SettingError for a statement of another kind.
+    follow, LimitError where the deadline passes before that is known, SettingError for a statement of another kind.
     """
     parts = split_axioms(read_ntriples(ntriples))
+    found = _justification(parts, parts.axioms, entailed, deadline)
+    if found is None:
+        told = "the ontology is consistent" if entailed is None else f"does not follow from the ontology: {entailed}"
+        raise NotEntailedError(f"there is nothing to justify: {told}")
+    return found
+
+
+def justify_all(
+    ntriples: str, entailed: Triple | None = None, deadline: Deadline = Deadline.never()
+) -> Iterator[Justification]:
+    """Yield every justification of a statement, or of an inconsistency, as each is found.
+
+    Every set of axioms that takes one away from each justification known so far is left out in turn, the smaller sets
+    first, and what still follows is justified anew (a hitting set tree: Reiter, *A theory of diagnosis from first
+    principles*, Artificial Intelligence 32, 1987). There may be exponentially many. Raises as :func:`justify` does;
+    LimitError also where the deadline passes before it is known that there are no more.
+    """
+    parts = split_axioms(read_ntriples(ntriples))
+    first = justify(ntriples, entailed, deadline)
+    known = [frozenset(first.axioms)]
+    yield first
+    seen, queue = {frozenset[Axiom]()}, deque([frozenset[Axiom]()])
+    while queue:
+        without = queue.popleft()
+        untouched = next((axioms for axioms in known if not axioms & without), None)
+        if untouched is None:
+            found = _justification(parts, [axiom for axiom in parts.axioms if axiom not in without], entailed, deadline)
+            if found is None:
+                continue
+            if not found.minimal:
+                raise LimitError(f"undecided: the time was up after {len(known)} justifications; allow it more")
+            untouched = frozenset(found.axioms)
+            known.append(untouched)
+            yield found
+        branches = (without | {axiom} for axiom in _in_order(parts, untouched))
+        for branch in branches:
+            if branch not in seen:
+                seen.add(branch)
+                queue.append(branch)
+
+
+def _justification(
+    parts: Axioms, axioms: Sequence[Axiom], entailed: Triple | None, deadline: Deadline
+) -> Justification | None:
+    """Return a justification among some of an ontology's axioms; None where from these nothing follows."""
     denied = () if entailed is None else denial(entailed)
     oracle = _oracle(parts, denied, deadline)
     # the fewest axioms in the derivation of a contradiction by OWL 2 RL; many of them only if HermiT agrees
-    known = Materialisation([*_triples(parts.axioms), *parts.declarations, *denied], deadline)
+    known = Materialisation([*_triples(axioms), *parts.declarations, *denied], deadline)
     owner: dict[Triple, list[Axiom]] = defaultdict(list)
-    for each in parts.axioms:
+    for each in axioms:
         for part in each.triples:
             owner[part].append(each)
     owning = [_owners(known, owner, seen) for seen in known.contradictions[:MAX_CONTRADICTIONS]]
     fewest = min(owning, key=len, default=None)
     seed = fewest if fewest is None or len(fewest) <= FEW or oracle([fewest]) == 0 else None
     minimal = None if seed is None else _minimal(seed, oracle)
-    if minimal is None and (around := _expanded(parts, entailed, oracle)) is not None:
+    if minimal is None and (around := _expanded(axioms, entailed, oracle)) is not None:
         minimal = _minimal(around, oracle)
     if minimal is None:
-        told = "the ontology is consistent" if entailed is None else f"does not follow from the ontology: {entailed}"
-        raise NotEntailedError(f"there is nothing to justify: {told}")
-    place = {axiom: number for number, axiom in enumerate(parts.axioms)}
-    return Justification(entailed, tuple(sorted(minimal, key=place.__getitem__)))
+        return None
+    return Justification(entailed, tuple(_in_order(parts, minimal.items)), minimal.proved)
+
+
+def _in_order(parts: Axioms, axioms: Iterable[Axiom]) -> list[Axiom]:
+    """Return axioms in the order of the ontology."""
+    chosen = set(axioms)
+    return [axiom for axiom in parts.axioms if axiom in chosen]
 
 
 def _oracle(parts: Axioms, denied: Sequence[Triple], deadline: Deadline) -> Oracle:
@@ -154,7 +205,7 @@ def _oracle(parts: Axioms, denied: Sequence[Triple], deadline: Deadline) -> Orac
 
     def first(candidates: Sequence[Sequence[Axiom]]) -> int | None:
         if deadline.passed:
-            raise LimitError("undecided: the time was up before a justification was found to be minimal; allow it more")
+            raise LimitError("undecided: the time was up before a justification was found; allow it more")
         return first_inconsistent([[*background, *_triples(axioms)] for axioms in candidates], deadline.left)
 
     return first
@@ -169,9 +220,9 @@ def _owners(known: Materialisation, owner: dict[Triple, list[Axiom]], seen: Cont
     return list(dict.fromkeys(axiom for triple in stated for axiom in owner.get(triple, ())[:1]))
 
 
-def _expanded(parts: Axioms, entailed: Triple | None, oracle: Oracle) -> list[Axiom] | None:
+def _expanded(axioms: Sequence[Axiom], entailed: Triple | None, oracle: Oracle) -> list[Axiom] | None:
     """Return the axioms around the statement, as far from it as it takes to contradict its denial; near ones first."""
-    ordered, ends = _rings(parts.axioms, entailed)
+    ordered, ends = _rings(axioms, entailed)
     place = oracle([ordered[:end] for end in ends])
     return None if place is None else ordered[: ends[place]]
 
@@ -194,7 +245,7 @@ def _rings(axioms: Sequence[Axiom], entailed: Triple | None) -> tuple[list[Axiom
     return [*ordered, *left], [*ends, len(ordered) + len(left)]
 
 
-def _minimal(axioms: list[Axiom], oracle: Oracle) -> tuple[Axiom, ...] | None:
+def _minimal(axioms: list[Axiom], oracle: Oracle) -> Minimal[Axiom] | None:
     """Return the axioms without those that can be spared; None where a few contradict nothing.
 
     Of few mostly none can be spared, so that they are asked about themselves in the run that leaves each out in turn.
@@ -204,12 +255,12 @@ def _minimal(axioms: list[Axiom], oracle: Oracle) -> tuple[Axiom, ...] | None:
         if place is None:
             return None
         if place == len(axioms):
-            return tuple(axioms)
-        del axioms[len(axioms) - 1 - place]
+            return Minimal(tuple(axioms), True)
+        axioms = [axiom for k, axiom in enumerate(axioms) if k != len(axioms) - 1 - place]
 
     def first_of(candidates: Iterable[list[Axiom]]) -> tuple[int, list[Axiom]] | None:
         asked = list(candidates)
         place = oracle(asked)
         return None if place is None else (place, asked[place])
 
-    return minimal_by(axioms, first_of, width=BATCH).items
+    return minimal_by(axioms, first_of, width=BATCH)

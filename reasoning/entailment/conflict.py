@@ -21,10 +21,14 @@ from deixis.reasoning.entailment.implications import Implications
 
 @dataclass(frozen=True)
 class Conflict:
-    """Stated facts that cannot all hold, none of them dispensable, and in words why."""
+    """Stated facts that cannot all hold, and in words why.
+
+    None of them is dispensable, unless ``minimal`` is False: then the time was up before that was seen.
+    """
 
     facts: tuple[Fact, ...]
     reason: str
+    minimal: bool = True
 
 
 def compatible(a: Relation, b: Relation) -> bool:
@@ -42,8 +46,8 @@ def compatible(a: Relation, b: Relation) -> bool:
 def find_conflict(implied: Implications, deadline: Deadline | None = None) -> Conflict | None:
     """Return a minimal contradiction; None where the facts are consistent, or where the time limit left that open.
 
-    Searches end at ``deadline`` (without one, after the time limit of ``implied``). Raises OutOfTimeError where
-    there is a contradiction among choices, and the time is up before it is minimal.
+    Searches end at ``deadline`` (without one, after the time limit of ``implied``); where it passes before a
+    contradiction among choices is minimal, the one that was left then is returned, and says so.
 
     >>> from deixis.ontology.tbox import default_ontology
     >>> r = default_ontology().relations
@@ -59,12 +63,14 @@ def find_conflict(implied: Implications, deadline: Deadline | None = None) -> Co
     graph = implied.graph
     circle = order_graph(demands.bounds, len(graph.nodes)).shortest_cycle()
     edges = _group_edges(implied) if circle is None else sorted(circle)
-    facts = [graph.fact(edge) for edge in edges]
+    facts, minimal = [graph.fact(edge) for edge in edges], True
     if circle is None or not _minimal_circle(demands, edges):
-        facts = list(minimal_subset(facts, lambda chosen: _inconsistent(chosen, graph.vocabulary, until)).items)
+        found = minimal_subset(facts, lambda chosen: _inconsistent(chosen, graph.vocabulary, until))
+        facts, minimal = list(found.items), found.proved
     if graph.sources:
         facts.sort(key=lambda fact: (fact.source is None, fact.source))
-    return Conflict(tuple(facts), _reason(facts, graph.vocabulary))
+    reason = _reason(facts, graph.vocabulary) if minimal else "the facts below, among which some leave a choice"
+    return Conflict(tuple(facts), reason, minimal)
 
 
 def _group_edges(implied: Implications) -> list[int]:

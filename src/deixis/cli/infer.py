@@ -23,6 +23,7 @@ def infer(
         str | None, typer.Option("--why-not", metavar="FACT", help="Print why a fact does not follow.")
     ] = None,
     ntriples: Annotated[bool, typer.Option("--ntriples", help="Print all that holds as N-Triples.")] = False,
+    verdict: Annotated[bool, typer.Option("--verdict", help="Print whether the facts can hold, and no more.")] = False,
     time_limit: TimeLimit = 10.0,
     as_json: AsJson = False,
 ) -> None:
@@ -36,6 +37,10 @@ def infer(
         raise DeixisError("infer: --explain and --why-not exclude each other")
     if ntriples and (as_json or explain is not None or why_not is not None):
         raise DeixisError("infer: --ntriples goes with none of --json, --explain and --why-not")
+    if verdict:
+        if ntriples or explain is not None or why_not is not None:
+            raise DeixisError("infer: --verdict goes with none of --explain, --why-not and --ntriples")
+        raise typer.Exit(_verdict(script, time_limit, as_json))
     fact = _one_fact(explain, "--explain") or _one_fact(why_not, "--why-not")
     inference = run(script, time_limit)
     if fact is not None and inference.consistent and inference.decided:
@@ -51,6 +56,18 @@ def infer(
         raise typer.Exit(NO)
     if not inference.decided or not inference.complete:
         raise typer.Exit(UNDECIDED)
+
+
+def _verdict(script: str, time_limit: float, as_json: bool) -> int:
+    from deixis.workflows.infer import verdict_of
+
+    found = verdict_of(script, time_limit)
+    if as_json:
+        print_json({"consistent": found})
+    else:
+        words = {True: "consistent", False: "The script contradicts itself.", None: "Undecided within the time limit."}
+        print(words[found])
+    return {True: 0, False: NO, None: UNDECIDED}[found]
 
 
 def _one_fact(text: str | None, option: str) -> Fact | None:

@@ -36,15 +36,20 @@ def reason(
     explain: Annotated[
         str | None, typer.Option(metavar="STATEMENT", help="Print why 'SUBJECT PREDICATE OBJECT' follows.")
     ] = None,
+    every: Annotated[bool, typer.Option("--all", help="Print all justifications, not one.")] = False,
+    verdict: Annotated[bool, typer.Option("--verdict", help="Print whether it is possible, not why.")] = False,
     turtle: Annotated[bool, typer.Option("--turtle", help="Print justifications as Turtle, and nothing else.")] = False,
     time_limit: TimeLimit = 60.0,
     memory: MemoryDir = None,
     as_json: AsJson = False,
 ) -> None:
     """Infer what an ontology entails; exit 1 where it, or a class of it, is impossible, and say why."""
+    from deixis.errors import DeixisError
     from deixis.reasoning.errors import LimitError, NotEntailedError
     from deixis.workflows.reason import read_ontology, read_remembered
 
+    if verdict and (explain is not None or every or turtle or triples):
+        raise DeixisError("reason: --verdict goes with none of --explain, --all, --turtle and --triples")
     if files:
         stated, prefixes = read_ontology(files)
     else:
@@ -54,9 +59,10 @@ def reason(
             stated, prefixes = read_remembered(session.memory())
     try:
         if explain is not None:
-            code = _explain(stated, _statement(explain, prefixes), turtle, time_limit, as_json)
+            _explain(stated, _statement(explain, prefixes), every, turtle, time_limit, as_json)
+            code = 0
         else:
-            code = _entail(stated, engine, triples, turtle, time_limit, as_json)
+            code = _entail(stated, engine, triples, verdict, every, turtle, time_limit, as_json)
     except LimitError as error:
         print(f"deixis: {error}", file=sys.stderr)
         code = UNDECIDED
@@ -66,40 +72,69 @@ def reason(
     raise typer.Exit(code)
 
 
+LAST_SHARE = 0.1
+"""Of the time limit, for saying why, where the verdict took all of it."""
+
+
 def _entail(
-    stated: list[Triple], engine: EngineChoice, triples: bool, turtle: bool, time_limit: float, as_json: bool
+    stated: list[Triple],
+    engine: EngineChoice,
+    triples: bool,
+    verdict: bool,
+    every: bool,
+    turtle: bool,
+    time_limit: float,
+    as_json: bool,
 ) -> int:
-    from deixis.reasoning.description_logic.entailment import entail
+    """Prints the verdict as soon as it is known, then why, as far as there is time, then what follows."""
+    from deixis.reasoning.description_logic.entailment import entail, explained
     from deixis.reasoning.description_logic.terms import write_ntriples
     from deixis.reasoning.description_logic.verbalisation import Words, labels_of
-    from deixis.report.reason import entailment_lines, entailment_to_dict
+    from deixis.report import reason as report
 
-    found = entail(write_ntriples(stated), engine.value, time_limit)
-    words = Words(labels_of(stated))
+    deadline, ntriples, words = Deadline.after(time_limit), write_ntriples(stated), Words(labels_of(stated))
+    found = entail(ntriples, engine.value, time_limit)
+    if not (turtle or as_json):
+        print(report.verdict(found, words), flush=True)
+    if not (verdict or found.possible):
+        found = explained(ntriples, found, max(deadline, Deadline.after(LAST_SHARE * time_limit)), every)
     if turtle:
-        _print_turtle(*([found.inconsistency] if found.inconsistency else []), *found.impossible)
+        _print_turtle(*found.inconsistency, *found.impossible)
     elif as_json:
-        print_json(entailment_to_dict(found, words))
-    else:
-        print_lines(entailment_lines(found, words, triples))
-    return 0 if found.consistent and not found.unsatisfiable else NO
+        print_json(report.entailment_to_dict(found, words))
+    elif not verdict:
+        print_lines(report.impossibility_lines(found, words))
+        print_lines(report.inferred_lines(found, triples))
+    return 0 if found.possible else NO
 
 
-def _explain(stated: list[Triple], asked: Triple, turtle: bool, time_limit: float, as_json: bool) -> int:
-    from deixis.reasoning.description_logic.justification import justify
+def _explain(stated: list[Triple], asked: Triple, every: bool, turtle: bool, time_limit: float, as_json: bool) -> None:
+    """Prints one justification, or all, each as it is found; raises LimitError where there may be more."""
+    from deixis.reasoning.description_logic.justification import justify, justify_all
     from deixis.reasoning.description_logic.terms import write_ntriples
     from deixis.reasoning.description_logic.verbalisation import Words, labels_of
+    from deixis.reasoning.errors import LimitError
     from deixis.report.reason import explanation_lines, justification_to_dict
 
-    found = justify(write_ntriples(stated), asked, Deadline.after(time_limit))
-    words, steps = Words(labels_of(stated)), _steps(found)
+    deadline, ntriples, words = Deadline.after(time_limit), write_ntriples(stated), Words(labels_of(stated))
+    found, unfinished = [], None
+    try:
+        for one in justify_all(ntriples, asked, deadline) if every else [justify(ntriples, asked, deadline)]:
+            found.append(one)
+            if not (turtle or as_json):
+                print_lines(explanation_lines(one, _steps(one), words))
+                sys.stdout.flush()
+    except LimitError as error:
+        if not found:
+            raise
+        unfinished = error
     if turtle:
-        _print_turtle(found)
+        _print_turtle(*found)
     elif as_json:
-        print_json(justification_to_dict(found, words, steps))
-    else:
-        print_lines(explanation_lines(found, steps, words))
-    return 0
+        told = [justification_to_dict(one, words, _steps(one)) for one in found]
+        print_json({"justifications": told, "complete": unfinished is None} if every else told[0])
+    if unfinished is not None:
+        raise unfinished
 
 
 def _steps(found: Justification) -> tuple[InferenceStep, ...]:

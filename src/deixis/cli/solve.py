@@ -7,7 +7,17 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from deixis.cli.common import NO, UNDECIDED, AsJson, TimeLimit, compiled, print_json, print_written, progress_bar
+from deixis.cli.common import (
+    NO,
+    UNDECIDED,
+    AsJson,
+    TimeLimit,
+    compiled,
+    print_json,
+    print_lines,
+    print_written,
+    progress_bar,
+)
 
 if TYPE_CHECKING:
     from deixis.workflows.solve import SolvedNetwork
@@ -21,6 +31,7 @@ def solve(
     explain: Annotated[
         tuple[int, int] | None, typer.Option(metavar="I J", help="Print why I and J are related as they are.")
     ] = None,
+    verdict: Annotated[bool, typer.Option("--verdict", help="Print the verdict, and not what it rests on.")] = False,
     out: Annotated[Path | None, typer.Option("-o", "--out", metavar="FILE", help="Write the network there.")] = None,
     time_limit: TimeLimit = 60.0,
     as_json: AsJson = False,
@@ -28,22 +39,41 @@ def solve(
     """Say whether constraint networks are consistent: exit 0, 1 where one is not, 3 where one stays undecided."""
     from deixis.errors import DeixisError
     from deixis.grammar.formats.networks import read_networks
+    from deixis.report.solve import reason_lines
     from deixis.workflows.solve import Wish, calculi_named, ready_to_solve, solve_text
 
     if closure and scenario:
         raise DeixisError("--closure and --scenario exclude each other")
     if out is not None and not (closure or scenario):
         raise DeixisError("-o writes the network that --closure or --scenario prints; give one of them")
-    wish = Wish(closure, scenario, explain, time_limit)
+    if verdict and (closure or scenario or explain is not None):
+        raise DeixisError("--verdict goes with none of --closure, --scenario and --explain")
+    wish = Wish(closure, scenario, explain, not verdict, time_limit)
     texts = read_networks(network, calculi_named(calculus))
     compiled(ready_to_solve)
+    aside = as_json or (out is None and (closure or scenario))  # what is printed then is read again, or by a program
+    solved = []
     with progress_bar("closing") as progress:
-        solved = [solve_text(text, wish, progress) for text in texts]
-    _report(network, solved, out, as_json)
+        for text in texts:
+            solved.append(solve_text(text, wish, progress, _quiet if aside else _print_verdict))
+            if not aside:
+                print_lines(reason_lines(solved[-1], not verdict))
+    _report(network, solved, out, as_json, aside)
     raise typer.Exit(_code(solved))
 
 
-def _report(file: str, solved: list[SolvedNetwork], out: Path | None, as_json: bool) -> None:
+def _print_verdict(solved: SolvedNetwork) -> None:
+    from deixis.report.solve import verdict_line
+
+    print(verdict_line(solved), flush=True)
+
+
+def _quiet(solved: SolvedNetwork) -> None:
+    pass
+
+
+def _report(file: str, solved: list[SolvedNetwork], out: Path | None, as_json: bool, aside: bool) -> None:
+    """Print what was not printed with the verdicts: JSON, or networks with what was found as comments beside them."""
     from deixis.grammar.formats.networks import network_lines
     from deixis.report.solve import solved_lines, solved_to_dict
 
@@ -51,12 +81,11 @@ def _report(file: str, solved: list[SolvedNetwork], out: Path | None, as_json: b
     if out is not None:
         out.write_text("".join(f"{line}\n" for line in shown), encoding="utf-8")
     if as_json:
-        data = {"file": file, "networks": [solved_to_dict(each) for each in solved]}
-        print_json(data)
+        print_json({"file": file, "networks": [solved_to_dict(each) for each in solved]})
         return
-    said = [line for each in solved for line in solved_lines(each)]
-    # what is printed as a network can be read again: the verdict is a comment beside it
-    print("\n".join([f"# {line}" for line in said] + shown if shown and out is None else said))
+    if aside:
+        said = [line for each in solved for line in solved_lines(each)]
+        print("\n".join([f"# {line}" for line in said] + shown if shown else said))
     print_written(out)
 
 

@@ -37,7 +37,8 @@ def inference_to_dict(inference: Inference) -> dict[str, Any]:
     """Stated and inferred facts, or the minimal conflict alone."""
     if inference.conflict is not None:
         facts = [fact_to_dict(fact) for fact in inference.conflict.facts]
-        return {"consistent": False, "conflict": {"reason": inference.conflict.reason, "facts": facts}}
+        conflict = {"reason": inference.conflict.reason, "minimal": inference.conflict.minimal, "facts": facts}
+        return {"consistent": False, "conflict": conflict}
     stated = [fact_to_dict(fact) | {"status": "stated"} for fact in inference.stated]
     inferred = [
         fact_to_dict(entry.fact)

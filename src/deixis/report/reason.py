@@ -14,20 +14,19 @@ from deixis.reasoning.description_logic.terms import Triple, iri_of
 from deixis.reasoning.description_logic.verbalisation import Words
 
 
-def entailment_lines(found: Entailment, words: Words, triples: bool = False) -> Iterator[str]:
-    """Yield what follows, counted or listed, and what is impossible and why."""
-    if found.inconsistency is not None:
-        yield "The ontology is inconsistent: these cannot all hold."
-        yield from _axiom_lines(found.inconsistency, words)
-        return
-    for justification in found.impossible:
-        assert justification.entailed is not None
-        yield f"{words.triple(justification.entailed)}, because"
-        yield from _axiom_lines(justification, words)
-    rest = found.unsatisfiable[len(found.impossible) :]
-    if rest:
-        yield f"Nothing can be any of these either: {', '.join(words.name(f'<{iri}>') for iri in rest)}"
-    yield verdict(found)
+def verdict(found: Entailment, words: Words) -> str:
+    """Return the outcome in one sentence; it claims no more than the engine decides."""
+    if not found.consistent:
+        return f"inconsistent ({found.engine}): nothing can satisfy the ontology"
+    held = "consistent" if found.complete else "no contradiction found"
+    if found.unsatisfiable:
+        names = ", ".join(words.name(f"<{iri}>") for iri in found.unsatisfiable)
+        held += f" while nothing belongs to {names}"
+    return f"{held} ({found.engine}); {len(found.inferred):,} triples inferred"
+
+
+def inferred_lines(found: Entailment, triples: bool = False) -> Iterator[str]:
+    """Yield what follows, counted by predicate or listed."""
     if triples:
         for triple in found.inferred:
             yield " ".join(short(iri) if (iri := iri_of(part)) else part for part in triple)
@@ -37,22 +36,32 @@ def entailment_lines(found: Entailment, words: Words, triples: bool = False) -> 
         yield f"{number:8,}  {short(predicate[1:-1])}"
 
 
-def verdict(found: Entailment) -> str:
-    """Return the outcome in one sentence; it claims no more than the engine decides."""
-    if found.complete:
-        held = "consistent" if not found.unsatisfiable else "consistent while nothing belongs to those classes"
-    elif found.unsatisfiable:
-        held = "no contradiction found while nothing belongs to those classes"
-    else:
-        held = "no contradiction found"
-    return f"{held} ({found.engine}); {len(found.inferred):,} triples inferred"
+def impossibility_lines(found: Entailment, words: Words) -> Iterator[str]:
+    """Yield why the ontology, or a class of it, is impossible, as far as that was found out."""
+    for justification in found.inconsistency:
+        yield f"These cannot all hold{_doubt(justification)}:"
+        yield from _axiom_lines(justification, words)
+    for justification in found.impossible:
+        yield from justification_lines(justification, words)
+    if found.unexplained is not None:
+        why = "There may be more reasons" if found.inconsistency or found.impossible else "Why was not found out"
+        yield f"{why}: {found.unexplained} (--time-limit)."
+
+
+def _doubt(justification: Justification) -> str:
+    return "" if justification.minimal else " (some may be superfluous: the time was up before all were tried)"
+
+
+def justification_lines(justification: Justification, words: Words) -> Iterator[str]:
+    """Yield a statement, or that there is a contradiction, and the axioms behind it."""
+    what = "Contradiction" if justification.entailed is None else words.triple(justification.entailed)
+    yield f"{what}, because{_doubt(justification)}"
+    yield from _axiom_lines(justification, words)
 
 
 def explanation_lines(justification: Justification, steps: tuple[InferenceStep, ...], words: Words) -> Iterator[str]:
     """Yield why a statement follows: the axioms, and the steps where rules lead from them to it."""
-    assert justification.entailed is not None
-    yield f"{words.triple(justification.entailed)}, because"
-    yield from _axiom_lines(justification, words)
+    yield from justification_lines(justification, words)
     derived = [step for step in steps if step.rule is not None]
     if derived:
         yield "by these steps:"
@@ -72,9 +81,9 @@ def entailment_to_dict(found: Entailment, words: Words) -> dict[str, Any]:
         "consistent": found.consistent,
         "inferred": [_plain(triple) for triple in found.inferred],
         "unsatisfiable": list(found.unsatisfiable),
+        "unexplained": found.unexplained,
         "justifications": [
-            justification_to_dict(justification, words)
-            for justification in (*([found.inconsistency] if found.inconsistency else []), *found.impossible)
+            justification_to_dict(justification, words) for justification in (*found.inconsistency, *found.impossible)
         ],
     }
 
@@ -85,6 +94,7 @@ def justification_to_dict(
     """A justification as plain data: what follows (null: a contradiction), the axioms, and the steps by rules."""
     return {
         "entailed": None if justification.entailed is None else _plain(justification.entailed),
+        "minimal": justification.minimal,
         "axioms": [
             {"words": words.axiom(axiom), "triples": [_plain(triple) for triple in axiom.triples]}
             for axiom in justification.axioms

@@ -61,7 +61,10 @@ def inference_lines(inference: Inference) -> Iterator[str]:
     if inference.conflict is not None:
         yield f"The script contradicts itself: {inference.conflict.reason}."
         yield from (f"    {fact.source}: {fact}" for fact in inference.conflict.facts)
-        yield "Leave out or change any one of these."
+        if inference.conflict.minimal:
+            yield "Leave out or change any one of these."
+        else:
+            yield "Leave out or change some of these; the time was up before it was clear which are needed."
         return
     if not inference.decided:
         yield "Undecided within the time limit: whether the facts, among which some leave a choice, can all hold."

@@ -16,14 +16,24 @@ MAX_CONFLICT_LISTED = 50
 
 def solved_lines(solved: SolvedNetwork) -> Iterator[str]:
     """Yield the verdict first, then what it rests on, or what was asked for."""
+    yield verdict_line(solved)
+    yield from reason_lines(solved)
+
+
+def verdict_line(solved: SolvedNetwork) -> str:
+    """Return the verdict on a network, and how large it is."""
     networks = solved.text.networks
     stated = sum(len(network.constraints) for network in networks)
     names = "+".join(network.calculus.name for network in networks)
     comment = f" ({solved.text.comment})" if solved.text.comment else ""
-    yield (
+    return (
         f"line {solved.text.line}{comment}: {solved.verdict}; {_count(networks[0].size, 'thing')}, "
         f"{_count(stated, 'constraint')} in {names}, {_count(solved.narrowed, 'pair')} narrowed, {solved.seconds:.2f} s"
     )
+
+
+def reason_lines(solved: SolvedNetwork, conflict: bool = True) -> Iterator[str]:
+    """Yield what a verdict rests on, or what was asked for; ``conflict`` says that a conflict was looked for."""
     if solved.reason:
         yield f"    {solved.reason}"
     for each in solved.contributions:
@@ -36,7 +46,7 @@ def solved_lines(solved: SolvedNetwork) -> Iterator[str]:
         if len(solved.conflict) > MAX_CONFLICT_LISTED:
             yield f"    … and {len(solved.conflict) - MAX_CONFLICT_LISTED} more"
         yield "Leave out or change any one of these." if solved.minimal else "Leave out or change some of these."
-    elif solved.verdict == "inconsistent":
+    elif solved.verdict == "inconsistent" and conflict:
         yield "    which constraints are to blame was not found in the time that was left"
     if solved.asked is not None:
         first, second = solved.asked

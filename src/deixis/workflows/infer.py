@@ -12,7 +12,9 @@ from deixis.grammar.script import Script
 from deixis.ontology.graph import Fact
 from deixis.reasoning.constraints.disjunctive import OutOfTimeError
 from deixis.reasoning.constraints.proof import Rule
+from deixis.reasoning.entailment.closing import consistent
 from deixis.reasoning.entailment.conflict import Conflict, find_conflict
+from deixis.reasoning.entailment.demands import demands_of
 from deixis.reasoning.entailment.implications import TIME_LIMIT, Implications
 from deixis.workflows.read import as_script
 
@@ -77,6 +79,10 @@ class Inference:
             yield Inferred(fact, support.rule, len(support.edges), lines)
 
 
+LAST_SHARE = 0.1
+"""Of the time limit, for saying why a script contradicts itself, where seeing that took all of it."""
+
+
 def inference_of(script: Script, time_limit: float = TIME_LIMIT) -> Inference:
     """Return what follows from a script, and whether it contradicts itself, within about ``time_limit`` seconds.
 
@@ -84,11 +90,17 @@ def inference_of(script: Script, time_limit: float = TIME_LIMIT) -> Inference:
     """
     deadline = Deadline.after(time_limit)
     implications = Implications(script.graph(), time_limit)
-    try:
-        conflict = find_conflict(implications, deadline)
-    except OutOfTimeError:
-        return Inference(script.facts, implications, None, False, deadline)
+    possible = implications.consistent
+    conflict = None if possible else find_conflict(implications, max(deadline, Deadline.after(LAST_SHARE * time_limit)))
     return Inference(script.facts, implications, conflict, implications.decided, deadline)
+
+
+def verdict_of(script: Script | str | Path, time_limit: float = TIME_LIMIT) -> bool | None:
+    """Return whether a script can hold, without saying why not; None where the time limit left that open."""
+    try:
+        return consistent(demands_of(as_script(script).graph()), Deadline.after(time_limit))
+    except OutOfTimeError:
+        return None
 
 
 @cache

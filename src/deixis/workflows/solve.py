@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from itertools import combinations
@@ -33,11 +33,15 @@ LAST_SHARE = 0.1
 
 @dataclass(frozen=True)
 class Wish:
-    """What is asked about each network, beside the verdict."""
+    """What is asked about each network, beside the verdict.
+
+    ``conflict`` is why it is inconsistent, where it is.
+    """
 
     closure: bool = False
     scenario: bool = False
     explain: tuple[int, int] | None = None
+    conflict: bool = True
     time_limit: float = 60.0
 
     def extended(self, deadline: Deadline) -> Deadline:
@@ -49,7 +53,8 @@ class Wish:
 class SolvedNetwork:
     """One network of a file, and what was found about it.
 
-    ``shown`` are the networks that were asked for, the closure or the scenario, one for each calculus.
+    ``seconds`` is the time that the verdict took. ``shown`` are the networks that were asked for, the closure or the
+    scenario, one for each calculus.
     """
 
     text: NetworkText
@@ -81,20 +86,29 @@ def calculi_named(text: str) -> tuple[Calculus, ...]:
     return calculi
 
 
-def solve_text(text: NetworkText, wish: Wish, progress: Progress | None = None) -> SolvedNetwork:
+Told = Callable[["SolvedNetwork"], None]
+"""Called with a network as soon as its verdict is known, before it is clear why."""
+
+
+def solve_text(
+    text: NetworkText, wish: Wish, progress: Progress | None = None, told: Told = lambda solved: None
+) -> SolvedNetwork:
     """Solve one network of a file; raises LimitError where it would not fit in memory."""
-    return _solve_single(text, wish, progress) if len(text.networks) == 1 else _solve_joint(text, wish, progress)
+    solving = _solve_single if len(text.networks) == 1 else _solve_joint
+    return solving(text, wish, progress, told)
 
 
-def _solve_single(text: NetworkText, wish: Wish, progress: Progress | None) -> SolvedNetwork:
+def _solve_single(text: NetworkText, wish: Wish, progress: Progress | None, told: Told) -> SolvedNetwork:
     started, deadline = time.perf_counter(), Deadline.after(wish.time_limit)
     if wish.explain is not None:
         require_pair(text.network, *wish.explain)
     small, things = text.network.compact()
     closure = close(small, deadline, progress)
     found = solve(small, deadline, progress, wish.scenario)
-    solved = SolvedNetwork(text, found.verdict, found.reason, closure.narrowed, 0.0, asked=wish.explain)
-    if found.verdict is Verdict.INCONSISTENT:
+    seconds = time.perf_counter() - started
+    solved = SolvedNetwork(text, found.verdict, found.reason, closure.narrowed, seconds, asked=wish.explain)
+    told(solved)
+    if found.verdict is Verdict.INCONSISTENT and wish.conflict:
         conflict = minimal_conflict(text.network, wish.extended(deadline), inconsistent=True)
         if conflict is not None:
             stated = tuple((text.network, c) for c in conflict.constraints)
@@ -108,10 +122,10 @@ def _solve_single(text: NetworkText, wish: Wish, progress: Progress | None) -> S
         deadline = wish.extended(deadline)
         step = explain(text.network, *wish.explain, deadline)
         solved = replace(solved, step=step, explained=step is not None or not deadline.passed)
-    return replace(solved, seconds=time.perf_counter() - started)
+    return solved
 
 
-def _solve_joint(text: NetworkText, wish: Wish, progress: Progress | None) -> SolvedNetwork:
+def _solve_joint(text: NetworkText, wish: Wish, progress: Progress | None, told: Told) -> SolvedNetwork:
     started, deadline = time.perf_counter(), Deadline.after(wish.time_limit)
     if wish.scenario or wish.explain is not None:
         raise DeixisError("--scenario and --explain are for one calculus at a time")
@@ -120,8 +134,10 @@ def _solve_joint(text: NetworkText, wish: Wish, progress: Progress | None) -> So
     found = solve_jointly(networks, links, deadline, progress)
     contributions = found.closure.contributions
     narrowed = sum(each.pairs for each in contributions)
-    solved = SolvedNetwork(text, found.verdict, found.reason, narrowed, 0.0, contributions=contributions)
-    if found.verdict is Verdict.INCONSISTENT:
+    seconds = time.perf_counter() - started
+    solved = SolvedNetwork(text, found.verdict, found.reason, narrowed, seconds, contributions=contributions)
+    told(solved)
+    if found.verdict is Verdict.INCONSISTENT and wish.conflict:
         solved = _with_conflict(solved, links, wish.extended(deadline))
     elif wish.closure:
         pairs = zip(text.networks, found.closure.states, strict=True)
@@ -136,7 +152,7 @@ def _solve_joint(text: NetworkText, wish: Wish, progress: Progress | None) -> So
                 for network, state in pairs
             ),
         )
-    return replace(solved, seconds=time.perf_counter() - started)
+    return solved
 
 
 def _with_conflict(solved: SolvedNetwork, links: Sequence[Link], deadline: Deadline) -> SolvedNetwork:

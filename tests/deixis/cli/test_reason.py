@@ -48,19 +48,20 @@ def test_what_follows_is_printed_by_every_engine(table: Path, engine: str) -> No
 def test_an_impossible_class_is_named_with_its_reasons(table: Path, spork: Path, engine: str) -> None:
     code, out, _ = deixis("reason", table, spork, CORE, "--engine", engine)
     assert code == 1
-    assert out.splitlines()[:3] == [
+    assert "nothing belongs to spork" in out.splitlines()[0]
+    assert out.splitlines()[1:4] == [
         "nothing can be a spork, because",
         "  every spork is fork",
         "  every spork is spoon",
     ]
-    assert "nothing is more than one of fork" in out.splitlines()[3]
+    assert "nothing is more than one of fork" in out.splitlines()[4]
 
 
 def test_an_inconsistency_is_justified_in_words_as_turtle_and_as_json(table: Path, spork: Path) -> None:
     spork.write_text(PREFIXES + IMPOSSIBLE + ":x a :Spork .", encoding="utf-8")
     code, out, _ = deixis("reason", table, spork, CORE)
     assert code == 1
-    assert out.startswith("The ontology is inconsistent") and "  x is a spork" in out.splitlines()
+    assert out.startswith("inconsistent (auto)") and "  x is a spork" in out.splitlines()
     code, out, _ = deixis("reason", table, spork, CORE, "--turtle")
     assert code == 1
     graph = rdflib.Graph().parse(data=out, format="turtle")
@@ -69,6 +70,28 @@ def test_an_inconsistency_is_justified_in_words_as_turtle_and_as_json(table: Pat
     code, out, _ = deixis("reason", table, spork, CORE, "--json")
     found = json.loads(out)
     assert code == 1 and found["consistent"] is False and len(found["justifications"][0]["axioms"]) == 4
+
+
+def test_the_verdict_alone_is_printed_on_request(table: Path, spork: Path) -> None:
+    assert deixis("reason", table, CORE, "--verdict")[0] == 0
+    code, out, _ = deixis("reason", table, spork, CORE, "--verdict")
+    assert code == 1 and len(out.splitlines()) == 1
+    code, _, err = deixis("reason", table, "--verdict", "--all")
+    assert code == 2 and "--verdict goes with none" in err
+
+
+def test_all_justifications_of_a_statement_are_printed(tmp_path: Path) -> None:
+    chains = tmp_path / "chains.ttl"
+    said = ":r a owl:ObjectProperty, owl:TransitiveProperty . :f :r :p, :m . :p :r :k . :m :r :k ."
+    chains.write_text(PREFIXES + said, encoding="utf-8")
+    code, out, _ = deixis("reason", chains, "--explain", ":f :r :k", "--all")
+    assert code == 0
+    assert out.count("r(f, k), because") == 2
+    assert "  r(f, p)" in out.splitlines() and "  r(f, m)" in out.splitlines()
+    code, out, _ = deixis("reason", chains, "--explain", ":f :r :k", "--all", "--json")
+    found = json.loads(out)
+    assert code == 0 and found["complete"]
+    assert [len(one["axioms"]) for one in found["justifications"]] == [3, 3]
 
 
 def test_a_statement_is_explained_by_axioms_and_steps(table: Path) -> None:

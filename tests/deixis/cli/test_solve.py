@@ -45,6 +45,14 @@ def test_an_inconsistent_network_names_the_lines_of_its_minimal_conflict_only(tm
     assert "3 2" not in out
 
 
+def test_the_verdict_alone_names_no_conflict(tmp_path: Path) -> None:
+    code, out, _ = deixis("solve", write(tmp_path, CIRCLE), "--calculus", "point", "--verdict")
+    assert code == 1
+    assert len(out.splitlines()) == 1 and "inconsistent" in out
+    code, _, err = deixis("solve", write(tmp_path, CIRCLE), "--calculus", "point", "--verdict", "--closure")
+    assert code == 2 and "--verdict goes with none" in err
+
+
 def test_what_closure_lets_pass_is_caught() -> None:
     code, out, _ = deixis("solve", FIGURE_5, "--calculus", "allen")
     assert code == 1 and "0 pairs narrowed" in out

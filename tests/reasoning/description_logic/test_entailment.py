@@ -5,7 +5,8 @@ from __future__ import annotations
 import pytest
 from ontologies import CUTLERY, ntriples, triple, triples
 
-from deixis.reasoning.description_logic.entailment import LogicEngine, entail, unsatisfiable_by_rules
+from deixis.deadline import Deadline
+from deixis.reasoning.description_logic.entailment import LogicEngine, entail, explained, unsatisfiable_by_rules
 from deixis.reasoning.description_logic.reasoners import is_consistent
 from deixis.reasoning.errors import LimitError, SettingError
 
@@ -31,7 +32,8 @@ def test_every_engine_finds_what_rules_find(engine: LogicEngine) -> None:
     [("rl", ("Spork",)), ("auto", ("Spork", "Tray"))],
 )
 def test_only_rules_miss_what_needs_somebody_unnamed(engine: str, impossible: tuple[str, ...]) -> None:
-    found = entail(ntriples(CUTLERY + SPORK + TRAY), engine)
+    text = ntriples(CUTLERY + SPORK + TRAY)
+    found = explained(text, entail(text, engine), Deadline.never())
     assert found.unsatisfiable == tuple(f"urn:t#{name}" for name in impossible)
     assert len(found.impossible) == len(impossible)
     assert found.consistent
@@ -46,9 +48,17 @@ def test_facts_that_only_a_tableau_contradicts_are_left_undecided_by_the_rules()
 
 @pytest.mark.parametrize("engine", ["auto", "pellet"])
 def test_an_inconsistency_is_found_and_justified(engine: str) -> None:
-    found = entail(ntriples(CUTLERY + ":x a :Fork, :Spoon ."), engine)
-    assert found.inconsistency is not None and len(found.inconsistency.axioms) == 3
+    text = ntriples(CUTLERY + ":x a :Fork, :Spoon .")
+    found = explained(text, entail(text, engine), Deadline.never())
+    assert not found.consistent and [len(why.axioms) for why in found.inconsistency] == [3]
     assert found.inferred == ()
+
+
+def test_a_verdict_outlasts_an_explanation_out_of_time() -> None:
+    text = ntriples(CUTLERY + ":x a :Fork, :Spoon .")
+    found = explained(text, entail(text, "hermit"), Deadline.after(0))
+    assert not found.consistent and found.inconsistency == ()
+    assert found.unexplained is not None and "the time was up" in found.unexplained
 
 
 def test_of_many_impossible_classes_each_is_named_by_the_rules() -> None:

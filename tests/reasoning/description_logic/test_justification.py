@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from itertools import combinations
+
 import pytest
 import rdflib
 from ontologies import CUTLERY, core, ntriples, triple, triples
 
 from deixis.deadline import Deadline
-from deixis.reasoning.description_logic.axioms import split_axioms
-from deixis.reasoning.description_logic.justification import Justification, denial, justify
+from deixis.reasoning.description_logic.axioms import Axiom, split_axioms
+from deixis.reasoning.description_logic.justification import Justification, denial, justify, justify_all
+from deixis.reasoning.description_logic.materialisation import Materialisation
 from deixis.reasoning.description_logic.reasoners import first_inconsistent
 from deixis.reasoning.description_logic.terms import Triple, read_ntriples
 from deixis.reasoning.errors import LimitError, NotEntailedError, SettingError
@@ -64,6 +67,25 @@ def test_an_inconsistency_that_no_rule_finds_is_justified_out_of_many_axioms() -
     found = justify(text)
     assert len(found.axioms) == 5
     assert_minimal(found, text)
+
+
+def test_all_justifications_are_all_minimal_contradictory_subsets() -> None:
+    said = ":Spork rdfs:subClassOf :Fork, :Spoon . :x a :Spork, :Fork . :y a :Fork, :Spoon ."
+    text = ntriples(CUTLERY + said)
+    parts = split_axioms(read_ntriples(text))
+
+    def contradictory(axioms: tuple[Axiom, ...]) -> bool:
+        stated = [*parts.declarations, *(t for axiom in axioms for t in axiom.triples)]
+        return bool(Materialisation(stated).contradictions)
+
+    subsets = (set(some) for size in range(6) for some in combinations(parts.axioms, size) if contradictory(some))
+    minimal: list[set[Axiom]] = []
+    for some in subsets:  # the smaller ones first
+        if not any(known <= some for known in minimal):
+            minimal.append(some)
+    found = list(justify_all(text))
+    assert {frozenset(one.axioms) for one in found} == {frozenset(some) for some in minimal}
+    assert len(found) == len(minimal) == 3
 
 
 def test_a_justification_is_turtle_with_its_blank_nodes_whole() -> None:
