@@ -60,7 +60,9 @@ class Materialisation:
     @property
     def inferred(self) -> tuple[Triple, ...]:
         """The triples that follow and were not stated, in the order found."""
-        return tuple(self._triple(fact) for fact, why in self._chaining.why.items() if why is not None)
+        literals = self._chaining.terms.literals  # which datatypes they have is for rules alone
+        why = self._chaining.why.items()
+        return tuple(self._triple(fact) for fact, rule in why if rule is not None and fact[0] not in literals)
 
     @property
     def contradictions(self) -> tuple[Contradiction, ...]:

@@ -15,6 +15,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from deixis.deadline import Deadline
+from deixis.reasoning.description_logic.rl_datatypes import DATATYPES, DataValue, IllFormedError, is_in, value_of
 from deixis.reasoning.description_logic.rl_facts import (
     Atom,
     Binding,
@@ -33,6 +34,7 @@ from deixis.reasoning.description_logic.terms import (
     NIL,
     REST,
     SAME_AS,
+    SOME_VALUES_FROM,
     SUB_CLASS_OF,
     SUB_PROPERTY_OF,
     TYPE,
@@ -76,31 +78,55 @@ class TransitiveClosure:
 BATCH = 1000
 """Facts between two looks at the clock."""
 
+IS_TYPE, NOT_TYPE, DIFFERENT = "dt-type2", "dt-not-type", "dt-diff"
+"""The names of the rules about literals."""
+
 _REFLEXIVE = (SAME_AS, SUB_CLASS_OF, SUB_PROPERTY_OF, EQUIVALENT_CLASS, EQUIVALENT_PROPERTY)
 
 
 class Terms:
-    """Terms as numbers, counted from 0 in the order met."""
+    """Terms as numbers, counted from 0 in the order met; literals of one value have one number (``dt-eq``)."""
 
     def __init__(self) -> None:
         self._number: dict[str, int] = {}
         self._terms: list[str] = []
-        self.literals: set[int] = set()
+        self._by_value: dict[DataValue, int] = {}
+        self._as_stated: dict[Fact, Triple] = {}  # where a literal is spelled otherwise than the first of its value
+        self.literals: dict[int, DataValue | None] = {}  # and what they denote, None where that is not known
+        self.ill_formed: set[int] = set()
 
     def number(self, term: str) -> int:
         known = self._number.get(term)
         if known is None:
-            known = self._number[term] = len(self._terms)
-            self._terms.append(term)
-            if is_literal(term):
-                self.literals.add(known)
+            known = self._literal(term) if is_literal(term) else self._new(term)
+            self._number[term] = known
         return known
+
+    def _new(self, term: str) -> int:
+        self._terms.append(term)
+        return len(self._terms) - 1
+
+    def _literal(self, term: str) -> int:
+        try:
+            value = value_of(term)
+        except IllFormedError:
+            number, value = self._new(term), None
+            self.ill_formed.add(number)
+        else:
+            number = self._new(term) if value not in self._by_value or value is None else self._by_value[value]
+        if value is not None:
+            self._by_value[value] = number
+        self.literals[number] = value
+        return number
 
     def term(self, number: int) -> str:
         return self._terms[number]
 
     def fact(self, triple: Triple) -> Fact:
-        return self.number(triple.subject), self.number(triple.predicate), self.number(triple.object)
+        fact = self.number(triple.subject), self.number(triple.predicate), self.number(triple.object)
+        if self._terms[fact[2]] != triple.object:
+            self._as_stated.setdefault(fact, triple)
+        return fact
 
     def known_fact(self, triple: Triple) -> Fact | None:
         """Return the fact of a triple all of whose terms were met, else None."""
@@ -108,6 +134,9 @@ class Terms:
         return None if s is None or p is None or o is None else (s, p, o)
 
     def triple(self, fact: Fact) -> Triple:
+        stated = self._as_stated.get(fact)
+        if stated is not None:
+            return stated
         s, p, o = fact
         return Triple(self._terms[s], self._terms[p], self._terms[o])
 
@@ -156,6 +185,9 @@ class ForwardChaining:
         number = self.terms.number
         self._list_predicates = {number(predicate): predicate for predicate, _ in EXPANSIONS}
         self._reflexive = {number(name) for name in _REFLEXIVE}
+        self._same, self._some_values = number(SAME_AS), number(SOME_VALUES_FROM)
+        self._asked: set[int] = set()  # datatypes of which it matters which literals belong to them
+        self._met: set[int] = set()  # literals that facts are about
         self._type, self._first, self._rest, self._nil = (number(name) for name in (TYPE, FIRST, REST, NIL))
         for rule in rules():
             self._learn(rule)
@@ -184,6 +216,11 @@ class ForwardChaining:
     def _process(self, fact: Fact) -> None:
         s, p, o = fact
         self._index.add(s, p, o)
+        if o in self.terms.literals and o not in self._met:
+            self._meet(o, fact)
+        if p == self._some_values and self.terms.term(o) in DATATYPES and o not in self._asked:
+            self._asked.add(o)
+            self._type_literals(self._met, (o,))
         if p in self._list_predicates:
             self._unread.append(fact)
         if p in self._closures:
@@ -232,11 +269,48 @@ class ForwardChaining:
 
     def _infer(self, fact: Fact, name: str, premises: tuple[Fact, ...]) -> None:
         s, p, o = fact
-        if fact in self.why or s in self.terms.literals or (s == o and p in self._reflexive):
+        if s in self.terms.literals:
+            self._check_value(fact, premises)
+            return
+        if fact in self.why or (s == o and p in self._reflexive):
             return
         self.why[fact] = name, premises
         self._found.append(fact)
         self._queue.append(fact)
+
+    # ---- literals
+
+    def _meet(self, literal: int, fact: Fact) -> None:
+        """Look at a literal when the first fact about it comes: is it well formed, and of which datatypes is it?"""
+        self._met.add(literal)
+        if literal in self.terms.ill_formed:
+            self.contradictions.setdefault((NOT_TYPE, frozenset((fact,))), (fact,))
+        self._type_literals((literal,), self._asked)
+
+    def _type_literals(self, literals: Iterable[int], datatypes: Iterable[int]) -> None:
+        """Add which of some literals belong to which datatypes."""
+        for literal in literals:
+            value = self.terms.literals[literal]
+            for datatype in datatypes:
+                fact = literal, self._type, datatype
+                if value is not None and is_in(value, self.terms.term(datatype)) and fact not in self.why:
+                    self.why[fact] = IS_TYPE, ()
+                    self._queue.append(fact)
+
+    def _check_value(self, fact: Fact, premises: tuple[Fact, ...]) -> None:
+        """Compare what would follow about a literal with the value that it denotes."""
+        literal, predicate, other = fact
+        value = self.terms.literals[literal]
+        if value is None:
+            return
+        rule = None
+        if predicate == self._same and other != literal and self.terms.literals.get(other) is not None:
+            rule = DIFFERENT
+        elif predicate == self._type and is_in(value, self.terms.term(other)) is False:
+            rule = NOT_TYPE
+        if rule is not None:
+            premises = tuple(dict.fromkeys(premises))
+            self.contradictions.setdefault((rule, frozenset(premises)), premises)
 
     def _extend(self, predicate: int, x: int, y: int) -> None:
         closure, clause = self._closures[predicate]

@@ -5,7 +5,8 @@ schema | facts => conclusion``; ``schema`` is matched once for each axiom, and l
 properties and classes; ``false`` is a contradiction. Rules over lists are in
 :mod:`deixis.reasoning.description_logic.rl_rules`.
 
-Left out: the datatype rules (table 8), and rules that only state tautologies (``eq-ref``, ``prp-ap``, ``cls-thing``,
+The datatype rules (table 8) are in :mod:`deixis.reasoning.description_logic.rl_chaining`, since they look at values.
+Left out are rules that only state tautologies (``eq-ref``, ``prp-ap``, ``cls-thing``,
 ``cls-nothing1``, ``scm-cls``, ``scm-op``, ``scm-dp``). Where another rule needs such a tautology as a premise, a
 second line with the same name says what then follows.
 
