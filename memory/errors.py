@@ -35,6 +35,10 @@ class ImportFormatError(DeixisError, ValueError):
     """A file that cannot be taken in: of no known format, malformed, too large, or with a DTD."""
 
 
+class ShapesError(DeixisError, ValueError):
+    """SHACL shapes that cannot be checked: not well formed, or with a constraint that is refused."""
+
+
 @dataclass(frozen=True, slots=True)
 class ShapeResult:
     """One result of SHACL validation."""

@@ -1,9 +1,9 @@
 """SHACL shapes as plain checks, so that what is well formed, which is nearly everything, is let through fast.
 
 A check says True only where it is sure; whatever it doubts goes to pyshacl, which decides and words the report. The
-constraints that ``ontology/shapes.ttl`` uses are known, on paths of one step, and no other compiles. Shapes that only
-warn are left out: they reject nothing. Compiling them takes 2.9 times as long from a ``pyoxigraph.Store`` as from the
-dictionary of their nodes that is used here.
+constraints that ``ontology/shapes.ttl`` uses are known, on paths of one step, and no other compiles: a shape, or a part
+of one, that is not understood is an error. Shapes that only warn are left out: they reject nothing. Compiling them
+takes 2.9 times as long from a ``pyoxigraph.Store`` as from the dictionary of their nodes that is used here.
 """
 
 from __future__ import annotations
@@ -37,6 +37,12 @@ def _sh(name: str) -> ox.NamedNode:
 _NO_CONSTRAINT = {
     TYPE, _sh("path"), _sh("name"), _sh("message"), _sh("severity"), _sh("property"), _sh("targetClass"),
     _sh("targetSubjectsOf"), _sh("targetObjectsOf"), ox.NamedNode("http://www.w3.org/2000/01/rdf-schema#label"),
+}  # fmt: skip
+
+
+_TARGETS = tuple(_sh(name) for name in ("targetClass", "targetSubjectsOf", "targetObjectsOf"))
+_CLASSES = {
+    ox.NamedNode("http://www.w3.org/2000/01/rdf-schema#Class"), ox.NamedNode("http://www.w3.org/2002/07/owl#Class"),
 }  # fmt: skip
 
 
@@ -104,7 +110,8 @@ def packaged_shapes() -> Shapes:
 def compile_shapes(file: Path) -> Shapes:
     """Compile a Turtle file of shapes. Raises OntologyError for a constraint that is not known here."""
     compiler = _Compiler(ox.parse(path=file, format=ox.RdfFormat.TURTLE))
-    shapes = tuple(compiler.node_shape(said) for said in compiler.node_shapes())
+    shapes = tuple(compiler.node_shape(node) for node in compiler.node_shapes())
+    compiler.require_all_read()
     targets = {kind for shape in shapes for kind in shape.classes}
     return Shapes(shapes, frozenset(targets | compiler.classes), frozenset(compiler.paths_to_classes))
 
@@ -114,14 +121,36 @@ class _Compiler:
         self._said: dict[Node, Said] = defaultdict(lambda: defaultdict(list))
         for quad in quads:
             self._said[quad.subject][quad.predicate].append(quad.object)
+        self._read: set[Node] = set()
         self.classes: set[Node] = set()
         self.paths_to_classes: set[ox.NamedNode] = set()
 
-    def node_shapes(self) -> list[Said]:
-        return [said for said in self._said.values() if _sh("NodeShape") in said[TYPE]]
+    def node_shapes(self) -> list[Node]:
+        return [node for node, said in self._said.items() if _sh("NodeShape") in said[TYPE]]
 
-    def node_shape(self, said: Said) -> Shape:
-        checks = [check for part in said[_sh("property")] for check in self._shape(self._said[part])]
+    def require_all_read(self) -> None:
+        """Raise OntologyError where anything that SHACL has a word for was not compiled."""
+        for node, said in self._said.items():
+            words = [predicate.value for predicate in said if predicate.value.startswith(SH) and said[predicate]]
+            if words and node not in self._read:
+                raise OntologyError(f"the shape {node}, with <{words[0]}>, is of a form that is not compiled")
+
+    def _said_of(self, node: Node) -> Said:
+        self._read.add(node)
+        return self._said[node]
+
+    def node_shape(self, node: Node) -> Shape:
+        said = self._said_of(node)
+        if not _CLASSES.isdisjoint(said[TYPE]):
+            raise OntologyError(f"the shape {node} is a class, which is its target: say sh:targetClass instead")
+        if said[_sh("path")]:
+            raise OntologyError(f"the shape {node} has a path and is no node shape")
+        checks = []
+        for part in said[_sh("property")]:
+            inner = self._said_of(part)
+            if inner[_sh("property")] or any(inner[target] for target in _TARGETS):
+                raise OntologyError(f"the property shape {part} has a target or a property shape of its own")
+            checks += self._shape(inner)
         return Shape(
             classes=tuple(said[_sh("targetClass")]),
             subjects_of=_names(said[_sh("targetSubjectsOf")]),
@@ -132,6 +161,7 @@ class _Compiler:
     def _shape(self, said: Said) -> list[Check]:
         """Return the checks of a node shape or a property shape, if it rejects anything."""
         if said[_sh("severity")] not in ([], [_sh("Violation")]):
+            self._leave_out(said)
             return []
         path = said[_sh("path")]
         values = self._path(path[0]) if path else _ITSELF
@@ -139,9 +169,15 @@ class _Compiler:
             self._constraint(predicate, said, values) for predicate in list(said) if predicate not in _NO_CONSTRAINT
         ]
 
+    def _leave_out(self, said: Said) -> None:
+        """Take all that a shape is made of as read."""
+        parts = [part for values in said.values() for part in values if part in self._said and part not in self._read]
+        for part in parts:
+            self._leave_out(self._said_of(part))
+
     def _path(self, path: Node) -> Values:
-        inverse = self._said[path][_sh("inversePath")] if isinstance(path, ox.BlankNode) else []
-        if inverse:
+        inverse = self._said_of(path)[_sh("inversePath")] if isinstance(path, ox.BlankNode) else []
+        if _names(inverse):
             return _Backwards(_names(inverse)[0])
         if not isinstance(path, ox.NamedNode):
             raise OntologyError("a shape's path must be one step here, forwards or sh:inversePath")
@@ -165,7 +201,7 @@ class _Compiler:
 
     def _or(self, head: Node, values: Values, outer: Said) -> Check:
         outer_path = outer[_sh("path")]
-        cases = [self._case(self._said[item], outer_path) for item in self._list(head)]
+        cases = [self._case(self._said_of(item), outer_path) for item in self._list(head)]
         if outer_path:  # an alternative about each value of the outer path
             return lambda view, node: all(any(case(view, value) for case in cases) for value in values(view, node))
         return lambda view, node: any(case(view, node) for case in cases)
@@ -173,6 +209,8 @@ class _Compiler:
     def _case(self, said: Said, outer_path: list[Node]) -> Check:
         """Return one alternative of sh:or, asked of one value; a class that it asks for is one of the outer path's
         values."""
+        if said[_sh("property")] or any(said[target] for target in _TARGETS):
+            raise OntologyError("an alternative of sh:or has a target or a property shape of its own")
         if said[_sh("path")] or not outer_path:
             return _all_of(self._shape(said))
         placed: Said = defaultdict(list, {**said, _sh("path"): outer_path})

@@ -50,7 +50,7 @@ def validate(triples: Iterable[ox.Triple], focus: Collection[str] | None = None)
     import pyshacl
     import rdflib
 
-    with _quiet():
+    with quiet():
         data = rdflib.Graph()
         data.parse(data=(ox.serialize(triples, format=ox.RdfFormat.N_TRIPLES) or b"").decode("utf-8"), format="nt")
         _, found, _ = pyshacl.validate(
@@ -81,7 +81,7 @@ def _asked(about: rdflib.term.Node | None, focus: Collection[str]) -> bool:
 
 
 @contextmanager
-def _quiet() -> Iterator[None]:
+def quiet() -> Iterator[None]:
     """Silence rdflib's log of each literal that is ill-typed, which the report names, and its warnings about itself."""
     logger = logging.getLogger("rdflib.term")
     level = logger.level

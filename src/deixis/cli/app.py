@@ -40,6 +40,7 @@ from deixis.cli.simulate import simulate
 from deixis.cli.solve import solve
 from deixis.cli.teach import teach
 from deixis.cli.time import time_command
+from deixis.cli.validate import validate
 
 app = typer.Typer(
     name="deixis",
@@ -93,6 +94,7 @@ app.command()(learn)
 app.command()(show)
 app.command()(check)
 app.command()(query)
+app.command()(validate)
 app.add_typer(memory_app, name="memory")
 app.add_typer(experiment, name="experiment")
 app.command()(imagine)

@@ -224,6 +224,29 @@ def test_a_constraint_that_is_not_known_does_not_compile(tmp_path: Path) -> None
         compile_shapes(file)
 
 
+S, COUNT = "<urn:s> a sh:NodeShape", "sh:minCount 1"
+UNCOMPILED = {
+    "a property shape with a target": f"<urn:s> a sh:PropertyShape ; sh:targetClass <urn:C> ; sh:path <urn:p> ; {COUNT} .",
+    "a shape that is not said to be one": "<urn:s> sh:targetClass <urn:C> ; sh:nodeKind sh:IRI .",
+    "a class as its own target": f"{S}, <http://www.w3.org/2000/01/rdf-schema#Class> ; sh:nodeKind sh:IRI .",
+    "a path of two steps": f"{S} ; sh:property [ sh:path ( <urn:p> <urn:q> ) ; {COUNT} ] .",
+    "a path back over a path": f"{S} ; sh:property [ sh:path [ sh:inversePath ( <urn:p> ) ] ; {COUNT} ] .",
+    "a nested property shape": f"{S} ; sh:property [ sh:path <urn:p> ; sh:property [ sh:path <urn:q> ; {COUNT} ] ] .",
+    "a property shape in an alternative": f"{S} ; sh:or ( [ sh:property [ sh:path <urn:q> ; {COUNT} ] ] ) .",
+    "a target of a property shape": f"{S} ; sh:property [ sh:path <urn:p> ; {COUNT} ; sh:targetClass <urn:D> ] .",
+    "a target by name": f"{S} ; sh:targetNode <urn:x> ; sh:nodeKind sh:Literal .",
+    "a shape that is left out": f"{S} ; sh:deactivated true ; sh:nodeKind sh:Literal .",
+}
+
+
+@pytest.mark.parametrize("text", UNCOMPILED.values(), ids=UNCOMPILED)
+def test_a_shape_that_is_not_covered_does_not_compile(text: str, tmp_path: Path) -> None:
+    file = tmp_path / "s.ttl"
+    file.write_text(f"@prefix sh: <{SH}> . {text}")
+    with pytest.raises(OntologyError):
+        compile_shapes(file)
+
+
 LESSON_NODES = [
     "scene/s1", "scene/s1/o1", "scene/s1/o2", "layout/dinner-1", "layout/dinner-1/role/fish_knife",
     "layout/dinner-1/role/dinner_plate", "layout/dinner-1/fact/1", "lesson/dinner-1",

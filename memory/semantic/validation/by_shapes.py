@@ -1,0 +1,154 @@
+"""Validation of any data by any SHACL shapes: by pyshacl, in a process of its own that can be ended.
+
+pyshacl has no time limit, and shapes may hold SPARQL: the process that runs it is ended when its time is up, and may
+take so much memory and no more. Nothing is fetched: ``owl:imports`` is not followed, and a SPARQL constraint that asks
+another endpoint (``SERVICE``) is refused.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterable
+from contextlib import suppress
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pyoxigraph as ox
+
+from deixis.deadline import Deadline
+from deixis.errors import DeixisError
+from deixis.memory.errors import ShapeResult, ShapesError
+from deixis.memory.semantic.rdf.files import short
+from deixis.reasoning.errors import LimitError
+
+if TYPE_CHECKING:
+    import rdflib
+
+MEMORY_LIMIT = 4 << 30
+"""Bytes that the process may take."""
+
+_SPARQL = {ox.NamedNode(f"http://www.w3.org/ns/shacl#{name}") for name in ("select", "ask", "construct", "update")}
+_ESCAPE = re.compile(r"\\u([0-9A-Fa-f]{4})|\\U([0-9A-Fa-f]{8})")
+
+
+@dataclass(frozen=True)
+class ShapesReport:
+    """Whether data conforms to shapes, every result (violations first), and the standard report as Turtle."""
+
+    conforms: bool
+    results: tuple[ShapeResult, ...]
+    turtle: str
+
+
+def validate_by_shapes(
+    data: Iterable[ox.Triple], shapes: Iterable[ox.Triple], deadline: Deadline = Deadline.never()
+) -> ShapesReport:
+    """Return the report of SHACL core and SPARQL constraints over some triples.
+
+    Warnings and informations are results too; ``conforms`` is False for them as the standard says. Raises LimitError
+    where the deadline passes or the memory does not suffice, ShapesError for shapes that are not well formed.
+    """
+    shapes = list(shapes)
+    for triple in shapes:
+        if triple.predicate in _SPARQL and "service" in _unescaped(str(getattr(triple.object, "value", ""))).lower():
+            raise ShapesError("the shapes ask another endpoint (SERVICE): this is refused; copy its data to a file")
+    with tempfile.TemporaryDirectory(prefix="deixis-") as scratch:
+        folder = Path(scratch)
+        for name, triples in (("data", data), ("shapes", shapes)):
+            (folder / f"{name}.nt").write_bytes(ox.serialize(triples, format=ox.RdfFormat.N_TRIPLES) or b"")
+        environment = {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
+        command = [sys.executable, "-m", __name__, scratch]
+        limit = None if deadline.left == float("inf") else max(deadline.left, 0.0)
+        try:
+            done = subprocess.run(
+                command, env=environment, capture_output=True, timeout=limit, check=False, stdin=subprocess.DEVNULL
+            )
+        except subprocess.TimeoutExpired:
+            raise LimitError("undecided: the time was up before the shapes were checked; allow it more") from None
+        if not (folder / "report.json").exists():
+            said = done.stderr.decode("utf-8", "replace").strip().splitlines() or ["it ended without a word"]
+            if "MemoryError" in said[-1]:
+                raise LimitError(f"undecided: the shapes take more than {MEMORY_LIMIT >> 30} GB of memory to check")
+            raise ShapesError(f"pyshacl cannot check these shapes: {said[-1][:300]}")
+        found = json.loads((folder / "report.json").read_text(encoding="utf-8"))
+    results = tuple(ShapeResult(**result) for result in found["results"])
+    return ShapesReport(found["conforms"], results, found["turtle"])
+
+
+def _unescaped(sparql: str) -> str:
+    return _ESCAPE.sub(lambda found: chr(min(int(found[1] or found[2], 16), sys.maxunicode)), sparql)
+
+
+# ---- in the process
+
+
+def _check(folder: Path) -> None:
+    import pyshacl
+    import rdflib
+    from pyshacl.errors import ConstraintLoadError, ReportableRuntimeError, ShapeLoadError
+
+    from deixis.memory.semantic.validation.shacl import quiet
+
+    data, shapes = (rdflib.Graph().parse(folder / f"{name}.nt", format="nt") for name in ("data", "shapes"))
+    with quiet():
+        try:
+            _, report, text = pyshacl.validate(
+                data, shacl_graph=shapes, advanced=False, inference="none", do_owl_imports=False, meta_shacl=False
+            )
+        except (ShapeLoadError, ConstraintLoadError, ReportableRuntimeError) as error:
+            raise SystemExit(" ".join(str(error).split())) from None
+    if not isinstance(report, rdflib.Graph):
+        raise SystemExit(" ".join(str(getattr(report, "message", text)).split()))
+    sh = rdflib.SH
+    results = [_result(report, shapes, node) for node in report.subjects(rdflib.RDF.type, sh.ValidationResult)]
+    order = ["Violation", "Warning", "Info"]
+    results.sort(key=lambda result: (order.index(result.severity) if result.severity in order else 3, str(result)))
+    conforms = not results
+    answer = {
+        "conforms": conforms,
+        "results": [asdict(result) for result in results],
+        "turtle": report.serialize(format="turtle"),
+    }
+    (folder / "report.json").write_text(json.dumps(answer, ensure_ascii=False), encoding="utf-8")
+
+
+def _result(report: rdflib.Graph, shapes: rdflib.Graph, node: rdflib.term.Node) -> ShapeResult:
+    import rdflib
+
+    sh = rdflib.SH
+
+    def told(about: rdflib.term.Node | None) -> str:
+        return short(str(about)) if isinstance(about, rdflib.URIRef) else str(about)
+
+    shape, path, value = (report.value(node, part) for part in (sh.sourceShape, sh.resultPath, sh.value))
+    name = shapes.value(shape, sh.name) or shapes.value(shape, rdflib.RDFS.label)
+    component = told(report.value(node, sh.sourceConstraintComponent))
+    return ShapeResult(
+        focus=told(report.value(node, sh.focusNode)),
+        path=told(path) if isinstance(path, rdflib.URIRef) else None,
+        message=" ".join(str(report.value(node, sh.resultMessage) or component).split()),
+        severity=str(report.value(node, sh.resultSeverity)).rsplit("#", 1)[-1],
+        shape=str(name) if name else told(shape) if isinstance(shape, rdflib.URIRef) else component,
+        value=None if value is None else told(value),
+    )
+
+
+def _limit_memory() -> None:
+    with suppress(ImportError, ValueError, OSError):
+        import resource
+
+        resource.setrlimit(resource.RLIMIT_AS, (MEMORY_LIMIT, MEMORY_LIMIT))
+
+
+if __name__ == "__main__":
+    _limit_memory()
+    try:
+        _check(Path(sys.argv[1]))
+    except DeixisError as error:
+        raise SystemExit(str(error)) from None
