@@ -226,7 +226,7 @@ def test_a_constraint_that_is_not_known_does_not_compile(tmp_path: Path) -> None
 
 S, COUNT = "<urn:s> a sh:NodeShape", "sh:minCount 1"
 UNCOMPILED = {
-    "a property shape with a target": f"<urn:s> a sh:PropertyShape ; sh:targetClass <urn:C> ; sh:path <urn:p> ; {COUNT} .",
+    "a property shape alone": f"<urn:s> a sh:PropertyShape ; sh:targetClass <urn:C> ; sh:path <urn:p> ; {COUNT} .",
     "a shape that is not said to be one": "<urn:s> sh:targetClass <urn:C> ; sh:nodeKind sh:IRI .",
     "a class as its own target": f"{S}, <http://www.w3.org/2000/01/rdf-schema#Class> ; sh:nodeKind sh:IRI .",
     "a path of two steps": f"{S} ; sh:property [ sh:path ( <urn:p> <urn:q> ) ; {COUNT} ] .",
