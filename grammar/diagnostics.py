@@ -11,7 +11,7 @@ from deixis.grammar.draft import Draft
 from deixis.grammar.errors import MAX_PROBLEMS_SHOWN, Refusal, shortened
 from deixis.grammar.names import RESERVED_FOR, is_also_noun, may_be_meant_as_name, naming_hint
 from deixis.grammar.tree import UNQUALIFIED_DECLARATION, source_of, span_of
-from deixis.ontology.graph import Source
+from deixis.ontology.facts import Source
 from deixis.ontology.relation import plain_phrase
 
 RELATION_EXPECTED = "expected a relation such as 'left of', or 'is a'"

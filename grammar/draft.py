@@ -11,7 +11,7 @@ from deixis.grammar.names import NameTable
 from deixis.grammar.script import Mention
 from deixis.grammar.words import chains
 from deixis.ontology.colours import Colour
-from deixis.ontology.graph import Source
+from deixis.ontology.facts import Source
 from deixis.ontology.kinds import Kind, with_article
 from deixis.ontology.relation import Relation, nearest, plain_phrase
 from deixis.ontology.tbox import Ontology

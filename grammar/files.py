@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from deixis.grammar.errors import Refusal, ScriptFileError, shortened
-from deixis.ontology.graph import Source
+from deixis.ontology.facts import Source
 
 MAX_FILE_BYTES = 64 * 1024 * 1024  # bytes of one file
 MAX_INCLUDE_DEPTH = 32  # includes within includes

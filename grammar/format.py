@@ -18,7 +18,7 @@ from deixis.grammar.script import (
     Statement,
 )
 from deixis.ontology.colours import Colour
-from deixis.ontology.graph import Source
+from deixis.ontology.facts import Source
 from deixis.ontology.kinds import Kind
 from deixis.ontology.lessons.types import LayoutConcept
 from deixis.ontology.tbox import Ontology

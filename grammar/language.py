@@ -1,14 +1,15 @@
-"""The grammar in ``layout.lark``, with the words of an ontology put into it."""
+"""The parser of ``layout.lark``, and the lexer for the words of an ontology."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cache, lru_cache
+from typing import Any
 
 from lark import Lark, Token
 from lark.lark import PostLex
-from lark.lexer import PatternRE, TerminalDef
+from lark.lexer import Lexer
 
 from deixis.grammar.tokens import TERMINALS_WITHOUT_RULE, Scanner
 from deixis.grammar.tree import TreeBuilder
@@ -17,6 +18,16 @@ from deixis.ontology.relation import plain_phrase
 from deixis.ontology.tbox import Ontology
 
 NOTHING = "(?!)"  # the pattern of a terminal for which the ontology has no word
+
+
+class NoLexer(Lexer):
+    """Stands for lark's lexer: the parser is fed with the tokens of a :class:`Scanner`, and no pattern is compiled."""
+
+    def __init__(self, conf: Any) -> None:
+        pass
+
+    def lex(self, lexer_state: Any, parser_state: Any) -> Iterator[Token]:
+        raise NotImplementedError("tokens come from the scanner")
 
 
 class KeepUnusedTerminals(PostLex):
@@ -64,21 +75,22 @@ def _build(
         "CHAIN": phrase_pattern(chain_heads) + r"[ \t]*:" if chain_heads else NOTHING,
         "COMPOUND": phrase_pattern(compounds) if compounds else NOTHING,
     }
+    lark = _parser()
+    scanner = Scanner(lark.terminals, {name: f"(?i:{pattern})" for name, pattern in patterns.items()})
+    split = [phrase.split() for phrase in relations]
+    starts = frozenset(" ".join(words[:end]) for words in split for end in range(1, len(words)))
+    return Language(lark, scanner, starts)
 
-    def from_ontology(terminal: TerminalDef) -> None:
-        if terminal.name in patterns:
-            terminal.pattern = PatternRE(patterns[terminal.name], ("i",))
 
-    lark = Lark.open(
+@cache
+def _parser() -> Lark:
+    """Return the parser of ``layout.lark``, the same for all ontologies."""
+    return Lark.open(
         "layout.lark",
         rel_to=__file__,
         parser="lalr",
-        lexer="basic",
+        lexer=NoLexer,
         start="statement",
         transformer=TreeBuilder(),
         postlex=KeepUnusedTerminals(),
-        edit_terminals=from_ontology,
     )
-    split = [phrase.split() for phrase in relations]
-    starts = frozenset(" ".join(words[:end]) for words in split for end in range(1, len(words)))
-    return Language(lark, Scanner(lark.terminals), starts)

@@ -9,7 +9,7 @@ from lark import Token
 from deixis.grammar.errors import Refusal, shortened
 from deixis.grammar.script import Mention
 from deixis.grammar.words import NOUNS_TOO
-from deixis.ontology.graph import Source
+from deixis.ontology.facts import Source
 
 RESERVED_FOR = {
     "FUNCTION": "is kept for sentences",

@@ -19,7 +19,7 @@ from deixis.grammar.names import key_of
 from deixis.grammar.script import Comment, Header, Include, Script, Statement
 from deixis.grammar.tokens import TERMINALS_WITHOUT_RULE
 from deixis.grammar.tree import span_of
-from deixis.ontology.graph import Source
+from deixis.ontology.facts import Source
 from deixis.ontology.tbox import Ontology, default_ontology
 
 

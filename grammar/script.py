@@ -6,12 +6,16 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import chain, pairwise, product
+from typing import TYPE_CHECKING
 
 from deixis.ontology.colours import Colour
-from deixis.ontology.graph import Fact, RelationGraph, Source
+from deixis.ontology.facts import Fact, Source
 from deixis.ontology.kinds import Kind
 from deixis.ontology.relation import Relation
 from deixis.ontology.tbox import Ontology
+
+if TYPE_CHECKING:
+    from deixis.ontology.graph import RelationGraph
 
 
 @dataclass(frozen=True, slots=True)
@@ -199,6 +203,8 @@ class Script:
 
     @cached_property
     def _graph(self) -> RelationGraph:
+        from deixis.ontology.graph import RelationGraph  # imports numpy, which the facts alone do without
+
         known = [self.kinds.get(name) or self.ontology.of_name(name)[0] for name in self.objects]
         kinds = [kind.iri if kind else None for kind in known]
         colours = [self.colours[name].iri if name in self.colours else None for name in self.objects]

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 
 from lark import Token
 from lark.lexer import TerminalDef
@@ -21,11 +21,14 @@ TERMINALS_WITHOUT_RULE = ("END", "COMMENT", "COMPOUND", "NUMBER", "OPEN_STRING",
 
 
 class Scanner:
-    """Cuts a text into tokens; there is no text that it cannot cut."""
+    """Cuts a text into tokens; there is no text that it cannot cut.
 
-    def __init__(self, terminals: Iterable[TerminalDef]) -> None:
+    ``patterns`` stand for those of the terminals of the same names.
+    """
+
+    def __init__(self, terminals: Iterable[TerminalDef], patterns: Mapping[str, str]) -> None:
         ordered = sorted((t for t in terminals if t.pattern is not None), key=lambda t: -t.priority)
-        union = "|".join(f"(?P<{t.name}>{t.pattern.to_regexp()})" for t in ordered)
+        union = "|".join(f"(?P<{t.name}>{patterns.get(t.name) or t.pattern.to_regexp()})" for t in ordered)
         self._next = re.compile(union).finditer
 
     def tokens(self, text: str) -> Iterator[Token]:

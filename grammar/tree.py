@@ -9,7 +9,7 @@ from deixis.grammar.errors import Refusal, shortened
 from deixis.grammar.names import unquote
 from deixis.grammar.script import Chain, Declaration, Header, Include, Mention, Modifiers, RelationStatement, Statement
 from deixis.grammar.words import NUMBERS, VERBS_OR_NOUNS
-from deixis.ontology.graph import Source
+from deixis.ontology.facts import Source
 from deixis.ontology.relation import Relation, plain_phrase
 
 UNQUALIFIED_DECLARATION = "what kind of thing an object is, or its colour, cannot be denied, optional or hedged"

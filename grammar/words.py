@@ -78,16 +78,15 @@ def phrase_pattern(phrases: Iterable[str]) -> str:
         for word in phrase.split():
             node = node.setdefault(word, {})
         node[""] = {}
-    return _alternatives(tree)
+    return _alternatives(tree) + _BOUNDARY
 
 
 def _alternatives(tree: dict[str, Any]) -> str:
     by_letter: dict[str, list[str]] = {}
     for word in sorted(word for word in tree if word):
         node = tree[word]
-        longer = [_BETWEEN + _alternatives(node)] if any(node) else []
-        rest = f"(?:{'|'.join([*longer, *([_BOUNDARY] if '' in node else [])])})"
-        by_letter.setdefault(word[0], []).append(re.escape(word[1:]) + rest)
+        longer = f"(?:{_BETWEEN}{_alternatives(node)}){'?' if '' in node else ''}" if any(node) else ""
+        by_letter.setdefault(word[0], []).append(re.escape(word[1:]) + longer)
     options = [re.escape(letter) + f"(?:{'|'.join(rests)})" for letter, rests in by_letter.items()]
     return f"(?:{'|'.join(options)})"
 

@@ -8,9 +8,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from enum import IntEnum
+from typing import TYPE_CHECKING
 
-import numpy as np
-from numpy.typing import NDArray
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
 
 
 class Allen(IntEnum):
@@ -74,4 +76,6 @@ def members(mask: int) -> tuple[Allen, ...]:
 
 def mask_array(mask: int) -> NDArray[np.bool_]:
     """Return a 13-bit mask as a boolean array of shape (13,)."""
+    import numpy as np
+
     return np.array([bool(mask >> code & 1) for code in range(13)])

@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-import numpy as np
-from numpy.typing import NDArray
-
 from deixis.errors import OntologyError
 from deixis.ontology.vocabulary import DX, W3C
 
 if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
     from deixis.ontology.triple_index import TripleIndex
 
 Rgb = tuple[int, int, int]
@@ -36,7 +37,10 @@ class Colour:
 
     def matrix(self) -> NDArray[np.float64]:
         """Return the covariance as a symmetric matrix, shape (3, 3)."""
-        return _matrix(self.covariance)
+        import numpy as np
+
+        ll, la, lb, aa, ab, bb = self.covariance
+        return np.array([[ll, la, lb], [la, aa, ab], [lb, ab, bb]])
 
 
 class Colours:
@@ -140,11 +144,7 @@ def _colour(iri: str, triples: TripleIndex, words: tuple[str, ...]) -> Colour:
     except ValueError:
         raise OntologyError(f"<{iri}>: a spread is six numbers (LL La Lb aa ab bb), not '{text}'") from None
     spread = (ll, la, lb, aa, ab, bb)
-    if not np.isfinite(spread).all() or np.linalg.eigvalsh(_matrix(spread)).min() <= 0:
+    minors = (ll, ll * aa - la**2, ll * (aa * bb - ab**2) - la * (la * bb - ab * lb) + lb * (la * ab - aa * lb))
+    if not all(map(math.isfinite, spread)) or min(minors) <= 0:  # Sylvester's criterion
         raise OntologyError(f"<{iri}>: its spread is no covariance: the matrix of '{text}' is not positive definite")
     return Colour(iri, triples.only(iri, W3C.RDFS_LABEL), words, prototype, spread)
-
-
-def _matrix(covariance: tuple[float, float, float, float, float, float]) -> NDArray[np.float64]:
-    ll, la, lb, aa, ab, bb = covariance
-    return np.array([[ll, la, lb], [la, aa, ab], [lb, ab, bb]])

@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 from urllib.parse import quote
 
-import numpy as np
-from numpy.typing import NDArray
-
-from deixis.ontology.graph import Fact, RelationGraph
-from deixis.ontology.relation import Relation
+from deixis.ontology.facts import Fact
 from deixis.ontology.vocabulary import BASE, DX
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from deixis.ontology.graph import RelationGraph
+    from deixis.ontology.relation import Relation
 
 
 def fact_to_dict(fact: Fact) -> dict[str, Any]:
@@ -95,6 +98,8 @@ def graph_to_turtle(graph: RelationGraph, base: str = GRAPH_BASE) -> str:
 
 def pairs_to_ntriples(relation: Relation, pairs: NDArray[np.int64], iris: Sequence[str]) -> str:
     """One N-Triples line a pair, shape (k, 2), sorted by subject; ``iris`` are the nodes' IRIs in angle brackets."""
+    import numpy as np
+
     chunks: list[str] = []
     if not len(pairs):
         return ""

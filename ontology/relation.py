@@ -9,14 +9,14 @@ from enum import StrEnum
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-import numpy as np
-from numpy.typing import NDArray
-
 from deixis.errors import OntologyError, UnknownTermError
 from deixis.ontology.allen import SYMBOLS, Allen, allen_mask
 from deixis.ontology.vocabulary import DX, W3C
 
 if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
     from deixis.ontology.triple_index import TripleIndex
 
 
@@ -59,6 +59,8 @@ class Relation:
 
     def admits(self) -> NDArray[np.bool_]:
         """Return the admitted atoms as a boolean array of shape (13, 13), axes x and y, indexed by Allen code."""
+        import numpy as np
+
         codes = np.arange(13)
         return ((self.x_atoms >> codes & 1)[:, None] & (self.y_atoms >> codes & 1)[None, :]).astype(bool)
 
@@ -134,6 +136,8 @@ class Relations(Mapping[str, Relation]):
         the stated relation in its wide reading, else 0. Columns of wide relations are 0: no pair bears them as
         its name. A relation stated in its exact reading holds exactly or not at all.
         """
+        import numpy as np
+
         table = np.zeros((len(self._all), len(self._all)))
         for name in self.of_reading(Reading.EXACT):
             table[name.index, name.index] = 1.0

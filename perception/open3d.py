@@ -9,6 +9,8 @@ from functools import cache
 from pathlib import Path
 from types import ModuleType
 
+from deixis.extras import require
+
 _NAME = "open3d.cpu.pybind"
 
 
@@ -19,9 +21,12 @@ def open3d() -> ModuleType:
 
     ``import open3d`` after this finds the same module, and brings the rest: what is made with this one is what the
     drawing functions of the whole take. A build for CUDA chooses its compiled part itself, and is imported whole.
+
+    Raises MissingExtraError where Open3D is not installed.
     """
     if _NAME in sys.modules:
         return sys.modules[_NAME]
+    require("open3d", "simulating a camera, FPFH and to_open3d()")
     package = importlib.util.find_spec("open3d")
     folders = list(package.submodule_search_locations or ()) if package is not None else []
     library = next((file for folder in folders for file in (Path(folder) / "cpu").glob("pybind*")), None)

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import pyoxigraph as ox
 
 from deixis.errors import UnknownTermError
-from deixis.ontology.graph import Fact, Source
+from deixis.ontology.facts import Fact, Source
 from deixis.ontology.lessons.types import Alternative, LayoutConcept, Match, Role
 from deixis.ontology.relation import Relation, Relations, nearest
 from deixis.ontology.triple_index import TripleIndex

@@ -12,7 +12,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 import pyoxigraph as ox
 
-from deixis.ontology.graph import Fact, dispensable
+from deixis.ontology.facts import Fact, dispensable
 from deixis.ontology.lessons.types import LayoutConcept
 from deixis.ontology.lessons.write import fact_iri, layout_iri, role_iri
 from deixis.ontology.relation import Relation

@@ -6,11 +6,14 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from datetime import datetime
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 from deixis.ontology.colours import Rgb
-from deixis.ontology.graph import Fact, RelationGraph
+from deixis.ontology.facts import Fact
 from deixis.ontology.relation import Relation, Relations
+
+if TYPE_CHECKING:
+    from deixis.ontology.graph import RelationGraph
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,6 +42,8 @@ class LayoutConcept:
         """Return the layout as a relation graph over its roles."""
         names = [role.name for role in self.roles]
         kinds, colours = ([role.kind for role in self.roles], [role.colour for role in self.roles])
+        from deixis.ontology.graph import RelationGraph
+
         return RelationGraph.from_facts(
             vocabulary, names, self.facts, kinds=kinds, colours=colours if any(colours) else ()
         )

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import pyoxigraph as ox
 
 from deixis.ontology.colours import hex_of_rgb
-from deixis.ontology.graph import Fact
+from deixis.ontology.facts import Fact
 from deixis.ontology.lessons.types import LayoutConcept, Lesson, Match, Role, SeenObject, WordLesson
 from deixis.ontology.relation import Relations
 from deixis.ontology.triples import (

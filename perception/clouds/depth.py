@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.extras import require
 from deixis.ontology.strict_json import parse_json
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.clouds.content import Content, content_of
@@ -128,6 +129,7 @@ def depth_image(content: Content) -> NDArray[np.generic]:
 def _png(content: Content) -> NDArray[np.generic]:
     """Return greyscale values; what the header declares is compared with the file's size before anything is
     unpacked."""
+    require("PIL", f"{content.name}: reading a depth image in PNG")
     from PIL import Image
 
     head = content.data[8:33].tobytes()

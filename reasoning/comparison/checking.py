@@ -32,8 +32,9 @@ from deixis.reasoning.grounding.evidence.colours import other_colours
 from deixis.reasoning.grounding.evidence.evidence import PRESENT_LOG_ODDS, Evidence
 from deixis.reasoning.grounding.evidence.labels import Label, naming
 from deixis.reasoning.grounding.evidence.unary import OUTLIERS
-from deixis.reasoning.grounding.ground import DEFAULT_TIME_LIMIT, ground
+from deixis.reasoning.grounding.ground import ground
 from deixis.reasoning.grounding.matching.problem import UNMATCHED
+from deixis.reasoning.grounding.options import DEFAULT_TIME_LIMIT
 
 SURE_CONFIDENCE = 0.9
 """Confidence from which a label counts as an identity."""

@@ -186,7 +186,7 @@ class DifferenceNetwork:
 
     def path(self, axis: int, tail: int, head: int) -> list[int]:
         """Return the fewest constraints that add up to the distance from ``tail`` to ``head``, by their numbers."""
-        from deixis.reasoning.constraints.kernels import tight_path
+        from deixis.reasoning.constraints.path_kernels import tight_path
 
         found = tight_path(self.matrices[axis], self._points, self.constraints, axis, tail, head)
         return [int(number) for number in found]

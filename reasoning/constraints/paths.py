@@ -36,7 +36,7 @@ class OrderGraph:
         premise: NDArray[np.int64],
     ) -> OrderGraph:
         """Return the graph of edges in any order."""
-        from deixis.reasoning.constraints.kernels import rows_of
+        from deixis.reasoning.constraints.path_kernels import rows_of
 
         first, order = rows_of(tails, points)
         return cls(first, heads[order], strict[order], premise[order])
@@ -48,7 +48,7 @@ class OrderGraph:
     @cached_property
     def parts(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
         """The strongly connected part of each point, and the points in the order of their parts, last ones first."""
-        from deixis.reasoning.constraints.kernels import strong_parts
+        from deixis.reasoning.constraints.path_kernels import strong_parts
 
         part, members = strong_parts(self.first, self.heads)
         return part, members
@@ -56,7 +56,7 @@ class OrderGraph:
     @cached_property
     def contradictory(self) -> bool:
         """Whether some orders go round in a cycle with a strict one among them."""
-        from deixis.reasoning.constraints.kernels import strict_within
+        from deixis.reasoning.constraints.path_kernels import strict_within
 
         return bool(strict_within(self.first, self.heads, self.strict, self.parts[0]) >= 0)
 
@@ -74,7 +74,7 @@ class OrderGraph:
 
     def shortest_cycle(self) -> tuple[int, ...] | None:
         """Return the premises of the contradiction that takes the fewest; None where the orders agree."""
-        from deixis.reasoning.constraints.kernels import shortest_circle
+        from deixis.reasoning.constraints.path_kernels import shortest_circle
 
         if not self.contradictory:
             return None
@@ -134,8 +134,8 @@ class ShortestPaths:
         return self._tree(root, backwards).way(target, strict)
 
     def costs(self, root: int, targets: NDArray[np.int64], strict: bool, backwards: bool = False) -> NDArray[np.int64]:
-        """Return how many premises those paths take to each of some points, ``kernels.FAR`` where there is none."""
-        from deixis.reasoning.constraints.kernels import FAR
+        """Return how many premises those paths take to each of some points, ``FAR`` where there is none."""
+        from deixis.reasoning.constraints.path_kernels import FAR
 
         tree = self._tree(root, backwards)
         found = np.full(len(targets), FAR)
@@ -147,7 +147,7 @@ class ShortestPaths:
 
     @cached_property
     def _scratch(self) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:
-        from deixis.reasoning.constraints.kernels import FAR
+        from deixis.reasoning.constraints.path_kernels import FAR
 
         states = 2 * (len(self.graph.first) - 1)
         queue = np.empty(2 * (2 * states + 2), np.int64)
@@ -158,12 +158,13 @@ class ShortestPaths:
         if key in self._trees:
             self._trees.move_to_end(key)
             return self._trees[key]
-        from deixis.reasoning.constraints.kernels import FAR, fewest
+        from deixis.reasoning.constraints.path_kernels import FAR, fewest
 
         graph = self.reverse if backwards else self.graph
         cost, before, by, queue = self._scratch
         edges = (graph.first, graph.heads, graph.strict, graph.premise)
-        states = np.unique(queue[: fewest(*edges, root, -1, FAR, cost, before, by, queue)])
+        reached = np.sort(queue[: fewest(*edges, root, -1, FAR, cost, before, by, queue)])
+        states = reached[np.diff(reached, prepend=-1) > 0]
         led = before[states] >= 0
         premise = np.full(len(states), -1)
         premise[led] = graph.premise[by[states[led]]]

@@ -26,8 +26,6 @@ from deixis.reasoning.grounding.sensitivity import MAX_OBJECTS as MAX_SENSITIVIT
 from deixis.reasoning.grounding.sensitivity import WithoutFact, leave_one_out
 from deixis.reasoning.grounding.symmetry import interchangeable
 
-DEFAULT_TIME_LIMIT = 10.0
-
 SENSITIVITY_SHARE = 0.1
 """Share of the time limit for finding out what would change without each fact."""
 

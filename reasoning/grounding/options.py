@@ -36,6 +36,9 @@ class ViewpointName(StrEnum):
     UNKNOWN = "unknown"  # turned by any angle
 
 
+DEFAULT_TIME_LIMIT = 10.0
+"""Seconds that grounding may take where nobody says otherwise."""
+
 DECIDED = 0.99
 """Probability from which a match is called decided: where things are missing, somewhat less is right than was said, for
 an extra thing may fit all that is said of what is absent (docs/scoreboard.md)."""

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from deixis.reasoning.constraints.kernels import added
+from deixis.reasoning.kernel import njit
 
 _UNBOUNDED = 1 << 62
 

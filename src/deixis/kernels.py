@@ -5,11 +5,13 @@ from __future__ import annotations
 
 def compile_kernels() -> None:
     """Runs one tiny job of each kind; the compiled code is kept on disk, and so are the reasoners' classes."""
+    from deixis.reasoning.kernel import load_compiled
     from deixis.workflows.ground import ready_to_ground
     from deixis.workflows.imagine import ready_to_imagine
     from deixis.workflows.infer import ready_to_infer
     from deixis.workflows.solve import ready_to_solve
 
+    load_compiled()
     for engine in ("exact", "scalable"):
         ready_to_ground(engine)
     ready_to_infer()

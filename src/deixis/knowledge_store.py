@@ -4,33 +4,41 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from deixis.grammar.script import Script
 from deixis.memory.on_demand import OnDemand
 from deixis.memory.owner import Closing
-from deixis.ontology.tbox import Ontology, default_ontology
-from deixis.perception.scene import Scene
 from deixis.reasoning.errors import NothingFoundError
-from deixis.reasoning.grounding.evidence.meaning import SHIPPED, Meaning
 
 if TYPE_CHECKING:
+    from deixis.grammar.script import Script
     from deixis.learning.recollection import Recollection
     from deixis.learning.words import LearnedWords
     from deixis.memory.semantic.queries.results import QueryResult
     from deixis.memory.semantic.store import SemanticMemory
     from deixis.ontology.lessons.types import LayoutConcept, Lesson
+    from deixis.ontology.tbox import Ontology
+    from deixis.perception.scene import Scene
     from deixis.reasoning.description_logic.object_view import ObjectView
+    from deixis.reasoning.grounding.evidence.meaning import Meaning
 
 
 class KnowledgeStore(Closing):
     """Layouts, lessons, words and sizes as they were learned; the memory is held from the first call that needs it."""
 
     def __init__(self, path: Path, ontology: Ontology | None = None) -> None:
-        self.ontology = default_ontology() if ontology is None else ontology
+        self._given = ontology
         self._memory = OnDemand(path, _open)
         self._meaning: Meaning | None = None  # what is in force, since the last change
+
+    @cached_property
+    def ontology(self) -> Ontology:
+        """The words that scripts may use: those that were given, else the shipped ones."""
+        from deixis.ontology.tbox import default_ontology
+
+        return default_ontology() if self._given is None else self._given
 
     @property
     def path(self) -> Path:
@@ -64,6 +72,8 @@ class KnowledgeStore(Closing):
         Raises OntologyError where a learned model in the memory is not whole, MemoryBusyError where another process
         has the memory.
         """
+        from deixis.reasoning.grounding.evidence.meaning import SHIPPED
+
         if self._meaning is None:
             self._meaning = self._in_force() if self.exists() else SHIPPED
         return self._meaning
@@ -72,7 +82,7 @@ class KnowledgeStore(Closing):
         from deixis.memory.semantic.rdf.graphs import ModelSet
         from deixis.ontology.models.relation_triples import models_from_triples
         from deixis.ontology.models.sizes import SIZE_PROPERTIES, sizes_from_triples
-        from deixis.reasoning.grounding.evidence.meaning import shipped_models
+        from deixis.reasoning.grounding.evidence.meaning import Meaning, shipped_models
 
         words = models_from_triples(self.memory().models(ModelSet.WORDS))
         sizes = sizes_from_triples(self.memory().models(ModelSet.SIZES, SIZE_PROPERTIES))

@@ -6,25 +6,14 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
-from deixis.grammar.script import Script
 from deixis.knowledge_store import KnowledgeStore
 from deixis.memory.on_demand import default_memory
 from deixis.memory.owner import Closing
-from deixis.ontology.tbox import Ontology
-from deixis.perception.scene import Scene
-from deixis.reasoning.grounding.answer import Grounding
-from deixis.reasoning.grounding.evidence.meaning import Meaning
-from deixis.reasoning.grounding.ground import DEFAULT_TIME_LIMIT
-from deixis.reasoning.grounding.options import EngineName, Select, ViewpointName
+from deixis.reasoning.grounding.options import DEFAULT_TIME_LIMIT, EngineName, Select, ViewpointName
 from deixis.view_store import ViewStore
-from deixis.workflows.check import Checked, check
-from deixis.workflows.ground import ground
-from deixis.workflows.learn import Learned, learn
-from deixis.workflows.read import as_script
-from deixis.workflows.recognise import recognise
-from deixis.workflows.teach import teach
 
 if TYPE_CHECKING:
+    from deixis.grammar.script import Script
     from deixis.learning.recollection import Recollection
     from deixis.learning.views import Recognised, Taught
     from deixis.learning.words import LearnedWords
@@ -33,8 +22,14 @@ if TYPE_CHECKING:
     from deixis.memory.semantic.queries.results import QueryResult
     from deixis.memory.semantic.store import SemanticMemory
     from deixis.ontology.lessons.types import LayoutConcept
+    from deixis.ontology.tbox import Ontology
+    from deixis.perception.scene import Scene
     from deixis.reasoning.description_logic.object_view import ObjectView
+    from deixis.reasoning.grounding.answer import Grounding
+    from deixis.reasoning.grounding.evidence.meaning import Meaning
+    from deixis.workflows.check import Checked
     from deixis.workflows.dialogue import Ask
+    from deixis.workflows.learn import Learned
 
 
 class Session(Closing):
@@ -80,6 +75,9 @@ class Session(Closing):
         max_questions: int | None = None,
     ) -> Grounding:
         """Ground as :func:`deixis.ground` does, with words and sizes as this memory has learned them."""
+        from deixis.workflows.ground import ground
+        from deixis.workflows.read import as_script
+
         return ground(
             as_script(script, self.ontology),
             scene,
@@ -120,6 +118,8 @@ class Session(Closing):
 
         Each is grounded with what the memory had learned before this call. ``time_limit`` is for each grounding.
         """
+        from deixis.workflows.learn import learn
+
         return learn(examples, self.knowledge_store, self.view_store, engine, time_limit)
 
     def check(
@@ -129,6 +129,8 @@ class Session(Closing):
         time_limit: float = DEFAULT_TIME_LIMIT,
     ) -> Checked:
         """What is wrong with a table: ``layout`` is a learned layout's name, or a script or its file."""
+        from deixis.workflows.check import check
+
         return check(layout, scene, time_limit, self.knowledge_store)
 
     def teach(
@@ -138,6 +140,8 @@ class Session(Closing):
 
         Raises SceneError where the scene has no such thing, or no cloud of it; SettingError for a name that is none.
         """
+        from deixis.workflows.teach import teach
+
         return teach(scene, object, category, self.view_store, teacher)
 
     def recognise(
@@ -151,6 +155,8 @@ class Session(Closing):
         ``progress`` is told of reading what was taught, and of the calibration, which take seconds after many views;
         ``left_out``, in one line, of views that are damaged and teach nothing.
         """
+        from deixis.workflows.recognise import recognise
+
         return recognise(scene, self.view_store, progress, left_out)
 
     # ---- what was learned

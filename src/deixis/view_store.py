@@ -11,12 +11,10 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
-from deixis.grammar.names import key_of
 from deixis.memory.on_demand import OnDemand
 from deixis.memory.owner import Closing
 from deixis.ontology.kinds import plain_name
 from deixis.perception.errors import SceneError
-from deixis.perception.scene import Scene
 
 if TYPE_CHECKING:
     from deixis.learning.views import Known, StandingWord, Taught
@@ -24,6 +22,7 @@ if TYPE_CHECKING:
     from deixis.memory.perceptual.protocol import Progress
     from deixis.memory.perceptual.records import View
     from deixis.ontology.lessons.types import Match
+    from deixis.perception.scene import Scene
 
 Done = TypeVar("Done")
 
@@ -59,6 +58,8 @@ class ViewStore(Closing):
     def category_meant(self, name: str) -> str:
         """Return the known category of that name, else the first that differs from it only in case, else the name
         itself."""
+        from deixis.grammar.names import key_of
+
         if not self.exists():
             return name
         known = self._despite_damage(self.memory(), lambda memory: memory.categories())

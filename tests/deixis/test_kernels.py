@@ -21,6 +21,7 @@ from deixis.learning.scene_evidence import evidence_of
 from deixis.workflows.read import load_scene, read_script
 from deixis.reasoning.grounding.engines import engine_named
 from deixis.reasoning.grounding.ground import ground
+from deixis.reasoning.kernel import Kernel
 from deixis.grammar.formats.networks import read_networks
 from deixis.grammar.parser import parse_script
 from deixis.workflows.imagine import imagine, ready_to_imagine
@@ -34,7 +35,9 @@ CHOICES = parse_script("a left of or above b; b left or right of c; c above or b
 
 def kernels():
     modules = [module for name, module in list(sys.modules.items()) if name.startswith("deixis.")]
-    found = {value for module in modules for value in vars(module).values() if isinstance(value, Dispatcher)}
+    values = [value for module in modules for value in vars(module).values()]
+    values += [value.dispatcher for value in values if isinstance(value, Kernel)]
+    found = {value for value in values if isinstance(value, Dispatcher)}
     return {(kernel.__module__, kernel.__name__, str(kind)) for kernel in found for kind in kernel.signatures}
 
 script, scene = read_script(sys.argv[1]), load_scene(sys.argv[2])

@@ -3,24 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from importlib.util import find_spec
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.extras import require
 from deixis.perception.errors import RecognitionError
 from deixis.perception.recognition.learners.learner import Prediction, TaughtViews
 from deixis.perception.recognition.learners.view_features import ViewFeatures, pooled
 
 POOLED_DESCRIBERS = ("spin_images", "good", "d2_extents")
 """What a view's vector is pooled from."""
-
-
-def require_scikit_learn() -> None:
-    """Raise RecognitionError where scikit-learn, which only experiments need, is not installed."""
-    if find_spec("sklearn") is None:
-        raise RecognitionError("the learner SVDD needs scikit-learn; install it: pip install 'deixis[experiments]'")
 
 
 class SupportVectorDescription(TaughtViews):
@@ -37,7 +31,7 @@ class SupportVectorDescription(TaughtViews):
     rho on the boundary, scores are f(x) / rho: 1 there, more inside. ``outliers`` is nu, the share of a word's own
     views that may lie outside; ``reach`` is the width of the kernel, exp(-|x - y|^2 / reach^2).
 
-    Raises RecognitionError where scikit-learn is not installed, and for settings that describe nothing.
+    Raises MissingExtraError where scikit-learn is not installed, RecognitionError for settings that describe nothing.
     """
 
     name = "SVDD"
@@ -46,7 +40,7 @@ class SupportVectorDescription(TaughtViews):
         self, descriptors: Sequence[str] = POOLED_DESCRIBERS, outliers: float = 0.1, reach: float = 0.5
     ) -> None:
         super().__init__()
-        require_scikit_learn()
+        require("sklearn", "the learner SVDD")
         if not 0.0 < outliers < 1.0 or not reach > 0.0:
             raise RecognitionError(f"a share of outliers in (0, 1) and a reach above 0, not {outliers:g} and {reach:g}")
         self._descriptors, self._outliers, self._gamma = tuple(descriptors), outliers, reach**-2

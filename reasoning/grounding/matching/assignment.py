@@ -8,7 +8,8 @@ price, are the dual solution: their sum is the value, and any v >= 0 gives an up
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
+
+from deixis.reasoning.kernel import njit
 
 
 @njit(cache=True, nogil=True)

@@ -13,15 +13,17 @@ from __future__ import annotations
 
 import math
 import time
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csr_matrix
 
 from deixis.deadline import Deadline
 from deixis.reasoning.grounding.matching.assignment import solve_assignment
 from deixis.reasoning.grounding.matching.problem import Compiled
+
+if TYPE_CHECKING:
+    from scipy.sparse import csr_matrix
 
 FIRST_COLDNESS, LAST_COLDNESS = 4.0, 20.0  # coldness, times the mean range of a table
 LEVELS = 80  # steps of coldness, fewer where all of them would multiply more cells than MAX_CELLS
@@ -79,6 +81,8 @@ def propagate(
 
 
 def _wire(problem: Compiled) -> _Wiring:
+    from scipy.sparse import csr_matrix
+
     n1, slots = len(problem.unary), len(problem.kind)
     order = np.argsort(problem.kind, kind="stable")
     position = np.empty(slots, dtype=np.int64)

@@ -17,11 +17,11 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from deixis.reasoning.grounding.matching.assignment import solve_assignment
 from deixis.reasoning.grounding.matching.problem import Compiled
+from deixis.reasoning.kernel import njit
 
 
 @njit(cache=True)

@@ -11,11 +11,11 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from deixis.reasoning.grounding.matching.branch_and_bound import new_stack, node_at, tighten
 from deixis.reasoning.grounding.matching.problem import Compiled
+from deixis.reasoning.kernel import njit
 
 PASSES = 30  # of messages
 LOWEST_VALUE = -1e12  # a value that every map has: no match is dropped for being worth less

@@ -16,7 +16,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import gammaln
 
 from deixis.deadline import Deadline
 from deixis.reasoning.grounding.matching.enumeration import add_up, factors
@@ -308,4 +307,6 @@ def _log_prior(problem: Problem) -> float:
     for absent in problem.absent.tolist():
         matched = np.logaddexp(np.append(matched + absent, -np.inf), np.append(-np.inf, matched))
     k = np.arange(min(len(matched), n2 + 1))
+    from scipy.special import gammaln
+
     return float(np.logaddexp.reduce(matched[k] + gammaln(n2 + 1) - gammaln(n2 - k + 1)))

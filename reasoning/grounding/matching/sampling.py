@@ -11,11 +11,11 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from deixis.reasoning.grounding.matching.local_search import KeptMap, exchange, refresh, said_twice
 from deixis.reasoning.grounding.matching.problem import Compiled
+from deixis.reasoning.kernel import njit
 
 REFRESH = 64  # sweeps after which gains are computed anew
 

@@ -9,12 +9,10 @@ the order of the objects.
 from __future__ import annotations
 
 import math
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from threadpoolctl import threadpool_limits
 
 from deixis.deadline import Deadline
 from deixis.reasoning.grounding.matching.belief_propagation import propagate
@@ -98,6 +96,10 @@ def search_from(
         return _annealed(labels, compiled, deadline, seed, effort, most)
     if len(labels) > MAX_ANNEALED_OBJECTS:
         return _propagated(labels, compiled, deadline, seed, effort, most)
+    from concurrent.futures import ThreadPoolExecutor
+
+    from threadpoolctl import threadpool_limits
+
     with threadpool_limits(1, "blas"), ThreadPoolExecutor(1) as pool:
         beside = pool.submit(_annealed, labels, compiled, deadline, seed, PARALLEL_EFFORT * effort, most)
         best, finished = _propagated(labels, compiled, deadline, seed, effort, most)

@@ -5,45 +5,76 @@ Exit codes: 0 done, 1 the answer is no, 2 bad input, 3 undecided within the time
 
 from __future__ import annotations
 
+import gc
 import io
 import os
 import signal
 import sys
-from pathlib import Path
-from typing import Annotated
+from importlib import import_module
+from typing import Annotated, Any
 
 import typer
+from typer.core import TyperGroup
 
-from deixis.cli.ask import ask
-from deixis.cli.category import category_app
-from deixis.cli.check import check
 from deixis.cli.common import BAD_INPUT, UNDECIDED
-from deixis.cli.experiment import experiment
-from deixis.cli.fmt import fmt
-from deixis.cli.ground import ground
-from deixis.cli.imagine import imagine
-from deixis.cli.infer import infer
 from deixis.cli.interrupts import INTERRUPTED, noting_interrupts
-from deixis.cli.learn import learn
-from deixis.cli.learn_relation import learn_relation
-from deixis.cli.memory import memory_app
-from deixis.cli.parse import parse
-from deixis.cli.perceive import perceive
-from deixis.cli.query import query
-from deixis.cli.reason import reason
-from deixis.cli.recognise import recognise
-from deixis.cli.relate import relate
-from deixis.cli.relation import relation
-from deixis.cli.retrieve import retrieve
-from deixis.cli.show import show
-from deixis.cli.simulate import simulate
-from deixis.cli.solve import solve
-from deixis.cli.teach import teach
-from deixis.cli.time import time_command
-from deixis.cli.validate import validate
+
+COMMANDS = {
+    "parse": "parse",
+    "fmt": "fmt",
+    "infer": "infer",
+    "reason": "reason",
+    "relate": "relate",
+    "retrieve": "retrieve",
+    "solve": "solve",
+    "time": "time_command",
+    "ground": "ground",
+    "demo": "demo",
+    "learn": "learn",
+    "show": "show",
+    "check": "check",
+    "query": "query",
+    "validate": "validate",
+    "imagine": "imagine",
+    "relation": "relation",
+    "learn-relation": "learn_relation",
+    "perceive": "perceive",
+    "teach": "teach",
+    "recognise": "recognise",
+    "ask": "ask",
+    "simulate": "simulate",
+    "memory": "memory_app",
+    "experiment": "experiment",
+    "category": "category_app",
+}
+"""The commands in the order of ``--help``: what each is called in the module of ``deixis.cli`` that bears its name."""
+
+
+class CommandsOnDemand(TyperGroup):
+    """The commands of COMMANDS; each is imported when it is called, so that it does not wait for the others."""
+
+    def __init__(self, **settings: Any) -> None:
+        super().__init__(**settings)
+        self.commands = dict.fromkeys(COMMANDS, self)  # the names, of which the nearest is suggested for an unknown one
+
+    def list_commands(self, ctx: Any) -> list[str]:
+        return list(COMMANDS)
+
+    def get_command(self, ctx: Any, cmd_name: str) -> Any:
+        if cmd_name not in COMMANDS:
+            return None
+        command = getattr(import_module(f"deixis.cli.{cmd_name.replace('-', '_')}"), COMMANDS[cmd_name])
+        alone = typer.Typer(rich_markup_mode=None)
+        if isinstance(command, typer.Typer):
+            alone.add_typer(command, name=cmd_name)
+        else:
+            alone.command(cmd_name)(command)
+        return typer.main.get_group(alone).commands[cmd_name]
+
 
 app = typer.Typer(
     name="deixis",
+    cls=CommandsOnDemand,
     help="Ground a description of a laid table in what is seen: who is who, what follows, what cannot be known.",
     no_args_is_help=True,
     add_completion=False,
@@ -67,45 +98,6 @@ def _root(
     ] = False,
 ) -> None:
     pass
-
-
-app.command()(parse)
-app.command()(fmt)
-app.command()(infer)
-app.command()(reason)
-app.command()(relate)
-app.command()(retrieve)
-app.command()(solve)
-app.command("time")(time_command)
-app.command()(ground)
-
-
-@app.command()
-def demo(
-    out: Annotated[Path, typer.Option("-o", "--out", metavar="DIR", help="Where the pictures go.")] = Path("out"),
-) -> None:
-    """Tell the whole story on shipped data."""
-    from deixis.cli.demo import tell
-
-    tell(out)
-
-
-app.command()(learn)
-app.command()(show)
-app.command()(check)
-app.command()(query)
-app.command()(validate)
-app.add_typer(memory_app, name="memory")
-app.add_typer(experiment, name="experiment")
-app.command()(imagine)
-app.command()(relation)
-app.command("learn-relation")(learn_relation)
-app.command()(perceive)
-app.command()(teach)
-app.command()(recognise)
-app.command()(ask)
-app.add_typer(category_app, name="category")
-app.command()(simulate)
 
 
 def main() -> None:
@@ -144,6 +136,7 @@ def _fail(message: str, code: int = BAD_INPUT) -> None:
 
 def run() -> None:
     """The process's entry: a closed pipe ends it quietly, no character is too odd for a terminal, nothing is lost."""
+    gc.set_threshold(100_000)  # what is imported stays: looking for garbage in it takes a tenth of a short command
     if hasattr(signal, "SIGPIPE"):
         signal.signal(signal.SIGPIPE, signal.SIG_DFL)
     for stream in (sys.stdout, sys.stderr):

@@ -10,7 +10,7 @@ import typer
 from deixis.cli.common import NO, UNDECIDED, AsJson, Script, TimeLimit, print_json, print_lines
 
 if TYPE_CHECKING:
-    from deixis.ontology.graph import Fact
+    from deixis.ontology.facts import Fact
     from deixis.workflows.infer import Inference
 
 
@@ -29,7 +29,6 @@ def infer(
 ) -> None:
     """Print what a script states and implies, or the smallest contradiction in it (exit 1)."""
     from deixis.errors import DeixisError
-    from deixis.report.json_answers import inference_to_dict
     from deixis.report.script import inference_lines
     from deixis.workflows.infer import infer as run
 
@@ -49,6 +48,8 @@ def infer(
     if ntriples and inference.consistent and inference.decided:
         sys.stdout.write(inference.implications.ntriples())
     elif as_json:
+        from deixis.report.json_answers import inference_to_dict
+
         print_json(inference_to_dict(inference))
     else:
         print_lines(inference_lines(inference))

@@ -27,7 +27,7 @@ from deixis.ontology.graph import PaperGraph, RelationGraph
 from deixis.ontology.tbox import default_ontology
 from deixis.perception.formats.scene_json import read_scene
 from deixis.perception.scene import Scene
-from deixis.plots.figure import INK, PAPER, QUIET, new_figure, save
+from deixis.plots.figure import INK, PAPER, QUIET, new_figure, require_picture, save
 from deixis.reasoning.grounding.evidence.evidence import Evidence, no_unary_evidence
 from deixis.reasoning.grounding.matching.problem import UNMATCHED
 from deixis.reasoning.grounding.similarity import node_similarity
@@ -55,6 +55,9 @@ def plot_points(points: Points, path: Path, title: str, rho: float) -> None:
         side.set_color(QUIET)
     save(figure, path)
 
+
+PICTURES = {"script1": "figure6a.png", "script2": "figure6b.png"}
+"""The picture of each panel, by the script that the panel is about."""
 
 SIZES = range(4, 13)
 PER_SIZE = 60
@@ -151,12 +154,12 @@ def _panel_lines(name: str, panel: Panel) -> list[str]:
 
 def run(out: Path, variants: int = 50, orders: int = 200, seed: int = 1) -> Figure6:
     """Run both panels and write ``figure6a.png`` and ``figure6b.png`` to ``out``."""
-
+    paths = {script: require_picture(out / name) for script, name in PICTURES.items()}
     annotated = read_scene(example("place_setting.labelled.scene.json"))
     scenes = [formal_setting(seed * 1000 + i, DISPLACEMENT) for i in range(variants)]
     panels: list[Panel] = []
     pictures: list[str] = []
-    for letter, script in (("a", "script1"), ("b", "script2")):
+    for script, path in paths.items():
         trial = _Trial(script, np.random.default_rng(seed))
         points, accuracy = trial.run(annotated, orders)
         varied = [trial.run(scene, max(orders // 10, 1)) for scene in scenes]
@@ -173,8 +176,8 @@ def run(out: Path, variants: int = 50, orders: int = 200, seed: int = 1) -> Figu
             },
         )
         panels.append(panel)
-        path = out / f"figure6{letter}.png"
-        plot_points(points, path, f"({letter}) {script}: {len(points.right)} sub-graphs", panels[-1].rho_similarity)
+        letter = path.stem[-1]
+        plot_points(points, path, f"({letter}) {script}: {len(points.right)} sub-graphs", panel.rho_similarity)
         pictures.append(str(path))
     return Figure6(panels[0], panels[1], variants, orders, seed, tuple(pictures))
 

@@ -10,11 +10,8 @@ from typing import TYPE_CHECKING
 import pyoxigraph as ox
 
 from deixis.errors import DeixisError
-from deixis.grammar.parser import parse_script
-from deixis.learning.scene_evidence import scene_labels
 from deixis.memory.semantic.rdf.graphs import GraphName, graph_iri
 from deixis.memory.semantic.rdf.ledger import started
-from deixis.ontology.graph import RelationGraph
 from deixis.ontology.kinds import Kinds
 from deixis.ontology.lessons.read import LessonRecord, layouts, lesson_records, unknown_layout
 from deixis.ontology.lessons.types import LayoutConcept, Lesson, WordLesson
@@ -23,12 +20,11 @@ from deixis.ontology.relation import Relations
 from deixis.ontology.tbox import Ontology
 from deixis.ontology.triples import iri, last_part, text
 from deixis.ontology.vocabulary import DX, W3C
-from deixis.perception.formats.scene_json import read_scene
-from deixis.perception.scene import Scene
-from deixis.reasoning.grounding.evidence.labels import naming
 
 if TYPE_CHECKING:
     from deixis.memory.semantic.store import SemanticMemory
+    from deixis.ontology.graph import RelationGraph
+    from deixis.perception.scene import Scene
 
 
 @dataclass(frozen=True)
@@ -109,6 +105,9 @@ def remembered_lesson(lesson: Lesson | WordLesson, ontology: Ontology) -> Rememb
 
 
 def _remembered(record: LessonRecord, layout: LayoutConcept | None, ontology: Ontology) -> Remembered:
+    from deixis.grammar.parser import parse_script
+    from deixis.perception.formats.scene_json import read_scene
+
     scene = read_scene(json.loads(record.scene_text))
     if layout is not None:
         description = layout.graph(ontology.relations)
@@ -131,6 +130,9 @@ def _matched(record: LessonRecord, description: RelationGraph, scene: Scene) -> 
 
 def labelled(description: RelationGraph, scene: Scene, kinds: Kinds) -> Who:
     """What labels say: an object is the one thing whose label fits it, as surely as the label is."""
+    from deixis.learning.scene_evidence import scene_labels
+    from deixis.reasoning.grounding.evidence.labels import naming
+
     fitted = naming(description, list(scene_labels(scene).values()), kinds).fitted
     alone = fitted & (fitted.sum(axis=1) == 1)[:, None] & (fitted.sum(axis=0) == 1)[None, :]
     things = tuple(int(row.argmax()) if row.any() else None for row in alone)

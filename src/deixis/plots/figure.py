@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from deixis.errors import DeixisError
+from deixis.extras import require
 from deixis.perception.scene import Scene
 
 if TYPE_CHECKING:
@@ -33,6 +34,7 @@ def save(figure: Figure, path: str | Path) -> None:
 
 def require_picture(path: str | Path) -> Path:
     """Return the path of a picture that can be written, its folder made; raises DeixisError where it cannot be."""
+    require("matplotlib", f"{path}: drawing a picture")
     target = Path(path)
     if target.suffix.lower() not in (".png", ".svg", ".pdf"):
         raise DeixisError(f"{target}: a picture's name ends in .png, .svg or .pdf")
@@ -46,7 +48,8 @@ def require_picture(path: str | Path) -> Path:
 
 
 def new_figure(width: float, height: float, **subplots: Any) -> tuple[Figure, Any]:
-    """Return an empty figure that needs no display, and its axes."""
+    """Return an empty figure that needs no display, and its axes; raises MissingExtraError without matplotlib."""
+    require("matplotlib", "drawing a picture")
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
     from matplotlib.layout_engine import ConstrainedLayoutEngine

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 from typing import Any
 
 from deixis.ontology.export import fact_to_dict
-from deixis.ontology.graph import Fact
+from deixis.ontology.facts import Fact
 from deixis.ontology.sizes import Extent
 from deixis.perception.formats.scene_json import scene_to_dict
 from deixis.workflows.imagine import Imagination, ImaginedTable, NoTable, Sized

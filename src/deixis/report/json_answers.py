@@ -51,7 +51,7 @@ def inference_to_dict(inference: Inference) -> dict[str, Any]:
 
 def derivation_to_dict(derivation: Derivation) -> dict[str, Any]:
     """Return a derivation, down to stated facts."""
-    from deixis.ontology.graph import Fact
+    from deixis.ontology.facts import Fact
 
     premises = [derivation_to_dict(premise) for premise in derivation.premises]
     claim = fact_to_dict(derivation.claim) if isinstance(derivation.claim, Fact) else {"claim": str(derivation.claim)}

@@ -17,7 +17,7 @@ MAX_INFERRED_LISTED = 20_000
 
 if TYPE_CHECKING:
     from deixis.grammar.script import Script
-    from deixis.ontology.graph import Fact
+    from deixis.ontology.facts import Fact
     from deixis.reasoning.comparison.checking import RoleCheck
     from deixis.reasoning.entailment.why_not import WhyNot
     from deixis.workflows.check import Checked

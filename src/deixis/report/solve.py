@@ -90,7 +90,7 @@ def _constraint(network: Network, c: Constraint) -> dict[str, Any]:
 
 
 def _step(step: Step, networks: Sequence[Network]) -> dict[str, Any]:
-    from deixis.ontology.graph import Source
+    from deixis.ontology.facts import Source
 
     return {
         "first": step.claim.first,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -17,23 +18,40 @@ from deixis.reasoning.entailment.implications import Implications
 from deixis.reasoning.errors import SettingError
 from deixis.reasoning.grounding.engines import engine_named
 from deixis.reasoning.grounding.evidence.meaning import SHIPPED
-from deixis.reasoning.grounding.ground import DEFAULT_TIME_LIMIT
+from deixis.reasoning.grounding.options import DEFAULT_TIME_LIMIT
 from deixis.workflows.ground import ready_to_ground
 from deixis.workflows.read import as_scene, as_script, is_script_file
 
 if TYPE_CHECKING:
     from deixis.ontology.lessons.types import LayoutConcept
+    from deixis.ontology.relation import Relations
     from deixis.reasoning.comparison.checking import TableCheck
 
 
 @dataclass(frozen=True)
 class Checked:
-    """A table against a layout: the verdicts, and the same as a SHACL validation report."""
+    """A table against a layout: the verdicts, and the same as a SHACL validation report, made when it is asked for."""
 
     layout: LayoutConcept
     table: TableCheck
-    conforms: bool
-    report: str  # Turtle
+    scene: Scene
+    relations: Relations
+
+    @property
+    def conforms(self) -> bool:
+        """Whether the scene conforms to the layout's SHACL shapes."""
+        return self._validated[0]
+
+    @property
+    def report(self) -> str:
+        """The SHACL validation report, in Turtle."""
+        return self._validated[1]
+
+    @cached_property
+    def _validated(self) -> tuple[bool, str]:
+        from deixis.workflows.shacl_report import shacl_report
+
+        return shacl_report(self.layout, self.scene, self.table, self.relations)
 
 
 def check(
@@ -49,7 +67,6 @@ def check(
     """
     from deixis.learning.lesson import layout_concept
     from deixis.reasoning.comparison.checking import checked_table
-    from deixis.workflows.shacl_report import shacl_report
 
     if not isinstance(layout, str | Path | Script):
         raise SettingError(f"`layout` must be a script, its file or the name of a layout, got {layout!r:.60}")
@@ -73,4 +90,4 @@ def check(
     found = table.grounding
     kept = tuple(note for note in found.notes if "similarity" not in note)  # a check shows no similarity
     table = replace(table, grounding=replace(found, notes=notes + kept))
-    return Checked(concept, table, *shacl_report(concept, scene, table, relations))
+    return Checked(concept, table, scene, relations)

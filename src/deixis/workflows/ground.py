@@ -27,9 +27,8 @@ from deixis.reasoning.grounding.answer import Grounding
 from deixis.reasoning.grounding.engines import engine_named
 from deixis.reasoning.grounding.evidence.evidence import Evidence
 from deixis.reasoning.grounding.evidence.meaning import SHIPPED, Meaning
-from deixis.reasoning.grounding.ground import DEFAULT_TIME_LIMIT
 from deixis.reasoning.grounding.ground import ground as ground_evidence
-from deixis.reasoning.grounding.options import EngineName, Select, ViewpointName
+from deixis.reasoning.grounding.options import DEFAULT_TIME_LIMIT, EngineName, Select, ViewpointName
 from deixis.workflows.read import as_scene, as_script
 
 if TYPE_CHECKING:
@@ -249,7 +248,9 @@ def ready_to_ground(engine: str) -> None:
     """
     from deixis.grammar.parser import parse_script
     from deixis.reasoning.grounding.evidence.evidence import evidence_from
+    from deixis.reasoning.kernel import load_compiled
 
+    load_compiled()
     chosen = engine_named(engine)
     boxes = [{"id": f"o{i}", "min": [0.2 * i, 0], "max": [0.2 * i + 0.1, 0.1]} for i in range(3)]
     script = parse_script("fork left of plate\nknife right of plate\n")

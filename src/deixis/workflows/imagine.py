@@ -10,7 +10,8 @@ import numpy as np
 
 from deixis.deadline import Deadline
 from deixis.grammar.script import Script
-from deixis.ontology.graph import Fact, RelationGraph
+from deixis.ontology.facts import Fact
+from deixis.ontology.graph import RelationGraph
 from deixis.ontology.kinds import Kind, Kinds, plain_name, with_article
 from deixis.ontology.sizes import SizeRange
 from deixis.perception.scene import PerceivedObject, Scene
@@ -212,5 +213,7 @@ def _no_table(graph: RelationGraph, objects: tuple[Sized, ...], found: Impossibl
 def ready_to_imagine() -> None:
     """Compile, or load compiled, what imagining a table needs."""
     from deixis.grammar.parser import parse_script
+    from deixis.reasoning.kernel import load_compiled
 
+    load_compiled()
     imagine(parse_script("fork left of plate\nnapkin on plate\n"))

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from deixis.deadline import Deadline
 from deixis.grammar.script import Script
-from deixis.ontology.graph import Fact
+from deixis.ontology.facts import Fact
 from deixis.reasoning.constraints.disjunctive import OutOfTimeError
 from deixis.reasoning.constraints.proof import Rule
 from deixis.reasoning.entailment.closing import consistent
@@ -109,7 +109,9 @@ def ready_to_infer() -> None:
     from deixis.grammar.parser import parse_script
     from deixis.reasoning.constraints.difference import ORDERS, ZERO, Difference, DifferenceNetwork
     from deixis.reasoning.entailment.why_not import why_not
+    from deixis.reasoning.kernel import load_compiled
 
+    load_compiled()
     inference = inference_of(parse_script("a left of b\nb left or above c\nc is not right of d\n"))
     inference.inferred()
     inference.implications.unstated()

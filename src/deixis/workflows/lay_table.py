@@ -12,8 +12,10 @@ from numpy.typing import NDArray
 
 from deixis.deadline import Deadline
 from deixis.errors import DeixisError
+from deixis.extras import require
 from deixis.grammar.script import Script
-from deixis.ontology.graph import Fact, RelationGraph
+from deixis.ontology.facts import Fact
+from deixis.ontology.graph import RelationGraph
 from deixis.ontology.relation import Relation
 from deixis.ontology.sizes import Extent, Outline, SizeRange
 from deixis.perception.clouds.mesh import Mesh
@@ -118,6 +120,7 @@ def lay_random(
     ontology: Ontology | None = None,
 ) -> LaidScript:
     """Return a table with so many random things, and the meshes (metres, z up), at random places."""
+    require("open3d", "simulating a table")
     require_seed(seed)
     foreign = [
         Placement(name, None, 0.0, 0.0, plan=_plan_of(mesh), mesh=mesh)
@@ -142,6 +145,7 @@ def lay_script(
     script has it elsewhere. Raises NoTableError where there is
     no such table, TimeIsUpError where that stayed open, SimulationError for a mesh that stands for nothing.
     """
+    require("open3d", "simulating a table")
     require_seed(seed)
     meshes = _check_meshes(meshes or {})
     graph = script.graph().affirming()

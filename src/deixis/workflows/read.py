@@ -5,15 +5,16 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from deixis.errors import DeixisError
 from deixis.grammar.parser import parse_script
 from deixis.grammar.parser import read_script as read_script_file
 from deixis.grammar.script import Script
 from deixis.ontology.tbox import Ontology
-from deixis.perception.formats.scene_json import read_scene
-from deixis.perception.scene import Scene
+
+if TYPE_CHECKING:
+    from deixis.perception.scene import Scene
 
 SCRIPT_ENDING, SCENE_ENDING = ".layout", ".scene.json"
 
@@ -31,6 +32,8 @@ def read_script(path: str | Path | None = None, *, text: str | None = None, onto
 
 def load_scene(file: str | Path, hide_labels: bool = False, image: str | None = None) -> Scene:
     """A scene from a file, its labels kept or hidden; ``image`` chooses one of several that the file describes."""
+    from deixis.perception.formats.scene_json import read_scene
+
     scene = read_scene(file, image=image) if image is not None else read_scene(file)
     return scene.without_labels() if hide_labels else scene
 
@@ -42,6 +45,9 @@ def as_script(script: Script | str | Path, ontology: Ontology | None = None) -> 
 
 def as_scene(scene: Scene | str | Path | Mapping[str, Any]) -> Scene:
     """Return the scene itself, or the one in the file of that name, or in parsed JSON."""
+    from deixis.perception.formats.scene_json import read_scene
+    from deixis.perception.scene import Scene
+
     return scene if isinstance(scene, Scene) else read_scene(scene)
 
 

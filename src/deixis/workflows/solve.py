@@ -182,8 +182,10 @@ def _renumbered(network: Network, constraints: Iterable[Constraint], things: lis
 def ready_to_solve() -> None:
     """Compile, or load compiled, the closure of constraint networks, over plain calculi and over products."""
     from deixis.grammar.formats.networks import parse_networks
+    from deixis.reasoning.kernel import load_compiled
     from deixis.reasoning.qualitative.calculi.registry import calculus
 
+    load_compiled()
     wishes = (Wish(scenario=True), Wish(closure=True, explain=(0, 1)))
     against = "2 #\n0 1 ( < )\n1 2 ( < )\n0 2 ( > )\n.\n"
     texts = (("allen", "1 #\n0 1 ( < m )\n.\n"), ("ra", "2 #\n0 1 ( <,m >,< )\n1 2 ( <,< )\n.\n"), ("allen", against))

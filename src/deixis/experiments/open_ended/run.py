@@ -33,9 +33,9 @@ from deixis.experiments.open_ended.contestants import (
 )
 from deixis.experiments.open_ended.shown import Shown, cached_views, describe_views
 from deixis.experiments.open_ended.things import FOLDER, from_meshes, rows_of, simulated
+from deixis.extras import require
 from deixis.perception.recognition.learners.learner import Learner
 from deixis.perception.recognition.learners.naive_bayes import Codebook
-from deixis.perception.recognition.learners.one_class import require_scikit_learn
 from deixis.perception.recognition.learners.teaching import Course, Teaching, teach
 from deixis.perception.recognition.learners.view_features import ViewFeatures
 from deixis.perception.recognition.settings import DEFAULT, PAPER
@@ -133,10 +133,11 @@ def silent(_: int) -> Iterator[Tick]:
 def run(plan: OpenEndedPlan, stage: Stage = silent, entered: Sequence[str] | None = None) -> OpenEnded:
     """Run everything; ``entered`` are the contestants, all if None.
 
-    Raises RecognitionError, before any work, where a contestant needs scikit-learn and it is not installed.
+    Raises MissingExtraError, before any work, where the simulator or a contestant needs what is not installed.
     """
     if entered is None or SVDD in entered:
-        require_scikit_learn()
+        require("sklearn", "the learner SVDD")
+    require("open3d", "simulating views")
     codebook = Codebook.of(_simulated_views(plan, 2, plan.seed + 1000, stage).views, seed=plan.seed)
     able = {name: make for name, make in contestants(codebook).items() if entered is None or name in entered}
     findings = [_evaluate(plan, _simulated_views(plan, plan.instances, plan.seed, stage), able, stage)]

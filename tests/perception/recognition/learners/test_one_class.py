@@ -9,6 +9,7 @@ import pytest
 from numpy.typing import NDArray
 from scipy.optimize import minimize
 
+from deixis.extras import MissingExtraError
 from deixis.perception.errors import RecognitionError
 from deixis.perception.recognition.learners.one_class import SupportVectorDescription
 from deixis.perception.recognition.learners.view_features import ViewFeatures
@@ -63,7 +64,7 @@ def test_what_lies_far_from_every_word_is_unknown() -> None:
 
 def test_a_missing_scikit_learn_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "sklearn", None)
-    with pytest.raises(RecognitionError, match=r"scikit-learn; install it: pip install 'deixis\[experiments\]'"):
+    with pytest.raises(MissingExtraError, match=r"scikit-learn; install it: pip install 'deixis\[experiments\]'"):
         SupportVectorDescription()
 
 

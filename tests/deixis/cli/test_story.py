@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from deixis.cli.demo import tell
+from deixis.cli.story import tell
 
 CHAPTERS = [
     "1. Somebody says how a table is laid",

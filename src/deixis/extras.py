@@ -1,0 +1,50 @@
+"""The optional packages: which extra of Deixis brings each, and the error where one is not installed.
+
+Every import of an optional package stands behind :func:`require`, inside the function that uses it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from importlib.util import find_spec
+
+from deixis.errors import DeixisError
+
+
+@dataclass(frozen=True, slots=True)
+class OptionalPackage:
+    """An optional package: the distribution that holds it, and the extra in ``pyproject.toml`` that names it."""
+
+    distribution: str
+    extra: str
+
+
+OPTIONAL = {
+    "matplotlib": OptionalPackage("matplotlib", "plots"),
+    "open3d": OptionalPackage("open3d", "perception"),
+    "PIL": OptionalPackage("pillow", "perception"),
+    "sklearn": OptionalPackage("scikit-learn", "experiments"),
+}
+"""The optional packages by the names under which they are imported."""
+
+
+class MissingExtraError(DeixisError, ImportError):
+    """An optional package is not installed; the message names the extra that brings it."""
+
+
+def require(package: str, purpose: str) -> None:
+    """Raise MissingExtraError unless an optional package is installed; ``purpose`` begins the message.
+
+    >>> import sys
+    >>> from unittest.mock import patch
+    >>> with patch.dict(sys.modules, matplotlib=None):
+    ...     require("matplotlib", "drawing a picture")
+    Traceback (most recent call last):
+        ...
+    deixis.extras.MissingExtraError: drawing a picture needs matplotlib; install it: pip install 'deixis[plots]'
+    """
+    if find_spec(package) is None:
+        missing = OPTIONAL[package]
+        raise MissingExtraError(
+            f"{purpose} needs {missing.distribution}; install it: pip install 'deixis[{missing.extra}]'"
+        )
