@@ -58,7 +58,7 @@ def memory(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder / "m"
 
 
-@pytest.mark.parametrize(("command", "needed"), NEEDED.items(), ids=lambda part: str(part).partition(" ")[0])
+@pytest.mark.parametrize(("command", "needed"), NEEDED.items(), ids=NEEDED)
 def test_a_light_command_imports_nothing_that_it_does_not_use(memory: Path, command: str, needed: set[str]) -> None:
     code = (
         "import sys; from deixis.cli.app import main\n"
