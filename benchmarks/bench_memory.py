@@ -1,20 +1,23 @@
-"""Bulk load and queries at 100,000 and 1,000,000 triples, beside bare pyoxigraph in the same run.
+"""Bulk load, queries and their bounds at 100,000 and 1,000,000 triples, beside bare pyoxigraph in the same run.
 
 Two kinds of data: background knowledge that no shape is about, and scenes, of which every object is checked.
 """
 
 from __future__ import annotations
 
+import contextlib
 import shutil
 import sys
 import tempfile
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from statistics import median
 
 import pyoxigraph as ox
 from common import medians
 
+from deixis.memory.errors import QueryError, QueryTimeoutError
 from deixis.memory.semantic.rdf.files import PREFIXES
 from deixis.memory.semantic.rdf.graphs import GraphName, graph_iri
 from deixis.memory.semantic.store import SemanticMemory
@@ -96,6 +99,30 @@ def ask(memory: SemanticMemory, bare: ox.Store) -> None:
         print(f"    {name}: deixis {ours * 1e3:.3f} ms, bare {theirs * 1e3:.3f} ms, {ours / theirs:.2f} times")
 
 
+def bounds(memory: SemanticMemory) -> None:
+    """Prints what a query costs that needs a process or a snapshot, and how soon an endless one ends."""
+    one = QUERIES["look-up of one subject"]
+    started, changed = [], []
+    for number in range(9):
+        triple = ox.Triple(ox.NamedNode(f"urn:change:{number}"), ox.NamedNode("urn:p1"), ox.Literal(number))
+        memory.learn(f"change-{number}", {GraphName.ASSERTED: [triple]}, [])
+        changed.append(seconds(lambda: memory.query(one)))
+        with contextlib.suppress(QueryTimeoutError):
+            memory.query(one, time_limit=0.0)  # ends the process
+        started.append(seconds(lambda: memory.query(one)))
+    print(
+        f"    look-up after a change: {median(changed) * 1e3:.1f} ms; in a new process: {median(started) * 1e3:.1f} ms"
+    )
+    endless = "SELECT (COUNT(*) AS ?n) { ?a ?b ?c . ?d ?e ?f . ?g ?h ?i }"
+    grows = "SELECT * { ?a ?b ?c . ?d ?e ?f } ORDER BY ?c ?f"
+    for what, query in (("cross product", endless), ("sorted cross product", grows)):
+        begin = time.perf_counter()
+        try:
+            memory.query(query, time_limit=2.0, memory_limit=2**28)
+        except QueryError as error:
+            print(f"    {what}, 2 s and 256 MiB: {type(error).__name__} after {time.perf_counter() - begin:.2f} s")
+
+
 def main() -> None:
     sizes = [int(size) for size in sys.argv[1:]] or [100_000, 1_000_000]
     for size in sizes:
@@ -104,6 +131,7 @@ def main() -> None:
             memory, bare = load(kind, list(make(size)), folder)
             if make is background:
                 ask(memory, bare)
+                bounds(memory)
             memory.close()
             del bare
             shutil.rmtree(folder)

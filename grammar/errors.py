@@ -58,11 +58,13 @@ def _width(text: str) -> int:
 class ScriptError(DeixisError, ValueError):
     """A script that cannot be read as it stands; ``problems`` are all that is wrong with it, in order."""
 
+    several_lines = True
+
     def __init__(self, problems: tuple[Diagnostic, ...]) -> None:
         super().__init__(problems)
         self.problems = problems
 
-    def __str__(self) -> str:
+    def _message(self) -> str:
         shown = [str(problem) for problem in self.problems[:MAX_PROBLEMS_SHOWN]]
         if len(self.problems) > MAX_PROBLEMS_SHOWN:
             shown.append(f"… and {len(self.problems) - MAX_PROBLEMS_SHOWN} more")

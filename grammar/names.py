@@ -55,6 +55,7 @@ def naming_hint(tokens: list[Token], at: int) -> str:
     return f"{kept}; if it belongs to a name, write {shortened(joined)} or quote the name"
 
 
+MAX_NAME = 1_000  # characters of a name or a title
 MAX_OBJECTS = 1_000_000  # of one script with all that it includes
 BLANKS = "\t\u00a0\u2002\u2003\u2009\u202f\u3000"  # the space is printable as it is
 JOINERS = "\u200c\u200d"  # invisible, but part of words in Persian and the scripts of India
@@ -81,6 +82,12 @@ def unquote(text: str, source: Source) -> str:
     return name
 
 
+def require_short(name: str, source: Source) -> None:
+    """Raise Refusal for a name or a title that is too long to be one."""
+    if len(name) > MAX_NAME:
+        raise Refusal(source, f"a name has at most {MAX_NAME:,} characters, and this one has {len(name):,}")
+
+
 class NameTable:
     """The names that were mentioned so far, in a script and in what it includes."""
 
@@ -91,6 +98,7 @@ class NameTable:
 
     def mention(self, name: str, count: int | None, source: Source) -> Mention:
         """Return the object or objects that a name means here; raises Refusal where it does not fit earlier ones."""
+        require_short(name, source)
         key = key_of(name)
         if count is not None:
             known = self._counts.get(key)

@@ -6,7 +6,7 @@ from lark import Token, Transformer, v_args
 
 from deixis.grammar.draft import place
 from deixis.grammar.errors import Refusal, shortened
-from deixis.grammar.names import unquote
+from deixis.grammar.names import require_short, unquote
 from deixis.grammar.script import Chain, Declaration, Header, Include, Mention, Modifiers, RelationStatement, Statement
 from deixis.grammar.words import NUMBERS, VERBS_OR_NOUNS
 from deixis.ontology.facts import Source
@@ -48,8 +48,10 @@ class TreeBuilder(Transformer[Token, Statement]):
 
     def _header(self, name: str | None, title: Token | None, viewpoint: Token | None) -> Header:
         shown = None
+        require_short(name or "", place.get().statement)
         if title is not None:
             shown = " ".join(title[1:-1].split())
+            require_short(shown, source_of(title))
             unquote(shown or "-", source_of(title))
         return Header(name, shown or None, text_of(viewpoint) if viewpoint else None, place.get().statement)
 

@@ -23,12 +23,19 @@ class MemoryWriteError(DeixisError, OSError):
 class UnknownLessonError(DeixisError, KeyError):
     """A lesson that the memory does not hold."""
 
-    def __str__(self) -> str:
-        return str(self.args[0]) if self.args else "unknown lesson"
-
 
 class QueryError(DeixisError, ValueError):
     """A query that cannot be run, or a result asked for in a form that it does not have."""
+
+    several_lines = True
+
+
+class QueryTimeoutError(QueryError, TimeoutError):
+    """A query that was not answered within its time limit."""
+
+
+class QueryMemoryError(QueryError, MemoryError):
+    """A query, or an answer, that needs more than its memory limit."""
 
 
 class ImportFormatError(DeixisError, ValueError):
@@ -59,6 +66,8 @@ class ShapeResult:
 class RejectedWriteError(DeixisError, ValueError):
     """A write that would have broken the shapes, or contradicts what is there; nothing was written."""
 
+    several_lines = True
+
     def __init__(self, message: str, results: Sequence[ShapeResult] = ()) -> None:
         self.results = tuple(results)
         super().__init__("\n".join([message, *map(str, self.results)]))
@@ -75,12 +84,6 @@ class DamagedMemoryError(MemoryFormatError):
 class UnknownViewError(DeixisError, KeyError):
     """A view that the memory does not hold."""
 
-    def __str__(self) -> str:
-        return str(self.args[0]) if self.args else "unknown view"
-
 
 class UnknownCategoryError(DeixisError, KeyError):
     """A category that the memory does not hold."""
-
-    def __str__(self) -> str:
-        return str(self.args[0]) if self.args else "unknown category"

@@ -27,6 +27,9 @@ VERSION = 2
 FORMAT = "deixis-memory"
 MARK, STORE, NEW, OLD = "memory.json", "semantic", "semantic.new", "semantic.old"
 NEW_MARK = MARK + ".new"
+SNAPSHOT = "semantic.snapshot"
+"""What queries are answered from, while a memory is open: see ``memory.semantic.queries.snapshot``."""
+
 PERCEPTUAL = "perceptual"
 """The perceptual memory, which may be there before anything else is."""
 
@@ -60,7 +63,7 @@ def inspect(folder: Path) -> FolderState:
         return FolderState.MEMORY
     if STORE in names and NEW_MARK in names:
         return FolderState.UNFINISHED
-    if names <= {LOCK_FILE, NEW, NEW_MARK, PERCEPTUAL}:
+    if names <= {LOCK_FILE, NEW, NEW_MARK, SNAPSHOT, PERCEPTUAL}:
         return FolderState.EMPTY
     if STORE in names and (folder / STORE / "CURRENT").is_file():
         raise MemoryFormatError(
@@ -157,6 +160,7 @@ def finish(folder: Path) -> None:
             disk.remove(folder / STORE)
             disk.rename(folder / OLD, folder / STORE)
     disk.remove(folder / NEW)
+    disk.remove(folder / SNAPSHOT)
     (folder / NEW_MARK).unlink(missing_ok=True)
 
 
@@ -190,8 +194,9 @@ def write_mark(folder: Path, mark: dict[str, Any]) -> None:
 
 
 def size(folder: Path) -> int:
-    """Return the bytes of all files under a folder."""
-    return sum(file.stat().st_size for file in folder.rglob("*") if file.is_file())
+    """Return the bytes of all files under a folder, but for the snapshot, whose files are the store's."""
+    files = (file for file in folder.rglob("*") if folder / SNAPSHOT not in file.parents)
+    return sum(file.stat().st_size for file in files if file.is_file())
 
 
 def one_line(error: BaseException) -> str:

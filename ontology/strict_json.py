@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import json
+from collections import Counter
 from typing import Any
 
 from deixis.errors import DeixisError
+from deixis.printable import shortened
 
 MAX_DIGITS = 4000
 """Digits of a whole number: what Python itself reads at the most, nearly."""
@@ -36,10 +38,9 @@ def parse_json(text: str, file: str, error: type[DeixisError], no_number: str | 
     def without_repeats(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
         found = dict(pairs)
         if len(found) != len(pairs):
-            keys = [key for key, _ in pairs]
-            twice = next(key for key in keys if keys.count(key) > 1)
-            shown = twice if len(twice) <= 60 else f"{twice[:60]}…"
-            raise ValueError(f"the key '{shown}' stands twice in one object")
+            counts = Counter(key for key, _ in pairs)
+            twice = next(key for key, count in counts.items() if count > 1)
+            raise ValueError(f"the key '{shortened(twice, 60)}' stands twice in one object")
         return found
 
     try:

@@ -9,6 +9,9 @@ from typing import Any
 
 from deixis.perception.errors import SceneError
 
+MAX_TEXT = 4_096
+"""How many characters a name, a label or a file's name in a scene may have."""
+
 MAX_SHOWN = 60
 """How many characters of a value an error message repeats."""
 
@@ -34,11 +37,13 @@ def number(data: Any, where: str) -> float:
 
 
 def text(data: Any, where: str) -> str:
-    """Return a text that is not blank and can be written as UTF-8."""
+    """Return a text that is neither blank nor too long, and can be written as UTF-8."""
     if not isinstance(data, str):
         raise SceneError(f"{where}: a text is expected, not {kind(data)}")
     if not data.strip():
         raise SceneError(f"{where}: a text is expected, and this one is blank")
+    if len(data) > MAX_TEXT:
+        raise SceneError(f"{where}: a text has at most {MAX_TEXT:,} characters, and this one has {len(data):,}")
     if any("\ud800" <= character <= "\udfff" for character in data):
         raise SceneError(f"{where}: the text has half a character in it, and cannot be written")
     return data

@@ -34,11 +34,13 @@ ATOM = re.compile(r"[^\s()]*\([^()]*\)|[^\s()]+")
 class NetworkFileError(DeixisError, ValueError):
     """A network file that cannot be read as it stands; ``problems`` are the first that are wrong with it, in order."""
 
+    several_lines = True
+
     def __init__(self, problems: tuple[Diagnostic, ...]) -> None:
         super().__init__(problems)
         self.problems = problems
 
-    def __str__(self) -> str:
+    def _message(self) -> str:
         return "\n".join(str(problem) for problem in self.problems)
 
 

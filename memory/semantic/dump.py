@@ -32,8 +32,12 @@ from deixis.memory.semantic.rdf.graphs import (
 )
 from deixis.ontology.triples import content_key, iri, learned_iri, text, typed, with_names
 from deixis.ontology.vocabulary import PROV, W3C
+from deixis.printable import shortened
 
 _ACTIVITY = "http://www.w3.org/ns/prov#Activity"
+
+MAX_TERM = 1_000_000
+"""Maximum number of characters of an IRI or a literal that a memory takes in."""
 
 Graphs = dict[GraphName, set[ox.Triple]]
 
@@ -85,6 +89,12 @@ def read_dump(file: Path) -> Dump:
     for quad in read_quads(file):
         if isinstance(quad.object, ox.Triple):
             raise ImportFormatError(f"{file}: a triple inside a triple cannot be kept: {quad.object}")
+        longest = max((term.value for term in quad.triple if not isinstance(term, ox.Triple)), key=len)
+        if len(longest) > MAX_TERM:
+            raise ImportFormatError(
+                f"{file}: a name or a text has at most {MAX_TERM:,} characters, and '{shortened(longest, 30)}' has "
+                f"{len(longest):,}; shorten it"
+            )
         if isinstance(quad.graph_name, ox.DefaultGraph):
             plain.append(quad.triple)
         elif isinstance(quad.graph_name, ox.NamedNode):

@@ -21,6 +21,7 @@ from deixis.memory.errors import MemoryFormatError, MemoryWriteError, RejectedWr
 from deixis.memory.folder import committed, read_mark, reading, write_mark
 from deixis.memory.owner import Closing
 from deixis.memory.semantic.opening import Opened, open_memory
+from deixis.memory.semantic.queries.limits import QUERY_MEMORY_LIMIT, QUERY_TIME_LIMIT, QueryLimits
 from deixis.memory.semantic.queries.union import (
     BUILD,
     building,
@@ -59,6 +60,7 @@ if TYPE_CHECKING:
     import rdflib
 
     from deixis.memory.semantic.queries.results import QueryResult
+    from deixis.memory.semantic.queries.snapshot import SnapshotQueries
 
 
 def load_aside(opened: Opened, contributions: Mapping[GraphName, Iterable[ox.Triple]]) -> None:
@@ -153,6 +155,7 @@ class SemanticMemory(Closing):
         self._views: list[rdflib.Dataset] = []
         self._forgets = 0  # how many lessons were forgotten
         self._union: list[ox.NamedNode] | None = None  # the graphs that a query looks at, since the last write
+        self._queries: SnapshotQueries | None = None
 
     @classmethod
     def open(cls, path: str | Path, create: bool = False) -> SemanticMemory:
@@ -171,6 +174,8 @@ class SemanticMemory(Closing):
         if self._opened is not None:
             opened, self._opened = self._opened, None
             self._drop_views()
+            if self._queries is not None:
+                self._queries.close()
             try:
                 if self._forgets:
                     _give_back(opened, self._forgets)
@@ -271,8 +276,8 @@ class SemanticMemory(Closing):
         """
 
         self._drop_views()
-        self._union = None
-        load_aside(self._open, contributions)
+        with self._writing():
+            load_aside(self._open, contributions)
 
     def lessons(self) -> tuple[str, ...]:
         """Return the lessons in the order learned."""
@@ -295,25 +300,54 @@ class SemanticMemory(Closing):
         with reading(self.path):
             yield from ledger.triples_in(self.store, graph_iri(GraphName(name)))
 
-    def query(self, sparql: str) -> QueryResult:
+    def query(
+        self, sparql: str, time_limit: float = QUERY_TIME_LIMIT, memory_limit: int = QUERY_MEMORY_LIMIT
+    ) -> QueryResult:
         """Ask SELECT, ASK, CONSTRUCT or DESCRIBE of the asserted, inferred and learned graphs together.
 
-        ``GRAPH ?g`` reaches all six canonical graphs. Raises QueryError, with the place, for anything else.
+        ``GRAPH ?g`` reaches all six canonical graphs. Another process answers, from a snapshot of the store.
+
+        Parameters
+        ----------
+        sparql
+            The query.
+        time_limit
+            Seconds in which it must be answered.
+        memory_limit
+            Bytes that evaluating it may take. The answer, as text, may take a sixteenth of them.
+
+        Raises
+        ------
+        QueryError
+            With the place, for what is refused, nested too deeply, or cannot be understood.
+        QueryTimeoutError, QueryMemoryError
+            A limit is reached. Both are QueryErrors; there are no partial answers.
         """
         from deixis.memory.semantic.queries.sparql import run_query
 
         with reading(self.path):
             if self._union is None:
                 self._union = default_graph(self.store)
-            return run_query(self.store, sparql, self._union)
+            return run_query(self._answer, sparql, self._union, QueryLimits(time_limit, memory_limit))
 
     def dataset(self) -> rdflib.Dataset:
-        """Return a live view of the six canonical graphs for rdflib; to be read only."""
+        """Return a live view of the six canonical graphs for rdflib; to be read only.
+
+        Its ``query`` takes text, and is bounded as :meth:`query` is.
+        """
         from deixis.memory.semantic.queries.rdflib_view import dataset_view
 
-        view = dataset_view(self.store)
+        view = dataset_view(self.store, self._answer)
         self._views.append(view)
         return view
+
+    def _answer(self, request: Mapping[str, Any], limits: QueryLimits) -> tuple[bytes, bytes]:
+        """Return what the process that answers queries says."""
+        from deixis.memory.semantic.queries.snapshot import SnapshotQueries
+
+        if self._queries is None:
+            self._queries = SnapshotQueries(self.path)
+        return self._queries.ask(self.store, request, limits)
 
     def stats(self) -> MemoryStats:
         """Return counts of what is kept."""
@@ -329,8 +363,7 @@ class SemanticMemory(Closing):
         from deixis.memory.semantic.validation.validate import check_change
 
         check_change(self.store, change)
-        self._union = None
-        with committed(self.path):
+        with self._writing(), committed(self.path):
             operations = [*change.operations, *merging(self.store, change.added, change.removed)]
             operations += ledger.keeping_up(self.store, kept_up)
             ledger.update(self.store, operations, building(self.store, change.added, change.removed))
@@ -343,8 +376,8 @@ class SemanticMemory(Closing):
         raises, this memory stays as it is.
         """
         self._drop_views()
-        self._union = None
-        commit_aside(self._open, write)
+        with self._writing():
+            commit_aside(self._open, write)
 
     def kept_up(self) -> str | None:
         """Return the rules by which the inferred graph and the statistics are right; None where they are to be made
@@ -360,6 +393,16 @@ class SemanticMemory(Closing):
                 f"did you mean '{near}'?" if near else f"it holds: {', '.join(known[-5:])}" if known else "it has none"
             )
             raise UnknownLessonError(f"no lesson '{lesson}' in the memory at {self.path}; {hint}")
+
+    @contextlib.contextmanager
+    def _writing(self) -> Iterator[None]:
+        """Have queries look anew at a store that is written."""
+        try:
+            yield
+        finally:
+            self._union = None
+            if self._queries is not None:
+                self._queries.changed()
 
     def _drop_views(self) -> None:
         for view in self._views:
@@ -389,7 +432,6 @@ class _Copy(SemanticMemory):
         from deixis.memory.semantic.validation.validate import check_change
 
         check_change(self.store, change)
-        self._union = None
         if not (self._overlapping or self.store.contains_named_graph(MERGED)):
             self._overlapping = overlapping(self.store, change.added, change.removed)
         operations = [*change.operations, *merging(self.store, change.added, change.removed)]

@@ -37,7 +37,7 @@ class TemporalConflictError(InconsistencyError):
         self.minimal = minimal
         self.statements = statements or explanation.leaves()
 
-    def __str__(self) -> str:
+    def _message(self) -> str:
         return "these cannot all hold: " + "; ".join(
             f"{stated.claim} [{stated.source}]" if stated.source else stated.claim for stated in self.statements
         )

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from deixis.memory.on_demand import OnDemand
 from deixis.memory.owner import Closing
+from deixis.memory.semantic.queries.limits import QUERY_MEMORY_LIMIT, QUERY_TIME_LIMIT
 from deixis.reasoning.errors import NothingFoundError
 
 if TYPE_CHECKING:
@@ -170,9 +171,11 @@ class KnowledgeStore(Closing):
 
         return layout_script(self.layout(name), self.ontology)
 
-    def query(self, sparql: str) -> QueryResult:
-        """Ask SPARQL of everything remembered: SELECT, ASK, CONSTRUCT or DESCRIBE; nothing else is let in."""
-        return self.memory().query(sparql)
+    def query(
+        self, sparql: str, time_limit: float = QUERY_TIME_LIMIT, memory_limit: int = QUERY_MEMORY_LIMIT
+    ) -> QueryResult:
+        """Ask SPARQL of everything remembered: see :meth:`SemanticMemory.query`."""
+        return self.memory().query(sparql, time_limit, memory_limit)
 
     def owl(self) -> ObjectView:
         """Return the ontology with everything learned as owlready2's objects: see :class:`ObjectView`.

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Self
 from deixis.knowledge_store import KnowledgeStore
 from deixis.memory.on_demand import default_memory
 from deixis.memory.owner import Closing
+from deixis.memory.semantic.queries.limits import QUERY_MEMORY_LIMIT, QUERY_TIME_LIMIT
 from deixis.reasoning.grounding.options import DEFAULT_TIME_LIMIT, EngineName, Select, ViewpointName
 from deixis.view_store import ViewStore
 
@@ -220,9 +221,16 @@ class Session(Closing):
         """A learned layout as a script again."""
         return self.knowledge_store.show(name)
 
-    def query(self, sparql: str) -> QueryResult:
-        """Asks SPARQL of everything remembered: SELECT, ASK, CONSTRUCT or DESCRIBE; nothing else is let in."""
-        return self.knowledge_store.query(sparql)
+    def query(
+        self, sparql: str, time_limit: float = QUERY_TIME_LIMIT, memory_limit: int = QUERY_MEMORY_LIMIT
+    ) -> QueryResult:
+        """Asks SPARQL of everything remembered: SELECT, ASK, CONSTRUCT or DESCRIBE; nothing else is let in.
+
+        Another process answers, so that the query can be ended. ``time_limit`` is in seconds, ``memory_limit`` in
+        bytes; the answer, as text, may take a sixteenth of them. Raises QueryError for what is refused or cannot be
+        understood, QueryTimeoutError and QueryMemoryError, with no part of the answer, where a limit is reached.
+        """
+        return self.knowledge_store.query(sparql, time_limit, memory_limit)
 
     def owl(self) -> ObjectView:
         """The ontology with everything learned, as owlready2's objects in a world of their own; to be closed.

@@ -70,7 +70,7 @@ def test_problems_of_included_files_are_told_with_the_others(tmp_path: Path) -> 
         ("none.layout", "none.layout: there is no such file"),
         (".", ".: this is a directory, not a layout script"),
         ("", "an include needs the name of a file"),
-        ("x\0y", "'x\0y' cannot be a file's name"),
+        ("x\0y", r"'x\u0000y' cannot be a file's name"),
     ],
 )
 def test_includes_out_of_bounds(tmp_path: Path, include: str, told: str) -> None:

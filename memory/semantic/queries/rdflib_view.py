@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn, cast
 
 import pyoxigraph as ox
 
-from deixis.memory.errors import MemoryFormatError
-from deixis.memory.semantic.queries.sparql import check_query
+from deixis.memory.errors import MemoryFormatError, QueryError
+from deixis.memory.semantic.queries.limits import QueryLimits
+from deixis.memory.semantic.queries.results import Term
+from deixis.memory.semantic.queries.sparql import Answering, answer, check_query
 from deixis.memory.semantic.queries.union import default_graph
 from deixis.memory.semantic.rdf.graphs import CANONICAL, UNION
 
@@ -16,11 +18,15 @@ if TYPE_CHECKING:
     import rdflib
 
 
-def dataset_view(store: ox.Store) -> rdflib.Dataset:
-    """Return a view of a store's canonical graphs; the copies that say who contributed what are hidden."""
+def dataset_view(store: ox.Store, answering: Answering) -> rdflib.Dataset:
+    """Return a view of a store's canonical graphs; the copies that say who contributed what are hidden.
+
+    ``answering`` answers its queries, within the default limits.
+    """
     import rdflib
     from oxrdflib import OxigraphStore
-    from oxrdflib._converter import from_ox, to_ox_quad_pattern
+    from oxrdflib._converter import from_ox, to_ox, to_ox_quad_pattern
+    from rdflib import Variable
     from rdflib.query import Result
 
     class CanonicalGraphs(OxigraphStore):
@@ -46,15 +52,42 @@ def dataset_view(store: ox.Store) -> rdflib.Dataset:
         def query(
             self, query: Any, initNs: Mapping[str, Any], initBindings: Mapping[str, Any], queryGraph: Any, **kwargs: Any
         ) -> Result:
-            if isinstance(query, str):
-                check_query(query, {**self._namespace_for_prefix, **initNs})
-            if queryGraph != "__UNION__":
-                return super().query(query, initNs, initBindings, queryGraph, **kwargs)
-            inner, self._store = self._inner, _Canonical(self._inner)  # type: ignore[assignment]
-            try:
-                return super().query(query, initNs, initBindings, queryGraph, **kwargs)
-            finally:
-                self._store = inner
+            if not isinstance(query, str):  # rdflib would evaluate it in this process, where nothing can end it
+                raise QueryError("query: a prepared query cannot be asked of a memory; give its text")
+            if kwargs:
+                raise QueryError(f"query: a memory knows no parameter '{next(iter(kwargs))}'")
+            prefixes = {prefix: str(base) for prefix, base in {**self._namespace_for_prefix, **initNs}.items()}
+            if queryGraph == "__UNION__":
+                default = [
+                    *default_graph(self._inner),
+                    *(graph for graph, name in CANONICAL.items() if name not in UNION),
+                ]
+            else:
+                default = [ox.NamedNode(str(queryGraph))]
+            checked = check_query(query, prefixes)
+            found = answer(
+                answering,
+                query,
+                checked,
+                prefixes,
+                None if checked.names_graphs else [graph.value for graph in default],
+                None if checked.names_graphs else [graph.value for graph in CANONICAL],
+                {name: cast(Term, to_ox(value)) for name, value in initBindings.items()},
+                QueryLimits(),
+            )
+            result = Result(checked.kind.upper())
+            if isinstance(found, ox.QueryBoolean):
+                result.askAnswer = bool(found)
+            elif isinstance(found, ox.QuerySolutions):
+                result.vars = [Variable(variable.value) for variable in found.variables]
+                rows = [zip(result.vars, row, strict=True) for row in found]
+                result.bindings = [
+                    {name: cast(Any, from_ox(term)) for name, term in row if term is not None} for row in rows
+                ]
+            else:
+                result.graph = rdflib.Graph()
+                result.graph += [cast(Any, tuple(map(from_ox, triple))) for triple in found]
+            return result
 
         def add_graph(self, graph: Any) -> None:
             pass  # rdflib calls this when a graph is asked for
@@ -65,15 +98,3 @@ def dataset_view(store: ox.Store) -> rdflib.Dataset:
         add = addN = remove = update = remove_graph = _refuse
 
     return rdflib.Dataset(store=CanonicalGraphs(store=store), default_union=True)
-
-
-class _Canonical:
-    """A store whose queries look at the canonical graphs alone."""
-
-    def __init__(self, store: ox.Store) -> None:
-        self._store = store
-
-    def query(self, query: str, **kwargs: Any) -> Any:
-        graphs = [*default_graph(self._store), *(graph for graph, name in CANONICAL.items() if name not in UNION)]
-        kwargs |= {"use_default_graph_as_union": False, "default_graph": graphs, "named_graphs": [*CANONICAL]}
-        return self._store.query(query, **kwargs)

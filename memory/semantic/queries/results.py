@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import json
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
@@ -15,9 +16,16 @@ import pyoxigraph as ox
 from deixis.memory.errors import QueryError
 from deixis.memory.semantic.rdf.files import PREFIXES, short
 from deixis.ontology.triples import with_blank_nodes
+from deixis.printable import visible_line
 
 Term = ox.NamedNode | ox.BlankNode | ox.Literal | ox.Triple
+Answer = ox.QuerySolutions | ox.QueryBoolean | Sequence[ox.Triple]
 _STRING = PREFIXES["xsd"] + "string"
+
+_FORMULA = re.compile(r"[=+\-@\t\r\n\uff1d\uff0b\uff0d\uff20]")
+"""How a cell begins that a spreadsheet may take for a formula: see OWASP, CSV injection."""
+
+_NUMBER = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?|[+-]?INF")
 
 
 class QueryKind(StrEnum):
@@ -45,9 +53,7 @@ class QueryResult:
     ordered: bool = False  # whether the query states an order
 
     @classmethod
-    def of(
-        cls, kind: QueryKind, answer: ox.QuerySolutions | ox.QueryBoolean | ox.QueryTriples, ordered: bool
-    ) -> QueryResult:
+    def of(cls, kind: QueryKind, answer: Answer, ordered: bool) -> QueryResult:
         """Return what Oxigraph answers, read to its end."""
         if isinstance(answer, ox.QueryBoolean):
             return cls(kind, boolean=bool(answer))
@@ -78,15 +84,16 @@ class QueryResult:
         if self.kind is QueryKind.ASK:
             answer: dict[str, Any] = {"head": {}, "boolean": self.boolean}
         elif self.kind is QueryKind.SELECT:
-            bound = [zip(self.variables, row, strict=True) for row in self.printed()]
-            bindings = [{name: _json_term(term) for name, term in row if term is not None} for row in bound]
-            answer = {"head": {"vars": list(self.variables)}, "results": {"bindings": bindings}}
+            answer = solutions(self.variables, self.printed())
         else:
             answer = {"triples": [f"{triple} ." for triple in self.triples]}
         return json.dumps(answer, indent=2, ensure_ascii=False)
 
     def to_csv(self) -> str:
-        """Return SPARQL 1.1 results as CSV. Raises QueryError for what has no rows."""
+        """Return SPARQL 1.1 results as CSV. Raises QueryError for what has no rows.
+
+        A cell that a spreadsheet would run as a formula begins with ``'``; numbers stay as they are.
+        """
         if self.kind is not QueryKind.SELECT:
             raise QueryError(f"{self.kind.upper()} has no rows to write as CSV; use SELECT")
         out = io.StringIO()
@@ -103,6 +110,13 @@ class QueryResult:
         return (ox.serialize(triples, format=ox.RdfFormat.TURTLE, prefixes=PREFIXES) or b"").decode("utf-8")
 
 
+def solutions(variables: Sequence[str], rows: Sequence[Sequence[Term | None]]) -> dict[str, Any]:
+    """Return rows as SPARQL 1.1 results in JSON; None is a variable without a value."""
+    bound = [zip(variables, row, strict=True) for row in rows]
+    bindings = [{name: _json_term(term) for name, term in row if term is not None} for row in bound]
+    return {"head": {"vars": list(variables)}, "results": {"bindings": bindings}}
+
+
 def _row_key(row: Sequence[Term | None]) -> tuple[str, ...]:
     return tuple("" if term is None else str(term) for term in row)
 
@@ -111,22 +125,18 @@ def _readable(term: Term | None, quoted: bool = False) -> str:
     if term is None:
         return ""
     if isinstance(term, ox.NamedNode):
-        return _printable(short(term.value))
+        return visible_line(short(term.value))
     if isinstance(term, ox.Literal):
-        text = _printable(term.value)
+        text = visible_line(term.value)
         return json.dumps(text, ensure_ascii=False) if quoted and term.datatype.value == _STRING else text
-    return _printable(str(term))
-
-
-def _printable(text: str) -> str:
-    """Return a text without line ends and other characters that would move a terminal's cursor."""
-    return "".join(letter if letter.isprintable() else letter.encode("unicode_escape").decode() for letter in text)
+    return visible_line(str(term))
 
 
 def _csv_term(term: Term | None) -> str:
     if term is None:
         return ""
-    return term.value if isinstance(term, ox.NamedNode | ox.Literal) else str(term)
+    text = term.value if isinstance(term, ox.NamedNode | ox.Literal) else str(term)
+    return f"'{text}" if _FORMULA.match(text) and not _NUMBER.fullmatch(text) else text
 
 
 def _json_term(term: Term) -> dict[str, Any]:
@@ -140,6 +150,8 @@ def _json_term(term: Term) -> dict[str, Any]:
     told: dict[str, Any] = {"type": "literal", "value": term.value}
     if term.language:
         told["xml:lang"] = term.language
+        if term.direction is not None:
+            told["its:dir"] = term.direction.value
     elif term.datatype.value != _STRING:
         told["datatype"] = term.datatype.value
     return told

@@ -3,19 +3,31 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from itertools import islice
+from typing import Any
 
 import pyoxigraph as ox
 
 from deixis.memory.errors import QueryError
-from deixis.memory.semantic.queries.results import QueryKind, QueryResult
-from deixis.memory.semantic.queries.tokens import Token, TokenKind, ambiguous, decoded, given_offset, tokens
-from deixis.memory.semantic.queries.union import default_graph
+from deixis.memory.semantic.queries import worker
+from deixis.memory.semantic.queries.limits import MAX_DEPTH, MAX_LENGTH, MAX_TOKENS, QueryLimits
+from deixis.memory.semantic.queries.results import Answer, QueryKind, QueryResult, Term, solutions
+from deixis.memory.semantic.queries.tokens import (
+    Token,
+    TokenKind,
+    ambiguous,
+    decoded,
+    given_offset,
+    tokens,
+    too_deep,
+)
 from deixis.memory.semantic.rdf.files import PREFIXES
 from deixis.memory.semantic.rdf.graphs import CANONICAL
 from deixis.ontology.relation import nearest
+from deixis.printable import window
 
 _UPDATES = {"INSERT", "DELETE", "LOAD", "CLEAR", "CREATE", "DROP", "COPY", "MOVE", "ADD", "WITH", "USING"}
 _FORMS = {"SELECT", "ASK", "CONSTRUCT", "DESCRIBE"}
@@ -48,8 +60,8 @@ class _Text:
         line = before.count("\n") + 1
         start = before.rfind("\n") + 1
         shown = self.given[start:].split("\n", 1)[0].rstrip("\r")
-        caret = re.sub(r"[^\t]", " ", shown[: offset - start]) + "^"
-        return QueryError(f"query:{line}:{offset - start + 1}: {message}\n  {shown}\n  {caret}")
+        shown, column = window(shown, offset - start)
+        return QueryError(f"query:{line}:{offset - start + 1}: {message}\n  {shown}\n  {' ' * column}^")
 
     def offset(self, line: int, column: int) -> int:
         """Return the offset in the decoded text of a line and a column in it."""
@@ -57,23 +69,55 @@ class _Text:
         return min(sum(len(before) + 1 for before in lines[: line - 1]) + column - 1, len(self.text))
 
 
-def run_query(store: ox.Store, sparql: str, union: list[ox.NamedNode] | None = None) -> QueryResult:
-    """Run a query over a memory's store. Raises QueryError for what is refused or cannot be understood.
+Answering = Callable[[Mapping[str, Any], QueryLimits], tuple[bytes, bytes]]
+"""Answers a request as the process of :mod:`.worker` does: the kind of the answer, and its bytes."""
 
-    ``union`` is what :func:`deixis.memory.semantic.queries.union.default_graph` says of the store, where the caller
-    knows it already.
+
+def run_query(answering: Answering, sparql: str, union: Sequence[ox.NamedNode], limits: QueryLimits) -> QueryResult:
+    """Return a query's answer. ``union`` are the graphs that it looks at unless it says otherwise.
+
+    Raises QueryError for what is refused or cannot be understood, QueryTimeoutError and QueryMemoryError for what
+    reaches a limit.
     """
     checked = _admitted(sparql)
-    graphs = {} if checked.names_graphs else {"default_graph": union or default_graph(store)}
-    if checked.asks_graphs and graphs:
-        graphs["named_graphs"] = [*CANONICAL]
-    try:
-        answer = store.query(checked.text, prefixes=dict(checked.prefixes), **graphs)  # type: ignore[arg-type]
-        return QueryResult.of(checked.kind, answer, checked.ordered)
-    except SyntaxError as error:
-        raise _syntax_error(_Text(sparql), error) from None
-    except ValueError as error:
-        raise QueryError(f"query: {error}") from error
+    default = None if checked.names_graphs else [graph.value for graph in union]
+    named = [graph.value for graph in CANONICAL] if checked.asks_graphs and default else None
+    found = answer(answering, sparql, checked, checked.prefixes, default, named, None, limits)
+    return QueryResult.of(checked.kind, found, checked.ordered)
+
+
+def answer(
+    answering: Answering,
+    sparql: str,
+    checked: CheckedQuery,
+    prefixes: Mapping[str, str],
+    default_graph: Sequence[str] | None,
+    named_graphs: Sequence[str] | None,
+    bindings: Mapping[str, Term] | None,
+    limits: QueryLimits,
+) -> Answer:
+    """Return what Oxigraph answers to a checked query; raises as :func:`run_query`.
+
+    ``default_graph`` and ``named_graphs`` are IRIs, or None for what the query itself says; ``bindings`` are values of
+    variables.
+    """
+    request = {
+        "text": checked.text,
+        "prefixes": dict(prefixes),
+        "default_graph": default_graph,
+        "named_graphs": named_graphs,
+        "bindings": None if bindings is None else solutions([*bindings], [[*bindings.values()]]),
+    }
+    kind, content = answering(request, limits)
+    if kind == worker.SYNTAX:
+        raise _syntax_error(_Text(sparql), content.decode())
+    if kind == worker.VALUE:
+        raise QueryError(f"query: {content.decode()}")
+    if kind == worker.STORAGE:
+        raise RuntimeError(content.decode())
+    if kind == worker.TRIPLES:
+        return [quad.triple for quad in ox.parse(content, format=ox.RdfFormat.N_TRIPLES, lenient=True)]
+    return ox.parse_query_results(content, format=ox.QueryResultsFormat.JSON)
 
 
 @lru_cache(maxsize=256)
@@ -90,13 +134,20 @@ def check_query(sparql: str, prefixes: Mapping[str, str] = PREFIXES) -> CheckedQ
     >>> check_query("ASK { ?s ?p ?o }").kind
     <QueryKind.ASK: 'ask'>
     """
+    if len(sparql) > MAX_LENGTH:
+        raise QueryError(f"query: {len(sparql):,} characters are too many; at most {MAX_LENGTH:,} are read")
     text = _Text(sparql)
-    found = list(tokens(text.text))
+    found = list(islice(tokens(text.text), MAX_TOKENS + 1))
+    if len(found) > MAX_TOKENS:
+        raise text.error(found[-1].start, f"the query is too long: it has more than {MAX_TOKENS:,} words and signs")
     declared = {}
     for word, name, iri in zip(found, found[1:], found[2:], strict=False):
         if word.kind is TokenKind.WORD and word.upper == "PREFIX" and name.text.endswith(":"):
             declared[name.text[:-1]] = iri.text[1:-1]
-    known = {**prefixes, **declared}
+    known, prologue = {**prefixes, **declared}, _prologue(found)
+    deep = too_deep(found, known.keys(), MAX_DEPTH)
+    if deep is not None:
+        raise text.error(deep.start, f"nested too deeply: brackets and signs may be nested {MAX_DEPTH} levels deep")
     for position, token in enumerate(found):
         before = found[position - 1 : position]
         after = found[position + 1 : position + 2]
@@ -121,7 +172,7 @@ def check_query(sparql: str, prefixes: Mapping[str, str] = PREFIXES) -> CheckedQ
                     token.start,
                     f"the prefix '{given_prefix}:' is not known; {hint} else declare it: PREFIX {given_prefix}: <…>",
                 )
-        elif token.kind is TokenKind.IRI and ambiguous(token, set(known)):
+        elif token.kind is TokenKind.IRI and position >= prologue and ambiguous(token, known.keys()):
             raise text.error(
                 token.start,
                 "this can be read as an IRI or as a comparison: write the IRI in full, or put spaces around '<'",
@@ -134,6 +185,21 @@ def check_query(sparql: str, prefixes: Mapping[str, str] = PREFIXES) -> CheckedQ
     used = {token.text.partition(":")[0] for token in found if token.kind is TokenKind.NAME}
     mine = {prefix: base for prefix, base in prefixes.items() if prefix in used and prefix not in declared}
     return CheckedQuery(text.text, QueryKind(form.text.lower()), names_graphs, asks_graphs, _ordered(found), mine)
+
+
+def _prologue(found: list[Token]) -> int:
+    """Return the number of tokens that declare prefixes and bases: no ``<`` among these is a comparison."""
+    end = 0
+    while True:
+        first, second, third = (*found[end : end + 3], *[None] * 3)[:3]
+        if first is None or second is None or first.kind is not TokenKind.WORD:
+            return end
+        if first.upper == "BASE" and second.kind is TokenKind.IRI:
+            end += 2
+        elif first.upper == "PREFIX" and second.text.endswith(":") and third and third.kind is TokenKind.IRI:
+            end += 3
+        else:
+            return end
 
 
 def _body(found: list[Token]) -> list[Token]:
@@ -150,7 +216,7 @@ def _check_from(text: _Text, found: list[Token], known: dict[str, str]) -> bool:
     for position, token in enumerate(found):
         if token.kind is not TokenKind.WORD or token.upper != "FROM":
             continue
-        rest = found[position + 1 :]
+        rest = found[position + 1 : position + 3]
         graph = rest[1] if rest and rest[0].upper == "NAMED" and len(rest) > 1 else rest[0] if rest else token
         if _iri(graph, known) not in own:
             listed = ", ".join(f"dxg:{name}" for name in CANONICAL.values())
@@ -177,10 +243,12 @@ def _ordered(found: list[Token]) -> bool:
     return False
 
 
-def _syntax_error(text: _Text, error: SyntaxError) -> QueryError:
-    found = re.match(r"error at (\d+):(\d+): (.*)", " ".join(str(error).split()))
+def _syntax_error(text: _Text, told: str) -> QueryError:
+    """Return the error for what Oxigraph's parser says is wrong."""
+    told = " ".join(told.split())
+    found = re.match(r"error at (\d+):(\d+): (.*)", told)
     if not found:
-        return QueryError(f"query: {' '.join(str(error).split())}")
+        return QueryError(f"query: {told}")
     line, column, what = int(found.group(1)), int(found.group(2)), found.group(3)
     return text.error(text.offset(line, column), f"not understood here{_expected(what)}")
 

@@ -11,7 +11,7 @@ can be read as an IRI or as a comparison and a comment, and ``trueSERVICE`` as o
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 
@@ -47,6 +47,9 @@ _ESCAPE = r"\\u[0-9A-Fa-f]{4}|\\U[0-9A-Fa-f]{8}"
 _IRI = rf"<(?:[^<>\"{{}}|^`\\\x00-\x20]|{_ESCAPE})*>"
 _LOCAL = r"(?:[\w·:-]|\.(?=[\w·:.\\%-])|%[0-9A-Fa-f]{2}|\\[_~.\-!$&'()*+,;=/?#@%])*"
 
+_MAX_PREFIX = 200
+"""Maximum characters of a prefix, so that finding the end of words such as ``a.a.a.a`` takes linear time."""
+
 _STRINGS = "|".join(
     [
         r'"""(?:[^"\\]|\\.|"(?!""))*"""',
@@ -65,9 +68,9 @@ _TOKEN = re.compile(
             r"(?P<variable>[?$]\w+)",
             r"(?P<language>@[A-Za-z]+(?:-[A-Za-z0-9]+)*)",
             r"(?P<number>\d+(?:\.\d+)?(?:[eE][+-]?\d+)?)",
-            rf"(?P<name>(?:_:|(?:[^\W\d_](?:[\w·.-]*[\w·-])?)?:){_LOCAL})",
+            rf"(?P<name>(?:_:|(?:[^\W\d_](?:[\w·.-]{{0,{_MAX_PREFIX}}}[\w·-])?)?:){_LOCAL})",
             r"(?P<word>[^\W\d]\w*)",
-            r"(?P<sign>\\.|\S)",
+            r"(?P<sign>\\.|<<|>>|\S)",
         ]
     ),
     re.DOTALL,
@@ -119,13 +122,58 @@ def given_offset(offset: int, places: list[tuple[int, int]]) -> int:
     return there + offset - here
 
 
-def ambiguous(token: Token, prefixes: set[str]) -> bool:
-    """Return whether an IRI might be a comparison that hides the beginning of a comment, a string or a SERVICE.
+def ambiguous(token: Token, prefixes: Collection[str]) -> bool:
+    """Return whether an IRI might be a comparison that hides the beginning of a comment, a string or a SERVICE."""
+    return bool(_may_be_comparison(token, prefixes) and re.search(r"[#']|service", token.text, re.IGNORECASE))
 
-    An IRI that begins with a scheme is one, unless the scheme is a prefix of the query.
+
+def _may_be_comparison(iri: Token, prefixes: Collection[str]) -> bool:
+    """Return False for an IRI that begins with a scheme, unless the scheme is a prefix of the query."""
+    scheme = re.match(r"<([A-Za-z][A-Za-z0-9+.-]*):", iri.text)
+    return scheme is None or scheme.group(1) in prefixes
+
+
+_OPENING = {")": "(", "]": "[", "}": "{", ">>": "<<"}
+"""What each closing bracket closes."""
+
+_PREFIX_OPERATORS = {"!", "-", "+", "^"}
+
+
+def too_deep(found: Sequence[Token], prefixes: Collection[str], limit: int) -> Token | None:
+    """Return the first token that is nested more than ``limit`` levels deep, None where there is none.
+
+    Open brackets of all sorts count, ``<<`` among them, and prefix operators that follow each other. The count is
+    never below the nesting that a parser meets: brackets that open in an IRI count too where it may be a comparison,
+    as in ``?a<((?b>?c``.
+
+    >>> words = list(tokens("ASK { FILTER(!!(?a)) }"))
+    >>> too_deep(words, (), 5), too_deep(words, (), 4).start
+    (None, 15)
     """
-    inner = token.text[1:-1]
-    scheme = re.match(r"([A-Za-z][A-Za-z0-9+.-]*):", inner)
-    if scheme and scheme.group(1) not in prefixes:
-        return False
-    return bool(re.search(r"[#']|service", inner, re.IGNORECASE))
+    levels: list[tuple[str, int]] = []  # open brackets, each with its depth
+    depth = operators = 0
+    for token in found:
+        if token.kind is TokenKind.SIGN and token.text in _PREFIX_OPERATORS:
+            operators += 1
+        else:
+            for sign in _brackets(token, prefixes):
+                if sign in _OPENING.values():
+                    levels.append((sign, depth + operators + 1))
+                elif any(opened == _OPENING[sign] for opened, _ in levels):
+                    while levels.pop()[0] != _OPENING[sign]:
+                        pass  # what is left open inside ends here, or the query is malformed
+                depth = levels[-1][1] if levels else 0
+                operators = 0
+            operators = 0
+        if depth + operators > limit:
+            return token
+    return None
+
+
+def _brackets(token: Token, prefixes: Collection[str]) -> list[str]:
+    """Return the brackets in a token: itself, or those that open in an IRI that may be none."""
+    if token.kind is TokenKind.SIGN:
+        return [token.text] if token.text in _OPENING or token.text in _OPENING.values() else []
+    if token.kind is TokenKind.IRI and _may_be_comparison(token, prefixes):
+        return re.findall(r"[(\[]", token.text)
+    return []

@@ -164,6 +164,8 @@ def read_quads(file: Path) -> Iterator[ox.Quad]:
     except SyntaxError as error:
         place = f"{error.lineno}:{error.offset}: " if error.lineno else ""
         raise ImportFormatError(f"{file}:{place or ' '}{' '.join(str(error.msg).split())}") from None
+    except MemoryError as error:  # what Oxigraph makes of a name or a text that is larger than its buffer
+        raise ImportFormatError(f"{file}: a name or a text in it is too long to be read; shorten it") from error
     except (OSError, ValueError) as error:
         raise ImportFormatError(f"{file}: {error}") from error
 

@@ -1,6 +1,6 @@
 """The command line. Each command loads, calls and prints; everything heavy is imported by the command that needs it.
 
-Exit codes: 0 done, 1 the answer is no, 2 bad input, 3 undecided within the time limit, 130 interrupted.
+Exit codes: 0 done, 1 the answer is no, 2 bad input, 3 undecided within the limits of time and memory, 130 interrupted.
 """
 
 from __future__ import annotations
@@ -16,8 +16,9 @@ from typing import Annotated, Any
 import typer
 from typer.core import TyperGroup
 
-from deixis.cli.common import BAD_INPUT, UNDECIDED
+from deixis.cli.common import BAD_INPUT, UNDECIDED, print_note
 from deixis.cli.interrupts import INTERRUPTED, noting_interrupts
+from deixis.cli.output import visible_output, what_is_kept
 
 COMMANDS = {
     "parse": "parse",
@@ -105,7 +106,7 @@ def main() -> None:
 
     Whatever fails once it was interrupted ends it quietly, with exit code 130.
     """
-    with noting_interrupts() as interrupted:
+    with visible_output(), noting_interrupts() as interrupted:
         try:
             app()
         except Exception as error:
@@ -121,16 +122,19 @@ def _tell(error: Exception) -> None:
     from deixis.errors import DeixisError
 
     if isinstance(error, DeixisError):
-        _fail(str(error), UNDECIDED if isinstance(error, TimeoutError) else BAD_INPUT)
+        _fail(error, UNDECIDED if isinstance(error, TimeoutError | MemoryError) else BAD_INPUT)
     if isinstance(error, OSError):
-        _fail(f"{error.filename or 'standard output'}: {error.strerror or error}")
+        what = error.strerror or error
+        _fail(f"{error.filename}: {what}" if error.filename else f"standard output: {what}{what_is_kept()}")
+    if isinstance(error, MemoryError):
+        _fail("there is not enough memory for this; give it less, or more memory", UNDECIDED)
     if os.environ.get("DEIXIS_DEBUG"):
         raise error
     _fail(f"a defect in Deixis, please report it: {type(error).__name__}: {error} (DEIXIS_DEBUG=1 shows where)")
 
 
-def _fail(message: str, code: int = BAD_INPUT) -> None:
-    print(f"deixis: {message}", file=sys.stderr)
+def _fail(message: str | Exception, code: int = BAD_INPUT) -> None:
+    print_note(message)
     sys.exit(code)
 
 
@@ -156,7 +160,7 @@ def _flush() -> None:
         sys.stdout.flush()
     except OSError as error:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        _fail(f"standard output: {error.strerror}")
+        _fail(f"standard output: {error.strerror}{what_is_kept()}")
 
 
 if __name__ == "__main__":

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-import sys
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from deixis.cli.common import NO, MemoryDir, PerceivedScene, print_lines, print_note, progress_bar
+from deixis.cli.common import NO, MemoryDir, PerceivedScene, print_line, print_lines, print_note, progress_bar
+from deixis.cli.output import StandardInput, note_change
+from deixis.printable import visible_line
 
 if TYPE_CHECKING:
     from deixis.perception.scene import Scene
@@ -39,16 +40,18 @@ def ask(
             with progress_bar("reading what was taught") as progress:
                 answers = session.recognise(seen.without_labels(), progress, print_note).answers
             ones = [f"{id} ({answer.probability:.2f})" for id, answer in answers.items() if answer.label == name]
-            print(
+            print_line(
                 f"I know '{name}'. Here it is: {', '.join(ones)}." if ones else f"I know '{name}', and see none here."
             )
             raise typer.Exit(0 if ones else NO)
     pointed = points_at or _pointed_at(name, seen)  # with the memory closed: whoever is asked may take their time
     if pointed is None:
-        print(f"I still do not know what '{name}' is.")
+        print_line(f"I still do not know what '{name}' is.")
         raise typer.Exit(NO)
     with Session(memory) as session:
-        print(taught_line(session.teach(seen, pointed, name, teacher), pointed))
+        taught = session.teach(seen, pointed, name, teacher)
+        note_change(session.path)
+    print_line(taught_line(taught, pointed))
 
 
 def _require_something_to_show(scene: Scene) -> None:
@@ -56,7 +59,7 @@ def _require_something_to_show(scene: Scene) -> None:
     from deixis.errors import DeixisError
 
     if not scene.objects:
-        print(f"There is nothing in {scene.file} that a word could mean.")
+        print_line(f"There is nothing in {scene.file} that a word could mean.")
         raise typer.Exit(NO)
     if all(thing.cloud is None for thing in scene.objects):
         raise DeixisError(f"{scene.file}: nothing in it has a cloud, so none can be shown; 'perceive -o' writes clouds")
@@ -68,16 +71,15 @@ def _pointed_at(name: str, scene: Scene) -> str | None:
 
     print_lines(scene_lines(scene))
     while True:
-        print(
-            f"I do not know what '{name}' is. Which one of these is one? (its id; nothing: none) ", end="", flush=True
-        )
-        answer = sys.stdin.readline().strip()
+        question = f"I do not know what '{name}' is. Which one of these is one? (its id; nothing: none) "
+        print(visible_line(question), end="", flush=True)
+        answer = StandardInput().readline().strip()
         if not answer:
             print()
             return None
         if answer not in scene.ids:
-            print(f"There is no '{answer}' here.")
+            print_line(f"There is no '{answer}' here.")
         elif scene[answer].cloud is None:
-            print(f"'{answer}' has no cloud, so nobody knows what it looks like.")
+            print_line(f"'{answer}' has no cloud, so nobody knows what it looks like.")
         else:
             return answer

@@ -2,12 +2,21 @@
 
 from __future__ import annotations
 
-import sys
 from typing import Annotated
 
 import typer
 
-from deixis.cli.common import BAD_INPUT, AsJson, MemoryDir, print_json, print_lines, require_memory
+from deixis.cli.common import (
+    BAD_INPUT,
+    AsJson,
+    MemoryDir,
+    print_json,
+    print_line,
+    print_lines,
+    print_note,
+    require_memory,
+)
+from deixis.cli.output import note_change
 
 category_app = typer.Typer(help="List, rename, merge or forget what was taught.", no_args_is_help=True)
 
@@ -26,7 +35,7 @@ def list_categories(memory: MemoryDir = None, as_json: AsJson = False) -> None:
     elif known or not left_out:
         print_lines([f"{name:<24} {count}" for name, count in known.items()] or ["Nothing was taught."])
     for note in left_out:
-        print(f"deixis: {note}", file=sys.stderr)
+        print_note(note)
     if left_out:
         raise typer.Exit(BAD_INPUT)
 
@@ -44,7 +53,8 @@ def rename(
     name = new_category_name(new)
     with Session(memory) as session:
         session.views().rename(category_name(old), name)
-    print(f"'{category_name(old)}' is '{name}' now.")
+    note_change(session.path)
+    print_line(f"'{category_name(old)}' is '{name}' now.")
 
 
 @category_app.command("merge")
@@ -59,7 +69,8 @@ def merge(
 
     with Session(memory) as session:
         session.views().merge(category_name(source), category_name(into))
-    print(f"What was '{category_name(source)}' is '{category_name(into)}' now.")
+    note_change(session.path)
+    print_line(f"What was '{category_name(source)}' is '{category_name(into)}' now.")
 
 
 @category_app.command("forget")
@@ -73,4 +84,5 @@ def forget_category(
 
     with Session(memory) as session:
         session.views().forget(category_name(name))
-    print(f"Forgotten: {category_name(name)}.")
+    note_change(session.path)
+    print_line(f"Forgotten: {category_name(name)}.")

@@ -11,6 +11,9 @@ from typing import Annotated, Any
 
 import typer
 
+from deixis.cli.output import terminal
+from deixis.printable import visible_line
+
 NO, BAD_INPUT, UNDECIDED = 1, 2, 3
 
 PATIENCE = 2.0  # seconds without a progress bar
@@ -38,16 +41,21 @@ def print_json(data: Any) -> None:
     print(json.dumps(data, indent=2, ensure_ascii=False))
 
 
+def print_line(line: str) -> None:
+    """Print one line, whatever names are in it."""
+    print(visible_line(line))
+
+
 def print_lines(lines: Iterable[str]) -> None:
     for line in lines:
-        print(line)
+        print_line(line)
 
 
 def print_written(*files: Path | None, aside: bool = False) -> None:
     """Says where files are, those that were wanted; ``aside``: on standard error, where output is the answer alone."""
     for file in files:
         if file is not None:
-            print(f"Written: {file}", file=sys.stderr if aside else sys.stdout)
+            print(visible_line(f"Written: {file}"), file=sys.stderr if aside else sys.stdout)
 
 
 def require_writable(written: Iterable[Path | None], read: Iterable[str | Path | None]) -> None:
@@ -114,7 +122,7 @@ def progress_bar(what: str) -> Iterator[Callable[[int, int], None] | None]:
     from rich.progress import Progress as Bar
 
     started = time.perf_counter()
-    with Bar(console=Console(stderr=True), transient=True) as bar:
+    with Bar(console=Console(file=terminal(sys.stderr)), transient=True) as bar:
         task = bar.add_task(what, total=None, visible=False)
 
         def progress(done: int, total: int) -> None:
@@ -136,7 +144,7 @@ def working(what: str, after: float = 0.0) -> Iterator[None]:
 
     from rich.console import Console
 
-    status = Console(stderr=True).status(what)
+    status = Console(file=terminal(sys.stderr)).status(what)
     begin = Timer(after, status.start)
     begin.start()
     try:
@@ -160,6 +168,7 @@ def compiled(ready: Callable[[], None]) -> None:
         ready()
 
 
-def print_note(note: str) -> None:
-    """Print to standard error what is not part of the answer."""
-    print(f"deixis: {note}", file=sys.stderr)
+def print_note(note: str | Exception) -> None:
+    """Print to standard error, in one line, what is not part of the answer; of an error what it says."""
+    shown = note if isinstance(note, Exception) else visible_line(note)
+    print(f"deixis: {shown}", file=sys.stderr)

@@ -11,6 +11,7 @@ from typing import Annotated
 import typer
 
 from deixis.cli.common import AsJson, print_json, print_lines, print_written, require_plot
+from deixis.cli.output import terminal
 
 experiment = typer.Typer(
     help="Run an experiment, of the paper or of our own.", no_args_is_help=True, rich_markup_mode=None
@@ -104,6 +105,8 @@ def progress(total: int) -> Iterator[Callable[[str], None]]:
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
-    with Progress(*columns, console=Console(stderr=True), transient=True, disable=not sys.stderr.isatty()) as bar:
+    with Progress(
+        *columns, console=Console(file=terminal(sys.stderr)), transient=True, disable=not sys.stderr.isatty()
+    ) as bar:
         task = bar.add_task("experiment", total=total)
         yield lambda done: bar.update(task, advance=1, description=done)

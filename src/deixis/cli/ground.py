@@ -25,6 +25,7 @@ from deixis.cli.common import (
     require_plot,
     working,
 )
+from deixis.cli.output import StandardInput
 from deixis.reasoning.grounding.options import EngineName, Select, ViewpointName
 
 if TYPE_CHECKING:
@@ -119,7 +120,7 @@ def _dialogue(oracle: Path | None, out: TextIO) -> Ask:
     from deixis.workflows.dialogue import Dialogue, Terminal, read_oracle
 
     if oracle is None:
-        return Dialogue(lambda _: Terminal(sys.stdin, out), out)
+        return Dialogue(lambda _: Terminal(StandardInput(), out), out)
     return Dialogue(lambda situation: read_oracle(oracle, situation, out), out)
 
 

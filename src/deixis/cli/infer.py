@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from deixis.cli.common import NO, UNDECIDED, AsJson, Script, TimeLimit, print_json, print_lines
+from deixis.cli.common import NO, UNDECIDED, AsJson, Script, TimeLimit, print_json, print_line, print_lines
 
 if TYPE_CHECKING:
     from deixis.ontology.facts import Fact
@@ -104,7 +104,7 @@ def _explain(inference: Inference, fact: Fact, as_json: bool) -> None:
     if as_json:
         print_json({"fact": str(fact), "derivation": derivation and derivation_to_dict(derivation)})
     elif derivation is None:
-        print(f"{fact} does not follow from the script (--why-not says why).")
+        print_line(f"{fact} does not follow from the script (--why-not says why).")
     else:
         print_lines(derivation.lines())
     if derivation is None:

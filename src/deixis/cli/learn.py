@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 from typing import Annotated
 
@@ -18,9 +17,11 @@ from deixis.cli.common import (
     TimeLimit,
     print_json,
     print_lines,
+    print_note,
     ready_to_ground,
     working,
 )
+from deixis.cli.output import note_change
 from deixis.reasoning.grounding.options import EngineName
 
 
@@ -54,9 +55,10 @@ def learn(
             with working("grounding"):
                 lessons = session.learn_all(pairs, engine, time_limit)
         except NothingFoundError as error:
-            print(f"deixis: {error}", file=sys.stderr)
+            print_note(error)
             raise typer.Exit(NO) from error
         where = session.path
+        note_change(where)
     if as_json:
         told = [learned_to_dict(learned) for learned in lessons]
         print_json(told[0] if len(inputs) == 2 and len(told) == 1 else told)

@@ -13,11 +13,13 @@ from deixis.cli.common import (
     MemoryDir,
     NoMemory,
     print_json,
+    print_line,
     print_lines,
     print_written,
     require_ending,
     require_writable,
 )
+from deixis.cli.output import note_change
 from deixis.cli.relation import Models, read_models
 
 if TYPE_CHECKING:
@@ -55,11 +57,13 @@ def learn_relation(
         if reset:
             session.forget_relations()
             where = session.path
-            print_json({"reset": str(where)}) if as_json else print(f"The shipped models are in force in {where}.")
+            note_change(where)
+            print_json({"reset": str(where)}) if as_json else print_line(f"The shipped models are in force in {where}.")
             return
         examples = _examples(files or [])
         if out is None:
             learned, where = session.learn_relations(examples, strength), session.path
+            note_change(where)
         else:
             learned, where = _fitted(session, examples, strength, models, no_memory), out
             _write(learned, out)

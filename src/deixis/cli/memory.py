@@ -15,12 +15,15 @@ from deixis.cli.common import (
     AsJson,
     MemoryDir,
     print_json,
+    print_line,
     print_lines,
+    print_note,
     print_written,
     progress_bar,
     require_ending,
     require_memory,
 )
+from deixis.cli.output import note_change
 
 if TYPE_CHECKING:
     from deixis.memory.verify import Verified
@@ -86,7 +89,7 @@ def _export_concepts(memory: Path, out: Path | None, format: DumpFormat) -> None
         out.write_text(text, encoding="utf-8")
         print_written(out)
     if views:
-        print(f"deixis: the memory has views as well, which are not in this export: {_VIEWS_TOO}", file=sys.stderr)
+        print_note(f"the memory has views as well, which are not in this export: {_VIEWS_TOO}")
 
 
 @memory_app.command("import")
@@ -106,13 +109,15 @@ def import_(
         where = memory or default_memory()
         with progress_bar("importing") as progress:
             done = import_all(dump, where, progress)
-        print(f"{dump} is in the memory {where}.")
+        note_change(where)
+        print_line(f"{dump} is in the memory {where}.")
         if done.relearn:
-            print(f"Categories to be learned anew from their views: {', '.join(done.relearn)}.")
+            print_line(f"Categories to be learned anew from their views: {', '.join(done.relearn)}.")
         return
     with Session(memory) as session:
         session.import_(dump)
-        print(f"{dump} is in the memory {session.path}.")
+        note_change(session.path)
+        print_line(f"{dump} is in the memory {session.path}.")
 
 
 @memory_app.command("stats")
@@ -177,4 +182,5 @@ def forget(
 
     with Session(memory) as session:
         session.forget(lesson)
-    print(f"Forgotten: {lesson}.")
+    note_change(session.path)
+    print_line(f"Forgotten: {lesson}.")

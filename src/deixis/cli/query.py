@@ -13,8 +13,10 @@ from deixis.cli.common import (
     NO,
     AsJson,
     MemoryDir,
+    TimeLimit,
     print_lines,
 )
+from deixis.memory.semantic.queries.limits import QUERY_MEMORY_LIMIT, QUERY_TIME_LIMIT
 
 
 class TableFormat(StrEnum):
@@ -30,19 +32,23 @@ def query(
         Path | None, typer.Option("-f", "--file", metavar="FILE", help="Read the query from a file.")
     ] = None,
     format: Annotated[TableFormat, typer.Option("--format", help="How to print the answer.")] = TableFormat.TABLE,
+    time_limit: TimeLimit = QUERY_TIME_LIMIT,
+    memory_limit: Annotated[
+        int, typer.Option(min=1, metavar="MIB", help="How much memory, in MiB, answering may take.")
+    ] = QUERY_MEMORY_LIMIT // 2**20,
     memory: MemoryDir = None,
     as_json: AsJson = False,
 ) -> None:
-    """Ask SPARQL of everything remembered."""
+    """Ask SPARQL of everything remembered; exit 3, and no part of the answer, where a limit is reached."""
     from deixis.errors import DeixisError
     from deixis.session import Session
 
     if (sparql is None) == (file is None):
         raise DeixisError("give a query, or a file with -f, and one of them only")
     with Session(memory) as session:
-        result = session.query(_text(file) if file is not None else sparql or "")
+        result = session.query(_text(file) if file is not None else sparql or "", time_limit, memory_limit * 2**20)
         if as_json or format is TableFormat.JSON:
-            print(result.to_json())
+            sys.stdout.write(result.to_json() + "\n")
         elif format is TableFormat.CSV:
             sys.stdout.write(result.to_csv())
         elif format is TableFormat.TURTLE:

@@ -9,7 +9,17 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from deixis.cli.common import NO, UNDECIDED, AsJson, MemoryDir, TimeLimit, print_json, print_lines
+from deixis.cli.common import (
+    NO,
+    UNDECIDED,
+    AsJson,
+    MemoryDir,
+    TimeLimit,
+    print_json,
+    print_line,
+    print_lines,
+    print_note,
+)
 from deixis.deadline import Deadline
 
 if TYPE_CHECKING:
@@ -64,10 +74,10 @@ def reason(
         else:
             code = _entail(stated, engine, triples, verdict, every, turtle, time_limit, as_json)
     except LimitError as error:
-        print(f"deixis: {error}", file=sys.stderr)
+        print_note(error)
         code = UNDECIDED
     except NotEntailedError as error:
-        print(f"deixis: {error}", file=sys.stderr)
+        print_note(error)
         code = NO
     raise typer.Exit(code)
 
@@ -95,7 +105,8 @@ def _entail(
     deadline, ntriples, words = Deadline.after(time_limit), write_ntriples(stated), Words(labels_of(stated))
     found = entail(ntriples, engine.value, time_limit)
     if not (turtle or as_json):
-        print(report.verdict(found, words), flush=True)
+        print_line(report.verdict(found, words))
+        sys.stdout.flush()
     if not (verdict or found.possible):
         found = explained(ntriples, found, max(deadline, Deadline.after(LAST_SHARE * time_limit)), every)
     if turtle:

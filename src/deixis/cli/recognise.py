@@ -14,6 +14,7 @@ from deixis.cli.common import (
     PerceivedScene,
     Picture,
     print_json,
+    print_line,
     print_lines,
     print_note,
     print_written,
@@ -60,7 +61,7 @@ def recognise(
     else:
         print_lines(answer_line(id, answer) for id, answer in found.answers.items())
         if not found.answers:
-            print("Nothing in this scene has a cloud: only what perceive -o wrote can be recognised.")
+            print_line("Nothing in this scene has a cloud: only what perceive -o wrote can be recognised.")
         print_written(out, plot)
     if not any(answer.label for answer in found.answers.values()):
         raise typer.Exit(NO)

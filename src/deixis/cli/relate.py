@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from deixis.cli.common import AsJson, Image, SceneFile
+from deixis.cli.common import AsJson, Image, SceneFile, print_lines
 
 
 def relate(
@@ -55,7 +55,6 @@ def relate(
     codes = codes_of(seen.boxes, calculus, axis=axis or "x", tolerance=tolerance, reference=reference)
     related = Related(calculus, seen.ids, codes)
     if as_json:
-        lines = json_lines(related, *chosen)
+        sys.stdout.writelines(f"{line}\n" for line in json_lines(related, *chosen))
     else:
-        lines = matrix_lines(related) if matrix else pair_lines(related, *chosen)
-    sys.stdout.writelines(f"{line}\n" for line in lines)
+        print_lines(matrix_lines(related) if matrix else pair_lines(related, *chosen))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -20,6 +19,7 @@ from deixis.cli.common import (
     TimeLimit,
     print_json,
     print_lines,
+    print_note,
     ready_to_ground,
     working,
 )
@@ -61,7 +61,7 @@ def retrieve(
             least=least,
             hide_labels=hide_labels,
             time_limit=time_limit,
-            left_out=lambda why: print(f"deixis: left out: {why}", file=sys.stderr),
+            left_out=lambda why: print_note(f"left out: {why}"),
         )
     if as_json:
         print_json(retrieved_to_dict(retrieved.found, query, retrieved.among))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -14,6 +15,7 @@ from deixis.cli.common import (
     TimeLimit,
     compiled,
     print_json,
+    print_line,
     print_lines,
     print_written,
     progress_bar,
@@ -65,7 +67,8 @@ def solve(
 def _print_verdict(solved: SolvedNetwork) -> None:
     from deixis.report.solve import verdict_line
 
-    print(verdict_line(solved), flush=True)
+    print_line(verdict_line(solved))
+    sys.stdout.flush()
 
 
 def _quiet(solved: SolvedNetwork) -> None:
@@ -85,7 +88,7 @@ def _report(file: str, solved: list[SolvedNetwork], out: Path | None, as_json: b
         return
     if aside:
         said = [line for each in solved for line in solved_lines(each)]
-        print("\n".join([f"# {line}" for line in said] + shown if shown else said))
+        print_lines([f"# {line}" for line in said] + shown if shown else said)
     print_written(out)
 
 

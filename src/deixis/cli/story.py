@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import sys
 import tempfile
 from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from deixis.cli.output import terminal
 from deixis.examples_data import example
 from deixis.extras import require
 from deixis.grammar.script import Script
@@ -46,7 +48,7 @@ def tell(out: Path) -> None:
 
     require_picture(out / "script1.png")
     require("open3d", "simulating a depth camera")
-    console = Console(highlight=False, soft_wrap=True)
+    console = Console(file=terminal(sys.stdout), highlight=False, soft_wrap=True)
     script1, scene = read_script(example("script1.layout")), read_scene(example("place_setting.scene.json"))
 
     _chapter(console, 1, "Somebody says how a table is laid")

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from deixis.cli.common import AsJson, MemoryDir, PerceivedScene, print_json, print_lines
-
-if TYPE_CHECKING:
-    pass
+from deixis.cli.output import note_change
 
 
 def teach(
@@ -27,6 +25,7 @@ def teach(
 
     with Session(memory) as session:
         taught = session.teach(scene, object, label, teacher)
+        note_change(session.path)
     if as_json:
         print_json({"view": taught.view, "category": taught.category, "views": taught.views, "before": taught.before})
     else:

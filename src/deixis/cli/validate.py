@@ -9,7 +9,7 @@ from typing import Annotated
 
 import typer
 
-from deixis.cli.common import NO, UNDECIDED, AsJson, MemoryDir, TimeLimit, print_json
+from deixis.cli.common import NO, UNDECIDED, AsJson, MemoryDir, TimeLimit, print_json, print_line
 
 
 def validate(
@@ -51,7 +51,7 @@ def validate(
         sys.stdout.write(report.turtle)
     else:
         for result in report.results:
-            print(f"{result.severity}: {result}")
+            print_line(f"{result.severity}: {result}")
         number = len(report.results)
         print("conforms" if report.conforms else f"{number} result{'s' if number > 1 else ''}: it does not conform")
     raise typer.Exit(0 if report.conforms else NO)

@@ -14,6 +14,7 @@ import numpy as np
 
 from deixis.errors import DeixisError
 from deixis.ontology.relation import nearest
+from deixis.printable import shortened, visible_line
 from deixis.reasoning.grounding.matching.problem import UNMATCHED
 from deixis.reasoning.grounding.questions.inquiry import ExchangeOutcome, Inquiry
 from deixis.reasoning.grounding.questions.selection import (
@@ -96,7 +97,7 @@ def run(inquiry: Inquiry, source: AnswerSource, out: TextIO, most: float = math.
     """
     while len(inquiry.exchanges) < most and (question := inquiry.next_question()) is not None:
         number = len(inquiry.exchanges) + 1
-        print(f"{number}. {question.text}   [{question.bits:.2f} bits]", file=out, flush=True)
+        print(visible_line(f"{number}. {question.text}   [{question.bits:.2f} bits]"), file=out, flush=True)
         answer = source.answer(question, inquiry.situation)
         if answer is None:
             print("No further answers.", file=out)
@@ -139,17 +140,23 @@ def closing_lines(inquiry: Inquiry) -> list[str]:
     return lines
 
 
+class Lines(Protocol):
+    """Lines that are read one by one; an empty one is the end."""
+
+    def readline(self) -> str: ...
+
+
 @dataclass(frozen=True)
 class Terminal:
     """A person who types: what is no answer is asked again, the end of input is the end of the dialogue."""
 
-    lines: TextIO
+    lines: Lines
     out: TextIO
 
     def answer(self, question: Question, situation: Situation) -> str | None:
         allowed = _allowed(question, situation)
         while True:
-            print(f"   {hint(question, situation)} ", end="", file=self.out, flush=True)
+            print(visible_line(f"   {hint(question, situation)} "), end="", file=self.out, flush=True)
             line = self.lines.readline()
             if not line:
                 print(file=self.out)
@@ -158,7 +165,8 @@ class Terminal:
             if found is not None:
                 return found
             near = nearest(line.strip(), allowed)
-            print(f"   '{line.strip()}' is no answer" + (f"; '{near}'?" if near else "."), file=self.out)
+            said = f"   '{shortened(line.strip())}' is no answer"
+            print(visible_line(said + (f"; '{near}'?" if near else ".")), file=self.out)
 
 
 def hint(question: Question, situation: Situation) -> str:
@@ -219,7 +227,7 @@ class Oracle:
             id = self.truth[name]
             assignment[i] = UNMATCHED if id is None else situation.things.index(id)
         answer = answers_of(question, situation, assignment[None])[0]
-        print(f"   {answer}", file=self.out)
+        print(visible_line(f"   {answer}"), file=self.out)
         return answer
 
 

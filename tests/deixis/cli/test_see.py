@@ -187,6 +187,15 @@ def test_bad_input_has_one_line(tables: Path, tmp_path: Path) -> None:
         assert len(err.splitlines()) == 1, arguments
 
 
+def test_nobody_answers_where_standard_input_is_closed(
+    tables: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("sys.stdin", None)
+    code, out, err = deixis("ask", "fork", tables / "7.scene.json", "--memory", tmp_path / "memory")
+    assert (code, err) == (1, "")
+    assert "I still do not know what 'fork' is." in out
+
+
 def test_the_memory_is_free_while_someone_is_asked(
     tables: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -195,7 +204,7 @@ def test_the_memory_is_free_while_someone_is_asked(
         session.teach(tables / "7.scene.json", "o1", "plate")
     sealed: list[bool] = []
 
-    def answer() -> str:
+    def answer(size: int) -> str:
         sealed.append(seal.exists())
         return "o3\n"
 

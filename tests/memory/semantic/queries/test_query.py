@@ -85,7 +85,7 @@ def test_a_table(taught: SemanticMemory) -> None:
 def test_a_table_keeps_control_characters_off_the_terminal(memory: SemanticMemory) -> None:
     triple = ox.Triple(ox.NamedNode("urn:a"), ox.NamedNode("urn:p"), ox.Literal("a\n\x1b[2Jb"))
     memory.learn("one", {GraphName.ASSERTED: [triple]}, [])
-    assert memory.query("SELECT ?o { ?s <urn:p> ?o }").to_table()[-1] == "a\\n\\x1b[2Jb"
+    assert memory.query("SELECT ?o { ?s <urn:p> ?o }").to_table()[-1] == "a\\n\\u001b[2Jb"
 
 
 def test_json_csv_and_turtle(memory: SemanticMemory, read: Read) -> None:
@@ -290,3 +290,10 @@ def test_a_triple_in_two_graphs_is_found_once(memory: SemanticMemory, read: Read
 def test_what_is_loaded_is_found_once_too(taught: SemanticMemory, memory: SemanticMemory, read: Read) -> None:
     memory.load({GraphName.LEARNED: read("<urn:a> <urn:p> 1 ."), GraphName.ASSERTED: read("<urn:a> <urn:p> 1, 2 .")})
     assert len(memory.query("SELECT * { <urn:a> ?p ?o }").rows) == 2
+
+
+@pytest.mark.parametrize(
+    "prologue", ["PREFIX : <#>", "BASE <http://example.org/> PREFIX : <#>", "PREFIX a: <#x'> PREFIX : <#> # <\n"]
+)
+def test_relative_iris_may_be_declared_as_prefixes(memory: SemanticMemory, prologue: str) -> None:
+    assert memory.query(f"{prologue} ASK {{ :a ?p ?o }}").boolean is False

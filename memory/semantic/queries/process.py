@@ -1,0 +1,167 @@
+"""A process that runs queries, and can be ended at any moment, as a query in this process cannot.
+
+Oxigraph has no way to stop a query. So each is evaluated by another process (:mod:`.worker`), which is started once, in
+about ten milliseconds, and killed where a query reaches a limit or the user presses Ctrl-C.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import math
+import os
+import select
+import signal
+import subprocess
+import sys
+import weakref
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from deixis.deadline import Deadline
+from deixis.memory.errors import MemoryWriteError, QueryError, QueryMemoryError, QueryTimeoutError
+from deixis.memory.semantic.queries import worker
+from deixis.memory.semantic.queries.limits import QueryLimits
+
+
+class QueryProcess:
+    """One process with a store open for reading. It is not safe to use from two threads at once."""
+
+    def __init__(self, path: Path, deadline: Deadline) -> None:
+        command = [sys.executable, "-I", "-S", worker.__file__]
+        try:
+            self._process = subprocess.Popen(
+                command,
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.DEVNULL,
+                bufsize=0,
+                start_new_session=True,  # Ctrl-C at a terminal is for this process, which ends that one
+            )
+        except OSError as error:
+            raise QueryError(f"the process that runs queries cannot be started: {error.strerror}") from error
+        self.end = weakref.finalize(self, _end, self._process, os.getpid())
+        _processes.add(self)
+        self._send(sys.path)
+        self.open(path, deadline)
+
+    @property
+    def alive(self) -> bool:
+        """Whether it can be asked."""
+        return self.end.alive and self._process.poll() is None
+
+    def open(self, path: Path, deadline: Deadline) -> None:
+        """Open a store in the place of the one that is open. Raises MemoryWriteError where it cannot be read."""
+        kind, content = self._answer({"open": str(path)}, deadline, QueryLimits())
+        if kind != worker.READY:
+            raise MemoryWriteError(f"{path}: cannot be opened for queries: {content.decode()}")
+
+    def ask(self, request: Mapping[str, Any], limits: QueryLimits, deadline: Deadline) -> tuple[bytes, bytes]:
+        """Return the kind of an answer, as :mod:`.worker` has it, and its bytes.
+
+        Raises QueryTimeoutError and QueryMemoryError where a limit is reached, QueryError where the query ended the
+        process. After any of them, and after Ctrl-C, the process is gone.
+        """
+        bounds = {"memory": limits.memory, "largest": limits.answer}
+        kind, content = self._answer({**request, **bounds}, deadline, limits)
+        if kind == worker.MEMORY:
+            raise _memory_error(limits)
+        if kind == worker.SIZE:
+            raise QueryMemoryError(
+                f"query: the answer is larger than {_bytes(limits.answer)}, the share of the memory limit that an "
+                "answer may take; ask for less with LIMIT, or raise the limit"
+            )
+        return kind, content
+
+    def _answer(self, request: Mapping[str, Any], deadline: Deadline, limits: QueryLimits) -> tuple[bytes, bytes]:
+        backstop = 0.0 if math.isinf(deadline.left) else deadline.left + 1.0
+        try:
+            self._send({**request, "seconds": backstop})
+            kind, ends, length = worker.HEAD.unpack(self._receive(worker.HEAD.size, deadline, limits))
+            content = self._receive(length, deadline, limits)
+        except BaseException:
+            self.end()
+            raise
+        if ends:
+            self.end()
+        return kind, content
+
+    def _send(self, message: Any) -> None:
+        assert self._process.stdin is not None
+        line = memoryview(json.dumps(message).encode() + b"\n")
+        with contextlib.suppress(BrokenPipeError):  # it has ended; why is found out when its answer is read
+            while line:
+                line = line[os.write(self._process.stdin.fileno(), line) :]
+
+    def _receive(self, length: int, deadline: Deadline, limits: QueryLimits) -> bytes:
+        assert self._process.stdout is not None
+        out = self._process.stdout.fileno()
+        ready = select.poll()
+        ready.register(out, select.POLLIN)
+        parts: list[bytes] = []
+        while length:
+            if not ready.poll(None if math.isinf(deadline.left) else math.ceil(1000 * deadline.left)):
+                raise time_error(limits)
+            part = os.read(out, min(length, 2**20))
+            if not part:
+                raise self._death(limits)
+            parts.append(part)
+            length -= len(part)
+        return b"".join(parts)
+
+    def _death(self, limits: QueryLimits) -> QueryError:
+        """Return the error that says why the process ended by itself."""
+        code = self._process.wait()
+        if code == -signal.SIGALRM:
+            return time_error(limits)
+        if code in (-signal.SIGABRT, -signal.SIGKILL):  # a failed allocation, or the system is out of memory
+            return _memory_error(limits)
+        if code in (-signal.SIGSEGV, -signal.SIGBUS):
+            return QueryError("query: it is nested too deeply, or too long, to be evaluated; make it simpler")
+        return QueryError(f"query: the process that ran it ended (exit code {code}); try again")
+
+
+def _end(process: subprocess.Popen[bytes], owner: int) -> None:
+    """Kill a process, unless it belongs to the one that this one was forked from."""
+    if os.getpid() != owner:
+        return
+    process.kill()
+    process.wait()
+    _close(process)
+
+
+def _close(process: subprocess.Popen[bytes]) -> None:
+    for pipe in (process.stdin, process.stdout):
+        if pipe is not None:
+            pipe.close()
+
+
+_processes: weakref.WeakSet[QueryProcess] = weakref.WeakSet()
+
+
+def _forget_after_fork() -> None:
+    """Let go, in a forked child, of processes that are the parent's: they end when the parent does."""
+    for one in list(_processes):
+        one.end.detach()
+        one._process.returncode = 0  # else the child would wait for a process that is not its own
+        _close(one._process)
+
+
+os.register_at_fork(after_in_child=_forget_after_fork)
+
+
+def time_error(limits: QueryLimits) -> QueryTimeoutError:
+    return QueryTimeoutError(
+        f"query: not answered within the time limit of {limits.time:g} s; narrow it down, or give it more time"
+    )
+
+
+def _memory_error(limits: QueryLimits) -> QueryMemoryError:
+    return QueryMemoryError(
+        f"query: it needs more than the memory limit of {_bytes(limits.memory)}; narrow it down, or raise the limit"
+    )
+
+
+def _bytes(size: int) -> str:
+    return f"{size / 2**20:,.0f} MiB" if size >= 2**20 else f"{size:,} bytes"

@@ -1,0 +1,81 @@
+"""Queries over a snapshot of a store, in a process of their own.
+
+A store may have no second opener beside its writer. So queries are answered from a snapshot: a backup in the same
+folder, which shares its files with the store by hard links, so that it costs little room and some milliseconds. It is
+made anew for the first query after a change. Where the folder cannot be written, it is a copy in a temporary folder.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import tempfile
+import threading
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import pyoxigraph as ox
+
+from deixis.deadline import Deadline
+from deixis.memory.folder import SNAPSHOT
+from deixis.memory.owner import Closing
+from deixis.memory.semantic.queries.limits import QueryLimits
+from deixis.memory.semantic.queries.process import QueryProcess, time_error
+
+
+class SnapshotQueries(Closing):
+    """Answers queries about the store of one folder. Threads may share it; their queries are answered in turn."""
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+        self._turn = threading.Lock()
+        self._changes = 0
+        self._place: Path | None = None
+        self._kept = -1  # the number of changes when the snapshot was made
+        self._process: QueryProcess | None = None
+
+    def ask(self, store: ox.Store, request: Mapping[str, Any], limits: QueryLimits) -> tuple[bytes, bytes]:
+        """Return an answer as :meth:`QueryProcess.ask` does; the time limit includes waiting for other threads."""
+        deadline = Deadline.after(limits.time)
+        if not self._turn.acquire(timeout=min(limits.time, threading.TIMEOUT_MAX)):
+            raise time_error(limits)
+        try:
+            return self._ready(store, deadline).ask(request, limits, deadline)
+        finally:
+            self._turn.release()
+
+    def changed(self) -> None:
+        """Note that the store has changed: the next query is answered from a new snapshot."""
+        self._changes += 1
+
+    def close(self) -> None:
+        """End the process and remove the snapshot."""
+        if self._process is not None:
+            self._process.end()
+            self._process = None
+        if self._place is not None:
+            shutil.rmtree(self._place, ignore_errors=True)
+            self._place, self._kept = None, -1
+
+    def _ready(self, store: ox.Store, deadline: Deadline) -> QueryProcess:
+        """Return a process that has the present content of the store open."""
+        process = self._process if self._process is not None and self._process.alive else None
+        changes = self._changes
+        if self._place is None or self._kept != changes:
+            self._place = self._place or _place(self._folder)
+            shutil.rmtree(self._place, ignore_errors=True)
+            store.backup(self._place)
+            self._kept = changes
+            if process is not None:
+                process.open(self._place, deadline)
+        if process is None:
+            process = self._process = QueryProcess(self._place, deadline)
+        return process
+
+
+def _place(folder: Path) -> Path:
+    """Return where the snapshot of a store goes."""
+    if os.access(folder, os.W_OK):
+        return folder / SNAPSHOT
+    return Path(tempfile.mkdtemp(prefix="deixis-query-"))
