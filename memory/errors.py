@@ -20,6 +20,10 @@ class MemoryWriteError(DeixisError, OSError):
     """The disk is full, the folder is read-only, or the store could not be read or written otherwise."""
 
 
+class ReadOnlyMemoryError(MemoryWriteError):
+    """A memory in a folder that cannot be written: it can be read, and nothing else."""
+
+
 class UnknownLessonError(DeixisError, KeyError):
     """A lesson that the memory does not hold."""
 

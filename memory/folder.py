@@ -18,7 +18,7 @@ import pyoxigraph as ox
 
 from deixis.errors import DeixisError
 from deixis.memory import owner as disk
-from deixis.memory.errors import MemoryFormatError, MemoryWriteError
+from deixis.memory.errors import DamagedMemoryError, MemoryFormatError, MemoryWriteError
 from deixis.memory.owner import LOCK_FILE
 
 VERSION = 2
@@ -235,4 +235,8 @@ def wrap_storage_errors(folder: Path, done: str, advice: str) -> Iterator[None]:
     except (OSError, RuntimeError) as error:
         if isinstance(error, DeixisError):
             raise
+        if "Corruption" in str(error):
+            raise DamagedMemoryError(
+                f"the memory at {folder} is damaged ({one_line(error)}); restore the folder from a copy"
+            ) from error
         raise MemoryWriteError(f"the memory at {folder} could not be {done} ({one_line(error)}); {advice}") from error

@@ -15,18 +15,20 @@ True
 from __future__ import annotations
 
 import contextlib
+import errno
 import fcntl
 import json
 import os
 import shutil
 import sys
 import threading
+import weakref
 from abc import ABC, abstractmethod
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Self
+from typing import ClassVar, Self
 
-from deixis.memory.errors import MemoryBusyError, MemoryWriteError
+from deixis.memory.errors import MemoryBusyError, MemoryWriteError, ReadOnlyMemoryError
 
 
 class Closing(ABC):
@@ -61,12 +63,12 @@ def remove(path: Path) -> None:
 
 LOCK_FILE = "owner.lock"
 
-_held: set[Path] = set()
+_held: dict[Path, OwnerLock] = {}
 _guard = threading.Lock()
 
 
 class OwnerLock:
-    """The lock on one folder, held until it is released or the process ends."""
+    """The lock on one folder, held until it is released or the process ends. A forked child does not have it."""
 
     def __init__(self, folder: Path, descriptor: int, made: bool) -> None:
         self._folder, self._descriptor, self._made = folder, descriptor, made
@@ -76,17 +78,15 @@ class OwnerLock:
     def acquire(cls, folder: Path) -> OwnerLock:
         """Take the lock, without saying so in the file yet: see :meth:`sign`.
 
-        Raises MemoryBusyError, naming the owner, where somebody has it; MemoryWriteError where no lock can be made.
+        Raises MemoryBusyError, naming the owner, where somebody has it; ReadOnlyMemoryError where the folder cannot be
+        written, MemoryWriteError where no lock can be made otherwise.
         """
         real = Path(os.path.realpath(folder))
         with _guard:
             if real in _held:
-                raise MemoryBusyError(
-                    f"the memory at {folder} is in use: this process has it open already; close it there first"
-                )
-            descriptor, made = _locked(folder, real / LOCK_FILE)
-            _held.add(real)
-        return cls(real, descriptor, made)
+                raise _held_here(folder)
+            lock = _held[real] = cls(real, *_locked(folder, real / LOCK_FILE))
+        return lock
 
     def sign(self) -> None:
         """Write who the owner is."""
@@ -101,6 +101,8 @@ class OwnerLock:
     def release(self, undo: bool = False) -> None:
         """Let go and take the owner's name away; with ``undo`` the folder is left as it was found."""
         with _guard:
+            if _held.get(self._folder) is not self:
+                return  # the lock is the parent's, or was released
             with contextlib.suppress(OSError):
                 if undo and self._made:
                     os.unlink(self._folder / LOCK_FILE)
@@ -108,7 +110,102 @@ class OwnerLock:
                     os.ftruncate(self._descriptor, 0)
                     os.pwrite(self._descriptor, self._before if undo else b"", 0)
             os.close(self._descriptor)
-            _held.discard(self._folder)
+            del _held[self._folder]
+
+
+class ReaderLock:
+    """A lock on a folder that cannot be written, which readers share and which keeps no writer's name.
+
+    A writer who reaches the folder by another way, and a reader, keep each other out where the folder has a lock file.
+    """
+
+    def __init__(self, descriptor: int | None) -> None:
+        self._descriptor = descriptor
+
+    @classmethod
+    def acquire(cls, folder: Path) -> ReaderLock:
+        """Take the lock as far as there is one. Raises MemoryBusyError where a writer has it."""
+        real = Path(os.path.realpath(folder))
+        with _guard:
+            if real in _held:
+                raise _held_here(folder)
+        try:
+            descriptor = os.open(real / LOCK_FILE, os.O_RDONLY | os.O_CLOEXEC)
+        except OSError:
+            return cls(None)
+        try:
+            fcntl.flock(descriptor, fcntl.LOCK_SH | fcntl.LOCK_NB)
+        except OSError as error:
+            message = _busy(folder, descriptor)
+            os.close(descriptor)
+            raise MemoryBusyError(message) from error
+        return cls(descriptor)
+
+    def release(self, undo: bool = False) -> None:
+        """Let go; there is nothing to undo."""
+        if self._descriptor is not None:
+            os.close(self._descriptor)
+            self._descriptor = None
+
+
+def leave_to_parent() -> None:
+    """Let a forked child go of all locks: they are its parent's, which must not lose them by what the child does."""
+    global _guard
+    _guard = threading.Lock()
+    for lock in _held.values():
+        os.close(lock._descriptor)
+    _held.clear()
+
+
+os.register_at_fork(after_in_child=leave_to_parent)
+
+
+def forked(folder: Path) -> MemoryBusyError:
+    """Return the error for a memory that was open when this process was forked from its owner."""
+    return MemoryBusyError(
+        f"the memory at {folder} is held by the process from which this one was forked; open a memory in the process "
+        "that uses it, or close it before forking"
+    )
+
+
+def _held_here(folder: Path) -> MemoryBusyError:
+    return MemoryBusyError(f"the memory at {folder} is in use: this process has it open already; close it there first")
+
+
+class ThreadLock:
+    """A lock for the threads of one process: one at a time, a thread that has it may take it again.
+
+    A forked child finds it free, as the thread that had it is not there.
+
+    >>> lock = ThreadLock()
+    >>> with lock, lock:
+    ...     pass
+    """
+
+    _all: ClassVar[weakref.WeakSet[ThreadLock]] = weakref.WeakSet()
+
+    def __init__(self) -> None:
+        self._lock = threading.RLock()
+        self._all.add(self)
+
+    def __enter__(self) -> Self:
+        self._lock.acquire()
+        return self
+
+    def __exit__(self, *raised: object) -> None:
+        self._lock.release()
+
+    @classmethod
+    def renew_all(cls) -> None:
+        """Free all locks of a forked child."""
+        for lock in cls._all:
+            lock._lock = threading.RLock()
+
+
+os.register_at_fork(after_in_child=ThreadLock.renew_all)
+
+READ_ONLY = {errno.EROFS, errno.EACCES, errno.EPERM}
+"""What the system says where a folder cannot be written."""
 
 
 def _locked(folder: Path, file: Path) -> tuple[int, bool]:
@@ -117,24 +214,28 @@ def _locked(folder: Path, file: Path) -> tuple[int, bool]:
         try:
             descriptor = os.open(file, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o644)
         except OSError as error:
-            raise MemoryWriteError(
+            kind = ReadOnlyMemoryError if error.errno in READ_ONLY else MemoryWriteError
+            raise kind(
                 f"the memory at {folder} cannot be opened for writing: {error.strerror}; make the folder writable"
             ) from error
         try:
             fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError as error:
-            advice = "wait until it is done, or close it there"
-            try:
-                owner = json.loads(os.pread(descriptor, 4096, 0))
-                who = f"process {owner['pid']} ({owner['command']}) since {owner['since']}"
-            except (ValueError, KeyError, TypeError):
-                who = "another process"
-            message = f"the memory at {folder} is in use by {who}; {advice}"
+            message = _busy(folder, descriptor)
             os.close(descriptor)
             raise MemoryBusyError(message) from error
         if _same_file(descriptor, file):
             return descriptor, made
         os.close(descriptor)  # its maker took it away between our opening and our locking it
+
+
+def _busy(folder: Path, descriptor: int) -> str:
+    try:
+        owner = json.loads(os.pread(descriptor, 4096, 0))
+        who = f"process {owner['pid']} ({owner['command']}) since {owner['since']}"
+    except (ValueError, KeyError, TypeError):
+        who = "another process"
+    return f"the memory at {folder} is in use by {who}; wait until it is done, or close it there"
 
 
 def _same_file(descriptor: int, file: Path) -> bool:

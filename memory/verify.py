@@ -2,6 +2,8 @@
 
 The semantic store is opened for reading only, and read through each of its indexes: RocksDB sums up every block that it
 reads. A memory in which nothing was learned, or nothing taught, has but one of the two stores, and is whole with it.
+Then the two stores are compared: the views that lessons taught are there, of the categories that the lessons say, and
+the lessons of the views are there. A write over both that was cut short is finished or taken back before.
 
 >>> import tempfile
 >>> from deixis.memory.semantic.store import SemanticMemory
@@ -13,18 +15,21 @@ Verified(semantic=True, perceptual=False, findings=())
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 import pyoxigraph as ox
 
 from deixis.memory import folder as files
-from deixis.memory.errors import DamagedMemoryError, MemoryFormatError
+from deixis.memory.errors import DamagedMemoryError, MemoryFormatError, ReadOnlyMemoryError
 from deixis.memory.folder import FolderState
-from deixis.memory.owner import OwnerLock
-from deixis.memory.perceptual.in_folder import has_views, verify_views
+from deixis.memory.owner import OwnerLock, ReaderLock
+from deixis.memory.perceptual.in_folder import has_views, open_in
 from deixis.memory.perceptual.protocol import Finding, Progress
+from deixis.memory.semantic.rdf import ledger
+from deixis.memory.semantic.rdf.links import all_links
 
 _INDEXES = {
     "subject": (0,),
@@ -58,35 +63,80 @@ def verify(memory: Path, progress: Progress | None = None, stale: Stale | None =
     """
     semantic = files.inspect(memory) not in (FolderState.ABSENT, FolderState.EMPTY)
     perceptual = has_views(memory)
-    findings = verify_semantic(memory, progress, stale) if semantic else ()
-    return Verified(semantic, perceptual, (*findings, *_verify_perceptual(memory, progress)))
+    views = _verify_views(memory, progress) if perceptual else _Views({}, {}, ())
+    findings: list[Finding] = []
+    if semantic:
+        lock = _lock(memory)
+        try:
+            files.check_store_opens(memory)
+            store = ox.Store.read_only(str(files.store_in(memory)))
+            findings += _findings(store, progress)
+            if not findings:
+                findings += (Finding(files.STORE, line) for line in (stale(store) if stale is not None else ()))
+                findings += () if views.categories is None else _disagreements(store, views.categories, views.lessons)
+        except MemoryFormatError as error:
+            findings.append(Finding(files.STORE, files.one_line(error)))
+        finally:
+            lock.release(undo=True)
+    else:
+        findings += (_lessonless(view, lesson) for view, lesson in sorted(views.lessons.items()))
+    return Verified(semantic, perceptual, (*findings, *views.findings))
 
 
-def verify_semantic(memory: Path, progress: Progress | None = None, stale: Stale | None = None) -> tuple[Finding, ...]:
-    """Return what in the semantic store is not as it was written; ``progress`` is told of indexes done, and of their
-    number.
+def _lock(memory: Path) -> OwnerLock | ReaderLock:
+    try:
+        return OwnerLock.acquire(memory)
+    except ReadOnlyMemoryError:
+        return ReaderLock.acquire(memory)
 
-    Raises MemoryBusyError where another process has it.
+
+class _Views(NamedTuple):
+    """What the perceptual store says of each view, by id: its category, and its lesson if it has one; and findings.
+
+    ``categories`` is None where not all could be read: then nothing is compared with it.
     """
-    lock = OwnerLock.acquire(memory)
-    try:
-        files.check_store_opens(memory)
-        store = ox.Store.read_only(str(files.store_in(memory)))
-        findings = tuple(_findings(store, progress))
-        if stale is not None and not findings:
-            findings = tuple(Finding(files.STORE, line) for line in stale(store))
-        return findings
-    except MemoryFormatError as error:
-        return (Finding(files.STORE, files.one_line(error)),)
-    finally:
-        lock.release(undo=True)
+
+    categories: Mapping[str, str] | None
+    lessons: Mapping[str, str]
+    findings: tuple[Finding, ...]
 
 
-def _verify_perceptual(memory: Path, progress: Progress | None) -> tuple[Finding, ...]:
+def _verify_views(memory: Path, progress: Progress | None) -> _Views:
     try:
-        return verify_views(memory, progress)
+        with open_in(memory) as views:
+            found = views.verify(progress)
+            if found:
+                return _Views(None, {}, found)
+            return _Views({key.id: key.category for key in views.listing()}, views.lessons_of_views(), ())
     except DamagedMemoryError as error:
-        return (Finding(files.PERCEPTUAL, files.one_line(error)),)
+        return _Views(None, {}, (Finding(files.PERCEPTUAL, files.one_line(error)),))
+
+
+def _disagreements(store: ox.Store, categories: Mapping[str, str], lessons: Mapping[str, str]) -> Iterator[Finding]:
+    """Find where the two stores say different things of the views of lessons."""
+    taught = all_links(store)
+    for lesson, view, category in taught:
+        where = f"lesson '{lesson}'"
+        if not ledger.knows(store, lesson):
+            yield Finding(where, f"it taught the view '{view}', and there is no such lesson")
+        elif view not in categories:
+            yield Finding(where, f"it taught the view '{view}' of '{category}', which is not there")
+        elif categories[view] != category:
+            yield Finding(where, f"it taught the view '{view}' of '{category}', which is of '{categories[view]}'")
+        elif view not in lessons:
+            yield Finding(where, f"it taught the view '{view}', which says that it belongs to no lesson")
+    said = {(link.lesson, link.view) for link in taught}
+    for view, lesson in sorted(lessons.items()):
+        if view not in categories:
+            yield Finding(f"view '{view}'", f"it belongs to the lesson '{lesson}', and is not there")
+        elif not ledger.knows(store, lesson):
+            yield _lessonless(view, lesson)
+        elif (lesson, view) not in said:
+            yield Finding(f"view '{view}'", f"it belongs to the lesson '{lesson}', which does not say so")
+
+
+def _lessonless(view: str, lesson: str) -> Finding:
+    return Finding(f"view '{view}'", f"it belongs to the lesson '{lesson}', and there is no such lesson")
 
 
 def _findings(store: ox.Store, progress: Progress | None) -> Iterator[Finding]:

@@ -169,6 +169,20 @@ def read_category(name: str, sealed: bytes) -> CategoryRecord:
     return CategoryRecord(name, state, json.loads(note))
 
 
+def write_name(kind: bytes, name: str, value: str) -> tuple[bytes, bytes]:
+    """Return key and value of a text that is kept under a name, such as the lesson of a view."""
+    key = keys.name_key(kind, name)
+    return key, seal(key, value.encode())
+
+
+def read_name(key: bytes, sealed: bytes) -> str:
+    """Return the text again."""
+    value = unseal(key, sealed)
+    if value is None:
+        raise DamagedMemoryError(f"what is kept under {key[:60]!r} is not what was written")
+    return value.decode()
+
+
 class StoreCounts(NamedTuple):
     """What is counted in every batch: batches so far, views there are, and batches that were lost."""
 

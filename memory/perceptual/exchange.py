@@ -19,7 +19,7 @@ import os
 import re
 import zipfile
 from collections import defaultdict
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
@@ -78,11 +78,10 @@ def export_views(memory: PerceptualMemory, file: str | Path, progress: Progress 
 def import_views(file: str | Path, memory: PerceptualMemory, progress: Progress | None = None) -> Imported:
     """Take in what :func:`export_views` wrote; what is there stays.
 
-    All is read and compared before anything is written. Up to 64 MB go in in one step; a larger file in several, and
-    if the disk is full before the last one, importing again goes on from there. A category's learned state is kept
-    where it describes just the views that the category then has; elsewhere it is left out, and named in the result.
-    Raises ImportFormatError for a file that cannot be believed, RejectedWriteError where it has another view of a
-    known id.
+    All is read and compared before anything is written, and all of it goes in, or nothing. A category's learned state
+    is kept where it describes just the views that the category then has; elsewhere it is left out, and named in the
+    result. Raises ImportFormatError for a file that cannot be believed, RejectedWriteError where it has another view of
+    a known id.
     """
     with Archive(Path(file)) as archive, memory.exclusive():
         there = {key.id: key.category for key in memory.listing()}
@@ -95,24 +94,25 @@ def import_views(file: str | Path, memory: PerceptualMemory, progress: Progress 
                 )
             coming[view.category].add(view.id)
         records, relearn = _records(archive, memory, there, coming)
+        new = [id for ids in coming.values() for id in sorted(ids - set(there))]
         views = counted(archive.views(), 2 * len(archive), progress, len(archive))
-        known = set(there)
-        waiting: list[View] = []
-        size = written = 0
-        for new_view in views:
-            if new_view.id in known:
-                continue
-            waiting.append(new_view)
-            size += sum(array.nbytes for array in new_view.descriptors.values()) + (
-                0 if new_view.points is None else new_view.points.nbytes
-            )
-            if size >= _STEP:
-                memory.write(Batch(waiting))
-                waiting, size, written = [], 0, written + len(waiting)
-        if waiting or records:
-            memory.write(Batch(waiting, records), sync=True)
-        new = written + len(waiting)
-    return Imported(new, len(records), relearn)
+        memory.write_all(_batches((view for view in views if view.id not in there), records), new)
+    return Imported(len(new), len(records), relearn)
+
+
+def _batches(views: Iterable[View], records: Sequence[CategoryRecord]) -> Iterator[Batch]:
+    """Yield new views in batches of so many bytes, the last of them with the records of their categories."""
+    waiting: list[View] = []
+    size = 0
+    for view in views:
+        if size >= _STEP:
+            yield Batch(waiting)
+            waiting, size = [], 0
+        waiting.append(view)
+        size += sum(array.nbytes for array in view.descriptors.values())
+        size += 0 if view.points is None else view.points.nbytes
+    if waiting or records:
+        yield Batch(waiting, records)
 
 
 def _records(

@@ -7,9 +7,10 @@ closing it while another thread reads ends the process. So handles are counted, 
 from __future__ import annotations
 
 import contextlib
+import ctypes
 import os
 import threading
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import TracebackType
@@ -19,12 +20,30 @@ import plyvel
 
 from deixis.errors import DeixisError
 from deixis.memory import owner as disk
-from deixis.memory.errors import DamagedMemoryError, MemoryFormatError, MemoryWriteError
+from deixis.memory.errors import DamagedMemoryError, MemoryFormatError, MemoryWriteError, ReadOnlyMemoryError
 from deixis.memory.folder import one_line
-from deixis.memory.owner import LOCK_FILE, OwnerLock
+from deixis.memory.journal import (
+    JournalEntry,
+    clear_journal,
+    has_committed,
+    new_id,
+    read_journal,
+    write_journal,
+)
+from deixis.memory.owner import LOCK_FILE, OwnerLock, ReaderLock, forked
 from deixis.memory.perceptual import keys, layout
-from deixis.memory.perceptual.codec import StoreCounts, ViewHeader, read_counts, write_about, write_counts, write_view
+from deixis.memory.perceptual.codec import (
+    StoreCounts,
+    ViewHeader,
+    read_counts,
+    read_name,
+    seal,
+    write_about,
+    write_counts,
+    write_view,
+)
 from deixis.memory.perceptual.records import View
+from deixis.scratch import ScratchFolder, remove_stale
 
 OPTIONS = {
     "paranoid_checks": True,  # indices and logs are checked too, and compaction does not pass on what is broken
@@ -39,7 +58,6 @@ page by page, which for 60 KB takes as long as all else that is done here."""
 
 _handles: dict[Path, Handle] = {}
 _opening = threading.Lock()
-_inherited: list[Any] = []
 
 
 class Places(NamedTuple):
@@ -89,10 +107,16 @@ class WriteBatch:
         self.places[said.id] = moved[0]
 
     def drop(self, view_id: str, key: bytes, arrays: Sequence[bytes]) -> None:
-        """Drop a view that is there, and the keys of its arrays."""
-        self.pairs += [(each, None) for each in (key, *arrays)]
+        """Drop a view that is there, the keys of its arrays, and that of its lesson."""
+        self.pairs += [(each, None) for each in (key, *arrays, keys.name_key(keys.LESSON, view_id))]
         self.places[view_id] = None
         self.views -= 1
+
+
+def _marked(change: WriteBatch, id: str) -> WriteBatch:
+    """Return a change that also says which journal it was in."""
+    pairs = [*change.pairs, (keys.JOURNAL, seal(keys.JOURNAL, id.encode()))]
+    return WriteBatch(pairs, change.places, change.views)
 
 
 class Handle:
@@ -103,9 +127,10 @@ class Handle:
     """
 
     def __init__(
-        self, folder: Path, lock: OwnerLock, tally: layout.AcknowledgedCounts, db: Any, counts: StoreCounts
+        self, folder: Path, lock: OwnerLock | ReaderLock, tally: layout.AcknowledgedCounts, db: Any, counts: StoreCounts
     ) -> None:
         self.folder, self.counts = folder, counts
+        self.inherited = False
         self.writing = threading.RLock()
         self.users = 1
         self._lock, self._tally, self._db = lock, tally, db
@@ -113,13 +138,15 @@ class Handle:
         self._guard, self._calls = threading.RLock(), 0
         self._idle = threading.Condition(self._guard)
         self._failed: str | None = None
+        self._read_only: str | None = None
+        self._scratch: ScratchFolder | None = None
         self._places: Places | None = None
         self._sources: set[Any] = set()
 
     def __enter__(self) -> Any:
         with self._guard:
             if self._db is None:
-                raise closed()
+                raise forked(self.folder) if self.inherited else closed()
             self._calls += 1
             return self._db
 
@@ -183,8 +210,7 @@ class Handle:
         counts = StoreCounts(before.batches + 1, before.views + change.views, before.lost)
         sealed = write_counts(counts)
         with self as db:
-            if self._failed is not None:
-                raise MemoryWriteError(f"{self._failed}; close the memory, mend what is wrong, and open it again")
+            self._require_sound()
             try:
                 batch = db.write_batch(sync=sync) if sync or len(change.pairs) > MAX_REUSED_BATCH else self._batch
                 batch.clear()
@@ -203,9 +229,101 @@ class Handle:
             else:
                 there[view_id] = place
 
+    def write_with(self, change: WriteBatch, commit: Callable[[str], None]) -> None:
+        """Write all of a change if another store commits, and nothing if it does not, whatever happens in between.
+
+        ``commit`` is called with the id of the journal, which the other store has to commit as well, see
+        :mod:`deixis.memory.journal`. To be called with :attr:`writing` held.
+        """
+        self._require_sound()
+        entry = JournalEntry(new_id(), tuple(change.pairs), change.views)
+        with wrap_level_errors(self.folder):
+            write_journal(self.folder, entry)
+        try:
+            commit(entry.id)
+        except BaseException:
+            if has_committed(self.folder.parent, entry.id):
+                self._finish(change, entry.id)
+            else:
+                clear_journal(self.folder)
+            raise
+        self._finish(change, entry.id)
+
+    def _finish(self, change: WriteBatch, id: str) -> None:
+        """Write a change whose journal is decided, and remove the journal."""
+        try:
+            self.write(_marked(change, id), sync=True)
+        except MemoryWriteError as error:
+            raise MemoryWriteError(
+                f"{error}; what was learned is kept, and what the things look like will be once the memory is opened "
+                "again and can be written"
+            ) from error
+        clear_journal(self.folder)
+
+    def settle(self, where: Path) -> None:
+        """Roll a write that was cut short forward or back, if there is the journal of one."""
+        entry = read_journal(where)
+        if entry is not None:
+            with self as db:
+                sealed = db.get(keys.JOURNAL, verify_checksums=True)
+            applied = sealed is not None and read_name(keys.JOURNAL, sealed) == entry.id
+            if entry.undo and not applied:
+                self.write(self._undoing(entry.undo), sync=True)
+            elif entry.pairs and not applied and has_committed(self.folder.parent, entry.id):
+                self.write(_marked(WriteBatch(list(entry.pairs), {}, entry.views), entry.id), sync=True)
+                self._places = None  # what the batch moved is not known
+        clear_journal(where)
+
+    def _undoing(self, new: Sequence[str]) -> WriteBatch:
+        """Return the change that forgets the views of an import that was cut short: their arrays are at their keys."""
+        change, there = WriteBatch(), self.places()
+        for view_id in new:
+            if view_id in there:
+                change.drop(view_id, there[view_id], [keys.ARRAYS + there[view_id][1:]])
+        return change
+
+    def write_all(self, changes: Iterable[WriteBatch], new: Sequence[str]) -> None:
+        """Write changes that bring new views, in a step each: all of them, or, whatever happens, none.
+
+        ``new`` are the ids of the views. To be called with :attr:`writing` held.
+        """
+        id, waiting = None, None
+        try:
+            for change in changes:
+                if waiting is not None:
+                    id = id or self._begin_import(new)
+                    self.write(waiting, sync=False)
+                waiting = change
+            if waiting is not None and id is None:
+                self.write(waiting, sync=True)
+            elif waiting is not None and id is not None:
+                self._finish(waiting, id)
+        except BaseException:
+            if id is not None:
+                with contextlib.suppress(DeixisError):  # else the next opening does it
+                    self.write(self._undoing(new), sync=True)
+                    clear_journal(self.folder)
+            raise
+
+    def _begin_import(self, new: Sequence[str]) -> str:
+        self._require_sound()
+        entry = JournalEntry(new_id(), undo=tuple(new))
+        with wrap_level_errors(self.folder):
+            write_journal(self.folder, entry)
+        return entry.id
+
+    def _require_sound(self) -> None:
+        if self._read_only is not None:
+            raise ReadOnlyMemoryError(self._read_only)
+        if self._failed is not None:
+            raise MemoryWriteError(f"{self._failed}; close the memory, mend what is wrong, and open it again")
+
     def disowned(self) -> Any:
-        """Take the database away from here without closing it."""
+        """Take the database away from a forked child without closing it, with fresh locks: no other thread is there."""
         db, self._db = self._db, None
+        self.inherited = True
+        self.writing, self._guard = threading.RLock(), threading.RLock()
+        self._idle = threading.Condition(self._guard)
         return db
 
     def shut(self) -> None:
@@ -213,22 +331,31 @@ class Handle:
         with self._idle:
             db, self._db = self._db, None
             self._idle.wait_for(lambda: not self._calls)
+        sealed = self._failed is None and self._scratch is None
         with contextlib.suppress(plyvel.Error, OSError):  # all that was acknowledged is in the log already
-            if self._failed is None:
+            if sealed:
                 db.compact_range(start=b"\xfe", stop=b"\xff")  # empties the log into a table, and touches no other
         db.close()
         self._sources.clear()
         self._tally.close()
         with contextlib.suppress(OSError):
-            if self._failed is None:
+            if sealed:
                 layout.write_seal(self.folder)
         self._lock.release()
+        if self._scratch is not None:
+            self._scratch.remove()
+
+    def only_read(self, scratch: ScratchFolder, reason: str) -> None:
+        """Refuse to be written from now on: this is a copy, in ``scratch``, of a folder that cannot be written."""
+        self._scratch, self._read_only = scratch, reason
 
 
 def _disown() -> None:
     """Take the databases away from a forked child, which must not touch its parent's, without freeing them there."""
+    global _opening
+    _opening = threading.Lock()
     for handle in _handles.values():
-        _inherited.append(handle.disowned())
+        ctypes.pythonapi.Py_IncRef(ctypes.py_object(handle.disowned()))
     _handles.clear()
 
 
@@ -281,7 +408,7 @@ def release(handle: Handle) -> None:
     """Give a handle back; the last one closes it."""
     with _opening:
         handle.users -= 1
-        if handle.users == 0:
+        if handle.users == 0 and not handle.inherited:
             _handles.pop(handle.folder, None)
             handle.shut()
 
@@ -296,24 +423,52 @@ def _opened(folder: Path, real: Path, create: bool) -> Handle:
         raise MemoryWriteError(f"the folder {folder} cannot be made: {error.strerror}") from error
     try:
         with contextlib.ExitStack() as undo, wrap_level_errors(real):
-            lock = OwnerLock.acquire(real)
+            try:
+                lock = OwnerLock.acquire(real)
+            except ReadOnlyMemoryError as error:
+                if layout.version_in(folder) is None:
+                    raise
+                return _opened_for_reading(real, str(error))
             undo.callback(lock.release, undo=True)
             if made and layout.version_in(real) is None:  # looked at by the owner only: two may have found no folder
                 undo.callback(_emptied, real)
             lock.sign()
-            layout.prepare(real)
-            tally = layout.AcknowledgedCounts(real)
-            undo.callback(tally.close)
-            db = plyvel.DB(str(layout.store(real)), **OPTIONS)
-            undo.callback(db.close)
-            counts = _counted(real, db, tally)
-            undo.pop_all()
-        return Handle(real, lock, tally, db, counts)
+            return _opened_in(real, real, lock, undo)
     except BaseException:
         if made:
             with contextlib.suppress(OSError):  # not empty: somebody else has it by now
                 real.rmdir()
         raise
+
+
+def _opened_for_reading(real: Path, reason: str) -> Handle:
+    """Open a copy of a folder that cannot be written: LevelDB writes wherever it opens.
+
+    Tables are linked, and not copied.
+    """
+    with contextlib.ExitStack() as undo:
+        lock = ReaderLock.acquire(real)
+        undo.callback(lock.release)
+        remove_stale()
+        scratch = ScratchFolder()
+        undo.callback(scratch.remove)
+        layout.mirror(real, scratch.path)
+        handle = _opened_in(real, scratch.path, lock, undo)
+    handle.only_read(scratch, reason)
+    return handle
+
+
+def _opened_in(real: Path, where: Path, lock: OwnerLock | ReaderLock, undo: contextlib.ExitStack) -> Handle:
+    """Open the database of ``real`` that lies in ``where``; what ``undo`` has is let be where that succeeds."""
+    layout.prepare(where)
+    tally = layout.AcknowledgedCounts(where)
+    undo.callback(tally.close)
+    db = plyvel.DB(str(layout.store(where)), **OPTIONS)
+    undo.callback(db.close)
+    handle = Handle(real, lock, tally, db, _counted(real, db, tally))
+    handle.settle(where)
+    undo.pop_all()
+    return handle
 
 
 def _emptied(folder: Path) -> None:

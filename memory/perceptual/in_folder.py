@@ -4,24 +4,20 @@ A memory in which nothing was ever taught has no perceptual memory, and that is 
 
 >>> import tempfile
 >>> folder = Path(tempfile.mkdtemp())
->>> stats_of(folder) is None, verify_views(folder)
-(True, ())
+>>> stats_of(folder) is None, has_views(folder)
+(True, False)
 """
 
 from __future__ import annotations
 
-import contextlib
-from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from deixis.errors import DeixisError
-from deixis.memory.errors import DamagedMemoryError, MemoryWriteError
+from deixis.memory.errors import DamagedMemoryError
 from deixis.memory.folder import inspect
 from deixis.memory.perceptual.exchange import Archive, Imported, export_views, import_views, is_archive
 from deixis.memory.perceptual.layout import FOLDER, version_in
 from deixis.memory.perceptual.level import LevelMemory, UndamagedMemory
-from deixis.memory.perceptual.protocol import Finding, PerceptualMemory, PerceptualStats, Progress
-from deixis.memory.perceptual.records import Batch, CategoryRecord, View
+from deixis.memory.perceptual.protocol import PerceptualStats, Progress
 
 __all__ = [
     "export_all",
@@ -30,9 +26,7 @@ __all__ = [
     "is_archive",
     "open_in",
     "open_undamaged",
-    "restored_on_failure",
     "stats_of",
-    "verify_views",
 ]
 
 
@@ -64,14 +58,6 @@ def stats_of(memory: Path) -> PerceptualStats | None:
         return views.stats()
 
 
-def verify_views(memory: Path, progress: Progress | None = None) -> tuple[Finding, ...]:
-    """Return what is not as it was written; raises DamagedMemoryError where the memory cannot be opened."""
-    if not has_views(memory):
-        return ()
-    with open_in(memory) as views:
-        return views.verify(progress)
-
-
 def export_all(memory: Path, file: Path, progress: Progress | None = None) -> None:
     """Write all views and categories into one file; raises MemoryFormatError where nothing was taught."""
     with open_in(memory) as views:
@@ -90,43 +76,3 @@ def import_all(file: Path, memory: Path, progress: Progress | None = None) -> Im
         pass  # what is no archive of views makes no memory
     with open_in(memory, create=True) as views:
         return import_views(file, views, progress)
-
-
-@contextlib.contextmanager
-def restored_on_failure(memory: PerceptualMemory, views: Sequence[View]) -> Iterator[None]:
-    """Put views that are kept within, and their categories, back as they were where something within fails.
-
-    Other threads cannot write meanwhile. A view that was damaged before is gone then. Raises MemoryWriteError, with
-    what had failed, where the memory cannot be put back.
-    """
-    with memory.exclusive():
-        there = set(memory.categories())
-        ids = dict.fromkeys(view.id for view in views)
-        before = [view for view in (_view(memory, id) for id in ids) if view is not None]
-        names = {view.category for view in (*views, *before)} & there
-        records = [record for record in (_record(memory, name) for name in sorted(names)) if record is not None]
-        try:
-            yield
-        except BaseException as failure:
-            old = {view.id for view in before}
-            new = [id for id in ids if id not in old and _view(memory, id) is not None]
-            try:
-                memory.write(Batch(before, records, new))
-                for name in {view.category for view in views} & set(memory.categories()) - there:
-                    memory.forget(name)
-            except DeixisError as error:
-                told = f"{failure}; what the things look like stays kept all the same: {error}"
-                raise MemoryWriteError(told) from failure
-            raise
-
-
-def _view(memory: PerceptualMemory, view_id: str) -> View | None:
-    with contextlib.suppress(DeixisError):
-        return memory.view(view_id)
-    return None
-
-
-def _record(memory: PerceptualMemory, name: str) -> CategoryRecord | None:
-    with contextlib.suppress(DeixisError):
-        return memory.category(name)
-    return None

@@ -13,8 +13,9 @@ from __future__ import annotations
 
 from datetime import UTC, datetime, timedelta
 
-ARRAYS, CATEGORY, COUNT, VIEW = b"a", b"c", b"n", b"v"
-"""The ranges: a view's arrays; a category's record; counts; what is said of a view."""
+ARRAYS, CATEGORY, JOURNAL, LESSON, COUNT, VIEW = b"a", b"c", b"j", b"l", b"n", b"v"
+"""The ranges: a view's arrays; a category's record; the id of the last journal that was applied; the lesson that a view
+belongs to; counts; what is said of a view."""
 
 EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
 _END, _ZERO = b"\x00\x00", b"\x00\xff"

@@ -2,8 +2,8 @@
 
 ``store-2/`` is a LevelDB of version 2, and the name is what says so. A new store is made as ``store-3.new/`` and
 renamed when it is whole, so that a crash at any moment leaves one whole store with the greatest number. Beside it lie
-``owner.lock``, ``calibration.json`` (see :mod:`deixis.memory.perceptual.calibrated`) and two files that show what
-LevelDB leaves out in silence:
+``owner.lock``, ``calibration.json`` (see :mod:`deixis.memory.perceptual.calibrated`), ``journal`` while a write over
+both stores is under way (see :mod:`deixis.memory.journal`), and two files that show what LevelDB leaves out in silence:
 
 - ``acknowledged`` holds the counts of the last batch. A database that finds the end of its log broken takes it for a
   write that was under way, and forgets it.
@@ -22,6 +22,7 @@ import contextlib
 import json
 import os
 import re
+import shutil
 import zlib
 from collections.abc import Callable
 from pathlib import Path
@@ -30,6 +31,7 @@ import plyvel
 
 from deixis.memory import owner as disk
 from deixis.memory.errors import DamagedMemoryError, MemoryFormatError
+from deixis.memory.journal import JOURNAL
 from deixis.memory.owner import LOCK_FILE
 from deixis.memory.perceptual.codec import StoreCounts, read_counts
 from deixis.memory.perceptual.migrations import MIGRATIONS
@@ -63,7 +65,7 @@ def version_in(folder: Path) -> int | None:
         return None
     if not folder.is_dir():
         raise MemoryFormatError(f"{folder} is a file: a memory is a folder; name another path")
-    ours = {LOCK_FILE, TALLY, *(name + end for name in (SEAL, CALIBRATION) for end in ("", ".new"))}
+    ours = {LOCK_FILE, TALLY, *(name + end for name in (SEAL, CALIBRATION, JOURNAL) for end in ("", ".new"))}
     names = set(os.listdir(folder)) - ours
     foreign = sorted(name for name in names if not _STORE.fullmatch(name))
     if foreign:
@@ -105,6 +107,24 @@ def prepare(folder: Path) -> None:
     for other in folder.glob("store-*"):
         if other != store(folder):
             disk.remove(other)
+
+
+def mirror(folder: Path, scratch: Path) -> None:
+    """Fill an empty folder with a copy of a perceptual memory that may be written, without copying its tables.
+
+    They are linked, as LevelDB never changes a table.
+    """
+    for file in folder.iterdir():
+        if file.is_dir():
+            (scratch / file.name).mkdir()
+            for part in file.iterdir():
+                there = scratch / file.name / part.name
+                if part.suffix == _TABLE:
+                    there.symlink_to(part)
+                elif part.is_file():
+                    shutil.copyfile(part, there)
+        elif file.name != LOCK_FILE:
+            shutil.copyfile(file, scratch / file.name)
 
 
 def _make(folder: Path, version: int, fill: Callable[[plyvel.DB], None]) -> None:

@@ -20,7 +20,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import AbstractContextManager
 from functools import cached_property
 from pathlib import Path
@@ -29,7 +29,7 @@ from typing import Self
 from deixis.memory.errors import DamagedMemoryError, UnknownViewError
 from deixis.memory.owner import Closing
 from deixis.memory.perceptual import keys
-from deixis.memory.perceptual.codec import read_about, write_category
+from deixis.memory.perceptual.codec import read_about, read_name, write_category, write_name
 from deixis.memory.perceptual.handle import Handle, WriteBatch, acquire, closed, release
 from deixis.memory.perceptual.protocol import Finding, PerceptualStats, Progress, ViewKey
 from deixis.memory.perceptual.reading import Snapshot, glance, unknown_view
@@ -103,6 +103,24 @@ class LevelMemory(Closing):
         with self.snapshot() as now:
             return now.category(name)
 
+    def lessons_of_views(self) -> dict[str, str]:
+        """Return the lesson of each view that belongs to one, by the view's id."""
+        with self.snapshot() as now:
+            return now.lessons_of_views()
+
+    def lesson_of(self, view_id: str) -> str | None:
+        """Return the lesson that a view belongs to, or None."""
+        key = keys.name_key(keys.LESSON, check_name("a view's id", view_id))
+        with self.snapshot() as now:
+            sealed = now.get(key)
+        return None if sealed is None else read_name(key, sealed)
+
+    def taught_by_lessons(self, category: str) -> tuple[str, ...]:
+        """Return the ids of the views of a category that belong to lessons."""
+        with self.snapshot() as now:
+            views = [keys.split_view_key(key)[1] for key in now.bare_keys(keys.category_prefix(category))]
+            return tuple(view for view in views if now.get(keys.name_key(keys.LESSON, view)) is not None)
+
     def stats(self) -> PerceptualStats:
         """Return how much the memory keeps."""
         with self.snapshot() as now:
@@ -123,47 +141,77 @@ class LevelMemory(Closing):
 
     def write(self, batch: Batch, sync: bool = False) -> None:
         """Write a batch in one step."""
-        handle = self.handle
-        with handle.writing:
-            there, change = handle.places(), WriteBatch()
-            for view_id in batch.forgotten:
-                if check_name("a view's id", view_id) not in there:
-                    raise UnknownViewError(f"no view '{view_id}' to forget; nothing was written")
-                change.drop(view_id, there[view_id], _arrays_of(handle, view_id, there[view_id]))
-            for view in batch.views:
-                if view.id in there:
-                    change.drop(view.id, there[view.id], _arrays_of(handle, view.id, there[view.id]))
-                change.add(view)
-            change.pairs += [write_category(record) for record in batch.categories]
-            handle.write(change, sync)
+        with self.exclusive():
+            self.handle.write(self.writing(batch), sync)
+
+    def write_all(self, batches: Iterable[Batch], new: Sequence[str]) -> None:
+        """Write batches that bring new views."""
+        with self.exclusive():
+            self.handle.write_all(map(self.writing, batches), new)
 
     def rename(self, old: str, new: str) -> None:
         """Give a category another name."""
-        check_name("a category's name", new)
-        with self.exclusive(), self.snapshot() as now:
-            record = now.category(old)
-            if now.has(new):
-                raise name_taken(old, new)
-            self.handle.write(_of_moving(now, old, CategoryRecord(new, record.state, record.metadata)), sync=True)
+        with self.exclusive():
+            self.handle.write(self.renaming(old, new), sync=True)
 
     def merge(self, source: str, into: str, record: CategoryRecord | None = None) -> None:
         """Move the views of one category to another."""
-        check_merging(source, into, record)
-        with self.exclusive(), self.snapshot() as now:
-            now.require(into)
-            now.require(source)
-            self.handle.write(_of_moving(now, source, record or CategoryRecord(into)), sync=True)
+        with self.exclusive():
+            self.handle.write(self.merging(source, into, record), sync=True)
 
     def forget(self, category: str) -> None:
         """Forget a category with its views."""
-        with self.exclusive(), self.snapshot() as now:
+        with self.exclusive():
+            self.handle.write(self.forgetting(category), sync=True)
+
+    # ---- the changes that these make, to be worked out and written under :meth:`exclusive`
+
+    def writing(self, batch: Batch) -> WriteBatch:
+        """Return the change that writes a batch; raises as :meth:`write`."""
+        handle, change = self.handle, WriteBatch()
+        there = handle.places()
+        for view_id in batch.forgotten:
+            if check_name("a view's id", view_id) not in there:
+                raise UnknownViewError(f"no view '{view_id}' to forget; nothing was written")
+            change.drop(view_id, there[view_id], _arrays_of(handle, view_id, there[view_id]))
+        for view in batch.views:
+            if view.id in there:
+                change.drop(view.id, there[view.id], _arrays_of(handle, view.id, there[view.id]))
+            change.add(view)
+        change.pairs += [write_category(record) for record in batch.categories]
+        change.pairs += [(keys.name_key(keys.CATEGORY, name), None) for name in batch.dropped]
+        for view_id, lesson in batch.lessons.items():
+            key = keys.name_key(keys.LESSON, check_name("a view's id", view_id))
+            change.pairs.append((key, None) if lesson is None else write_name(keys.LESSON, view_id, lesson))
+        return change
+
+    def renaming(self, old: str, new: str) -> WriteBatch:
+        """Return the change that gives a category another name; raises as :meth:`rename`."""
+        check_name("a category's name", new)
+        with self.snapshot() as now:
+            record = now.category(old)
+            if now.has(new):
+                raise name_taken(old, new)
+            return _of_moving(now, old, CategoryRecord(new, record.state, record.metadata))
+
+    def merging(self, source: str, into: str, record: CategoryRecord | None = None) -> WriteBatch:
+        """Return the change that moves the views of a category to another; raises as :meth:`merge`."""
+        check_merging(source, into, record)
+        with self.snapshot() as now:
+            now.require(into)
+            now.require(source)
+            return _of_moving(now, source, record or CategoryRecord(into))
+
+    def forgetting(self, category: str) -> WriteBatch:
+        """Return the change that forgets a category with its views; raises as :meth:`forget`."""
+        with self.snapshot() as now:
             now.require(category)
             change = WriteBatch()
             for key in [key for key in self.handle.places().values() if key.startswith(keys.category_prefix(category))]:
                 view_id = keys.split_view_key(key)[1]
                 change.drop(view_id, key, _arrays_of(self.handle, view_id, key))
             change.pairs.append((keys.name_key(keys.CATEGORY, category), None))
-            self.handle.write(change, sync=True)
+            return change
 
 
 class UndamagedMemory(LevelMemory):

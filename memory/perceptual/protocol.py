@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from datetime import datetime
@@ -67,6 +67,9 @@ class PerceptualReading(Protocol):
     def category(self, name: str) -> CategoryRecord:
         """Return what a learner left about a category, without arrays where nothing. Raises UnknownCategoryError."""
 
+    def lessons_of_views(self) -> dict[str, str]:
+        """Return the lesson of each view that belongs to one, by the view's id."""
+
     def stats(self) -> PerceptualStats:
         """Return how much the memory keeps."""
 
@@ -91,6 +94,12 @@ class PerceptualMemory(PerceptualReading, Protocol):
 
         Raises UnknownViewError where a view to forget is not there, MemoryWriteError where it cannot be written;
         nothing is changed then.
+        """
+
+    def write_all(self, batches: Iterable[Batch], new: Sequence[str]) -> None:
+        """Write batches that bring new views, with the ids ``new``: all of them, or none, whatever happens.
+
+        Only one of the batches is held at a time. Raises as :meth:`write`, and whatever ``batches`` raises.
         """
 
     def rename(self, old: str, new: str) -> None:

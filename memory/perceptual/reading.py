@@ -23,6 +23,7 @@ from deixis.memory.perceptual.codec import (
     read_about,
     read_category,
     read_counts,
+    read_name,
     read_view,
 )
 from deixis.memory.perceptual.handle import Handle, Places, closed, read_places
@@ -200,6 +201,10 @@ class Snapshot(Closing):
         """Raise UnknownCategoryError, naming the nearest, where the category is unknown."""
         if not self.has(category):
             raise unknown_category(category, self.categories())
+
+    def lessons_of_views(self) -> dict[str, str]:
+        """Return the lesson of each view that belongs to one, by the view's id."""
+        return {key[1:].decode(): read_name(key, sealed) for key, sealed in self.pairs(keys.LESSON)}
 
     def counts(self) -> StoreCounts:
         """Return the counts at this moment."""

@@ -126,17 +126,22 @@ class CategoryRecord:
 class Batch:
     """What is written in one step: all of it, or, whatever happens, nothing.
 
-    A view whose id is known takes the place of the old one, in whatever category that was; a category's record takes
-    the place of the old record. ``forgotten`` are ids of views. Raises RecordError where an id or a name comes twice.
+    A view whose id is known takes the place of the old one, in whatever category that was, and belongs to no lesson; a
+    category's record takes the place of the old record. ``forgotten`` are ids of views, ``dropped`` names of categories
+    whose records go. ``lessons`` says which lesson a view belongs to from now on, by the view's id; None for no lesson.
+    Raises RecordError where an id or a name comes twice.
     """
 
     views: Sequence[View] = ()
     categories: Sequence[CategoryRecord] = ()
     forgotten: Sequence[str] = ()
+    dropped: Sequence[str] = ()
+    lessons: Mapping[str, str | None] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         ids = [*(view.id for view in self.views), *self.forgotten]
-        for what, names in (("view", ids), ("category", [record.name for record in self.categories])):
+        categories = [*(record.name for record in self.categories), *self.dropped]
+        for what, names in (("view", ids), ("category", categories)):
             if len(set(names)) < len(names):
                 twice = next(name for name in names if names.count(name) > 1)
                 raise RecordError(f"the {what} '{twice}' comes twice in one batch")

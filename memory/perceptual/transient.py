@@ -11,9 +11,9 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import AbstractContextManager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 from deixis.memory.errors import UnknownViewError
 from deixis.memory.owner import Closing
@@ -31,6 +31,7 @@ class _StoredViews:
     views: dict[str, View]
     records: dict[str, CategoryRecord]
     batches: int
+    lessons: dict[str, str] = field(default_factory=dict)
 
 
 class TransientReading(Closing):
@@ -86,6 +87,10 @@ class TransientReading(Closing):
         if category not in self.categories():
             raise unknown_category(category, self.categories())
 
+    def lessons_of_views(self) -> dict[str, str]:
+        """Return the lesson of each view that belongs to one, by the view's id."""
+        return dict(self._content.lessons)
+
     def stats(self) -> PerceptualStats:
         """Return how much the memory keeps; its bytes are those of the arrays."""
         arrays = [array for view in self._content.views.values() for array in view.descriptors.values()]
@@ -129,7 +134,25 @@ class TransientMemory(TransientReading):
                 del views[view_id]
             views.update({view.id: view for view in batch.views})
             records.update({record.name: record for record in batch.categories})
-            self._keep(views, records)
+            records = {name: record for name, record in records.items() if name not in batch.dropped}
+            replaced = {*batch.forgotten, *(view.id for view in batch.views)}
+            lessons = {view_id: lesson for view_id, lesson in self._content.lessons.items() if view_id not in replaced}
+            for view_id, lesson in batch.lessons.items():
+                lessons.pop(view_id, None)
+                if lesson is not None:
+                    lessons[view_id] = lesson
+            self._keep(views, records, lessons)
+
+    def write_all(self, batches: Iterable[Batch], new: Sequence[str]) -> None:
+        """Write batches that bring new views."""
+        with self._writing:
+            before = self._content
+            try:
+                for batch in batches:
+                    self.write(batch)
+            except BaseException:
+                self._kept = before
+                raise
 
     def rename(self, old: str, new: str) -> None:
         """Give a category another name."""
@@ -153,7 +176,9 @@ class TransientMemory(TransientReading):
         with self._writing:
             self._require(category)
             views = {view_id: view for view_id, view in self._content.views.items() if view.category != category}
-            self._keep(views, {name: kept for name, kept in self._content.records.items() if name != category})
+            records = {name: kept for name, kept in self._content.records.items() if name != category}
+            lessons = {view_id: lesson for view_id, lesson in self._content.lessons.items() if view_id in views}
+            self._keep(views, records, lessons)
 
     def _move(self, category: str, record: CategoryRecord) -> None:
         views = {
@@ -161,7 +186,7 @@ class TransientMemory(TransientReading):
             for view_id, view in self._content.views.items()
         }
         records = {name: kept for name, kept in self._content.records.items() if name != category}
-        self._keep(views, {**records, record.name: record})
+        self._keep(views, {**records, record.name: record}, self._content.lessons)
 
-    def _keep(self, views: dict[str, View], records: dict[str, CategoryRecord]) -> None:
-        self._kept = _StoredViews(views, records, self._content.batches + 1)
+    def _keep(self, views: dict[str, View], records: dict[str, CategoryRecord], lessons: dict[str, str]) -> None:
+        self._kept = _StoredViews(views, records, self._content.batches + 1, lessons)

@@ -72,6 +72,19 @@ class Dump:
                 yield from _in(graph_of(name), triples)
                 yield from _in(graph_iri(name), triples)
 
+    def in_order(self) -> list[str]:
+        """Return the lessons in the order of the times at which they say that they started, then by id.
+
+        The numbers that lessons have in a memory are not exported, so that the order of learning changes no byte.
+        """
+
+        def started(lesson: str) -> datetime:
+            about = (ledger.lesson_node(lesson), ledger.STARTED)
+            said = self.lessons[lesson].get(GraphName.EPISODES, ())
+            return ledger.earliest(triple for triple in said if (triple.subject, triple.predicate) == about)
+
+        return sorted(self.lessons, key=lambda lesson: (started(lesson), lesson))
+
     def loose(self, name: GraphName) -> set[ox.Triple]:
         """Return what a canonical graph holds that no lesson, no learned model and not the package contributed."""
         held = [self.package[name], *(graphs[name] for graphs in self.lessons.values())]

@@ -15,7 +15,14 @@ from deixis.memory.semantic.queries.union import merge_if_overlapping
 from deixis.memory.semantic.rdf import ledger
 from deixis.memory.semantic.rdf.change import Change, modelling, together
 from deixis.memory.semantic.rdf.files import trig, turtle
-from deixis.memory.semantic.rdf.graphs import CANONICAL, CONTRIBUTED, GraphName, copied_graph, graph_iri, loaded_graph
+from deixis.memory.semantic.rdf.graphs import (
+    CANONICAL,
+    CONTRIBUTED,
+    GraphName,
+    copied_graph,
+    graph_iri,
+    loaded_graph,
+)
 from deixis.memory.semantic.rdf.package import packaged
 from deixis.memory.semantic.store import SemanticMemory
 
@@ -74,6 +81,7 @@ def _fill(store: ox.Store, dump: Dump) -> None:
 
     store.bulk_extend(dump.quads())
     ledger.update(store, ledger.package_update(store, packaged()))
+    ledger.update(store, ledger.numbering(store, dump.in_order()))
     merge_if_overlapping(store)
     check_store(store)
 
@@ -83,8 +91,9 @@ def _merged(memory: SemanticMemory, dump: Dump, file: Path) -> Change:
     store, known = memory.store, set(memory.lessons())
     added: dict[GraphName, set[ox.Triple]] = {name: set() for name in GraphName}
     operations: list[ledger.Operation] = []
-    for lesson, graphs in dump.lessons.items():
-        said = {name: sorted(triples, key=str) for name, triples in graphs.items() if triples}
+    new_lessons: list[str] = []
+    for lesson in dump.in_order():
+        said = {name: sorted(triples, key=str) for name, triples in dump.lessons[lesson].items() if triples}
         if lesson in known:
             if {name: set(triples) for name, triples in memory.contributions(lesson).items()} != {
                 name: set(triples) for name, triples in said.items()
@@ -94,10 +103,12 @@ def _merged(memory: SemanticMemory, dump: Dump, file: Path) -> Change:
                     "one first, or import into another memory"
                 )
             continue
+        new_lessons.append(lesson)
         held = {name: ledger.held(store, graph_iri(name), triples) for name, triples in said.items()}
         operations += ledger.arrival(store, lesson, said, held)
         for name, triples in said.items():
             added[name].update(triples)
+    operations += ledger.numbering(store, new_lessons)
     for name, graph, loose in _loose(store, dump):
         operations += ledger.insertion(graph, sorted(loose, key=str))
         added[name].update(loose)

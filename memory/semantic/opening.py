@@ -1,33 +1,46 @@
-"""Opening a memory: look, lock, look again, mend what a crash left, bring up to date, open."""
+"""Opening a memory: look, lock, look again, mend what a crash left, bring up to date, open.
+
+A memory in a folder that cannot be written is opened for reading only.
+"""
 
 from __future__ import annotations
 
 import contextlib
+import ctypes
+import os
+import weakref
 from collections.abc import Callable
 from pathlib import Path
 
 import pyoxigraph as ox
 
 from deixis.memory import folder as files
-from deixis.memory.errors import MemoryBusyError, MemoryFormatError, MemoryWriteError
+from deixis.memory.errors import MemoryBusyError, MemoryFormatError, MemoryWriteError, ReadOnlyMemoryError
 from deixis.memory.folder import FolderState, committed
-from deixis.memory.owner import OwnerLock
+from deixis.memory.owner import OwnerLock, ReaderLock
 from deixis.memory.semantic.migrations import MIGRATIONS
 from deixis.memory.semantic.rdf import ledger
 from deixis.memory.semantic.rdf.package import package_digest, packaged, packaged_quads
+from deixis.scratch import remove_stale
 
 
 class Opened:
-    """An open store, the folder that it is in, and the lock on it."""
+    """An open store, the folder that it is in, and the lock on it.
 
-    def __init__(self, folder: Path, lock: OwnerLock) -> None:
-        self.folder, self._lock = folder, lock
-        self.store = open_store(folder)
+    ``read_only`` says why it cannot be written, if it cannot. A forked child must neither use nor free a store.
+    """
+
+    def __init__(self, folder: Path, lock: OwnerLock | ReaderLock, read_only: str | None = None) -> None:
+        self.folder, self.read_only, self._lock = folder, read_only, lock
+        self.store = open_store(folder) if read_only is None else open_for_reading(folder)
+        self.inherited = False
+        _opened.add(self)
 
     def close(self) -> None:
-        """Close the store, then let go of the lock."""
-        self.shut()
-        self._lock.release()
+        """Close the store, then let go of the lock; in a forked child, neither."""
+        if not self.inherited:
+            self.shut()
+            self._lock.release()
 
     def shut(self) -> None:
         """Close the store alone."""
@@ -36,6 +49,47 @@ class Opened:
     def reopen(self) -> None:
         """Open the store again after :meth:`shut`."""
         self.store = open_store(self.folder)
+
+    def require_writable(self) -> None:
+        """Raise ReadOnlyMemoryError where this is for reading only."""
+        if self.read_only is not None:
+            raise ReadOnlyMemoryError(self.read_only)
+
+
+_opened: weakref.WeakSet[Opened] = weakref.WeakSet()
+
+
+def _leave_to_parent() -> None:
+    """Keep a forked child from freeing its parent's stores: the threads that this would wait for are not there."""
+    for opened in _opened:
+        opened.inherited = True
+        store = getattr(opened, "store", None)
+        if store is not None:
+            ctypes.pythonapi.Py_IncRef(ctypes.py_object(store))
+
+
+os.register_at_fork(after_in_child=_leave_to_parent)
+
+READABLE = 1
+"""The oldest format that can be read as it is, without being brought up to date."""
+
+
+def open_for_reading(folder: Path) -> ox.Store:
+    """Open the store of a folder that cannot be written; nothing is mended and nothing brought up to date there.
+
+    Raises MemoryFormatError for a format that has to be brought up to date first.
+    """
+    if files.read_mark(folder)["version"] < READABLE:
+        raise MemoryFormatError(
+            f"the memory at {folder} was written by an older version; open it once where the folder can be written"
+        )
+    try:
+        return ox.Store.read_only(str(files.store_in(folder)))
+    except (OSError, RuntimeError) as error:
+        raise MemoryFormatError(
+            f"the memory at {folder} is damaged: its store does not open ({files.one_line(error)}); restore the folder "
+            "from a copy"
+        ) from error
 
 
 def open_store(folder: Path) -> ox.Store:
@@ -57,6 +111,7 @@ def _fill(store: ox.Store) -> None:
 
 def open_memory(folder: Path, create: bool, fill: Callable[[ox.Store], None] = _fill) -> Opened:
     """Open a memory, or make one whose store ``fill`` fills; raise as ``SemanticMemory.open`` does."""
+    remove_stale()
     state = files.inspect(folder)
     if state in (FolderState.ABSENT, FolderState.EMPTY) and not create:
         raise MemoryFormatError(f"{_nothing(folder, state)}; learn something into it first, or name another folder")
@@ -67,7 +122,12 @@ def open_memory(folder: Path, create: bool, fill: Callable[[ox.Store], None] = _
         except OSError as error:
             raise MemoryWriteError(f"the folder {folder} cannot be made: {error.strerror}") from error
     try:
-        lock = OwnerLock.acquire(folder)
+        try:
+            lock = OwnerLock.acquire(folder)
+        except ReadOnlyMemoryError as error:
+            if state is not FolderState.MEMORY:
+                raise
+            return _open_for_reading(folder, str(error))
         try:
             lock.sign()
             _prepare(folder, fill)
@@ -87,6 +147,15 @@ def open_memory(folder: Path, create: bool, fill: Callable[[ox.Store], None] = _
     except BaseException:
         if made and not any(folder.iterdir()):
             folder.rmdir()
+        raise
+
+
+def _open_for_reading(folder: Path, reason: str) -> Opened:
+    reader = ReaderLock.acquire(folder)
+    try:
+        return Opened(folder, reader, reason)
+    except BaseException:
+        reader.release()
         raise
 
 

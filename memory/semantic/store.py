@@ -19,7 +19,7 @@ import pyoxigraph as ox
 from deixis.memory import folder as files
 from deixis.memory.errors import MemoryFormatError, MemoryWriteError, RejectedWriteError, UnknownLessonError
 from deixis.memory.folder import committed, read_mark, reading, write_mark
-from deixis.memory.owner import Closing
+from deixis.memory.owner import Closing, forked
 from deixis.memory.semantic.opening import Opened, open_memory
 from deixis.memory.semantic.queries.limits import QUERY_MEMORY_LIMIT, QUERY_TIME_LIMIT, QueryLimits
 from deixis.memory.semantic.queries.union import (
@@ -53,6 +53,7 @@ from deixis.memory.semantic.rdf.graphs import (
     loaded_graph,
     models_graph,
 )
+from deixis.memory.semantic.rdf.links import unlinking
 from deixis.memory.semantic.stats import MemoryStats, count
 from deixis.ontology.relation import nearest
 
@@ -161,6 +162,7 @@ class SemanticMemory(Closing):
     def open(cls, path: str | Path, create: bool = False) -> SemanticMemory:
         """Open a memory, or make one with ``create``.
 
+        A memory in a folder that cannot be written is opened for reading only: a write raises ReadOnlyMemoryError.
         Raises MemoryBusyError where somebody has it open, MemoryFormatError where there is none or it cannot be
         believed, MemoryWriteError where the folder cannot be written. A failed open changes nothing.
         """
@@ -177,7 +179,7 @@ class SemanticMemory(Closing):
             if self._queries is not None:
                 self._queries.close()
             try:
-                if self._forgets:
+                if self._forgets and not opened.inherited:
                     _give_back(opened, self._forgets)
             finally:
                 opened.close()
@@ -196,7 +198,19 @@ class SemanticMemory(Closing):
     def _open(self) -> Opened:
         if self._opened is None:
             raise MemoryFormatError("this memory is closed: open it again")
+        if self._opened.inherited:
+            raise forked(self._opened.folder)
         return self._opened
+
+    @property
+    def _writable(self) -> Opened:
+        opened = self._open
+        opened.require_writable()
+        return opened
+
+    def require_writable(self) -> None:
+        """Raise ReadOnlyMemoryError where the memory is in a folder that cannot be written."""
+        self._open.require_writable()
 
     def learn(
         self,
@@ -235,14 +249,15 @@ class SemanticMemory(Closing):
             if not any(said.values()):
                 raise RejectedWriteError(f"lesson '{lesson}' says nothing: give at least one triple")
             changes.append(arriving(self.store, lesson, said))
-        return together(*changes)
+        return together(*changes, Change(operations=tuple(ledger.numbering(self.store, list(lessons)))))
 
     def departure(self, lesson: str) -> Change:
         """Return the change that takes a lesson back, to be committed with what follows; raises as :meth:`forget`."""
         self._known(lesson)
         with reading(self.path):
             self._forgets += 1
-            return departing(self.store, lesson)
+            number = Change(operations=tuple(ledger.unnumbering(self.store, lesson)))
+            return together(departing(self.store, lesson), unlinking(lesson), number)
 
     def forget(self, lesson: str, inferred: Sequence[ox.Triple], models: Models | None = None) -> None:
         """Take back what only this lesson contributed, and replace the inferred graph and models, in one step.
@@ -277,7 +292,7 @@ class SemanticMemory(Closing):
 
         self._drop_views()
         with self._writing():
-            load_aside(self._open, contributions)
+            load_aside(self._writable, contributions)
 
     def lessons(self) -> tuple[str, ...]:
         """Return the lessons in the order learned."""
@@ -354,18 +369,21 @@ class SemanticMemory(Closing):
         with reading(self.path):
             return count(self.store, self.path, len(self.lessons()))
 
-    def commit(self, change: Change, kept_up: str | None = None) -> None:
+    def commit(self, change: Change, kept_up: str | None = None, journal: str | None = None) -> None:
         """Write a change in one step, if what comes of it keeps to the shapes; raise RejectedWriteError if not.
 
         ``kept_up`` says that what follows from everything is right after the change, and for which rules; see
-        :meth:`kept_up`. Without it, what follows is to be worked out anew.
+        :meth:`kept_up`. Without it, what follows is to be worked out anew. ``journal`` is the id of the write over both
+        stores that this commit decides, where it does.
         """
         from deixis.memory.semantic.validation.validate import check_change
 
+        self.require_writable()
         check_change(self.store, change)
         with self._writing(), committed(self.path):
             operations = [*change.operations, *merging(self.store, change.added, change.removed)]
             operations += ledger.keeping_up(self.store, kept_up)
+            operations += ledger.marking(self.store, journal)
             ledger.update(self.store, operations, building(self.store, change.added, change.removed))
             self.store.flush()
 
@@ -377,7 +395,7 @@ class SemanticMemory(Closing):
         """
         self._drop_views()
         with self._writing():
-            commit_aside(self._open, write)
+            commit_aside(self._writable, write)
 
     def kept_up(self) -> str | None:
         """Return the rules by which the inferred graph and the statistics are right; None where they are to be made
@@ -414,7 +432,7 @@ class _OpenedCopy(Opened):
     """The store of a copy, which needs no lock: nobody else knows of it."""
 
     def __init__(self, folder: Path) -> None:
-        self.folder = folder
+        self.folder, self.read_only, self.inherited = folder, None, False
         self.store = ox.Store(folder)
 
     def close(self) -> None:
@@ -428,14 +446,15 @@ class _Copy(SemanticMemory):
         super().__init__(_OpenedCopy(folder))
         self._overlapping = False
 
-    def commit(self, change: Change, kept_up: str | None = None) -> None:
+    def commit(self, change: Change, kept_up: str | None = None, journal: str | None = None) -> None:
         from deixis.memory.semantic.validation.validate import check_change
 
         check_change(self.store, change)
         if not (self._overlapping or self.store.contains_named_graph(MERGED)):
             self._overlapping = overlapping(self.store, change.added, change.removed)
         operations = [*change.operations, *merging(self.store, change.added, change.removed)]
-        ledger.update_in_bulk(self.store, [*operations, *ledger.keeping_up(self.store, kept_up)])
+        operations += [*ledger.keeping_up(self.store, kept_up), *ledger.marking(self.store, journal)]
+        ledger.update_in_bulk(self.store, operations)
 
     def finish(self) -> None:
         """Write what is to be written once, when all is in.

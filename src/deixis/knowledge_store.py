@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
@@ -16,7 +16,9 @@ from deixis.reasoning.errors import NothingFoundError
 if TYPE_CHECKING:
     from deixis.grammar.script import Script
     from deixis.learning.recollection import Recollection
+    from deixis.learning.update import Commit
     from deixis.learning.words import LearnedWords
+    from deixis.memory.perceptual.records import View
     from deixis.memory.semantic.queries.results import QueryResult
     from deixis.memory.semantic.store import SemanticMemory
     from deixis.ontology.lessons.types import LayoutConcept, Lesson
@@ -96,12 +98,25 @@ class KnowledgeStore(Closing):
 
         return remembered(self.memory(), self.ontology) if self.exists() else Recollection(())
 
-    def keep(self, lessons: Sequence[Lesson]) -> None:
-        """Write lessons, and what follows, in one commit; raise DeixisError, having changed nothing, if refused."""
-        from deixis.learning.update import keep
+    def keeping(self, lessons: Sequence[Lesson], seen: Mapping[str, Sequence[View]]) -> Commit:
+        """Return what writes lessons, what follows from them, and what views each taught, in one commit.
 
-        keep(self.memory(create=True), self.ontology, lessons)
-        self._meaning = None
+        Raises DeixisError, having changed nothing, if they are refused.
+        """
+        from deixis.learning.update import keeping
+
+        return self._forgetting_meaning(keeping(self.memory(create=True), self.ontology, lessons, seen))
+
+    def _forgetting_meaning(self, commit: Commit) -> Commit:
+        """Return a commit after which the words and sizes in force are read again."""
+
+        def committing(journal: str | None) -> None:
+            try:
+                commit(journal)
+            finally:
+                self._meaning = None
+
+        return committing
 
     def learn_relations(self, examples: Sequence[tuple[Script, Scene]] = (), strength: float = 3.0) -> LearnedWords:
         """Fit what relation words mean to everything remembered, and to examples: scripts, each with a labelled scene.
@@ -129,15 +144,12 @@ class KnowledgeStore(Closing):
         forget_words(self.memory())
         self._meaning = None
 
-    def forget(self, lesson: str) -> None:
-        """Take back one lesson, with everything that follows from it alone, and what it taught of words and sizes.
+    def forgetting(self, lesson: str) -> Commit:
+        """Return what takes back one lesson, with everything that follows from it alone, and what it taught of words
+        and sizes; raises UnknownLessonError."""
+        from deixis.learning.update import forgetting
 
-        What it kept of how things look stays.
-        """
-        from deixis.learning.update import forget
-
-        forget(self.memory(), self.ontology, lesson)
-        self._meaning = None
+        return self._forgetting_meaning(forgetting(self.memory(), self.ontology, lesson))
 
     def import_(self, file: str | Path) -> None:
         """Take in what another memory exported, or plain triples; what is there stays.

@@ -5,8 +5,7 @@ from __future__ import annotations
 import hashlib
 import os
 import unicodedata
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
@@ -18,6 +17,7 @@ from deixis.perception.errors import SceneError
 
 if TYPE_CHECKING:
     from deixis.learning.views import Known, StandingWord, Taught
+    from deixis.memory.perceptual.handle import WriteBatch
     from deixis.memory.perceptual.level import LevelMemory
     from deixis.memory.perceptual.protocol import Progress
     from deixis.memory.perceptual.records import View
@@ -66,12 +66,21 @@ class ViewStore(Closing):
         alike = [category for category in known if key_of(category) == key_of(name)]
         return name if name in alike or not alike else alike[0]
 
-    def keep(self, views: Sequence[View]) -> tuple[Taught, ...]:
-        """Keep views, all or none. A damaged one in the way teaches nothing, and is mended where it is kept again."""
-        from deixis.learning.views import keep_views
+    def keeping(
+        self, views: Sequence[View], lessons: Mapping[str, str] | None = None
+    ) -> tuple[WriteBatch, tuple[Taught, ...]]:
+        """Return the change that keeps views, and what that teaches; ``lessons`` says which lesson a view belongs to.
 
-        memory = self.memory(create=True)
-        return self._despite_damage(memory, lambda readable: keep_views(readable, views))
+        A damaged view in the way teaches nothing, and is mended where it is kept again. To be called and written with
+        ``memory(create=True).exclusive()`` held.
+        """
+        from deixis.learning.views import batch_of
+
+        def change(readable: LevelMemory) -> tuple[WriteBatch, tuple[Taught, ...]]:
+            batch, taught = batch_of(readable, views, lessons)
+            return readable.writing(batch), taught
+
+        return self._despite_damage(self.memory(create=True), change)
 
     def but_for_taught(self, views: Sequence[View]) -> tuple[list[View], tuple[StandingWord, ...]]:
         """Return the views of a grounding that no teacher has named, and what is named otherwise."""
@@ -85,21 +94,6 @@ class ViewStore(Closing):
                 thing, teacher = (str(taught.metadata.get(key, "?")) for key in ("object", "teacher"))
                 standing.append(StandingWord(thing, taught.category, teacher, view.category))
         return [view for view in views if view.id not in named], tuple(standing)
-
-    @contextmanager
-    def keeping(self, views: Sequence[View]) -> Iterator[tuple[Taught, ...]]:
-        """Keep views for what is done within, and take them back where that fails.
-
-        Ended by force in between, it leaves the views: what they are called is what the grounding decided, and kept
-        again they are the same views.
-        """
-        from deixis.memory.perceptual.in_folder import restored_on_failure
-
-        if not views:
-            yield ()
-            return
-        with restored_on_failure(self.memory(create=True), views):
-            yield self.keep(views)
 
     def known(
         self, frame: str, progress: Progress | None = None, left_out: Callable[[str], None] | None = None

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Mapping
+from datetime import datetime, tzinfo
 from pathlib import Path
 from typing import Any
 
@@ -239,3 +240,20 @@ def test_what_is_no_scene_is_told_what_is() -> None:
 def test_a_category_is_named_by_a_text(tmp_path: Path) -> None:
     with deixis.Session(tmp_path / "memory") as session, pytest.raises(SettingError, match="is a text, not 3"):
         session.teach(SCENE, "o1", 3)  # type: ignore[arg-type]
+
+
+def test_show_gives_the_last_lesson_though_the_clock_was_set_back(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    class Clock(datetime):
+        @classmethod
+        def now(cls, tz: tzinfo | None = None) -> Clock:
+            return cls(2020, 1, 1, tzinfo=tz)
+
+    scene = mugs(SEEN)
+    with deixis.Session(tmp_path / "memory") as session:
+        session.learn(deixis.read_script(text="layout row\nred_mug left of plate"), scene)
+        monkeypatch.setattr("deixis.workflows.learn.datetime", Clock)
+        session.learn(deixis.read_script(text="layout row\ngreen_mug left of plate"), scene)
+        assert "green_mug" in session.show("row")
+        assert session.memory().lessons() == ("row-1", "row-2")

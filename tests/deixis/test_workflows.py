@@ -83,7 +83,7 @@ def test_one_scene_twice_is_taken_back_where_a_call_fails(
 
     script = deixis.read_script(text=TEA)
     with deixis.Session(tmp_path / "memory") as session:
-        monkeypatch.setattr(session.knowledge_store, "keep", refuse)
+        monkeypatch.setattr("deixis.memory.semantic.store.SemanticMemory.commit", refuse)
         with pytest.raises(DeixisError, match=r"^refused$"):
             session.learn_all([(script, seen), (script, seen)])
         assert session.categories() == {}

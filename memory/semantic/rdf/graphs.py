@@ -6,7 +6,9 @@ What was loaded in bulk belongs to no lesson and stands in the canonical graph a
 contributes too, a copy under ``loaded`` says that it stays when the lesson goes. Learned models, which all lessons
 teach together, have copies of their own under ``models``, and are replaced as a whole. What they are learned from,
 counted, stands under ``statistics``: once for all lessons, and a share for each. It follows from the lessons: no query
-looks at it, and no export has it.
+looks at it, and no export has it. Nor do they have ``views``, which says what views each lesson taught (see
+:mod:`deixis.memory.semantic.rdf.links`), and ``order``, in which the lessons are numbered as they come (see
+:mod:`deixis.memory.semantic.rdf.ledger`).
 """
 
 from __future__ import annotations
@@ -22,6 +24,7 @@ PACKAGE = GRAPHS + "package/"
 LOADED = GRAPHS + "loaded/"
 MODELS = GRAPHS + "models/"
 STATISTICS = GRAPHS + "statistics/"
+VIEWS = GRAPHS + "views/"
 
 
 class GraphName(StrEnum):
@@ -125,6 +128,37 @@ KEPT_UP = ox.NamedNode(STATISTICS + "kept-up")
 def share_graph(lesson: str) -> ox.NamedNode:
     """Return the graph that holds what one lesson adds to the statistics."""
     return ox.NamedNode(f"{STATISTICS}lesson/{quote(lesson, safe='')}")
+
+
+ORDER = ox.NamedNode(GRAPHS + "order")
+"""The graph that numbers the lessons in the order in which they came, whatever the clock said."""
+
+NUMBER, NEXT = ox.NamedNode(GRAPHS + "order/number"), ox.NamedNode(GRAPHS + "order/next")
+"""The number of a lesson; and that of the next one, which is said of :data:`ORDER` itself."""
+
+
+CATEGORY_OF_VIEW = ox.NamedNode(VIEWS + "category")
+"""Says of a view, in the graph of a lesson that taught it, of which category it is."""
+
+
+def views_graph(lesson: str) -> ox.NamedNode:
+    """Return the graph of the views that a lesson taught."""
+    return ox.NamedNode(f"{VIEWS}lesson/{quote(lesson, safe='')}")
+
+
+def lesson_of_views(graph: object) -> str | None:
+    """Return the lesson whose views a graph holds, or None for another graph.
+
+    >>> lesson_of_views(views_graph("set 1"))
+    'set 1'
+    """
+    name = graph.value if isinstance(graph, ox.NamedNode) else ""
+    return unquote(name.removeprefix(f"{VIEWS}lesson/")) if name.startswith(f"{VIEWS}lesson/") else None
+
+
+def view_node(id: str) -> ox.NamedNode:
+    """Return the name of a view of the perceptual store."""
+    return ox.NamedNode(f"{VIEWS}id/{quote(id, safe='')}")
 
 
 def copied_graph(iri: str) -> GraphName | None:

@@ -10,10 +10,14 @@ from typing import Literal
 
 import pyoxigraph as ox
 
+from deixis.memory.journal import COMMITTED, MARKS
 from deixis.memory.semantic.rdf.graphs import (
     CONTRIBUTED,
     COUNTED,
     KEPT_UP,
+    NEXT,
+    NUMBER,
+    ORDER,
     GraphName,
     copied_graph,
     graph_iri,
@@ -50,16 +54,49 @@ class Operation:
             yield f"{self.verb} DATA {{ GRAPH {self.graph} {{ {' '.join(f'{triple} .' for triple in chunk)} }} }}"
 
 
-_STARTED = ox.NamedNode(PROV.STARTED_AT_TIME)
+STARTED = ox.NamedNode(PROV.STARTED_AT_TIME)
 
 NEVER = datetime.min.replace(tzinfo=UTC)
 """When a lesson started that does not say so: before all others."""
 
 
 def lessons(store: ox.Store) -> tuple[str, ...]:
-    """Return the lessons that a store holds, in the order learned: by when they started, then by id."""
+    """Return the lessons that a store holds, in the order learned: see :func:`place`."""
     found = {known[0] for graph in store.named_graphs() if (known := lesson_of_graph(graph.value))}
-    return tuple(sorted(found, key=lambda lesson: (started(store, lesson), lesson)))
+    return tuple(sorted(found, key=lambda lesson: place(store, lesson)))
+
+
+def place(store: ox.Store, lesson: str) -> tuple[int, datetime, str]:
+    """Return what lessons are ordered by: the number that each got when it came, whatever the clock said then.
+
+    Lessons that came before there were numbers stand first, by the time at which they started, then by id.
+    """
+    numbers = store.quads_for_pattern(lesson_node(lesson), NUMBER, None, ORDER)
+    number = next((int(getattr(quad.object, "value", "0")) for quad in numbers), 0)
+    return number, NEVER if number else started(store, lesson), lesson
+
+
+def lesson_node(lesson: str) -> ox.NamedNode:
+    """Return the IRI of a lesson."""
+    return ox.NamedNode(learned_iri("lesson", lesson))
+
+
+def numbering(store: ox.Store, come: Sequence[str]) -> Iterator[Operation]:
+    """Yield the operations that number new lessons in the order given, from 1 on; a number is never used again."""
+    kept = [quad.triple for quad in store.quads_for_pattern(ORDER, NEXT, None, ORDER)]
+    first = max((int(getattr(triple.object, "value", "1")) for triple in kept), default=1)
+    numbers = [
+        ox.Triple(lesson_node(lesson), NUMBER, ox.Literal(str(number))) for number, lesson in enumerate(come, first)
+    ]
+    if numbers:
+        yield from deletion(ORDER, kept)
+        yield from insertion(ORDER, [*numbers, ox.Triple(ORDER, NEXT, ox.Literal(str(first + len(numbers))))])
+
+
+def unnumbering(store: ox.Store, lesson: str) -> Iterator[Operation]:
+    """Yield the operation that takes the number of a lesson away."""
+    numbers = store.quads_for_pattern(lesson_node(lesson), NUMBER, None, ORDER)
+    yield from deletion(ORDER, [quad.triple for quad in numbers])
 
 
 def knows(store: ox.Store, lesson: str) -> bool:
@@ -70,8 +107,13 @@ def knows(store: ox.Store, lesson: str) -> bool:
 def started(store: ox.Store, lesson: str) -> datetime:
     """Return when a lesson started; as text, times do not sort, since the store drops zeros at the end of a
     fraction."""
-    node, episodes = ox.NamedNode(learned_iri("lesson", lesson)), graph_iri(GraphName.EPISODES)
-    times = (getattr(quad.object, "value", "") for quad in store.quads_for_pattern(node, _STARTED, None, episodes))
+    node, episodes = lesson_node(lesson), graph_iri(GraphName.EPISODES)
+    return earliest(quad.triple for quad in store.quads_for_pattern(node, STARTED, None, episodes))
+
+
+def earliest(triples: Iterable[ox.Triple]) -> datetime:
+    """Return the earliest of the times that some triples say."""
+    times = (getattr(triple.object, "value", "") for triple in triples)
     return min((time for text in times if (time := _time(text)) is not None), default=NEVER)
 
 
@@ -188,6 +230,16 @@ def keeping_up(store: ox.Store, rules: str | None) -> Iterator[Operation]:
     new = {ox.Triple(COUNTED, KEPT_UP, ox.Literal(rules))} if rules is not None else set()
     yield from deletion(COUNTED, old - new)
     yield from insertion(COUNTED, new - old)
+
+
+def marking(store: ox.Store, id: str | None) -> Iterator[Operation]:
+    """Yield the operations that say which write over both stores this commit is part of; none for None.
+
+    See :mod:`deixis.memory.journal`.
+    """
+    if id is not None:
+        yield from deletion(MARKS, [quad.triple for quad in store.quads_for_pattern(MARKS, COMMITTED, None, MARKS)])
+        yield from insertion(MARKS, [ox.Triple(MARKS, COMMITTED, ox.Literal(id))])
 
 
 def insertion(graph: ox.NamedNode, triples: Iterable[ox.Triple]) -> Iterator[Operation]:

@@ -12,7 +12,6 @@ import os
 import re
 import subprocess
 import sys
-import tempfile
 from collections.abc import Iterable
 from contextlib import suppress
 from dataclasses import asdict, dataclass
@@ -26,6 +25,7 @@ from deixis.errors import DeixisError
 from deixis.memory.errors import ShapeResult, ShapesError
 from deixis.memory.semantic.rdf.files import short
 from deixis.reasoning.errors import LimitError
+from deixis.scratch import scratch_folder, tied_to_parent
 
 if TYPE_CHECKING:
     import rdflib
@@ -58,16 +58,21 @@ def validate_by_shapes(
     for triple in shapes:
         if triple.predicate in _SPARQL and "service" in _unescaped(str(getattr(triple.object, "value", ""))).lower():
             raise ShapesError("the shapes ask another endpoint (SERVICE): this is refused; copy its data to a file")
-    with tempfile.TemporaryDirectory(prefix="deixis-") as scratch:
-        folder = Path(scratch)
+    with scratch_folder() as folder:
         for name, triples in (("data", data), ("shapes", shapes)):
             (folder / f"{name}.nt").write_bytes(ox.serialize(triples, format=ox.RdfFormat.N_TRIPLES) or b"")
         environment = {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
-        command = [sys.executable, "-m", __name__, scratch]
+        command = [sys.executable, "-m", __name__, str(folder)]
         limit = None if deadline.left == float("inf") else max(deadline.left, 0.0)
         try:
             done = subprocess.run(
-                command, env=environment, capture_output=True, timeout=limit, check=False, stdin=subprocess.DEVNULL
+                command,
+                env=environment,
+                capture_output=True,
+                timeout=limit,
+                check=False,
+                stdin=subprocess.DEVNULL,
+                preexec_fn=tied_to_parent(),
             )
         except subprocess.TimeoutExpired:
             raise LimitError("undecided: the time was up before the shapes were checked; allow it more") from None

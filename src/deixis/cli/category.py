@@ -52,7 +52,7 @@ def rename(
 
     name = new_category_name(new)
     with Session(memory) as session:
-        session.views().rename(category_name(old), name)
+        session.rename_category(old, name)
     note_change(session.path)
     print_line(f"'{category_name(old)}' is '{name}' now.")
 
@@ -68,7 +68,7 @@ def merge(
     from deixis.view_store import category_name
 
     with Session(memory) as session:
-        session.views().merge(category_name(source), category_name(into))
+        session.merge_categories(source, into)
     note_change(session.path)
     print_line(f"What was '{category_name(source)}' is '{category_name(into)}' now.")
 
@@ -83,6 +83,6 @@ def forget_category(
     from deixis.view_store import category_name
 
     with Session(memory) as session:
-        session.views().forget(category_name(name))
+        session.forget_category(name)
     note_change(session.path)
     print_line(f"Forgotten: {category_name(name)}.")

@@ -11,7 +11,7 @@ import pyoxigraph as ox
 
 from deixis.errors import DeixisError
 from deixis.memory.semantic.rdf.graphs import GraphName, graph_iri
-from deixis.memory.semantic.rdf.ledger import started
+from deixis.memory.semantic.rdf.ledger import place
 from deixis.ontology.kinds import Kinds
 from deixis.ontology.lessons.read import LessonRecord, layouts, lesson_records, unknown_layout
 from deixis.ontology.lessons.types import LayoutConcept, Lesson, WordLesson
@@ -76,7 +76,7 @@ def find_layout(memory: SemanticMemory, name: str, relations: Relations) -> Layo
             every = [quad.subject for quad in store.quads_for_pattern(None, *is_layout)]
             labels = (store.quads_for_pattern(one, iri(W3C.RDFS_LABEL), None, graph) for one in every)
             raise unknown_layout(name, (str(getattr(q.object, "value", "")) for found in labels for q in found))
-        node = max(named, key=lambda one: (started(store, last_part(one.value)), one.value))
+        node = max(named, key=lambda one: place(store, last_part(one.value)))
     parts = [quad.subject for quad in store.quads_for_pattern(None, iri(DX.IN_LAYOUT), node, graph)]
     triples = (quad.triple for part in (node, *parts) for quad in store.quads_for_pattern(part, None, None, graph))
     (layout,) = layouts(triples, relations)

@@ -8,10 +8,10 @@ works everything out anew.
 
 from __future__ import annotations
 
-import tempfile
-from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Set
 from functools import lru_cache
 from pathlib import Path
+from types import MappingProxyType
 from urllib.parse import quote, unquote
 
 import pyoxigraph as ox
@@ -23,11 +23,14 @@ from deixis.learning.word_statistics import kept as kept_words
 from deixis.learning.word_statistics import replacing
 from deixis.learning.words import LearnedWords, fit, informed, without
 from deixis.memory.folder import FolderState, inspect
+from deixis.memory.perceptual.records import View
 from deixis.memory.semantic.exchange import import_dump, merging_dump
+from deixis.memory.semantic.opening import open_memory
 from deixis.memory.semantic.rdf import ledger
 from deixis.memory.semantic.rdf.after import After
 from deixis.memory.semantic.rdf.change import Change, concluding, modelling, remodelling, together
 from deixis.memory.semantic.rdf.graphs import COUNTED, STATISTICS, GraphName, ModelSet, models_graph, share_graph
+from deixis.memory.semantic.rdf.links import linking, relinking
 from deixis.memory.semantic.rdf.package import package_digest
 from deixis.memory.semantic.store import SemanticMemory
 from deixis.ontology.lessons.shapes import layout_shapes
@@ -41,6 +44,7 @@ from deixis.ontology.triples import iri, text
 from deixis.ontology.vocabulary import PROV
 from deixis.reasoning.description_logic.subsumption import BeyondLessonsError
 from deixis.reasoning.errors import NothingFoundError
+from deixis.scratch import scratch_folder
 
 RULES = 1
 """The version of the rules by which what follows from lessons, and what is counted of them, is worked out."""
@@ -54,6 +58,9 @@ AT_ONCE = 100
 More lessons are written to a copy of the store, part by part.
 """
 
+MAX_NAMED = 3
+"""Maximum number of differing statements that a line of :func:`stale` names."""
+
 SEEN = iri(STATISTICS + "seen")
 """What a lesson's share says of a place in the counts: the view that the lesson has of it."""
 
@@ -63,23 +70,44 @@ def remembered(memory: SemanticMemory, ontology: Ontology) -> Recollection:
     return _recollected(After(memory.store), ontology)
 
 
-def keep(memory: SemanticMemory, ontology: Ontology, lessons: Sequence[Lesson]) -> None:
-    """Writes lessons: all of them, or none."""
+Commit = Callable[[str | None], None]
+"""Commits a change that is worked out; it is told the journal of the write over both stores that it decides, if any."""
+
+
+def keeping(
+    memory: SemanticMemory,
+    ontology: Ontology,
+    lessons: Sequence[Lesson],
+    seen: Mapping[str, Sequence[View]] = MappingProxyType({}),
+) -> Commit:
+    """What writes lessons, with the views that each taught, by its id: all of them, or none.
+
+    What follows from them is worked out here, so that nothing slow is left to the commit; of more lessons than
+    :data:`AT_ONCE` it is worked out in the commit, on the copy of the store that takes its place.
+    """
     if len(lessons) <= AT_ONCE:
-        _keep(memory, ontology, lessons)
-        return
+        change, rules = _arrived(memory, ontology, lessons, seen)
+        return lambda journal: memory.commit(change, rules, journal)
 
-    def write(copy: SemanticMemory) -> None:
+    def write(copy: SemanticMemory, journal: str | None) -> None:
         for start in range(0, len(lessons), AT_ONCE):
-            _keep(copy, ontology, lessons[start : start + AT_ONCE])
+            change, rules = _arrived(copy, ontology, lessons[start : start + AT_ONCE], seen)
+            copy.commit(change, rules, journal)
 
-    memory.commit_in_bulk(write)
+    return lambda journal: memory.commit_in_bulk(lambda copy: write(copy, journal))
 
 
-def _keep(memory: SemanticMemory, ontology: Ontology, lessons: Sequence[Lesson]) -> None:
+def _arrived(
+    memory: SemanticMemory, ontology: Ontology, lessons: Sequence[Lesson], seen: Mapping[str, Sequence[View]]
+) -> tuple[Change, str]:
+    """The change that new lessons make, with what follows from it, and its rules."""
     change = memory.arrival({lesson.id: _contributions(lesson, ontology) for lesson in lessons})
     change, rules = _followed(memory, ontology, change, [remembered_lesson(lesson, ontology) for lesson in lessons])
-    memory.commit(change, rules)
+    links = []
+    for lesson in lessons:
+        categories = {view.id: view.category for view in seen.get(lesson.id, ())}
+        links += [relinking(memory.store, categories), linking(lesson.id, categories)]
+    return together(change, *links), rules
 
 
 def keep_words(
@@ -103,8 +131,8 @@ def keep_words(
     return words
 
 
-def forget(memory: SemanticMemory, ontology: Ontology, lesson: str) -> None:
-    """Takes back one lesson, with what follows from it alone and what it taught.
+def forgetting(memory: SemanticMemory, ontology: Ontology, lesson: str) -> Commit:
+    """What takes back one lesson, with what follows from it alone and what it taught.
 
     Where it was among the lessons that words were fitted to, it is taken out of the fit's statistics; where that
     cannot be done, words are fitted anew from the others of those.
@@ -119,7 +147,7 @@ def forget(memory: SemanticMemory, ontology: Ontology, lesson: str) -> None:
             others = [memory.contributions(id) for id in sorted(known - {lesson}) if memory.knows(id)]
             words = fit(_recollected_from(others, ontology), strength)
         change = together(change, _worded(memory, words))
-    memory.commit(change, rules)
+    return lambda journal: memory.commit(change, rules, journal)
 
 
 def forget_words(memory: SemanticMemory) -> None:
@@ -139,18 +167,15 @@ def take_in(file: str | Path, target: Path, ontology: Ontology) -> None:
     What follows from both together is worked out first, and words that both had learned are fitted from the lessons of
     both: raises InconsistencyError, having changed nothing, where they contradict each other.
     """
-    with tempfile.TemporaryDirectory() as scratch:
-        import_dump(file, Path(scratch) / "memory")
-        with SemanticMemory.open(Path(scratch) / "memory") as theirs:
+    with scratch_folder() as scratch:
+        import_dump(file, scratch / "memory")
+        with SemanticMemory.open(scratch / "memory") as theirs:
             brought = models_from_triples(theirs.models(ModelSet.WORDS))
-            new = inspect(target) in (FolderState.ABSENT, FolderState.EMPTY)
-            follows = _followed(theirs, ontology, Change(), anew=True) if new else None
-    if follows is not None:
-        import_dump(file, target)
+            if inspect(target) in (FolderState.ABSENT, FolderState.EMPTY):
+                theirs.commit(*_followed(theirs, ontology, Change(), anew=True))
+                open_memory(target, create=True, fill=lambda store: store.bulk_extend(theirs.store)).close()
+                return
     with SemanticMemory.open(target) as memory:
-        if follows is not None:
-            memory.commit(*follows)
-            return
         change = merging_dump(memory, Path(file))
         ours = models_from_triples(memory.models(ModelSet.WORDS))
         lessons, strength = informed(ours)
@@ -325,7 +350,19 @@ def stale(store: ox.Store, ontology: Ontology) -> Iterator[str]:
     ]
     for what, kept, right in pairs:
         if kept != right:
-            yield f"{what} are not what the lessons come to: {len(kept - right)} too many, {len(right - kept)} missing"
+            differing = [*(("too many", each) for each in kept - right), *(("missing", each) for each in right - kept)]
+            named = "; ".join(sorted(f"{how}: {_shortened(each)}" for how, each in differing)[:MAX_NAMED])
+            yield (
+                f"{what} are not what the lessons come to: {len(kept - right)} too many, {len(right - kept)} missing "
+                f"({named})"
+            )
+
+
+def _shortened(statement: object) -> str:
+    """A triple or quad in few characters: the last parts of its IRIs."""
+    terms = (getattr(statement, name) for name in ("subject", "predicate", "object"))
+    values = (str(getattr(term, "value", term)) for term in terms)
+    return " ".join(value.rsplit("/", 1)[-1].rsplit("#", 1)[-1][:40] for value in values)
 
 
 def _shares(statistics: SizeStatistics, lessons: Iterable[Remembered], ontology: Ontology) -> list[ledger.Operation]:

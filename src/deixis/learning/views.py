@@ -147,8 +147,14 @@ def thing_of(view: View) -> str | None:
     return json.dumps([scene, view.metadata.get("boxes"), object]) if scene and object else None
 
 
-def keep_views(memory: PerceptualMemory, views: Sequence[View]) -> tuple[Taught, ...]:
-    """Keeps views, all or none, in turn; the same points kept again under another word correct it."""
+def batch_of(
+    memory: PerceptualMemory, views: Sequence[View], lessons: Mapping[str, str] | None = None
+) -> tuple[Batch, tuple[Taught, ...]]:
+    """Return the batch that keeps views, in turn, and what that teaches; the same points under another word correct it.
+
+    ``lessons`` says which lesson a view belongs to, by the view's id; the others are a teacher's and belong to none. To
+    be written before anything else is, so inside :meth:`PerceptualMemory.exclusive`.
+    """
     with memory.exclusive():
         place = {id: view.category for id, view in _kept(memory, views).items()}
         kept = {name: list(memory.views(name)) for name in _involved(memory, views, place)}
@@ -168,12 +174,9 @@ def keep_views(memory: PerceptualMemory, views: Sequence[View]) -> tuple[Taught,
             again = before == view.category
             taught.append(Taught(view.id, view.category, len(known[view.category]), corrected, again))
         records = [record_of(category, chosen[name]) for name, category in known.items() if len(category)]
-        memory.write(Batch(list({view.id: view for view in views}.values()), records))
-        there = set(memory.categories())
-        for name, category in known.items():
-            if not len(category) and name in there:
-                memory.forget(name)  # nothing is left of it
-    return tuple(taught)
+        empty = [name for name, category in known.items() if not len(category)]  # nothing is left of these
+        coming = list({view.id: view for view in views}.values())
+    return Batch(coming, records, dropped=empty, lessons=dict(lessons or {})), tuple(taught)
 
 
 def taught_by_hand(memory: PerceptualReading, views: Sequence[View]) -> dict[str, View]:

@@ -18,6 +18,7 @@ from deixis.version import VERSION
 from deixis.view_store import ViewStore, views_of_matches
 from deixis.workflows.ground import GroundingRequest, answer
 from deixis.workflows.read import as_scene, as_script
+from deixis.workflows.views_of_lessons import keep_lessons
 
 if TYPE_CHECKING:
     from deixis.learning.views import StandingWord, Taught
@@ -63,14 +64,15 @@ def learn(
     for pair in pairs:
         if isinstance(pair, str | Mapping) or not isinstance(pair, Sequence) or len(pair) != 2:
             raise SettingError(f"`examples` must be pairs of a script and its scene, got {pair!r:.60} among them")
+    if knowledge.exists():
+        knowledge.memory().require_writable()
     taken: set[str] = set()
     learned = [_lesson(script, scene, knowledge, engine, time_limit, taken) for script, scene in pairs]
     if not learned:
         return ()
     groups = [views.but_for_taught(seen) for _, seen in learned]
-    with views.keeping([view for new, _ in groups for view in new]) as kept:
-        knowledge.keep([one.lesson for one, _ in learned])
-    found, left = [], list(kept)
+    new_views = {one.lesson.id: new for (one, _), (new, _) in zip(learned, groups, strict=True)}
+    found, left = [], list(keep_lessons([one.lesson for one, _ in learned], new_views, knowledge, views))
     for (one, _), (new, standing) in zip(learned, groups, strict=True):
         found.append(replace(one, seen=tuple(left[: len(new)]), standing=standing))
         del left[: len(new)]

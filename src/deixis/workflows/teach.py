@@ -6,23 +6,30 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from deixis.knowledge_store import KnowledgeStore
 from deixis.perception.scene import Scene
 from deixis.view_store import ViewStore, new_category_name, view_of_thing
 from deixis.workflows.read import as_scene
+from deixis.workflows.views_of_lessons import keep_view
 
 if TYPE_CHECKING:
     from deixis.learning.views import Taught
 
 
 def teach(
-    scene: Scene | str | Path | Mapping[str, Any], object: str, category: str, store: ViewStore, teacher: str = "user"
+    scene: Scene | str | Path | Mapping[str, Any],
+    object: str,
+    category: str,
+    knowledge: KnowledgeStore,
+    views: ViewStore,
+    teacher: str = "user",
 ) -> Taught:
     """Keeps what a thing of a scene looks like as a view of a category, which comes into being if it is new.
 
     A word that differs from a known category only in case means that one. Taught again under another word, the
-    view is corrected. Raises SceneError where the scene has no such thing, or no cloud of it; SettingError for a
-    name that is none.
+    view is corrected, and belongs to no lesson any more. Raises SceneError where the scene has no such thing, or no
+    cloud of it; SettingError for a name that is none.
     """
     scene = as_scene(scene)
-    name = store.category_meant(new_category_name(category))
-    return store.keep([view_of_thing(scene, object, name, teacher)])[0]
+    name = views.category_meant(new_category_name(category))
+    return keep_view(view_of_thing(scene, object, name, teacher), knowledge, views)

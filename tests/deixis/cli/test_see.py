@@ -412,27 +412,27 @@ def test_what_is_no_memory_is_told_by_every_command(tables: Path, tmp_path: Path
     assert [entry.name for entry in folder.iterdir()] == ["letter"]
 
 
-def test_views_are_taken_back_where_the_lesson_cannot_be_kept(tables: Path, tmp_path: Path) -> None:
+def test_no_views_are_kept_where_the_lesson_is_refused(
+    tables: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     from deixis.errors import DeixisError
-    from deixis.view_store import views_of_matches
+    from deixis.memory.semantic.store import SemanticMemory
 
     scene = read_scene(tables / "7.scene.json")
-    views = views_of_matches(scene, ground(FULL, scene).matches.values())
 
-    def keep_and_fail(session: Session) -> None:
-        with session.view_store.keeping(views) as taught:
-            assert len(taught) == len(views) > 3
-            raise DeixisError("the lesson is refused")
+    def refused(*_: object) -> None:
+        raise DeixisError("the lesson is refused")
 
     with Session(tmp_path / "memory") as session:
         session.teach(scene, "o1", "thing")
-        with pytest.raises(DeixisError, match="the lesson is refused"):
-            keep_and_fail(session)
+        with monkeypatch.context() as patched:
+            patched.setattr(SemanticMemory, "commit", refused)
+            with pytest.raises(DeixisError, match="the lesson is refused"):
+                session.learn(FULL, scene)
         assert session.categories() == {"thing": 1}
         assert session.views().verify() == ()
-        with session.view_store.keeping(views):
-            pass
-        assert sum(session.categories().values()) == len(views)
+        assert session.memory().lessons() == ()
+        assert len(session.learn(FULL, scene).seen) > 3
 
 
 def test_a_lesson_says_which_views_are_new_and_which_it_had_before(tables: Path, tmp_path: Path) -> None:

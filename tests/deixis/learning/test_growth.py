@@ -69,6 +69,14 @@ def kept(memory: SemanticMemory) -> tuple[str, set[ox.Quad]]:
     return export_memory(memory), {quad for quad in own if quad.subject != COUNTED}
 
 
+def keep(memory: SemanticMemory, lessons: Sequence[Lesson]) -> None:
+    keeping.keeping(memory, ONTOLOGY, lessons)(None)
+
+
+def forget(memory: SemanticMemory, lesson: str) -> None:
+    keeping.forgetting(memory, ONTOLOGY, lesson)(None)
+
+
 def right(memory: SemanticMemory) -> bool:
     """Whether what follows is what would be worked out from nothing."""
     return memory.kept_up() == keeping.kept_up_rules(ONTOLOGY) and not list(keeping.stale(memory.store, ONTOLOGY))
@@ -89,16 +97,18 @@ def test_any_order_of_learning_and_forgetting_comes_to_the_same(
     with SemanticMemory.open(folder / "turns", create=True) as memory:
         for turn in turns:
             if turn in known:
-                keeping.forget(memory, ONTOLOGY, lessons[turn].id)
+                forget(memory, lessons[turn].id)
             else:
-                keeping.keep(memory, ONTOLOGY, [lessons[turn]])
+                keep(memory, [lessons[turn]])
             known ^= {turn}
         assert right(memory)
         found = kept(memory)
     with SemanticMemory.open(folder / "scratch", create=True) as memory:
-        keeping.keep(memory, ONTOLOGY, [lessons[number] for number in sorted(known, reverse=True)] or [lessons[0]])
+        keeping.keeping(memory, ONTOLOGY, [lessons[number] for number in sorted(known, reverse=True)] or [lessons[0]])(
+            None
+        )
         if not known:
-            keeping.forget(memory, ONTOLOGY, lessons[0].id)
+            forget(memory, lessons[0].id)
         assert kept(memory) == found
 
 
@@ -106,8 +116,8 @@ def test_any_order_of_learning_and_forgetting_comes_to_the_same(
 def test_the_inferred_graph_is_what_hermit_makes_of_the_lessons(lessons: list[Lesson], tmp_path: Path) -> None:
     with SemanticMemory.open(tmp_path / "memory", create=True) as memory:
         for lesson in lessons:
-            keeping.keep(memory, ONTOLOGY, [lesson])
-        keeping.forget(memory, ONTOLOGY, lessons[1].id)
+            keep(memory, [lesson])
+        forget(memory, lessons[1].id)
         after = After(memory.store)
         ours, theirs = (
             everything_that_follows(after, ONTOLOGY.relations),
@@ -123,8 +133,8 @@ def test_a_lesson_starts_no_java(lessons: list[Lesson], tmp_path: Path, monkeypa
 
     monkeypatch.setattr(description_logic, "_run", refuse)
     with SemanticMemory.open(tmp_path / "memory", create=True) as memory:
-        keeping.keep(memory, ONTOLOGY, lessons[:2])
-        keeping.forget(memory, ONTOLOGY, lessons[0].id)
+        keep(memory, lessons[:2])
+        forget(memory, lessons[0].id)
         assert right(memory)
 
 
@@ -185,20 +195,20 @@ def as_version_1(folder: Path) -> None:
 
 def test_a_memory_without_statistics_is_counted_with_the_next_lesson(lessons: list[Lesson], tmp_path: Path) -> None:
     with SemanticMemory.open(tmp_path / "memory", create=True) as memory:
-        keeping.keep(memory, ONTOLOGY, lessons[:3])
+        keep(memory, lessons[:3])
     with SemanticMemory.open(tmp_path / "other", create=True) as memory:
-        keeping.keep(memory, ONTOLOGY, lessons[:2])
+        keep(memory, lessons[:2])
         expected = kept(memory)
     as_version_1(tmp_path / "memory")
     with SemanticMemory.open(tmp_path / "memory") as memory:
         assert memory.kept_up() is None
-        keeping.forget(memory, ONTOLOGY, lessons[2].id)
+        forget(memory, lessons[2].id)
         assert kept(memory) == expected and right(memory)
 
 
 def test_verify_finds_what_does_not_follow_from_the_lessons(lessons: list[Lesson], tmp_path: Path) -> None:
     with SemanticMemory.open(tmp_path / "memory", create=True) as memory:
-        keeping.keep(memory, ONTOLOGY, lessons[:3])
+        keep(memory, lessons[:3])
     check = (tmp_path / "memory", None, lambda store: keeping.stale(store, ONTOLOGY))
     assert verify(*check).findings == ()
     store = ox.Store(tmp_path / "memory" / "semantic")
@@ -212,12 +222,12 @@ def test_verify_finds_what_does_not_follow_from_the_lessons(lessons: list[Lesson
 
 def test_what_is_written_by_hand_is_worked_out_anew(lessons: list[Lesson], tmp_path: Path) -> None:
     with SemanticMemory.open(tmp_path / "memory", create=True) as memory:
-        keeping.keep(memory, ONTOLOGY, lessons[:3])
+        keep(memory, lessons[:3])
         expected = kept(memory)
         memory.keep_models({ModelSet.SIZES: []})
         assert memory.kept_up() is None
-        keeping.keep(memory, ONTOLOGY, [lessons[3]])
-        keeping.forget(memory, ONTOLOGY, lessons[3].id)
+        keep(memory, [lessons[3]])
+        forget(memory, lessons[3].id)
         assert kept(memory) == expected and right(memory)
 
 
@@ -265,15 +275,15 @@ def test_many_lessons_come_part_by_part_to_the_same(
     lessons: list[Lesson], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     with SemanticMemory.open(tmp_path / "single", create=True) as memory:
-        keeping.keep(memory, ONTOLOGY, [lessons[0]])
-        keeping.keep(memory, ONTOLOGY, lessons[1:])
+        keep(memory, [lessons[0]])
+        keep(memory, lessons[1:])
         expected = kept(memory)
     monkeypatch.setattr(keeping, "AT_ONCE", 2)
     with SemanticMemory.open(tmp_path / "many", create=True) as memory:
-        keeping.keep(memory, ONTOLOGY, [lessons[0]])
-        keeping.keep(memory, ONTOLOGY, lessons[1:])
+        keep(memory, [lessons[0]])
+        keep(memory, lessons[1:])
         assert kept(memory) == expected and right(memory)
-        keeping.forget(memory, ONTOLOGY, lessons[1].id)
+        forget(memory, lessons[1].id)
         assert right(memory)
 
 
@@ -282,10 +292,10 @@ def test_of_many_lessons_all_are_kept_or_none(
 ) -> None:
     monkeypatch.setattr(keeping, "AT_ONCE", 2)
     with SemanticMemory.open(tmp_path / "memory", create=True) as memory:
-        keeping.keep(memory, ONTOLOGY, [lessons[0]])
+        keep(memory, [lessons[0]])
         before = kept(memory)
         with pytest.raises(RejectedWriteError, match="is known already"):
-            keeping.keep(memory, ONTOLOGY, [*lessons[1:5], lessons[0]])
+            keep(memory, [*lessons[1:5], lessons[0]])
         assert kept(memory) == before and right(memory)
         assert not (tmp_path / "memory" / "semantic.new").exists()
     with SemanticMemory.open(tmp_path / "memory") as memory:
@@ -317,9 +327,9 @@ def half_forgotten(lessons: list[Lesson], tmp_path: Path) -> tuple[Path, str]:
     """A memory in which so much was forgotten that closing it would write it anew; and what it exports."""
     many = [replace(lessons[0], layout=replace(lessons[0].layout, lesson=f"many-{n}")) for n in range(11)]
     memory = SemanticMemory.open(tmp_path / "memory", create=True)
-    keeping.keep(memory, ONTOLOGY, [*many, lessons[1]])
+    keep(memory, [*many, lessons[1]])
     for lesson in many:
-        keeping.forget(memory, ONTOLOGY, lesson.id)
+        forget(memory, lesson.id)
     text = export_memory(memory)
     memory._forgets = 0
     memory.close()

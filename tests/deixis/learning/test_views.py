@@ -14,8 +14,8 @@ from deixis.learning.views import (
     SPIN_IMAGE_ROOTS,
     TABLE,
     UPRIGHT,
+    batch_of,
     instances_of,
-    keep_views,
     recogniser_of,
     view_of,
 )
@@ -35,6 +35,10 @@ def seen(kind: str, seed: int) -> PointCloud:
 def view(kind: str, seed: int, frame: str = TABLE) -> View:
     where = {"scene": "table", "object": f"{kind} {seed}"}
     return view_of(seen(kind, seed), frame, kind, datetime(2026, 1, seed, tzinfo=UTC), where)
+
+
+def keep_views(memory: LevelMemory, views: list[View]) -> None:
+    memory.write(batch_of(memory, views)[0])
 
 
 def as_before(one: View) -> View:

@@ -15,11 +15,12 @@ from safetensors.numpy import load, save
 
 from deixis.memory.errors import ImportFormatError, MemoryFormatError, MemoryWriteError, RejectedWriteError
 from deixis.memory.perceptual.exchange import Imported, export_views, import_views
-from deixis.memory.perceptual.in_folder import export_all, import_all, is_archive, open_in, stats_of, verify_views
+from deixis.memory.perceptual.in_folder import export_all, import_all, is_archive, open_in, stats_of
 from deixis.memory.perceptual.level import LevelMemory
 from deixis.memory.perceptual.protocol import PerceptualMemory
 from deixis.memory.perceptual.records import Batch, CategoryRecord, View
 from deixis.memory.perceptual.transient import TransientMemory
+from deixis.memory.verify import verify
 
 Content = Callable[..., Any]
 MakeView = Callable[..., View]
@@ -247,7 +248,7 @@ def test_what_the_commands_call(kept: Path, tmp_path: Path, make_view: MakeView,
     one, two, file = tmp_path / "one", tmp_path / "two", tmp_path / "x.zip"
     one.mkdir()
     assert stats_of(one) is None
-    assert verify_views(one) == ()
+    assert verify(one).findings == ()
     with pytest.raises(MemoryFormatError, match="there is no perceptual memory"):
         export_all(one, file)
     shutil.copytree(kept, one / "perceptual")
@@ -260,4 +261,4 @@ def test_what_the_commands_call(kept: Path, tmp_path: Path, make_view: MakeView,
     counted = stats_of(two)
     assert counted is not None
     assert (counted.views, counted.categories) == (10, 3)
-    assert verify_views(two) == ()
+    assert verify(two).findings == ()

@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-import errno
-import os
 import random
 import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import Any
 
 import pytest
 from killing import forks_of
+from read_only import make_read_only
 
-from deixis.memory.errors import MemoryWriteError
+from deixis.memory.errors import MemoryWriteError, ReadOnlyMemoryError
 from deixis.memory.perceptual.level import LevelMemory
 from deixis.memory.perceptual.records import Batch, View
 
@@ -79,7 +78,7 @@ FILLER = """
 import resource, sys
 from datetime import UTC, datetime
 import numpy as np
-from deixis.memory.errors import MemoryWriteError
+from deixis.memory.errors import MemoryWriteError, ReadOnlyMemoryError
 from deixis.memory.perceptual.level import LevelMemory
 from deixis.memory.perceptual.records import Batch, View
 
@@ -140,14 +139,22 @@ def test_creating_on_a_full_disk_leaves_nothing_behind(tmp_path: Path) -> None:
     assert not (tmp_path / "m").exists()
 
 
-def test_a_read_only_folder_is_told(kept: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def read_only(*_: object) -> NoReturn:
-        raise OSError(errno.EROFS, os.strerror(errno.EROFS))
-
+def test_a_read_only_folder_is_read_and_a_write_is_told(
+    kept: Path, content: Callable[..., Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with LevelMemory.open(kept) as memory:
+        before = content(memory)
+    files = {file: file.stat().st_mtime_ns for file in kept.rglob("*")}
     with monkeypatch.context() as patched:
-        patched.setattr("deixis.memory.owner.os.open", read_only)
-        with pytest.raises(MemoryWriteError, match="cannot be opened for writing: Read-only file system"):
-            LevelMemory.open(kept)
+        make_read_only(kept, patched)
+        with LevelMemory.open(kept) as memory:
+            assert content(memory) == before and memory.verify() == ()
+            with pytest.raises(ReadOnlyMemoryError, match="cannot be opened for writing: Read-only file system"):
+                memory.forget("mug")
+            assert content(memory) == before
+        with pytest.raises(MemoryWriteError, match="cannot be opened for writing"):
+            LevelMemory.open(kept / "new", create=True)
+    assert {file: file.stat().st_mtime_ns for file in kept.rglob("*")} == files
     LevelMemory.open(kept).close()
 
 

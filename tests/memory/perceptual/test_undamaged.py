@@ -1,4 +1,4 @@
-"""What is damaged is left out and named, and what is kept for something that fails is taken back."""
+"""What is damaged is left out and named."""
 
 from __future__ import annotations
 
@@ -10,13 +10,9 @@ import numpy as np
 import plyvel
 import pytest
 
-from deixis.errors import DeixisError
-from deixis.memory.errors import MemoryWriteError
 from deixis.memory.perceptual import keys
-from deixis.memory.perceptual.in_folder import restored_on_failure
 from deixis.memory.perceptual.level import LevelMemory, UndamagedMemory
-from deixis.memory.perceptual.protocol import PerceptualMemory
-from deixis.memory.perceptual.records import Batch, CategoryRecord, View
+from deixis.memory.perceptual.records import View
 
 Content = Callable[..., Any]
 Make = Callable[..., View]
@@ -52,45 +48,6 @@ def test_a_memory_that_is_whole_reads_the_same(kept: Path, content: Content) -> 
     with LevelMemory.open(kept) as memory, UndamagedMemory.open(kept) as readable:
         assert content(readable) == content(memory)
         assert readable.left_out == []
-
-
-def test_what_was_kept_for_something_that_fails_is_taken_back(
-    memory: PerceptualMemory, make_view: Make, make_record: Callable[..., CategoryRecord], content: Content
-) -> None:
-    memory.write(Batch([make_view("a", "mug"), make_view("b", "mug")], [make_record("mug")]))
-    before = content(memory)
-    views = [make_view("a", "cup", 5, 5), make_view("new", "fork")]
-
-    def keep_and_fail() -> None:
-        with restored_on_failure(memory, views):
-            memory.write(Batch(views, [CategoryRecord("mug"), make_record("cup"), make_record("fork")]))
-            raise DeixisError("refused")
-
-    with pytest.raises(DeixisError, match="refused"):
-        keep_and_fail()
-    assert content(memory) == before
-    with restored_on_failure(memory, views):
-        memory.write(Batch(views))
-    assert memory.view("a").category == "cup"
-
-
-def test_what_cannot_be_taken_back_is_told(
-    memory: PerceptualMemory, make_view: Make, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    view = make_view("a")
-
-    def full(*_: object) -> None:
-        raise MemoryWriteError("the disk is full")
-
-    def keep_and_fail() -> None:
-        with restored_on_failure(memory, [view]):
-            memory.write(Batch([view]))
-            monkeypatch.setattr(memory, "write", full)
-            raise DeixisError("the lesson was refused")
-
-    with pytest.raises(MemoryWriteError, match=r"the lesson was refused; .* stays kept all the same: the disk is full"):
-        keep_and_fail()
-    assert memory.view("a").id == "a"
 
 
 def test_a_views_arrays_are_its_own(make_view: Make) -> None:

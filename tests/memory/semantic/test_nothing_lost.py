@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import errno
 import os
 import random
 import subprocess
@@ -10,14 +9,14 @@ import sys
 from collections import Counter
 from collections.abc import Callable
 from pathlib import Path
-from typing import NoReturn
 
 import pytest
 from killing import forks_of
+from read_only import make_read_only
 
-from deixis.memory.errors import MemoryWriteError
+from deixis.memory.errors import MemoryWriteError, ReadOnlyMemoryError
 from deixis.memory.semantic.exchange import export_memory
-from deixis.memory.semantic.rdf.graphs import MERGED, UNION, GraphName, graph_iri
+from deixis.memory.semantic.rdf.graphs import MERGED, UNION, GraphName, ModelSet, graph_iri
 from deixis.memory.semantic.store import SemanticMemory
 
 Learn = Callable[..., None]
@@ -109,7 +108,7 @@ def hear(lines: list[str], certain: set[str], doubtful: set[str]) -> None:
 FILLER = """
 import resource, sys
 import pyoxigraph as ox
-from deixis.memory.errors import MemoryWriteError
+from deixis.memory.errors import MemoryWriteError, ReadOnlyMemoryError
 from deixis.memory.semantic.rdf.graphs import GraphName
 from deixis.memory.semantic.store import SemanticMemory
 
@@ -162,26 +161,32 @@ def test_creating_on_a_full_disk_leaves_nothing_behind(tmp_path: Path) -> None:
     assert not (tmp_path / "m").exists()
 
 
-def test_a_read_only_folder_is_told(tmp_path: Path, learn: Learn, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_read_only_folder_is_read_and_a_write_is_told(
+    tmp_path: Path, learn: Learn, monkeypatch: pytest.MonkeyPatch
+) -> None:
     with SemanticMemory.open(tmp_path / "m", create=True) as memory:
         learn(memory, "dinner-1")
-
-    def read_only(*_: object) -> NoReturn:
-        raise OSError(errno.EROFS, os.strerror(errno.EROFS))
-
+        before = export_memory(memory)
     with monkeypatch.context() as patched:
-        patched.setattr("deixis.memory.owner.os.open", read_only)
-        with pytest.raises(MemoryWriteError, match="cannot be opened for writing: Read-only file system"):
-            SemanticMemory.open(tmp_path / "m")
-    SemanticMemory.open(tmp_path / "m").close()
+        make_read_only(tmp_path, patched)
+        with SemanticMemory.open(tmp_path / "m") as memory, SemanticMemory.open(tmp_path / "m") as second:
+            assert export_memory(memory) == export_memory(second) == before
+            with pytest.raises(ReadOnlyMemoryError, match="cannot be opened for writing: Read-only file system"):
+                learn(memory, "dinner-2")
+        (tmp_path / "new").mkdir()
+        with pytest.raises(MemoryWriteError, match="cannot be opened for writing"):
+            SemanticMemory.open(tmp_path / "new", create=True)
+    with SemanticMemory.open(tmp_path / "m") as memory:
+        assert export_memory(memory) == before
+        learn(memory, "dinner-2")
 
 
 @pytest.mark.skipif(os.geteuid() == 0, reason="permissions do not bind root")
-def test_a_folder_without_permission_is_told(tmp_path: Path) -> None:
+def test_a_folder_without_permission_is_only_read(tmp_path: Path) -> None:
     SemanticMemory.open(tmp_path / "m", create=True).close()
     (tmp_path / "m" / "owner.lock").chmod(0o400)
-    with pytest.raises(MemoryWriteError, match="make the folder writable"):
-        SemanticMemory.open(tmp_path / "m")
+    with SemanticMemory.open(tmp_path / "m") as memory, pytest.raises(ReadOnlyMemoryError, match="make the folder"):
+        memory.keep_models({ModelSet.WORDS: []})
 
 
 def test_a_place_where_no_folder_can_be_made(tmp_path: Path) -> None:

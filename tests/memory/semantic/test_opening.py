@@ -173,6 +173,20 @@ def test_an_old_memory_is_brought_up_to_date(kept_old: Path, kept_export: str) -
     assert sorted(os.listdir(kept_old)) == ["memory.json", "owner.lock", "semantic"]
 
 
+def test_damage_found_while_migrating_is_called_damage(kept_old_folder: Path, tmp_path: Path) -> None:
+    said = []
+    for number, table in enumerate((kept_old_folder / "semantic").glob("*.sst")):
+        folder = shutil.copytree(kept_old_folder, tmp_path / str(number))
+        data = table.read_bytes()
+        (folder / "semantic" / table.name).write_bytes(bytes(byte ^ 1 for byte in data[:20]) + data[20:])
+        try:
+            SemanticMemory.open(folder).close()
+        except MemoryFormatError as error:  # MemoryWriteError would say that it could not be written
+            said.append(str(error))
+    assert all("is damaged" in text and "restore the folder from a copy" in text for text in said)
+    assert any(f"{tmp_path}" in text and "does not open" not in text for text in said)
+
+
 @pytest.mark.parametrize("steps", range(6))
 def test_a_crash_while_migrating_loses_nothing(
     kept_old: Path, kept_export: str, steps: int, monkeypatch: pytest.MonkeyPatch

@@ -11,7 +11,7 @@ import pytest
 from deixis.memory.errors import MemoryFormatError, RejectedWriteError, UnknownLessonError
 from deixis.memory.folder import VERSION
 from deixis.memory.semantic.exchange import export_memory
-from deixis.memory.semantic.rdf.graphs import GraphName, lesson_graph
+from deixis.memory.semantic.rdf.graphs import ORDER, GraphName, lesson_graph
 from deixis.memory.semantic.store import SemanticMemory
 
 Learn = Callable[..., None]
@@ -28,11 +28,22 @@ def test_a_lesson_is_in_its_graphs_and_outlives_the_process(tmp_path: Path, lear
         assert export_memory(memory) == before
 
 
-def test_lessons_come_in_the_order_learned(memory: SemanticMemory, learn: Learn) -> None:
+def test_lessons_come_in_the_order_learned_not_that_of_the_clock(memory: SemanticMemory, learn: Learn) -> None:
     learn(memory, "z-1", day=1)
     learn(memory, "a-1", day=3)
     learn(memory, "b-1", day=2)
-    assert memory.lessons() == ("z-1", "b-1", "a-1")
+    assert memory.lessons() == ("z-1", "a-1", "b-1")
+    memory.forget("b-1", [])
+    learn(memory, "y-1", day=1)
+    assert memory.lessons() == ("z-1", "a-1", "y-1")
+
+
+def test_lessons_without_a_number_come_first_by_the_clock(memory: SemanticMemory, learn: Learn) -> None:
+    learn(memory, "z-1", day=3)
+    learn(memory, "a-1", day=2)
+    memory.store.remove_graph(ORDER)  # as an older version left it
+    learn(memory, "b-1", day=1)
+    assert memory.lessons() == ("a-1", "z-1", "b-1")
 
 
 def test_forgetting_the_second_lesson_equals_never_having_learned_it(memory: SemanticMemory, learn: Learn) -> None:

@@ -1,0 +1,94 @@
+"""Writes over both stores, killed: afterwards all of a write is there, or nothing of it.
+
+Every write (learn, learn a batch, teach, forget a lesson or a category, rename, merge, import concepts and views) is
+killed by SIGKILL, in ``--kills`` (300) children: half of them at a random step, before or after a call that changes
+what is on the disk, and half at a random moment. ``--every-step`` kills each write once at each of its steps instead.
+After each kill the memory is opened again: ``verify`` must find nothing, also of what is inferred, and all lessons,
+views and inferred triples must be those of before the write or of after it. Exits 1 where they are not.
+"""
+
+from __future__ import annotations
+
+import argparse
+import random
+import shutil
+import sys
+import tempfile
+import time
+from collections import Counter
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parent.parent / "tests"))
+
+from both_stores import Example, example_in, findings, state
+from killing import KilledAtSteps, killed_at_steps
+
+
+class Writes:
+    """The writes of an example, each with its steps, its time, and the memory before and after it."""
+
+    def __init__(self, example: Example, scratch: Path, kills: KilledAtSteps) -> None:
+        self.example, self.memory, self.kills = example, scratch / "m", kills
+        self.steps: dict[str, int] = {}
+        self.seconds: dict[str, float] = {}
+        self.right: dict[str, tuple[object, object]] = {}
+        for write, code in example.writes().items():
+            self.begin(write)
+            before, started = state(self.memory), time.perf_counter()
+            steps = kills.run(self.memory, code)
+            self.seconds[write] = time.perf_counter() - started
+            assert steps is not None and findings(self.memory) == (), write
+            self.steps[write], self.right[write] = len(steps), (before, state(self.memory))
+
+    def begin(self, write: str) -> None:
+        """Put the memory that a write begins with in its place."""
+        shutil.rmtree(self.memory, ignore_errors=True)
+        begin = self.example.begin(write)
+        if begin is not None:
+            shutil.copytree(begin, self.memory)
+
+    def outcome(self, write: str, step: int = 0, after: float | None = None) -> str:
+        """Kill a write, and say what is there then: before, after, or what is wrong."""
+        self.begin(write)
+        self.kills.run(self.memory, self.example.writes()[write], step, after)
+        wrong = findings(self.memory)
+        if wrong:
+            return f"verify: {wrong[0]}"
+        found, (before, complete) = state(self.memory), self.right[write]
+        return "before" if found == before else "after" if found == complete else "neither before nor after"
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--kills", type=int, default=300)
+    parser.add_argument("--every-step", action="store_true")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--quick", action="store_true", help="20 kills")
+    options = parser.parse_args()
+    rng = random.Random(options.seed)
+    outcomes: dict[str, Counter[str]] = {}
+    with tempfile.TemporaryDirectory() as scratch, killed_at_steps() as kills:
+        (Path(scratch) / "example").mkdir()
+        writes = Writes(example_in(Path(scratch) / "example"), Path(scratch), kills)
+        jobs: list[tuple[str, int, float | None]]
+        if options.every_step:
+            jobs = [(write, step, None) for write, steps in writes.steps.items() for step in range(1, steps + 1)]
+        else:
+            names = [rng.choice(list(writes.steps)) for _ in range(20 if options.quick else options.kills)]
+            jobs = [
+                (name, rng.randint(1, writes.steps[name]), None)
+                if number % 2
+                else (name, 0, rng.uniform(0, writes.seconds[name]))
+                for number, name in enumerate(names)
+            ]
+        for write, step, after in jobs:
+            outcomes.setdefault(write, Counter())[writes.outcome(write, step, after)] += 1
+    for write, counts in outcomes.items():
+        print(f"{write} ({writes.steps[write]} steps): " + ", ".join(f"{n} {what}" for what, n in counts.most_common()))
+    wrong = sum(n for counts in outcomes.values() for what, n in counts.items() if what not in ("before", "after"))
+    print(f"{len(jobs)} kills, {wrong} of them wrong")
+    sys.exit(bool(wrong))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,139 @@
+"""The journal of a write over both stores: what the perceptual store is to be given if the semantic store commits.
+
+The commit of the semantic store decides such a write. Before it, the batch for the perceptual store is written to the
+journal and synced. In its transaction, the id of the journal becomes part of the semantic store. After it, the batch is
+applied, and the journal is removed. So a journal that an opening finds is applied if the semantic store has its id, and
+dropped if not: both stores then show all of the write, or nothing of it.
+
+An import of views that takes several batches has a journal too, which lists the new views. It is rolled back unless the
+last batch, which holds the id, was written.
+
+The journal lies in the folder of the perceptual store, and only the owner of that store reads, writes or removes it.
+
+>>> import tempfile
+>>> folder = Path(tempfile.mkdtemp())
+>>> write_journal(folder, JournalEntry("1f", pairs=((b"key", b"value"), (b"old", None)), views=1))
+>>> read_journal(folder)
+JournalEntry(id='1f', pairs=((b'key', b'value'), (b'old', None)), views=1, undo=())
+>>> clear_journal(folder)
+>>> read_journal(folder) is None
+True
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import secrets
+import struct
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import pyoxigraph as ox
+
+from deixis.memory import folder as files
+from deixis.memory import owner as disk
+from deixis.memory.errors import MemoryFormatError
+
+JOURNAL = "journal"
+NEW_JOURNAL = JOURNAL + ".new"
+
+MARKS = ox.NamedNode("https://w3id.org/deixis/graph/journal")
+"""The graph of the semantic store that holds the id of the last write over both stores. No query and no export sees
+it."""
+
+COMMITTED = ox.NamedNode("https://w3id.org/deixis/graph/journal/committed")
+
+_MAGIC = b"deixis journal 1\n"
+_LENGTHS = struct.Struct("<Iq")  # of a key, and of a value or -1 for a key to delete
+_SUM = hashlib.sha256().digest_size
+
+
+@dataclass(frozen=True)
+class JournalEntry:
+    """One write that is under way.
+
+    ``pairs`` are keys of the perceptual store with their new values, None to delete; ``views`` is by how much the
+    number of views changes. ``undo`` are ids of views to forget where the write did not come to its end.
+    """
+
+    id: str
+    pairs: tuple[tuple[bytes, bytes | None], ...] = ()
+    views: int = 0
+    undo: tuple[str, ...] = ()
+
+
+def new_id() -> str:
+    """Return an id for a journal, different for each write."""
+    return secrets.token_hex(8)
+
+
+def write_journal(folder: Path, entry: JournalEntry) -> None:
+    """Write the journal in one step; it is on the disk when this returns."""
+    digest = hashlib.sha256()
+    with (folder / NEW_JOURNAL).open("wb") as out:
+        for part in _parts(entry):
+            digest.update(part)
+            out.write(part)
+        out.write(digest.digest())
+        out.flush()
+        os.fsync(out.fileno())
+    disk.rename(folder / NEW_JOURNAL, folder / JOURNAL)
+
+
+def _parts(entry: JournalEntry) -> Iterator[bytes]:
+    head = {"id": entry.id, "views": entry.views, "pairs": len(entry.pairs), "undo": entry.undo}
+    yield _MAGIC
+    yield json.dumps(head).encode() + b"\n"
+    for key, value in entry.pairs:
+        yield _LENGTHS.pack(len(key), -1 if value is None else len(value))
+        yield key
+        yield value or b""
+
+
+def read_journal(folder: Path) -> JournalEntry | None:
+    """Return the write that was under way, or None; one whose journal was cut short had changed nothing yet."""
+    try:
+        data = (folder / JOURNAL).read_bytes()
+    except FileNotFoundError:
+        return None
+    body = data[:-_SUM]
+    if not body.startswith(_MAGIC) or hashlib.sha256(body).digest() != data[-_SUM:]:
+        return None
+    end = body.index(b"\n", len(_MAGIC)) + 1
+    head = json.loads(body[len(_MAGIC) : end])
+    pairs: list[tuple[bytes, bytes | None]] = []
+    for _ in range(head["pairs"]):
+        key_length, value_length = _LENGTHS.unpack_from(body, end)
+        end += _LENGTHS.size
+        key, end = body[end : end + key_length], end + key_length
+        value = None if value_length < 0 else body[end : end + value_length]
+        end += max(0, value_length)
+        pairs.append((key, value))
+    return JournalEntry(head["id"], tuple(pairs), head["views"], tuple(head["undo"]))
+
+
+def clear_journal(folder: Path) -> None:
+    """Remove the journal, where there is one."""
+    for name in (JOURNAL, NEW_JOURNAL):
+        (folder / name).unlink(missing_ok=True)
+
+
+def has_committed(memory: Path, id: str) -> bool:
+    """Return whether the semantic store of a memory has committed the write with that id, by reading only.
+
+    Raises MemoryFormatError where the store cannot be read.
+    """
+    store = files.store_in(memory)
+    if not store.is_dir():
+        return False
+    try:
+        found = list(ox.Store.read_only(str(store)).quads_for_pattern(MARKS, COMMITTED, None, MARKS))
+    except (OSError, RuntimeError) as error:
+        raise MemoryFormatError(
+            f"the memory at {memory} holds a write that was cut short, and its store cannot be read to finish it "
+            f"({files.one_line(error)}); close it elsewhere and try again, or restore the folder from a copy"
+        ) from error
+    return any(getattr(quad.object, "value", None) == id for quad in found)

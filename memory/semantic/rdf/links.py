@@ -1,0 +1,80 @@
+"""Which views each lesson taught, and of which category: the semantic store's half of what both stores know.
+
+The perceptual store says of such a view which lesson it belongs to. ``verify`` compares the two. A view that a teacher
+names otherwise, or that is forgotten, belongs to no lesson any more. What a memory exports has no links: the views
+are not in it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import NamedTuple
+from urllib.parse import unquote
+
+import pyoxigraph as ox
+
+from deixis.memory.semantic.rdf import ledger
+from deixis.memory.semantic.rdf.change import Change
+from deixis.memory.semantic.rdf.graphs import CATEGORY_OF_VIEW, VIEWS, lesson_of_views, view_node, views_graph
+from deixis.ontology.triples import text
+
+
+class Link(NamedTuple):
+    """A lesson taught a view of a category."""
+
+    lesson: str
+    view: str
+    category: str
+
+
+def linking(lesson: str, views: Mapping[str, str]) -> Change:
+    """Return the change that says which views a lesson taught; ``views`` leads from their ids to their categories."""
+    triples = [ox.Triple(view_node(view), CATEGORY_OF_VIEW, text(category)) for view, category in views.items()]
+    return Change(operations=tuple(ledger.insertion(views_graph(lesson), triples)))
+
+
+def unlinking(lesson: str) -> Change:
+    """Return the change that takes away what is said of a lesson's views."""
+    return Change(operations=(ledger.drop(views_graph(lesson)),))
+
+
+def relinking(store: ox.Store, categories: Mapping[str, str | None], besides: frozenset[str] = frozenset()) -> Change:
+    """Return the change that views are of other categories from now on, by their ids; None: of no lesson any more.
+
+    What the lessons ``besides`` say stays as it is. Nothing is changed where no lesson taught such a view.
+    """
+    operations: list[ledger.Operation] = []
+    for view, category in categories.items():
+        for quad in store.quads_for_pattern(view_node(view), CATEGORY_OF_VIEW, None, None):
+            lesson = lesson_of_views(quad.graph_name)
+            if lesson is None or lesson in besides or getattr(quad.object, "value", None) == category:
+                continue
+            operations += ledger.deletion(views_graph(lesson), [quad.triple])
+            if category is not None:
+                triple = ox.Triple(view_node(view), CATEGORY_OF_VIEW, text(category))
+                operations += ledger.insertion(views_graph(lesson), [triple])
+    return Change(operations=tuple(operations))
+
+
+def links_of(store: ox.Store, lesson: str) -> tuple[Link, ...]:
+    """Return the views that a lesson taught, in order."""
+    return tuple(sorted(_links(store.quads_for_pattern(None, CATEGORY_OF_VIEW, None, views_graph(lesson)))))
+
+
+def lessons_with(store: ox.Store, view: str) -> tuple[str, ...]:
+    """Return the lessons that taught a view, in order of their ids."""
+    found = _links(store.quads_for_pattern(view_node(view), CATEGORY_OF_VIEW, None, None))
+    return tuple(sorted({link.lesson for link in found}))
+
+
+def all_links(store: ox.Store) -> tuple[Link, ...]:
+    """Return what all lessons taught, in order: for comparing the two stores."""
+    return tuple(sorted(_links(store.quads_for_pattern(None, CATEGORY_OF_VIEW, None, None))))
+
+
+def _links(quads: Iterator[ox.Quad]) -> Iterator[Link]:
+    for quad in quads:
+        lesson = lesson_of_views(quad.graph_name)
+        if lesson is not None and isinstance(quad.subject, ox.NamedNode):
+            view = unquote(quad.subject.value.removeprefix(VIEWS + "id/"))
+            yield Link(lesson, view, str(getattr(quad.object, "value", "")))

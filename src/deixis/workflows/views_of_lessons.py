@@ -1,0 +1,107 @@
+"""Writes that both stores take part in: views with their lessons. Each is all or nothing over both.
+
+What a write needs is worked out first. Then one commit of the semantic store decides it, and the journal of the
+perceptual store carries it out or drops it, also after a kill: see :mod:`deixis.memory.journal`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+from deixis.knowledge_store import KnowledgeStore
+from deixis.view_store import ViewStore
+
+if TYPE_CHECKING:
+    from deixis.learning.views import Taught
+    from deixis.memory.perceptual.handle import WriteBatch
+    from deixis.memory.perceptual.records import View
+    from deixis.ontology.lessons.types import Lesson
+
+
+def keep_lessons(
+    lessons: Sequence[Lesson], seen: Mapping[str, Sequence[View]], knowledge: KnowledgeStore, views: ViewStore
+) -> tuple[Taught, ...]:
+    """Write lessons, and the views that each teaches, by its id; return what the views taught, in turn."""
+    together = [view for lesson in lessons for view in seen.get(lesson.id, ())]
+    if not together:
+        knowledge.keeping(lessons, {})(None)
+        return ()
+    owners = {view.id: lesson.id for lesson in lessons for view in seen.get(lesson.id, ())}
+    memory = views.memory(create=True)
+    with memory.exclusive():
+        change, taught = views.keeping(together, owners)
+        memory.handle.write_with(change, knowledge.keeping(lessons, seen))
+    return taught
+
+
+def keep_view(view: View, knowledge: KnowledgeStore, views: ViewStore) -> Taught:
+    """Write a view that a teacher named; what a lesson taught of it is of no lesson any more."""
+    memory = views.memory(create=True)
+    with memory.exclusive():
+        change, (taught,) = views.keeping([view])
+        of_lessons = [view.id] if memory.lesson_of(view.id) is not None else []
+        _write(change, dict.fromkeys(of_lessons), knowledge, views)
+    return taught
+
+
+def forget_lesson(lesson: str, knowledge: KnowledgeStore, views: ViewStore) -> None:
+    """Take back one lesson, with everything that follows from it alone; its views stay, and belong to no lesson."""
+    from deixis.memory.perceptual.records import Batch
+    from deixis.memory.semantic.rdf.links import lessons_with, links_of
+
+    commit, store = knowledge.forgetting(lesson), knowledge.memory().store
+    linked = links_of(store, lesson)
+    if not linked or not views.exists():
+        commit(None)
+        return
+    memory = views.memory()
+    with memory.exclusive():
+        owners: dict[str, str | None] = {}
+        for link in linked:
+            if memory.lesson_of(link.view) == lesson:
+                others = [other for other in lessons_with(store, link.view) if other != lesson]
+                owners[link.view] = others[-1] if others else None
+        memory.handle.write_with(memory.writing(Batch(lessons=owners)), commit)
+
+
+def rename_category(old: str, new: str, knowledge: KnowledgeStore, views: ViewStore) -> None:
+    """Give a category of views another name.
+
+    Raises UnknownCategoryError; RejectedWriteError for a name that is taken.
+    """
+    memory = views.memory()
+    with memory.exclusive():
+        change = memory.renaming(old, new)
+        _write(change, dict.fromkeys(memory.taught_by_lessons(old), new), knowledge, views)
+
+
+def merge_categories(source: str, into: str, knowledge: KnowledgeStore, views: ViewStore) -> None:
+    """Make the views of one category views of another. Raises UnknownCategoryError."""
+    memory = views.memory()
+    with memory.exclusive():
+        change = memory.merging(source, into)
+        _write(change, dict.fromkeys(memory.taught_by_lessons(source), into), knowledge, views)
+
+
+def forget_category(name: str, knowledge: KnowledgeStore, views: ViewStore) -> None:
+    """Forget a category with all its views; lessons taught none of these any more. Raises UnknownCategoryError."""
+    memory = views.memory()
+    with memory.exclusive():
+        change = memory.forgetting(name)
+        _write(change, dict.fromkeys(memory.taught_by_lessons(name)), knowledge, views)
+
+
+def _write(
+    change: WriteBatch, categories: Mapping[str, str | None], knowledge: KnowledgeStore, views: ViewStore
+) -> None:
+    """Write a change of views; ``categories`` are those of the views of lessons afterwards, None for no lesson."""
+    from deixis.memory.semantic.rdf.links import relinking
+
+    handle = views.memory().handle
+    if not categories or not knowledge.exists():
+        handle.write(change, sync=True)
+        return
+    memory = knowledge.memory()
+    links, rules = relinking(memory.store, categories), memory.kept_up()
+    handle.write_with(change, lambda journal: memory.commit(links, rules, journal))
