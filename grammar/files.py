@@ -15,8 +15,11 @@ MAX_INCLUDE_DEPTH = 32  # includes within includes
 MAX_INCLUDED_FILES = 1_000  # included by one script
 
 
-def read_text(path: Path, shown: str) -> str:
-    """Return the text of a file; raises ScriptFileError, which names it as ``shown``, where it cannot be read."""
+def read_text(path: Path, shown: str, lenient: bool = False) -> str:
+    """Return the text of a file; raises ScriptFileError, which names it as ``shown``, where it cannot be read.
+
+    ``lenient`` reads what is not UTF-8 as the replacement character instead of refusing it.
+    """
     try:
         status = path.stat()
         if stat.S_ISDIR(status.st_mode):
@@ -37,7 +40,7 @@ def read_text(path: Path, shown: str) -> str:
     if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
         raise ScriptFileError(f"{shown}: this file is UTF-16, not UTF-8; save it as UTF-8")
     try:
-        return data.decode("utf-8")
+        return data.decode("utf-8", "replace" if lenient else "strict")
     except UnicodeDecodeError as error:
         line = data.count(b"\n", 0, error.start) + 1
         raise ScriptFileError(f"{shown}: line {line} is not UTF-8; save the file as UTF-8") from None

@@ -33,6 +33,14 @@ class UnknownAtomError(DeixisError, LookupError):
     """A sign that stands for no atom of a calculus."""
 
 
+class CalculusError(DeixisError, ValueError):
+    """Tables that are no calculus; ``atom`` is the code of the atom where that shows."""
+
+    def __init__(self, message: str, atom: int) -> None:
+        super().__init__(message)
+        self.atom = atom
+
+
 class UnknownCalculusError(DeixisError, LookupError):
     """A name that stands for no calculus."""
 

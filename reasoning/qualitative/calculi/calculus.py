@@ -13,7 +13,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cache, cached_property
 from itertools import product
 from math import prod
 
@@ -22,9 +22,6 @@ from numpy.typing import NDArray
 
 from deixis.ontology.relation import nearest
 from deixis.reasoning.errors import UnknownAtomError
-
-Pieces = Callable[[int], tuple[int, ...]]
-"""Splits a relation into relations of a tractable subclass, of which it is the union."""
 
 
 def bits(relation: int) -> Iterator[int]:
@@ -48,8 +45,8 @@ class Calculus(ABC):
     aliases: Mapping[str, str]  # other signs, to this calculus's
     any_case: bool  # whether signs are read in upper and lower case alike
     decided_by_closure: bool
-    """Whether a closed network of tractable relations is consistent. Where it is False even a closed network of atoms
-    may be inconsistent: closure still refutes, and proves nothing (Renz and Ligozat 2005)."""
+    """Whether a closed network of tractable relations, and of atoms, is consistent. Where it is False even a closed
+    network of atoms may be inconsistent: closure still refutes, and proves nothing (Renz and Ligozat 2005)."""
 
     @property
     @abstractmethod
@@ -107,6 +104,61 @@ class Calculus(ABC):
 
 
 @dataclass(frozen=True, eq=False)
+class Subclass:
+    """A set of relations of one table calculus, by what tells its members; the empty relation is one of them."""
+
+    name: str
+    atoms: int  # of the calculus
+    contains: Callable[[int], bool]
+    source: str
+
+    @cached_property
+    def relations(self) -> frozenset[int]:
+        """Every member, the empty relation included."""
+        return frozenset(relation for relation in range(1 << self.atoms) if self.contains(relation))
+
+    @cached_property
+    def largest_first(self) -> tuple[int, ...]:
+        """Every member except the empty relation, those of most atoms first."""
+        return tuple(sorted(self.relations - {0}, key=lambda relation: (-relation.bit_count(), relation)))
+
+    @cached_property
+    def hulls(self) -> NDArray[np.uint64]:
+        """Shape (2^atoms,): for every relation the intersection of the members that hold it."""
+        everything = (1 << self.atoms) - 1
+        hulls = np.full(1 << self.atoms, everything, dtype=np.uint64)
+        members = np.array(sorted(self.relations), dtype=np.uint64)
+        hulls[members] = members
+        relations = np.arange(1 << self.atoms)
+        for atom in range(self.atoms):
+            without = relations[relations >> atom & 1 == 0]
+            hulls[without] &= hulls[without | 1 << atom]
+        return hulls
+
+    def split(self, relation: int) -> tuple[int, ...]:
+        """Disjoint members of which ``relation`` is the union: the largest that fits, then the largest in the rest.
+
+        >>> from deixis.reasoning.qualitative.calculi.registry import calculus
+        >>> from deixis.reasoning.qualitative.calculi.tractable import ORD_HORN
+        >>> allen = calculus("allen")
+        >>> pieces = ORD_HORN.split(allen.relation(["<", "m", "mi", ">"]))
+        >>> [allen.members(piece) for piece in pieces]
+        [('<', 'm'), ('mi', '>')]
+        """
+        return _split(self, relation)
+
+
+@cache
+def _split(subclass: Subclass, relation: int) -> tuple[int, ...]:
+    if not relation:
+        return ()
+    if subclass.contains(relation):
+        return (relation,)
+    largest = next(member for member in subclass.largest_first if member & ~relation == 0)
+    return (largest, *_split(subclass, relation & ~largest))
+
+
+@dataclass(frozen=True, eq=False)
 class TableCalculus(Calculus):
     """A calculus of k atoms, at most 64, by its tables."""
 
@@ -117,7 +169,7 @@ class TableCalculus(Calculus):
     identity: int
     aliases: Mapping[str, str] = field(default_factory=dict)
     any_case: bool = False
-    split: Pieces | None = None  # None: every relation is tractable
+    tractable: Subclass | None = None  # None: no subclass is known, and relations are split into atoms
     decided_by_closure: bool = True
     source: str = ""  # where the tables and the tractable subclass come from
 
@@ -145,9 +197,7 @@ class TableCalculus(Calculus):
         return mask
 
     def pieces(self, relation: int) -> tuple[int, ...]:
-        if not relation:
-            return ()
-        return (relation,) if self.split is None else self.split(relation)
+        return atoms_of(relation) if self.tractable is None else self.tractable.split(relation)
 
 
 @dataclass(frozen=True, eq=False)
@@ -278,7 +328,6 @@ def coarsening(
         converses=np.array(converses, dtype=np.int64),
         composition=table,
         identity=next(i for i, part in enumerate(parts) if part >> fine.identity & 1),
-        split=atoms_of,
         decided_by_closure=False,
         source=source,
     )

@@ -25,7 +25,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.reasoning.errors import SettingError
-from deixis.reasoning.qualitative.calculi.calculus import TableCalculus, atoms_of
+from deixis.reasoning.qualitative.calculi.calculus import TableCalculus
 
 Bound = Fraction | float  # exact, or infinite
 SAME = "same"
@@ -84,7 +84,6 @@ def distance_calculus(ranges: Ranges = DEFAULT_RANGES) -> TableCalculus:
         converses=np.arange(len(atoms)),
         composition=np.array(table, dtype=np.uint64),
         identity=0,
-        split=atoms_of,
         decided_by_closure=False,
         source="Clementini, Di Felice and Hernández 1997",
     )
@@ -173,7 +172,6 @@ def direction_distance_calculus(ranges: Ranges = DEFAULT_RANGES) -> TableCalculu
         identity=here,
         aliases={"EQ": HERE},
         any_case=True,
-        split=atoms_of,
         decided_by_closure=False,
         source="Clementini, Di Felice and Hernández 1997; the composition is worked out here",
     )

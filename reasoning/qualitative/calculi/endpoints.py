@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from deixis.ontology.allen import SYMBOLS, Allen
 from deixis.reasoning.geometry.allen import allen_relations
 from deixis.reasoning.qualitative.calculi.calculus import ProductCalculus, TableCalculus
-from deixis.reasoning.qualitative.calculi.tractable import ORD_HORN
+from deixis.reasoning.qualitative.calculi.tractable import EVERY_ORDER, ORD_HORN
 
 
 def converses_in(codes: NDArray[np.integer], atoms: int) -> NDArray[np.int64]:
@@ -97,6 +97,7 @@ def point_algebra() -> TableCalculus:
         composition=composition_in(codes, 3),
         identity=POINT_ATOMS.index("="),
         aliases=_POINT_ALIASES,
+        tractable=EVERY_ORDER,
         source="Vilain and Kautz 1986; van Beek 1992",
     )
 
@@ -118,7 +119,7 @@ def interval_algebra() -> TableCalculus:
         composition=composition_in(codes, len(SYMBOLS)),
         identity=Allen.EQUALS,
         aliases=_ALLEN_ALIASES,
-        split=ORD_HORN.split,
+        tractable=ORD_HORN,
         source="Allen 1983; Nebel and Bürckert 1995; Ligozat 1996",
     )
 

@@ -1,14 +1,18 @@
-"""RCC-8: how two regions connect (Randell, Cui and Cohn 1992). Its composition is stated; it follows from no order.
+"""RCC-8: how two regions connect (Randell, Cui and Cohn 1992), and RCC-5, which does not tell borders.
+
+The composition of RCC-8 is stated; it follows from no order.
 
 Regions are non-empty regular closed sets of a topological space, in one piece or several.
 """
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
-from deixis.reasoning.qualitative.calculi.calculus import TableCalculus
-from deixis.reasoning.qualitative.calculi.tractable import RCC8_HORN
+from deixis.reasoning.qualitative.calculi.calculus import Calculus, TableCalculus, coarsening
+from deixis.reasoning.qualitative.calculi.tractable import RCC5_HORN, RCC8_HORN, rcc8_of_rcc5
 
 RCC8_ATOMS = ("DC", "EC", "PO", "TPP", "NTPP", "TPPI", "NTPPI", "EQ")
 _CONVERSES = (0, 1, 2, 5, 6, 3, 4, 7)
@@ -58,6 +62,26 @@ def region_connection_calculus() -> TableCalculus:
         identity=RCC8_ATOMS.index("EQ"),
         aliases=_ALIASES,
         any_case=True,
-        split=RCC8_HORN.split,
+        tractable=RCC8_HORN,
         source="Randell, Cui and Cohn 1992; Cohn, Bennett, Gooday and Gotts 1997; Renz and Nebel 1999",
     )
+
+
+RCC5_ATOMS = ("DR", "PO", "PP", "PPI", "EQ")
+_RCC5_ALIASES = {"DC": "DR", "PPC": "PPI", "disjoint": "DR", "overlap": "PO", "equal": "EQ", "=": "EQ"}
+
+
+def mereological_calculus(rcc8: Calculus) -> TableCalculus:
+    """RCC-5: discrete, partial overlap, proper part and its converse, equal (Bennett 1994); coarser than RCC-8.
+
+    What RCC-5 atoms compose to in RCC-8 is a union of RCC-5 atoms, so that closure decides here what it decides there.
+
+    >>> from deixis.reasoning.qualitative.calculi.registry import calculus
+    >>> rcc5 = calculus("rcc5")
+    >>> rcc5.members(rcc5.compose(rcc5.relation(["DR"]), rcc5.relation(["PP"])))
+    ('DR', 'PO', 'PP')
+    """
+    parts = [rcc8_of_rcc5(1 << code) for code in range(len(RCC5_ATOMS))]
+    source = "Bennett 1994; Renz and Nebel 1999"
+    coarse = coarsening("rcc5", RCC5_ATOMS, parts, rcc8, source)
+    return replace(coarse, aliases=_RCC5_ALIASES, any_case=True, tractable=RCC5_HORN, decided_by_closure=True)

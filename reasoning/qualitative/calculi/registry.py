@@ -6,10 +6,10 @@ from functools import cache
 from typing import cast
 
 from deixis.ontology.relation import nearest
-from deixis.reasoning.errors import UnknownCalculusError
-from deixis.reasoning.qualitative.calculi.calculus import Calculus, ProductCalculus, TableCalculus
+from deixis.reasoning.errors import UnknownAtomError, UnknownCalculusError
+from deixis.reasoning.qualitative.calculi.calculus import Calculus, ProductCalculus, TableCalculus, bits
 
-CALCULI: tuple[str, ...] = ("point", "allen", "ra", "ba", "rcc8", "cd", "ten", "distance", "direction-distance")
+CALCULI: tuple[str, ...] = ("point", "allen", "ra", "ba", "rcc5", "rcc8", "cd", "ten", "distance", "direction-distance")
 """The names of all calculi."""
 
 
@@ -52,6 +52,10 @@ def _build(name: str) -> Calculus:
                 return cardinal_directions(cast(TableCalculus, calculus("point")))
             algebra = rectangle_algebra if name == "ra" else block_algebra
             return algebra(cast(TableCalculus, calculus("allen")))
+        case "rcc5":
+            from deixis.reasoning.qualitative.calculi.rcc8 import mereological_calculus
+
+            return mereological_calculus(calculus("rcc8"))
         case "rcc8":
             from deixis.reasoning.qualitative.calculi.rcc8 import region_connection_calculus
 
@@ -69,3 +73,34 @@ def _build(name: str) -> Calculus:
             from deixis.reasoning.qualitative.calculi.distance import direction_distance_calculus
 
             return direction_distance_calculus()
+
+
+def with_same_tables(brought: TableCalculus) -> Calculus | None:
+    """Return the calculus that has just the atoms and tables of another one, whatever their order; None where none has.
+
+    Its atoms may have other signs there, but each must be a sign or an alias here.
+    """
+    for name in CALCULI:
+        known = calculus(name)
+        if len(known.atoms) != len(brought.atoms):
+            continue
+        try:
+            codes = [known.code(atom) for atom in brought.atoms]
+        except UnknownAtomError:
+            continue
+        if len(set(codes)) == len(codes) and _agree(brought, known, codes):
+            return known
+    return None
+
+
+def _agree(brought: TableCalculus, known: Calculus, codes: list[int]) -> bool:
+    if codes[brought.identity] != known.identity:
+        return False
+    for i, code in enumerate(codes):
+        if known.converse(1 << code) != 1 << codes[brought.converses[i]]:
+            return False
+        for j, other in enumerate(codes):
+            composed = sum(1 << codes[k] for k in bits(int(brought.composition[i, j])))
+            if known.compose(1 << code, 1 << other) != composed:
+                return False
+    return True

@@ -6,54 +6,11 @@ subclass is computed from its definition, and closed under converse, intersectio
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
-from functools import cache, cached_property
+from functools import cache
 from itertools import product
 
 from deixis.reasoning.geometry.allen import convex_hull
-from deixis.reasoning.qualitative.calculi.calculus import bits
-
-
-@dataclass(frozen=True, eq=False)
-class Subclass:
-    """A set of relations of one table calculus, by what tells its members; the empty relation is one of them."""
-
-    name: str
-    atoms: int  # of the calculus
-    contains: Callable[[int], bool]
-    source: str
-
-    @cached_property
-    def relations(self) -> frozenset[int]:
-        """Every member, the empty relation included."""
-        return frozenset(relation for relation in range(1 << self.atoms) if self.contains(relation))
-
-    @cached_property
-    def _largest_first(self) -> tuple[int, ...]:
-        return tuple(sorted(self.relations - {0}, key=lambda relation: (-relation.bit_count(), relation)))
-
-    def split(self, relation: int) -> tuple[int, ...]:
-        """Disjoint members of which ``relation`` is the union: the largest that fits, then the largest in the rest.
-
-        >>> from deixis.reasoning.qualitative.calculi.registry import calculus
-        >>> allen = calculus("allen")
-        >>> pieces = ORD_HORN.split(allen.relation(["<", "m", "mi", ">"]))
-        >>> [allen.members(piece) for piece in pieces]
-        [('<', 'm'), ('mi', '>')]
-        """
-        return _split(self, relation)
-
-
-@cache
-def _split(subclass: Subclass, relation: int) -> tuple[int, ...]:
-    if not relation:
-        return ()
-    if subclass.contains(relation):
-        return (relation,)
-    largest = next(member for member in subclass._largest_first if member & ~relation == 0)
-    return (largest, *_split(subclass, relation & ~largest))
-
+from deixis.reasoning.qualitative.calculi.calculus import Subclass, bits
 
 _PLACES = ((0, 0), (0, 1), (0, 2), (0, 3), (0, 4), (1, 2), (1, 3), (1, 4), (2, 2), (2, 3), (2, 4), (3, 4), (4, 4))
 """Where a's begin and a's end lie, by Allen code: 0 before b, 1 at its begin, 2 within, 3 at its end, 4 after it."""
@@ -92,6 +49,9 @@ def _pointizable() -> frozenset[int]:
         )
     return frozenset(found)
 
+
+EVERY_ORDER = Subclass("every relation", 3, lambda relation: True, "van Beek 1992")
+"""All relations of the point algebra."""
 
 ORD_HORN = Subclass("ORD-Horn", 13, _is_preconvex, "Nebel and Bürckert 1995; as pre-convex relations Ligozat 1996")
 """The one maximal tractable subclass of Allen's algebra that has all atoms."""
@@ -132,3 +92,18 @@ RCC8_HORN = Subclass("Ĥ8", 8, _in_h8, "Renz and Nebel 1999")
 RCC8_C8 = Subclass("C8", 8, _in_c8, "Renz 1999")
 RCC8_Q8 = Subclass("Q8", 8, _in_q8, "Renz 1999")
 """With Ĥ8 the only maximal tractable subclasses that have all atoms (Renz 1999)."""
+
+_RCC8_OF_RCC5 = (_DC | _EC, _PO, _PARTS, _WHOLES, _EQ)
+
+
+def rcc8_of_rcc5(relation: int) -> int:
+    """Return the RCC-8 relation that says the same as one of RCC-5, which does not tell borders.
+
+    >>> bin(rcc8_of_rcc5(0b00001))
+    '0b11'
+    """
+    return sum(_RCC8_OF_RCC5[code] for code in bits(relation))
+
+
+RCC5_HORN = Subclass("Ĥ5", 5, lambda relation: _in_h8(rcc8_of_rcc5(relation)), "Renz and Nebel 1999")
+"""The RCC-5 relations that are in Ĥ8: the only maximal tractable subclass that has all atoms."""

@@ -30,24 +30,12 @@ class Cells(ABC):
         """Pass changes on; returns CLOSED, EMPTIED, PAUSED or FULL."""
 
     @abstractmethod
-    def undo(self, length: int, bookkeeping: tuple[Any, ...]) -> None:
-        """Go back to where the trail was that long."""
-
-    @abstractmethod
     def relation(self, first: int, second: int) -> int:
         """Return what a pair may still be."""
 
     @abstractmethod
     def relations(self) -> Words:
         """Return what all pairs may still be, (n, n, words of 64 atoms)."""
-
-    @abstractmethod
-    def relations_of(self, firsts: NDArray[np.int64], seconds: NDArray[np.int64]) -> Words:
-        """Return what pairs (m,), (m,) may still be, (m, words of 64 atoms)."""
-
-    @abstractmethod
-    def next_open(self, start: int) -> int:
-        """The first pair i < k that may be several things, as i * n + k, from ``start`` on; n * n where none is."""
 
 
 class Masks(Cells):
@@ -72,24 +60,11 @@ class Masks(Cells):
         table = self._tables
         return int(advance(budget, self._half, table.compositions, table.mask_converses, self.masks, *bookkeeping))
 
-    def undo(self, length: int, bookkeeping: tuple[Any, ...]) -> None:
-        from deixis.reasoning.qualitative.networks.mask_kernels import undo
-
-        undo(length, self._half, self.masks, self._tables.mask_converses, *bookkeeping)
-
     def relation(self, first: int, second: int) -> int:
         return int(self.masks[first, second])
 
     def relations(self) -> Words:
         return self.masks.astype(np.uint64)[:, :, None]
-
-    def relations_of(self, firsts: NDArray[np.int64], seconds: NDArray[np.int64]) -> Words:
-        return self.masks[firsts, seconds].astype(np.uint64)[:, None]
-
-    def next_open(self, start: int) -> int:
-        from deixis.reasoning.qualitative.networks.mask_kernels import next_open
-
-        return int(next_open(self.masks, start))
 
 
 class Planes(Cells):
@@ -119,11 +94,6 @@ class Planes(Cells):
         table = self._tables
         return int(advance(budget, table.sizes, table.needs, table.converses, self._full, self.planes, *bookkeeping))
 
-    def undo(self, length: int, bookkeeping: tuple[Any, ...]) -> None:
-        from deixis.reasoning.qualitative.networks.kernels import undo
-
-        undo(length, self.planes, self._tables.converses, *bookkeeping)
-
     def relation(self, first: int, second: int) -> int:
         bit = self.planes[first, second >> 6] >> np.uint64(second & 63) & np.uint64(1)
         return int.from_bytes(np.packbits(bit.astype(np.uint8), bitorder="little").tobytes(), "little")
@@ -135,15 +105,3 @@ class Planes(Cells):
         out = np.empty((size, size, (self._tables.atoms + 63) // 64), dtype=np.uint64)
         relations(self.planes, out)
         return out
-
-    def relations_of(self, firsts: NDArray[np.int64], seconds: NDArray[np.int64]) -> Words:
-        from deixis.reasoning.qualitative.networks.kernels import relations_of
-
-        out = np.empty((len(firsts), (self._tables.atoms + 63) // 64), dtype=np.uint64)
-        relations_of(firsts, seconds, self.planes, out)
-        return out
-
-    def next_open(self, start: int) -> int:
-        from deixis.reasoning.qualitative.networks.kernels import next_open
-
-        return int(next_open(self.planes, start))

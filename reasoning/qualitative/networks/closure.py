@@ -77,7 +77,7 @@ def close(
     started = time.perf_counter()
     states = opened_states(network, joint)
     before = [state.relations() for state in states]
-    complete = _close_all(states, deadline, progress)
+    complete = close_states(states, deadline, progress)
     parts = tuple(state.relations() for state in states)
     changed = [(old != new).any(axis=2) for old, new in zip(before, parts, strict=True)]
     return Closure(
@@ -106,10 +106,11 @@ def closed_states(
 ) -> tuple[tuple[NetworkState, ...], bool]:
     """The states of a network's axes, or of the whole, closed up to the first contradiction; and whether in time."""
     states = opened_states(network, traced=traced)
-    return states, _close_all(states, deadline, progress)
+    return states, close_states(states, deadline, progress)
 
 
-def _close_all(states: Sequence[NetworkState], deadline: Deadline, progress: Progress | None) -> bool:
+def close_states(states: Sequence[NetworkState], deadline: Deadline, progress: Progress | None) -> bool:
+    """Close states one after the other, up to the first contradiction; False where ``deadline`` came first."""
     for state in states:
         if any(each.emptied is not None for each in states):
             return True

@@ -78,6 +78,8 @@ def closure_decides(network: Network) -> bool:
     chosen = network.calculus
     if decider(chosen) is not None or not chosen.decided_by_closure:
         return False
+    if any(axis.tractable is None for axis in chosen.factors):  # only networks of atoms, and these say all of all pairs
+        return False
     return all(len(chosen.pieces(relation)) <= 1 for relation in network.arrays.relations)
 
 

@@ -111,19 +111,6 @@ def restrict(firsts, seconds, ids, masks, start, planes, converses, dirty, waiti
 
 
 @njit(cache=True)
-def undo(length, planes, converses, dirty, waiting, clock, trail, count):  # type: ignore[no-untyped-def]
-    """Give back the atoms taken since the trail was ``length`` long; what was closed then is closed again."""
-    for m in range(count[0] - 1, length - 1, -1):
-        i, k, atom = trail[m, 0], trail[m, 1], trail[m, 2]
-        planes[i, k >> 6, atom] |= ONE << np.uint64(k & 63)
-        planes[k, i >> 6, converses[atom]] |= ONE << np.uint64(i & 63)
-    count[0] = length
-    dirty[:] = NONE
-    waiting[:] = 0
-    clock[2] = -1
-
-
-@njit(cache=True)
 def advance(  # type: ignore[no-untyped-def]
     budget, sizes, needs, converses, full, planes, dirty, waiting, clock, trail, count
 ):
@@ -322,27 +309,3 @@ def relations(planes, out):  # type: ignore[no-untyped-def]
                 while left:
                     out[i, (w << 6) + int(low_bit(left)), atom >> 6] |= bit
                     left &= left - ONE
-
-
-@njit(cache=True)
-def relations_of(firsts, seconds, planes, out):  # type: ignore[no-untyped-def]
-    """Write the relations of pairs (m,), (m,), (m, 64-bit words of atoms)."""
-    out[:] = NONE
-    for m in range(len(firsts)):
-        for atom in range(planes.shape[2]):
-            out[m, atom >> 6] |= may(planes, firsts[m], atom, seconds[m]) << np.uint64(atom & 63)
-
-
-@njit(cache=True)
-def next_open(planes, start):  # type: ignore[no-untyped-def]
-    """The first pair i < k, counted i * n + k from ``start`` on, that may bear several atoms; n * n where none."""
-    n, _, atoms = planes.shape
-    for position in range(start, n * n):
-        i, k = position // n, position % n
-        if i < k:
-            several = 0
-            for atom in range(atoms):
-                several += may(planes, i, atom, k)
-            if several > 1:
-                return position
-    return n * n

@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from deixis.reasoning.qualitative.networks.kernels import CLOSED, EMPTIED, FULL, NONE, ONE, PAUSED, low_bit, mark
+from deixis.reasoning.qualitative.networks.kernels import CLOSED, EMPTIED, FULL, ONE, PAUSED, low_bit, mark
 
 
 @njit(cache=True)
@@ -45,20 +45,6 @@ def restrict(firsts, seconds, ids, words, start, half, masks, converses, dirty, 
         ):
             return len(firsts)
     return len(firsts)
-
-
-@njit(cache=True)
-def undo(length, half, masks, converses, dirty, waiting, clock, trail, count):  # type: ignore[no-untyped-def]
-    """Give back the atoms taken since the trail was ``length`` long; what was closed then is closed again."""
-    for m in range(count[0] - 1, length - 1, -1):
-        i, k = trail[m, 0], trail[m, 1]
-        whole = masks[i, k] | np.uint16(trail[m, 2])
-        masks[i, k] = whole
-        masks[k, i] = converses[0, whole & ((1 << half) - 1)] | converses[1, whole >> half]
-    count[0] = length
-    dirty[:] = NONE
-    waiting[:] = 0
-    clock[2] = -1
 
 
 @njit(cache=True)
@@ -116,14 +102,3 @@ def _narrower(mine, others, half, low, high, changed, lefts):  # type: ignore[no
         changed[found], lefts[found] = k, left
         found += np.uint64(left != mine[k])
     return found
-
-
-@njit(cache=True)
-def next_open(masks, start):  # type: ignore[no-untyped-def]
-    """The first pair i < k, counted i * n + k from ``start`` on, that may bear several atoms; n * n where none."""
-    n = len(masks)
-    for position in range(start, n * n):
-        i, k = position // n, position % n
-        if i < k and masks[i, k] & (masks[i, k] - 1):
-            return position
-    return n * n

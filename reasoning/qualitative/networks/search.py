@@ -1,27 +1,32 @@
-"""Consistency: closure where it decides, else backtracking with the tractable subclass as split set.
+"""Consistency: closure where it decides, else a conflict-driven search over tractable relations.
 
-A relation is split into the fewest relations of a tractable subclass, for which a closed network is consistent
-(:meth:`Calculus.pieces`); the pair with fewest pieces is tried first, and after each choice the network is closed
-again, which is the forward checking (Ladkin and Reinefeld 1992; Nebel 1997). Where even closed networks of atoms may
-be inconsistent (``decided_by_closure`` is False) a contradiction is still a proof, and everything else undecided.
+A closed network of a tractable subclass is consistent. Where other relations are stated, the search of
+:mod:`deixis.reasoning.qualitative.networks.conflict_search` chooses tractable relations within them (Ladkin and
+Reinefeld 1992; Nebel 1997). Where no such subclass is known every pair is narrowed to an atom; and where even closed
+networks of atoms may be inconsistent (``decided_by_closure`` is False) a contradiction is still a proof, and
+everything else undecided.
 """
 
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from deixis.deadline import Deadline
 from deixis.reasoning.qualitative.calculi.bridges import Link
-from deixis.reasoning.qualitative.calculi.calculus import Calculus
-from deixis.reasoning.qualitative.networks.choices import FewestPiecesFirst, FirstOpenPair, PairSelector
-from deixis.reasoning.qualitative.networks.closure import closed_states, whole_relation
-from deixis.reasoning.qualitative.networks.network import Constraint, Network
-from deixis.reasoning.qualitative.networks.state import NetworkState, Progress
+from deixis.reasoning.qualitative.calculi.calculus import Calculus, ProductCalculus, TableCalculus
+from deixis.reasoning.qualitative.networks.closure import close_states, opened_states
+from deixis.reasoning.qualitative.networks.conflict_search import ConflictSearch, Premise, require_room
+from deixis.reasoning.qualitative.networks.network import Constraint, Network, on_axes
+from deixis.reasoning.qualitative.networks.state import Progress
+
+Masks = NDArray[np.unsignedinteger[Any]]
 
 
 class Verdict(StrEnum):
@@ -38,7 +43,7 @@ class Solution:
 
     ``scenario`` is, where it was asked for and found, the network with one atom for each pair i < j; where the verdict
     is undecided for the sake of the calculus it is closed, and nothing more. ``refuted`` says that closure alone found
-    the contradiction. ``reason`` tells in words why the verdict is undecided.
+    the contradiction. ``reason`` tells in words why the verdict is undecided, or why there is no scenario.
     """
 
     verdict: Verdict
@@ -50,30 +55,7 @@ class Solution:
     reason: str = ""
 
 
-class _OutOfTime(Exception):
-    """The deadline came first."""
-
-
-@dataclass(frozen=True)
-class _Choice:
-    """A pair i < j that is chosen for, what is still to be tried, and where the trail was before."""
-
-    first: int
-    second: int
-    pieces: Iterator[int]
-    mark: int
-
-
-@dataclass
-class _Tally:
-    deadline: Deadline
-    progress: Progress | None
-    choices: int = 0
-    dead_ends: int = 0
-
-    def check_clock(self) -> None:
-        if self.deadline.passed:
-            raise _OutOfTime
+OUT_OF_TIME = "the time limit was reached"
 
 
 def solve(
@@ -98,9 +80,8 @@ def solve(
         atoms = (replace(c, relation=bridge.backward(c.relation)) for c in solution.scenario.constraints)
         return replace(solution, scenario=network.only(atoms))
     started = time.perf_counter()
-    tally = _Tally(deadline, progress)
-    verdict, reason, found, refuted = _decide(network, tally, scenario)
-    return Solution(verdict, tally.choices, tally.dead_ends, time.perf_counter() - started, found, refuted, reason)
+    solution = _decided(network, deadline, progress, scenario)
+    return replace(solution, seconds=time.perf_counter() - started)
 
 
 def decider(calculus: Calculus) -> Link | None:
@@ -109,7 +90,8 @@ def decider(calculus: Calculus) -> Link | None:
         return None
     from deixis.reasoning.qualitative.calculi.bridges import names_to_boxes
 
-    return names_to_boxes()
+    bridge = names_to_boxes()
+    return bridge if bridge.source is calculus else None
 
 
 def translated(network: Network, bridge: Link) -> Network:
@@ -124,69 +106,153 @@ def scenario(network: Network, deadline: Deadline = Deadline.never()) -> Network
     return solution.scenario if solution.verdict is Verdict.CONSISTENT else None
 
 
-def _decide(network: Network, tally: _Tally, scenario: bool) -> tuple[Verdict, str, Network | None, bool]:
-    try:
-        states, complete = closed_states(network, tally.deadline, tally.progress, traced=True)
-        if any(state.emptied is not None for state in states):
-            return Verdict.INCONSISTENT, "", None, True
-        if not complete:
-            raise _OutOfTime
-        for state in states:
-            if not _refine(state, FewestPiecesFirst(state, tally.check_clock), tally):
-                return Verdict.INCONSISTENT, "", None, False
-        if scenario:
-            for state in states:
-                _refine(state, FirstOpenPair(state), tally)
-        found = atomic_network(network, states, tally) if scenario else None
-    except _OutOfTime:
-        return Verdict.UNDECIDED, "the time limit was reached", None, False
-    if not network.calculus.decided_by_closure:
-        name = network.calculus.name
-        return Verdict.UNDECIDED, f"closure found no contradiction, and in {name} that proves nothing", found, False
-    return Verdict.CONSISTENT, "", found, False
+@dataclass(eq=False)
+class _Part:
+    """Axes of a network that must be decided together: as stated, and as closed so far, (axes, n, n)."""
 
+    axes: tuple[TableCalculus, ...]
+    stated: Masks
+    closed: Masks
+    nogoods: Sequence[Sequence[Premise]] = ()
+    is_closed: bool = True
+    search: ConflictSearch | None = None
 
-def _refine(state: NetworkState, choices: PairSelector, tally: _Tally) -> bool:
-    """Choose until nothing is left to pick; False where every way leads to a contradiction."""
-    stack: list[_Choice] = []
-    while True:
-        tally.check_clock()
-        found = choices.pick()
-        if found is None:
-            return True
-        stack.append(_Choice(found[0], found[1], iter(found[2]), state.mark))
-        if not _next_choice(state, choices, stack, tally):
+    @property
+    def atomic(self) -> bool:
+        """Whether only atoms are known to be decided by closure, if anything is."""
+        return any(axis.tractable is None or not axis.decided_by_closure for axis in self.axes)
+
+    def edges(self, masks: Masks | None = None) -> NDArray[np.int64]:
+        """Return the pairs i < k, all of them or those of which ``masks`` says something."""
+        upper = np.triu(np.ones(self.stated.shape[1:], dtype=np.bool_), 1)
+        if masks is None:
+            return np.flatnonzero(np.broadcast_to(upper, self.stated.shape))
+        everything = np.array([axis.universal for axis in self.axes], dtype=np.uint64)
+        return np.flatnonzero((masks != everything[:, None, None]) & upper)
+
+    def settled(self) -> bool:
+        """Whether closure has decided already: what is left of every stated pair is tractable."""
+        if self.nogoods or not self.is_closed:
             return False
-        choices.note(state.changed(stack[-1].mark))
+        values = np.unique(self.closed.ravel()[self.edges(None if self.atomic else self.stated)])
+        if self.atomic:
+            return bool((np.bitwise_count(values) == 1).all())
+        return all(len(self.axes[0].pieces(value)) == 1 for value in values.tolist())
+
+    def decide(self, deadline: Deadline) -> bool | None:
+        """Whether the axes are consistent, as far as their calculi tell; None where time ran out."""
+        if self.settled():
+            return True
+        edges = self.edges(None if self.atomic else self.stated)
+        self.search = ConflictSearch(
+            self.axes, self.closed, edges, self.stated, self.nogoods, atomic=self.atomic, closed=self.is_closed
+        )
+        return self.search.run(deadline)
+
+    def atoms(self, deadline: Deadline) -> Masks | None:
+        """Return one atom for every pair of a part that is decided; None where time ran out."""
+        found = self.closed if self.search is None else self.search.masks
+        if self.atomic:
+            return found
+        if self.search is not None:
+            stated = self.edges(self.stated)
+            everything = np.array([axis.universal for axis in self.axes], dtype=found.dtype)
+            tractable = self.search.tractable()
+            found = np.broadcast_to(everything[:, None, None], found.shape).copy()
+            keep = np.zeros(found.size, dtype=np.bool_)
+            keep[stated] = True
+            both = keep.reshape(found.shape) | keep.reshape(found.shape).transpose(0, 2, 1)
+            both |= np.eye(found.shape[1], dtype=np.bool_)
+            found[both] = tractable[both]
+        last = ConflictSearch(self.axes, found, self.edges(), atomic=True, closed=self.search is None)
+        return last.masks if last.run(deadline) else None
 
 
-def _next_choice(state: NetworkState, choices: PairSelector, stack: list[_Choice], tally: _Tally) -> bool:
-    """Make the next choice that closure lets stand, going back where none is left; False where none is at all."""
-    while stack:
-        last = stack[-1]
-        for piece in last.pieces:
-            tally.check_clock()
-            tally.choices += 1
-            state.assign(last.first, last.second, piece)
-            if not state.close(tally.deadline, tally.progress):
-                raise _OutOfTime
-            if state.emptied is None:
-                return True
-            tally.dead_ends += 1
-            state.undo(last.mark)
-        stack.pop()
-        if stack:
-            given_back = state.changed(stack[-1].mark)
-            state.undo(stack[-1].mark)
-            choices.note(np.append(given_back, last.first * state.size + last.second))
-    return False
+def _decided(network: Network, deadline: Deadline, progress: Progress | None, wanted: bool) -> Solution:
+    """Return the solution without its time."""
+    axes = on_axes(network)
+    if axes is None:
+        parts = [_joined(network)]
+    else:
+        states = opened_states(network)
+        stated = [state.masks() for state in states]
+        complete = close_states(states, deadline, progress)
+        if any(state.emptied is not None for state in states):
+            return Solution(Verdict.INCONSISTENT, 0, 0, 0.0, refuted=True)
+        if not complete:
+            return Solution(Verdict.UNDECIDED, 0, 0, 0.0, reason=OUT_OF_TIME)
+        parts = [
+            _Part(state.calculus.factors, before[None], state.masks()[None])
+            for state, before in zip(states, stated, strict=True)
+        ]
+    if any(not part.stated.all() for part in parts):
+        return Solution(Verdict.INCONSISTENT, 0, 0, 0.0, refuted=True)
+    answers = []
+    for part in parts:
+        answers.append(part.decide(deadline))
+        if not answers[-1]:
+            break
+    searches = [part.search for part in parts if part.search is not None]
+    effort = sum(search.decisions for search in searches), sum(search.conflicts for search in searches)
+    if answers[-1] is None:
+        return Solution(Verdict.UNDECIDED, *effort, 0.0, reason=OUT_OF_TIME)
+    if not answers[-1]:
+        return Solution(Verdict.INCONSISTENT, *effort, 0.0, refuted=not any(effort))
+    reason, found = "", None
+    if wanted:
+        atoms = [part.atoms(deadline) for part in parts]
+        known = [each for each in atoms if each is not None]
+        if len(known) == len(atoms):
+            found = atomic_network(network, np.concatenate(known))
+        else:
+            reason = f"{OUT_OF_TIME} before a scenario was found"
+    if network.calculus.decided_by_closure:
+        return Solution(Verdict.CONSISTENT, *effort, 0.0, found, reason=reason)
+    reason = f"a closed network of atoms was found, and in {network.calculus.name} that proves nothing"
+    return Solution(Verdict.UNDECIDED, *effort, 0.0, found, reason=reason)
 
 
-def atomic_network(network: Network, states: tuple[NetworkState, ...], tally: _Tally) -> Network:
-    """Return the network of what the states of its axes say of every pair i < j."""
-    atoms = []
-    for i in range(network.size):
-        tally.check_clock()
-        for j in range(i + 1, network.size):
-            atoms.append(Constraint(i, j, whole_relation(network.calculus, states, i, j)))
-    return network.only(atoms)
+def _joined(network: Network) -> _Part:
+    """The axes of a product calculus where some relations are no products: each excludes products, as nogoods."""
+    calculus, size = network.calculus, network.size
+    assert isinstance(calculus, ProductCalculus)
+    axes = calculus.axes
+    require_room(len(axes), size)
+    masks = np.empty((len(axes), size, size), dtype=np.uint64)
+    for axis, mask in zip(axes, masks, strict=True):
+        mask[:] = axis.universal
+        np.fill_diagonal(mask, 1 << axis.identity)
+    nogoods: list[list[Premise]] = []
+    for c in network.constraints:
+        i, k, relation = c.first, c.second, c.relation
+        if i > k:
+            i, k, relation = k, i, calculus.converse(relation)
+        if i == k:
+            if not relation >> calculus.identity & 1:
+                masks[:, i, i] = 0
+            continue
+        boxes = calculus.boxes(relation)
+        for position, axis in enumerate(axes):
+            allowed = 0
+            for box in boxes:
+                allowed |= box[position]
+            masks[position, i, k] &= np.uint64(allowed)
+            masks[position, k, i] &= np.uint64(axis.converse(allowed))
+        for box in calculus.boxes(calculus.universal & ~relation):
+            premises = [
+                ((position * size + i) * size + k, part)
+                for position, (part, axis) in enumerate(zip(box, axes, strict=True))
+                if part != axis.universal
+            ]
+            nogoods.append(premises)
+    return _Part(axes, masks, masks, nogoods, is_closed=False)
+
+
+def atomic_network(network: Network, atoms: Masks) -> Network:
+    """Return the network of one atom for every pair i < j, from those on the axes, (axes, n, n)."""
+    calculus = network.calculus
+    codes = np.zeros(atoms.shape[1:], dtype=np.int64)
+    for axis, mask in zip(calculus.factors, atoms, strict=True):
+        codes = codes * len(axis.atoms) + np.bitwise_count(mask - np.ones((), dtype=mask.dtype))
+    pairs = zip(*np.triu_indices(network.size, 1), strict=True)
+    return network.only(Constraint(int(i), int(j), 1 << int(codes[i, j])) for i, j in pairs)

@@ -1,4 +1,4 @@
-"""A network while it is being closed: relations that only ever lose atoms, and a trail to get them back."""
+"""A network while it is being closed: relations that only ever lose atoms, and a trail that tells why."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ STEPS_PER_CHECK = 20_000_000  # steps between two looks at the clock: some hundr
 
 
 class NetworkState:
-    """What the pairs of a network may still be. ``traced`` keeps the trail that undoing and explaining need."""
+    """What the pairs of a network may still be. ``traced`` keeps the trail that explaining needs."""
 
     def __init__(self, calculus: Calculus, size: int, traced: bool = False) -> None:
         require_size(calculus, size)
@@ -52,11 +52,6 @@ class NetworkState:
         """How many changes of pairs were passed on."""
         return int(self._clock[1])
 
-    @property
-    def mark(self) -> int:
-        """The length of the trail, to come back to."""
-        return int(self._count[0])
-
     def add(self, network: Network) -> bool:
         """Intersect with all constraints of a network; False where a pair is left with nothing."""
         arrays = network.arrays
@@ -79,11 +74,6 @@ class NetworkState:
                 self._lengthen(self._atoms)
         return self.emptied is None
 
-    def assign(self, first: int, second: int, relation: int) -> bool:
-        """Intersect one pair with a relation."""
-        one = np.zeros(1, dtype=np.int64)
-        return self.restrict(one + first, one + second, one, (relation,))
-
     def close(self, deadline: Deadline = Deadline.never(), progress: Progress | None = None) -> bool:
         """Closes the network, as far as it is consistent; False where ``deadline`` came first."""
         from deixis.reasoning.qualitative.networks.kernels import CLOSED, EMPTIED, FULL
@@ -102,16 +92,12 @@ class NetworkState:
             if deadline.passed:
                 return False
 
-    def undo(self, mark: int) -> None:
-        """Go back to where the trail was ``mark`` long; what was closed then is closed again."""
-        self._cells.undo(mark, self._bookkeeping)
-
     def _lengthen(self, room: int) -> None:
         length = 2 * len(self._trail) + room
         if length > MAX_TRAIL_STEPS:
             raise LimitError(
-                f"a search among {self.size:,} things in {self.calculus.name} keeps more than {MAX_TRAIL_STEPS:,} "
-                "steps to take back; split the network, or close it without a search"
+                f"an explanation among {self.size:,} things in {self.calculus.name} keeps more than "
+                f"{MAX_TRAIL_STEPS:,} steps; split the network"
             )
         longer = np.zeros((length, 4), dtype=np.int32)
         longer[: len(self._trail)] = self._trail
@@ -122,7 +108,7 @@ class NetworkState:
         from deixis.reasoning.qualitative.networks.kernels import support
 
         needed = np.zeros((self.size, self.size), dtype=np.bool_)
-        support(first, second, self.mark, self._trail, needed)
+        support(first, second, int(self._count[0]), self._trail, needed)
         return needed
 
     def relation(self, first: int, second: int) -> int:
@@ -139,18 +125,9 @@ class NetworkState:
         relations, ids = distinct_rows(words.reshape(-1, words.shape[2]))
         return relations, ids.reshape(self.size, self.size)
 
-    def relations_of(self, positions: NDArray[np.int64]) -> NDArray[np.uint64]:
-        """Return what pairs (m,), counted i * n + k, may still be, (m, words of 64 atoms)."""
-        return self._cells.relations_of(positions // self.size, positions % self.size)
-
-    def changed(self, mark: int) -> NDArray[np.int64]:
-        """Return the pairs i < k narrowed since the trail was ``mark`` long, each once, counted i * n + k."""
-        ends = self._trail[mark : self.mark, :2].astype(np.int64)
-        return np.unique(ends.min(axis=1) * self.size + ends.max(axis=1))
-
-    def next_open(self, start: int) -> int:
-        """The first pair i < k that may be several things, as i * n + k, from ``start`` on; n * n where none is."""
-        return self._cells.next_open(start)
+    def masks(self) -> NDArray[np.uint64]:
+        """Return what all pairs may still be, (n, n), in a calculus of up to 64 atoms."""
+        return self.relations()[:, :, 0]
 
 
 def distinct_rows(words: NDArray[np.uint64]) -> tuple[tuple[int, ...], NDArray[np.int64]]:

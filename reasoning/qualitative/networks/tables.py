@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -57,7 +58,8 @@ def tables(calculus: Calculus) -> Tables:
     for axis in axes:
         converses = (converses[:, None] * len(axis.converses) + axis.converses[None, :]).ravel()
     if len(axes) == 1 and largest <= MAX_SMALL_ATOMS:
-        return Tables(sizes, needs, converses, _compositions(axes[0]), _mask_converses(axes[0]))
+        compositions, mask_converses = in_parts(axes[0], 2, half_of(largest), np.dtype(np.uint16))
+        return Tables(sizes, needs, converses, compositions, mask_converses)
     nothing = np.zeros(0, dtype=np.uint16)
     return Tables(sizes, needs, converses, nothing, nothing)
 
@@ -74,23 +76,28 @@ def _needs(axis: TableCalculus) -> NDArray[np.uint64]:
     return table
 
 
-def _compositions(axis: TableCalculus) -> NDArray[np.uint16]:
-    """Shape (2, 2^half, 2, 2^half): each part of a left relation composed with each part of a right one."""
-    half = half_of(len(axis.atoms))
-    table = np.zeros((2, 1 << half, 2, 1 << half), dtype=np.uint16)
+def in_parts(
+    axis: TableCalculus, parts: int, width: int, dtype: np.dtype[Any]
+) -> tuple[NDArray[np.unsignedinteger[Any]], NDArray[np.unsignedinteger[Any]]]:
+    """Return compositions and converses of relations that are cut into parts, by look-up.
+
+    Returns
+    -------
+    compositions : ndarray, (parts, 2^width, parts, 2^width)
+        Each part of a left relation composed with each part of a right one.
+    converses : ndarray, (parts, 2^width)
+        The converse of each part of a relation.
+    """
+    compositions = np.zeros((parts, 1 << width, parts, 1 << width), dtype=dtype)
     for left, right in np.ndindex(axis.composition.shape):
-        lefts, rights = _holding(left % half, half), _holding(right % half, half)
-        table[left // half, lefts[:, None], right // half, rights] |= np.uint16(axis.composition[left, right])
-    return table
-
-
-def _mask_converses(axis: TableCalculus) -> NDArray[np.uint16]:
-    """Shape (2, 2^half): the converse of each part of a relation."""
-    half = half_of(len(axis.atoms))
-    table = np.zeros((2, 1 << half), dtype=np.uint16)
-    for atom, converse in enumerate(axis.converses):
-        table[atom // half, _holding(atom % half, half)] |= np.uint16(1 << int(converse))
-    return table
+        lefts, rights = _holding(left % width, width), _holding(right % width, width)
+        compositions[left // width, lefts[:, None], right // width, rights] |= axis.composition[left, right].astype(
+            dtype
+        )
+    converses = np.zeros((parts, 1 << width), dtype=dtype)
+    for atom, converse in enumerate(axis.converses.tolist()):
+        converses[atom // width, _holding(atom % width, width)] |= dtype.type(1 << converse)
+    return compositions, converses
 
 
 def half_of(atoms: int) -> int:

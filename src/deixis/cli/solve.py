@@ -17,6 +17,7 @@ from deixis.cli.common import (
     print_json,
     print_line,
     print_lines,
+    print_note,
     print_written,
     progress_bar,
 )
@@ -27,7 +28,9 @@ if TYPE_CHECKING:
 
 def solve(
     network: Annotated[str, typer.Argument(metavar="NETWORK", help="Constraint networks in GQR's format (.csp).")],
-    calculus: Annotated[str, typer.Option(metavar="NAME[+NAME…]", help="point, allen, ra, ba, rcc8, cd, …")],
+    calculus: Annotated[
+        str, typer.Option(metavar="NAME[+NAME…]", help="point, allen, ra, ba, rcc8, cd, …; or FILE.spec.")
+    ],
     closure: Annotated[bool, typer.Option("--closure", help="Print the closed network.")] = False,
     scenario: Annotated[bool, typer.Option("--scenario", help="Print one way all of it can hold.")] = False,
     explain: Annotated[
@@ -51,8 +54,11 @@ def solve(
     if verdict and (closure or scenario or explain is not None):
         raise DeixisError("--verdict goes with none of --closure, --scenario and --explain")
     wish = Wish(closure, scenario, explain, not verdict, time_limit)
-    texts = read_networks(network, calculi_named(calculus))
-    compiled(ready_to_solve)
+    calculi, notes = calculi_named(calculus)
+    for note in notes:
+        print_note(note)
+    texts = read_networks(network, calculi)
+    compiled(lambda: ready_to_solve(wide=any(len(axis.atoms) > 16 for each in calculi for axis in each.factors)))
     aside = as_json or (out is None and (closure or scenario))  # what is printed then is read again, or by a program
     solved = []
     with progress_bar("closing") as progress:

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from itertools import combinations
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from deixis.deadline import Deadline
@@ -71,10 +72,19 @@ class SolvedNetwork:
     explained: bool = True  # False where time ran out before it was clear why
 
 
-def calculi_named(text: str) -> tuple[Calculus, ...]:
-    """Return the calculi of ``ra+rcc8``; raises DeixisError where two are the same, or one is joined to no other."""
+def calculi_named(text: str) -> tuple[tuple[Calculus, ...], tuple[str, ...]]:
+    """Return the calculi of ``ra+rcc8``, or of a specification in GQR's format, with notes on them.
+
+    Raises DeixisError where two are the same, or one is joined to no other, and CalculusFileError where a
+    specification is no calculus.
+    """
     from deixis.reasoning.qualitative.calculi.registry import calculus
 
+    if text.endswith(".spec") or Path(text).is_dir():
+        from deixis.grammar.formats.calculi import read_calculus
+
+        brought = read_calculus(text)
+        return (brought.calculus,), brought.notes
     names = [name.strip() for name in text.split("+")]
     if len(set(names)) < len(names):
         raise DeixisError(f"--calculus {text}: name each calculus once")
@@ -83,7 +93,7 @@ def calculi_named(text: str) -> tuple[Calculus, ...]:
     for each in calculi:
         if len(calculi) > 1 and each.name not in joined:
             raise DeixisError(f"--calculus {text}: nothing joins {each.name} to the others")
-    return calculi
+    return calculi, ()
 
 
 Told = Callable[["SolvedNetwork"], None]
@@ -179,8 +189,11 @@ def _renumbered(network: Network, constraints: Iterable[Constraint], things: lis
 
 
 @cache
-def ready_to_solve() -> None:
-    """Compile, or load compiled, the closure of constraint networks, over plain calculi and over products."""
+def ready_to_solve(wide: bool = True) -> None:
+    """Compile, or load compiled, closure and search, over plain calculi and over products.
+
+    ``wide`` includes the loops for calculi of more than 16 atoms.
+    """
     from deixis.grammar.formats.networks import parse_networks
     from deixis.reasoning.kernel import load_compiled
     from deixis.reasoning.qualitative.calculi.registry import calculus
@@ -188,7 +201,9 @@ def ready_to_solve() -> None:
     load_compiled()
     wishes = (Wish(scenario=True), Wish(closure=True, explain=(0, 1)))
     against = "2 #\n0 1 ( < )\n1 2 ( < )\n0 2 ( > )\n.\n"
-    texts = (("allen", "1 #\n0 1 ( < m )\n.\n"), ("ra", "2 #\n0 1 ( <,m >,< )\n1 2 ( <,< )\n.\n"), ("allen", against))
+    texts = [("allen", "1 #\n0 1 ( < > )\n.\n"), ("ra", "2 #\n0 1 ( <,m >,< )\n1 2 ( <,< )\n.\n"), ("allen", against)]
+    if wide:
+        texts.append(("direction-distance", "1 #\n0 1 ( N,near S,near )\n.\n"))
     for name, text in texts:
         for parsed in parse_networks(text, [calculus(name)], "warm"):
             for wish in wishes:

@@ -44,7 +44,7 @@ def test_the_table_names_every_calculus_with_its_number_of_atoms() -> None:
     assert set(ORDER) == set(CALCULI)
 
 
-ORDER = ("point", "allen", "ra", "ba", "cd", "rcc8", "ten", "distance", "direction-distance")
+ORDER = ("point", "allen", "ra", "ba", "cd", "rcc5", "rcc8", "ten", "distance", "direction-distance")
 
 
 def test_all_that_boxes_are_related_in_is_described() -> None:

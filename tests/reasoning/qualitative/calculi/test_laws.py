@@ -5,15 +5,18 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import product
 
+import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from deixis.reasoning.qualitative.calculi.calculus import Calculus, bits
+from deixis.reasoning.errors import CalculusError
+from deixis.reasoning.qualitative.calculi.calculus import Calculus, TableCalculus, bits
+from deixis.reasoning.qualitative.calculi.laws import lawful
 from deixis.reasoning.qualitative.calculi.registry import CALCULI, calculus
 
-ASSOCIATIVE = ("point", "allen", "ra", "ba", "rcc8", "cd", "distance")
-SMALL = ("point", "allen", "rcc8", "cd", "ten", "distance", "direction-distance")
+ASSOCIATIVE = ("point", "allen", "ra", "ba", "rcc5", "rcc8", "cd", "distance")
+SMALL = ("point", "allen", "rcc5", "rcc8", "cd", "ten", "distance", "direction-distance")
 
 
 def relations(name: str, most: int = 4) -> st.SearchStrategy[int]:
@@ -94,6 +97,38 @@ def test_which_compositions_are_associative_for_all_atoms(name: str) -> None:
         for a, b, c in product(atoms(found), repeat=3)
     )
     assert same == (name in ASSOCIATIVE)
+
+
+@pytest.mark.parametrize("name", SMALL)
+def test_tables_that_obey_the_laws_are_left_as_they_are(name: str) -> None:
+    found = calculus(name)
+    atoms_ = range(len(found.atoms))
+    table = np.array([[found.compose(1 << i, 1 << j) for j in atoms_] for i in atoms_], dtype=np.uint64)
+    converses = np.array([found.converse(1 << i).bit_length() - 1 for i in atoms_])
+    lawful_part, violations = lawful(converses, table, found.identity)
+    assert (lawful_part == table).all()
+    assert {each.law for each in violations} == ({"identity"} if name == "ten" else set())
+
+
+@settings(max_examples=50, deadline=None)
+@given(st.sampled_from(["point", "allen", "rcc8"]), st.data())
+def test_what_is_added_to_one_entry_alone_is_taken_back(name: str, data: st.DataObject) -> None:
+    found = calculus(name)
+    assert isinstance(found, TableCalculus)
+    size = len(found.atoms)
+    i, j, k = (data.draw(st.integers(0, size - 1)) for _ in range(3))
+    table = found.composition.copy()
+    table[i, j] |= np.uint64(1 << k)
+    lawful_part, violations = lawful(found.converses, table, found.identity)
+    readings = [(i, j, k), (found.converses[j], found.converses[i], found.converses[k]), (k, found.converses[j], i)]
+    if len(set(readings)) == 3 or (table == found.composition).all():
+        assert (lawful_part == found.composition).all()
+        assert bool(violations) == bool((table != found.composition).any())
+
+
+def test_converses_that_do_not_come_back_are_refused() -> None:
+    with pytest.raises(CalculusError, match="atom itself"):
+        lawful(np.array([1, 2, 0]), np.full((3, 3), 7, dtype=np.uint64), 0)
 
 
 @pytest.mark.parametrize("name", ["ra", "ba"])

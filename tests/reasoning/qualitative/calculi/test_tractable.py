@@ -7,15 +7,17 @@ from itertools import combinations, product
 import pytest
 
 from deixis.ontology.allen import ALL_ALLEN
+from deixis.reasoning.qualitative.calculi.calculus import Subclass
 from deixis.reasoning.qualitative.calculi.registry import calculus
 from deixis.reasoning.qualitative.calculi.tractable import (
     CONVEX,
     ORD_HORN,
     POINTIZABLE,
+    RCC5_HORN,
     RCC8_C8,
     RCC8_HORN,
     RCC8_Q8,
-    Subclass,
+    rcc8_of_rcc5,
 )
 
 RCC8_CLASSES = (RCC8_HORN, RCC8_C8, RCC8_Q8)
@@ -27,6 +29,7 @@ RCC8_CLASSES = (RCC8_HORN, RCC8_C8, RCC8_Q8)
         (ORD_HORN, 868),  # Nebel and Bürckert 1995
         (POINTIZABLE, 188),  # Ladkin and Maddux 1988
         (CONVEX, 83),  # the 82 of the literature and the empty relation
+        (RCC5_HORN, 28),  # Renz and Nebel 1999
         (RCC8_HORN, 148),  # Renz and Nebel 1999
         (RCC8_C8, 158),  # Renz 1999
         (RCC8_Q8, 160),  # Renz 1999
@@ -47,14 +50,28 @@ def test_convex_relations_are_pointizable_and_these_are_in_ord_horn() -> None:
     assert CONVEX.relations < POINTIZABLE.relations < ORD_HORN.relations
 
 
-@pytest.mark.parametrize("subclass", [*RCC8_CLASSES, CONVEX, POINTIZABLE, ORD_HORN], ids=lambda s: s.name)
+@pytest.mark.parametrize("subclass", [*RCC8_CLASSES, RCC5_HORN, CONVEX, POINTIZABLE, ORD_HORN], ids=lambda s: s.name)
 def test_a_subclass_is_closed_under_what_closure_does(subclass: Subclass) -> None:
-    found = calculus("rcc8" if subclass.atoms == 8 else "allen")
+    found = calculus({5: "rcc5", 8: "rcc8", 13: "allen"}[subclass.atoms])
     members = subclass.relations
     assert all(found.converse(r) in members for r in members)
     assert all(r & s in members for r, s in combinations(members, 2))
     sample = sorted(members)[:: 1 if len(members) < 200 else 7]
     assert all(found.compose(r, s) in members for r, s in product(sample, repeat=2))
+
+
+@pytest.mark.parametrize("subclass", [RCC5_HORN, RCC8_HORN, ORD_HORN], ids=lambda s: s.name)
+def test_a_hull_is_the_least_member_that_holds_a_relation(subclass: Subclass) -> None:
+    for relation in range(1, 1 << subclass.atoms, 1 if subclass.atoms < 10 else 37):
+        hull = int(subclass.hulls[relation])
+        assert hull in subclass.relations and not relation & ~hull
+        assert all(not hull & ~member for member in subclass.relations if not relation & ~member)
+
+
+def test_rcc5_composes_as_the_same_relations_of_rcc8_do() -> None:
+    rcc5, rcc8 = calculus("rcc5"), calculus("rcc8")
+    for r, s in product(range(1, 32), repeat=2):
+        assert rcc8_of_rcc5(rcc5.compose(r, s)) == rcc8.compose(rcc8_of_rcc5(r), rcc8_of_rcc5(s))
 
 
 def test_pre_convex_relations_are_those_that_ord_horn_clauses_state() -> None:

@@ -224,19 +224,3 @@ def test_a_choice_between_axes_is_no_product() -> None:
     left, below = RA.of_axes([x, RA.axes[1].universal]), RA.of_axes([RA.axes[0].universal, y])
     assert on_axes(Network(RA, 2, (Constraint(0, 1, left | below),))) is None
     assert on_axes(Network(RA, 2, (Constraint(0, 1, left & below),))) is not None
-
-
-def test_undoing_gives_back_what_was_closed_before() -> None:
-    def relations(state: NetworkState) -> list[int]:
-        return [state.relation(i, j) for i, j in product(range(6), repeat=2)]
-
-    chosen: Calculus = ALLEN
-    state = NetworkState(chosen, 6, traced=True)
-    state.add(Network(chosen, 6, tuple(Constraint(i, i + 1, chosen.relation(["<", "m", "o"])) for i in range(5))))
-    assert state.close()
-    before, mark = relations(state), state.mark
-    state.assign(0, 5, chosen.relation(["o"]))
-    assert state.close() and relations(state) != before
-    state.undo(mark)
-    assert relations(state) == before
-    assert state.close() and relations(state) == before

@@ -12,13 +12,11 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from deixis.deadline import Deadline
-from deixis.reasoning.qualitative.calculi.calculus import Calculus, ProductCalculus, atoms_of, bits
+from deixis.reasoning.qualitative.calculi.calculus import ProductCalculus, atoms_of, bits
 from deixis.reasoning.qualitative.calculi.registry import calculus
-from deixis.reasoning.qualitative.networks.choices import FewestPiecesFirst
 from deixis.reasoning.qualitative.networks.closure import close
 from deixis.reasoning.qualitative.networks.network import Constraint, Network
 from deixis.reasoning.qualitative.networks.search import Verdict, scenario, solve
-from deixis.reasoning.qualitative.networks.state import NetworkState
 
 ALLEN, RCC8, RA = calculus("allen"), calculus("rcc8"), calculus("ra")
 PAIRS = list(combinations(range(4), 2))
@@ -131,35 +129,6 @@ def test_the_ten_names_are_decided_in_the_rectangle_algebra() -> None:
     found = scenario(Network(ten, 3, (*circle[:2], Constraint(2, 0, left | right))))
     assert found is not None
     assert [ten.members(found.stated(2, 0))] == [("right",)]
-
-
-@settings(max_examples=40, deadline=None)
-@given(st.sampled_from([ALLEN, RCC8, RA]), st.integers(0, 2**32 - 1))
-def test_the_pair_picked_is_that_of_looking_through_all(chosen: Calculus, seed: int) -> None:
-    rng = np.random.default_rng(seed)
-    state = NetworkState(chosen, 7, traced=True)
-    choices = FewestPiecesFirst(state, lambda: None)
-    marks: list[int] = []
-    for _ in range(25):
-        if marks and (state.emptied is not None or rng.random() < 0.3):
-            mark = marks.pop(int(rng.integers(len(marks))))
-            marks = [other for other in marks if other <= mark]
-            changed = state.changed(mark)
-            state.undo(mark)
-        else:
-            marks.append(state.mark)
-            i, k = rng.choice(7, 2, replace=False)
-            codes = rng.integers(len(chosen.atoms), size=4)
-            state.assign(int(i), int(k), sum(1 << int(code) for code in set(codes)))
-            state.close()
-            changed = state.changed(marks[-1])
-        choices.note(changed)
-        counts = {(i, k): len(chosen.pieces(state.relation(i, k))) for i, k in combinations(range(7), 2)}
-        best = min(((count, pair) for pair, count in counts.items() if count > 1), default=None)
-        picked = choices.pick()
-        assert (None if best is None else best[1]) == (None if picked is None else picked[:2])
-        if picked is not None:
-            choices.note(np.array([picked[0] * 7 + picked[1]]))
 
 
 @pytest.mark.parametrize("scenario", [False, True])

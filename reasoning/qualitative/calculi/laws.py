@@ -1,0 +1,97 @@
+"""The laws that a converse and a composition must obey, for tables that come from elsewhere.
+
+What three things bear to one another can be read in six ways, from either end and by any of its sides. In a calculus
+all six allow the same: the converse turns compositions round, and the cycle law holds (Ligozat and Renz 2004). Where
+tables disagree with themselves, a triangle is possible only if all six readings allow it: if every entry holds all that
+is possible, nothing possible is lost.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.reasoning.errors import CalculusError
+
+
+@dataclass(frozen=True)
+class Violation:
+    """A law that tables do not obey: how many entries break it, and the first of them as two atoms."""
+
+    law: str
+    entries: int
+    first: tuple[int, int]
+
+
+def lawful(
+    converses: NDArray[np.int64], composition: NDArray[np.uint64], identity: int
+) -> tuple[NDArray[np.uint64], tuple[Violation, ...]]:
+    """Return the part of a composition table that obeys the laws, and which laws the whole does not obey.
+
+    Parameters
+    ----------
+    converses : ndarray, (k,)
+        The code of each atom's converse.
+    composition : ndarray, (k, k)
+        Bit masks of atoms; row: a to b, column: b to c.
+    identity : int
+        The code of the atom that everything bears to itself.
+
+    Returns
+    -------
+    composition : ndarray, (k, k)
+        What all six readings of a triangle allow.
+    violations : tuple of Violation
+        What was found wrong with the table as it was given. That the identity is not neutral is said and not mended.
+
+    Raises
+    ------
+    CalculusError
+        Where the converse of a converse is another atom: such tables mean nothing.
+
+    Examples
+    --------
+    >>> order = np.array([[0b001, 0b001, 0b111], [0b001, 0b010, 0b100], [0b111, 0b100, 0b101]], dtype=np.uint64)
+    >>> table, violations = lawful(np.array([2, 1, 0]), order, 1)
+    >>> bin(table[2, 2]), [(each.law, each.entries, each.first) for each in violations]
+    ('0b100', [('converse of composition', 2, (0, 0)), ('cycle law', 2, (0, 0))])
+    """
+    size = len(converses)
+    turned = converses[converses]
+    if (turned != np.arange(size)).any():
+        wrong = int(np.flatnonzero(turned != np.arange(size))[0])
+        raise CalculusError("the converse of a converse must be the atom itself", wrong)
+    codes = np.arange(size, dtype=np.uint64)
+    possible = (composition[:, :, None] >> codes & np.uint64(1)).astype(np.bool_)  # (a to b, b to c, a to c)
+    violations = []
+    neutral = np.uint64(1) << codes
+    unlike = np.zeros((size, size), dtype=np.bool_)
+    unlike[identity] = composition[identity] != neutral
+    unlike[:, identity] |= composition[:, identity] != neutral
+    laws = (
+        ("identity", unlike),
+        ("converse of composition", (possible != _from_the_other_end(possible, converses)).any(axis=2)),
+        ("cycle law", (possible != _by_another_side(possible, converses)).any(axis=2)),
+    )
+    for law, wrong_entries in laws:
+        if wrong_entries.any():
+            first = np.argwhere(wrong_entries)[0]
+            violations.append(Violation(law, int(wrong_entries.sum()), (int(first[0]), int(first[1]))))
+    before = -1
+    while before != possible.sum():
+        before = int(possible.sum())
+        possible = possible & _from_the_other_end(possible, converses)
+        possible = possible & _by_another_side(possible, converses)
+    return (possible.astype(np.uint64) << codes).sum(axis=2, dtype=np.uint64), tuple(violations)
+
+
+def _from_the_other_end(possible: NDArray[np.bool_], converses: NDArray[np.int64]) -> NDArray[np.bool_]:
+    """Entry (a, b, x) is that of b's converse, a's converse and x's converse."""
+    return possible.transpose(1, 0, 2)[np.ix_(converses, converses, converses)]
+
+
+def _by_another_side(possible: NDArray[np.bool_], converses: NDArray[np.int64]) -> NDArray[np.bool_]:
+    """Entry (a, b, x) is that of x, b's converse and a."""
+    return possible.transpose(2, 1, 0)[:, converses, :]

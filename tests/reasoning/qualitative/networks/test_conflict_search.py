@@ -1,0 +1,188 @@
+"""The conflict-driven search: verdicts against orders of end points, the proofs it leaves, and how far it reaches."""
+
+from __future__ import annotations
+
+import time
+from itertools import combinations, product
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from deixis.deadline import Deadline
+from deixis.reasoning.geometry.allen import allen_relations
+from deixis.reasoning.qualitative.calculi.calculus import Calculus, ProductCalculus, TableCalculus, bits
+from deixis.reasoning.qualitative.calculi.registry import calculus
+from deixis.reasoning.qualitative.networks import conflict_search
+from deixis.reasoning.qualitative.networks.closure import close
+from deixis.reasoning.qualitative.networks.conflict_search import ConflictSearch
+from deixis.reasoning.qualitative.networks.network import Constraint, Network
+from deixis.reasoning.qualitative.networks.search import Verdict, solve
+
+ALLEN, RA = calculus("allen"), calculus("ra")
+
+
+def random_network(chosen: Calculus, things: int, degree: float, atoms: float, seed: int) -> Network:
+    """Each pair is constrained with the probability that gives the degree, each atom is in with that of the label."""
+    rng, size = np.random.default_rng(seed), len(chosen.atoms)
+    constraints = []
+    for i, j in combinations(range(things), 2):
+        if rng.random() < degree / (things - 1):
+            codes = np.flatnonzero(rng.random(size) < atoms / size)
+            constraints.append(Constraint(i, j, sum(1 << int(code) for code in codes) or 1))
+    return Network(chosen, things, tuple(constraints))
+
+
+def placeable(network: Network) -> bool:
+    """Whether intervals with end points among 2n numbers, which are enough for n of them, can be placed as stated."""
+    ends = np.array(list(combinations(range(2 * network.size), 2)), dtype=np.float64)
+    low, high = ends.T
+    atoms = 1 << allen_relations(low[:, None], high[:, None], low, high).astype(np.int64)
+
+    def place(thing: int, left: list[NDArray[np.int64]]) -> bool:
+        """Try each place that is left for a thing, and keep of the later things' places what agrees with it."""
+        if thing == network.size:
+            return True
+        for spot in left[thing]:
+            rest = [left[k][(atoms[spot, left[k]] & network.stated(thing, k)) > 0] for k in range(network.size)]
+            if all(len(rest[k]) for k in range(thing + 1, network.size)) and place(thing + 1, rest):
+                return True
+        return False
+
+    return place(0, [np.arange(len(ends))] * network.size)
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_verdicts_are_those_of_placing_intervals(seed: int) -> None:
+    network = random_network(ALLEN, 6, 5.0, 4.5, seed)
+    assert solve(network).verdict is (Verdict.CONSISTENT if placeable(network) else Verdict.INCONSISTENT)
+
+
+def backtracking(network: Network) -> bool:
+    """Whether some choice of atoms is closed, by trying them pair after pair."""
+    chosen, size = network.calculus, network.size
+    table: NDArray[np.object_] = np.array([[network.stated(i, j) for j in range(size)] for i in range(size)], object)
+
+    def closed(net: NDArray[np.object_]) -> bool:
+        changed = True
+        while changed:
+            changed = False
+            for i, j, k in product(range(size), repeat=3):
+                left = net[i, j] & chosen.compose(net[i, k], net[k, j])
+                if left != net[i, j]:
+                    net[i, j], net[j, i], changed = left, chosen.converse(left), True
+                if not left:
+                    return False
+        return True
+
+    def search(net: NDArray[np.object_]) -> bool:
+        if not closed(net):
+            return False
+        several = [(i, j) for i, j in combinations(range(size), 2) if net[i, j] & (net[i, j] - 1)]
+        if not several:
+            return True
+        i, j = several[0]
+        for code in range(len(chosen.atoms)):
+            if net[i, j] >> code & 1:
+                tried = net.copy()
+                tried[i, j], tried[j, i] = 1 << code, chosen.converse(1 << code)
+                if search(tried):
+                    return True
+        return False
+
+    return search(table)
+
+
+@pytest.mark.parametrize("seed", range(10))
+@pytest.mark.parametrize(("name", "degree", "atoms"), [("rcc8", 5.0, 2.5), ("direction-distance", 5.0, 7.0)])
+def test_closed_networks_are_found_where_backtracking_finds_one(
+    name: str, degree: float, atoms: float, seed: int
+) -> None:
+    """Closed networks of atoms decide rcc8; in the other calculus they are what an undecided verdict promises."""
+    network = random_network(calculus(name), 6, degree, atoms, seed)
+    assert (solve(network).verdict is Verdict.INCONSISTENT) != backtracking(network)
+
+
+@pytest.fixture(scope="module")
+def wide() -> TableCalculus:
+    """Intervals with an order of points beside, as one table of 39 atoms, of which no tractable subclass is known."""
+    both = ProductCalculus("both", (*ALLEN.factors, *calculus("point").factors))
+    atoms = range(len(both.atoms))
+    table = [[both.compose(1 << i, 1 << j) for j in atoms] for i in atoms]
+    converses = [both.converse(1 << i).bit_length() - 1 for i in atoms]
+    return TableCalculus("wide", both.atoms, np.array(converses), np.array(table, dtype=np.uint64), both.identity)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_many_atoms_without_a_subclass_give_the_same_verdict(wide: TableCalculus, seed: int) -> None:
+    network = random_network(ALLEN, 11, 8.0, 5.5, seed)
+    widened = (
+        Constraint(c.first, c.second, sum(0b111 << 3 * code for code in bits(c.relation))) for c in network.constraints
+    )
+    solution = solve(Network(wide, 11, tuple(widened)), scenario=True)
+    assert solution.verdict is solve(network).verdict
+    if solution.scenario is not None:
+        assert close(solution.scenario).consistent and len(solution.scenario.constraints) == 55
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_rectangles_with_alternatives_are_decided_as_by_their_closure(seed: int) -> None:
+    """Atoms of rectangles that closure leaves are consistent, so that a scenario proves it and none refutes it."""
+    assert isinstance(RA, ProductCalculus)
+    network = random_network(RA, 5, 4.0, 6.0, seed)
+    solution = solve(network, scenario=True)
+    if solution.verdict is Verdict.CONSISTENT:
+        assert solution.scenario is not None
+        assert close(solution.scenario, joint=True).consistent
+        assert all(solution.scenario.stated(c.first, c.second) & c.relation for c in network.constraints)
+    else:
+        assert solution.verdict is Verdict.INCONSISTENT
+        assert not backtracking(network)
+
+
+@pytest.mark.parametrize(("name", "degree", "atoms"), [("allen", 9.5, 6.5), ("rcc8", 9.0, 4.0)])
+def test_hard_networks_leave_a_scenario_that_closure_confirms(name: str, degree: float, atoms: float) -> None:
+    verdicts = set()
+    for seed in range(6):
+        network = random_network(calculus(name), 30, degree, atoms, seed)
+        solution = solve(network, scenario=True)
+        verdicts.add(solution.verdict)
+        if solution.scenario is not None:
+            assert close(solution.scenario).consistent
+            assert all(solution.scenario.stated(c.first, c.second) & c.relation for c in network.constraints)
+    assert Verdict.UNDECIDED not in verdicts
+
+
+def test_what_is_left_of_a_stated_pair_is_within_a_tractable_part_of_it() -> None:
+    assert ALLEN.factors[0].tractable is not None
+    network = random_network(ALLEN, 40, 8.0, 6.5, 3)
+    closed = close(network).parts[0][None, :, :, 0]
+    edges = np.array(sorted({min(c.first, c.second) * 40 + max(c.first, c.second) for c in network.constraints}))
+    search = ConflictSearch(ALLEN.factors, closed, edges)
+    assert search.run() is True
+    for edge in edges.tolist():
+        i, j = divmod(edge, 40)
+        hull = int(search.tractable()[0, i, j])
+        assert ALLEN.factors[0].tractable.contains(hull)
+        assert not hull & ~int(closed[0, i, j]) and int(search.masks[0, i, j])
+
+
+def test_eight_networks_at_the_phase_transition_take_a_moment() -> None:
+    networks = [random_network(ALLEN, 60, 9.5, 6.5, seed) for seed in range(8)]
+    solve(networks[0])  # compiles
+    started = time.process_time()
+    verdicts = {solve(network, Deadline.after(30.0)).verdict for network in networks}
+    assert verdicts == {Verdict.CONSISTENT, Verdict.INCONSISTENT}
+    assert time.process_time() - started < 3.0
+
+
+def test_verdicts_stay_the_same_where_room_is_short_and_much_is_forgotten(monkeypatch: pytest.MonkeyPatch) -> None:
+    networks = [random_network(ALLEN, 45, 9.5, 6.5, seed) for seed in range(12)]
+    verdicts = [solve(network).verdict for network in networks]
+    monkeypatch.setattr(conflict_search, "FIRST_NOGOODS", 2)
+    monkeypatch.setattr(conflict_search, "FIRST_PREMISES", 2)
+    monkeypatch.setattr(conflict_search, "FIRST_ROOM", 8)
+    monkeypatch.setattr(conflict_search, "NOGOODS_KEPT", 4)
+    again = [solve(network) for network in networks]
+    assert [solution.verdict for solution in again] == verdicts
+    assert max(solution.dead_ends for solution in again) > 64  # and so it began again
