@@ -9,8 +9,6 @@ Regions of patches are then merged, the most alike first, until every boundary t
 
 from __future__ import annotations
 
-import heapq
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -100,76 +98,16 @@ def agglomerated(
     >>> agglomerated(chain, np.zeros((3, 3)), np.ones(3), BoundarySettings(merge_limit=0.5)).tolist()
     [0, 0, 1]
     """
-    regions = _Regions(meeting, colours, weights, settings)
-    heap = [(regions.delay(a, b), a, b) for a, others in enumerate(regions.around) for b in others if a < b]
-    heapq.heapify(heap)
-    parent = list(range(len(weights)))
-    limit = settings.merge_limit
-    while heap and heap[0][0] < limit + settings.colour_delay:
-        delay, a, b = heapq.heappop(heap)
-        if b in regions.around[a] and regions.delay(a, b) == delay and regions.evidence(a, b) < limit:
-            parent[b] = a
-            regions.merge(a, b)
-            for c in regions.around[a]:
-                first, second = min(a, c), max(a, c)
-                heapq.heappush(heap, (regions.delay(first, second), first, second))
-    return numbered(parent)
+    from deixis.perception.detection.agglomeration import merge_regions
 
-
-class _Regions:
-    """``around`` leads from a region to those that it meets, with how long, and the evidence times that."""
-
-    def __init__(
-        self,
-        meeting: Boundaries,
-        colours: NDArray[np.float64],
-        weights: NDArray[np.float64],
-        settings: BoundarySettings,
-    ) -> None:
-        self._settings = settings
-        self.around: list[dict[int, tuple[float, float]]] = [{} for _ in weights]
-        rows = zip(meeting.pairs.tolist(), meeting.lengths.tolist(), meeting.evidence.tolist(), strict=True)
-        for (a, b), length, evidence in rows:
-            self.around[a][b] = self.around[b][a] = (length, length * evidence)
-        self._weights: list[float] = weights.tolist()
-        self._colours: list[list[float]] = (colours * weights[:, None]).tolist()  # times the weights
-
-    def evidence(self, a: int, b: int) -> float:
-        """Return what speaks for two things."""
-        length, total = self.around[a][b]
-        return total / length
-
-    def delay(self, a: int, b: int) -> float:
-        """Return the same, and more where their colours differ."""
-        tint = 0.0
-        for one, other in zip(self._colours[a], self._colours[b], strict=True):
-            tint += (one / self._weights[a] - other / self._weights[b]) ** 2
-        share = min(math.sqrt(tint) / self._settings.full_colour_difference, 1.0)
-        return self.evidence(a, b) + self._settings.colour_delay * share
-
-    def merge(self, a: int, b: int) -> None:
-        """Make region b part of region a."""
-        del self.around[a][b], self.around[b][a]
-        for c, (length, total) in self.around[b].items():
-            del self.around[c][b]
-            before = self.around[a].get(c, (0.0, 0.0))
-            self.around[a][c] = self.around[c][a] = (before[0] + length, before[1] + total)
-        self.around[b] = {}
-        self._weights[a] += self._weights[b]
-        self._colours[a] = [one + other for one, other in zip(self._colours[a], self._colours[b], strict=True)]
-
-
-def numbered(parent: list[int]) -> NDArray[np.int32]:
-    """Return the trees that parents make, each root its own parent, numbered from 0 in the order of their first
-    members."""
-    roots = []
-    for start in range(len(parent)):
-        at = start
-        while parent[at] != at:
-            parent[at] = at = parent[parent[at]]
-        roots.append(at)
-    _, first, place = np.unique(roots, return_index=True, return_inverse=True)
-    rank = np.empty(len(first), np.int32)
-    rank[np.argsort(first)] = np.arange(len(first))
-    result: NDArray[np.int32] = rank[place]
-    return result
+    root = merge_regions(
+        meeting.pairs,
+        meeting.lengths,
+        meeting.evidence,
+        colours,
+        weights,
+        settings.merge_limit,
+        settings.colour_delay,
+        settings.full_colour_difference,
+    )
+    return np.unique(root, return_inverse=True)[1].astype(np.int32)  # a root is the first patch of its region

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import islice
 
 import numpy as np
@@ -12,15 +13,17 @@ from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.detection.boundaries import agglomerated, boundaries
 from deixis.perception.detection.heights import Raised, raised
 from deixis.perception.detection.joining import whole_things
-from deixis.perception.detection.neighbours import neighbour_table
-from deixis.perception.detection.outline import above_outline, in_largest_piece, oriented_box, rim_of, upright_box
+from deixis.perception.detection.left_out import Fate, Pieces, holes, left_out, missing_lines, odd_sizes
+from deixis.perception.detection.neighbours import NEIGHBOURS, has_enough, neighbour_table
+from deixis.perception.detection.outline import occupied_cells, oriented_box, rim_of, upright_box
 from deixis.perception.detection.parts import Parts
-from deixis.perception.detection.plane import Outlook, Plane
+from deixis.perception.detection.plane import Plane
 from deixis.perception.detection.settings import DetectionSettings
+from deixis.perception.detection.shown import Shows, is_large, is_one_object, is_small
 from deixis.perception.detection.supervoxels import supervoxels
 from deixis.perception.detection.surface import Surface, surface_of
 from deixis.perception.detection.tables import FoundTable, tables
-from deixis.perception.detection.viewpoint import believed, in_frame, likely, moved, outlook_of, table_frame
+from deixis.perception.detection.viewpoint import View, believed, in_frame, likely, moved, outlook_of, table_frame
 from deixis.perception.errors import CloudError
 from deixis.perception.scene import OrientedBox, PerceivedObject, Scene
 
@@ -36,7 +39,8 @@ class Detection:
     ``labels`` (n,) has for each point of the cloud, in its order, the number k of its thing, -1 for none. Thing k has
     ``boxes[k]``, least and greatest corner in the table's frame, shape (2, 3), ``oriented[k]``, and the id
     ``o{k + 1}``; things are numbered from left to right, and from near to far where they are equally far left.
-    ``table`` is None where no table was found, and ``notes`` say what was not as one would expect.
+    ``table`` is None where no table was found, ``shows`` says what the cloud shows, and ``notes`` what was not as one
+    would expect. ``upright`` is false of one object alone, unless it was told which way is up: no table shows it.
     """
 
     cloud: PointCloud
@@ -46,6 +50,8 @@ class Detection:
     boxes: NDArray[np.float64]  # (k, 2, 3)
     oriented: tuple[OrientedBox, ...]
     notes: tuple[str, ...] = ()
+    shows: Shows = Shows.TABLE
+    upright: bool = True
 
     def scene(self, viewpoint: str = "chair", file: str = "<cloud>") -> Scene:
         """Return the things as a scene, each with its points in the table's frame; ``file`` is what errors name."""
@@ -60,7 +66,8 @@ class Detection:
             )
             for number, ((low, high), oriented) in enumerate(boxes)
         ]
-        return Scene(tuple(things), viewpoint=viewpoint, file=file, detection=self)
+        frame = "table" if self.upright else "object"
+        return Scene(tuple(things), frame=frame, viewpoint=viewpoint, file=file, detection=self)
 
 
 def detect(cloud: PointCloud, settings: DetectionSettings | None = None) -> Detection:
@@ -92,15 +99,33 @@ def detect(cloud: PointCloud, settings: DetectionSettings | None = None) -> Dete
             f"half of the points are within {1000 * spread:.2g} mm of the middle, too near for a table;"
             " coordinates are metres: is the unit, or the depth_scale of the intrinsics, another?"
         )
-    outlook = believed(outlook_of(cloud, settings), points, settings)
-    if len(points) >= settings.least_points and _is_alone(points, settings):
-        return _alone(cloud, kept, points, outlook, settings)
-    seen = list(islice(tables(points, outlook, settings), settings.table + 1))
-    if len(seen) < settings.table:
-        return _nothing(cloud, None, np.eye(4), _no_table(settings, len(seen)))
-    table = seen[settings.table - 1]
-    found = _on_table(cloud, kept[table.points], points[table.points], table, settings)
-    return found if len(seen) == settings.table else replace(found, notes=(*found.notes, _more(settings.table)))
+    view = View(points, kept, cloud.organised, outlook_of(cloud, settings))
+    if len(points) >= settings.least_points and is_small(points, settings):
+        return _alone(cloud, view, settings)
+    seen = list(islice(tables(view, settings), settings.table + 1))
+    if len(seen) < settings.table and settings.table > 1:
+        nothing = _nothing(cloud, view, settings, _no_table(settings, len(seen)))
+        return replace(nothing, shows=Shows.TABLE) if len(seen) == 1 else nothing
+    found = _on_table(cloud, seen[settings.table - 1], settings) if seen else None
+    alone = settings.table == 1 and len(seen) < 2 and len(points) >= settings.least_points
+    if alone and not _bears_a_thing(found, seen, settings) and is_one_object(points, settings):
+        return _alone(cloud, view, settings)
+    if found is None:
+        return _nothing(cloud, view, settings, _no_table(settings, 0))
+    if len(seen) > settings.table:
+        return replace(found, shows=Shows.TABLES, notes=(*found.notes, _more(settings.table)))
+    return found if settings.table == 1 else replace(found, shows=Shows.TABLES)
+
+
+def _bears_a_thing(found: Detection | None, seen: list[FoundTable], settings: DetectionSettings) -> bool:
+    """Return whether something stands on a table: what only adjoins its outline may be a side of the same object."""
+    if found is None:
+        return False
+    for number in range(len(found.boxes)):
+        points = found.cloud.points[found.labels == number].astype(np.float64)
+        if (seen[0].top.beyond(points) < -settings.scale.min_inset).mean() > settings.scale.min_inset_share:
+            return True
+    return False
 
 
 def _no_table(settings: DetectionSettings, found: int) -> str:
@@ -115,63 +140,73 @@ def _more(number: int) -> str:
     return f"another table is in view, on which something stands: perceive --table {number + 1} looks at that one"
 
 
-def _on_table(
-    cloud: PointCloud,
-    kept: NDArray[np.intp],
-    points: NDArray[np.float64],
-    table: FoundTable,
-    settings: DetectionSettings,
-) -> Detection:
-    """Return the things on one table, among the points (n, 3) of those numbers in the cloud."""
-    level = np.flatnonzero(np.abs(table.plane.heights(points)) < settings.plane.table_band)
-    top = level[in_largest_piece(points[level] @ table.plane.across.T, settings.outlines.table_cell)]
-    frame = table_frame(table.plane, points[top] if len(top) else points, table.outlook, settings.viewer)
-    viewer = moved(table.outlook.eye[None], frame)[0]
+def _on_table(cloud: PointCloud, table: FoundTable, settings: DetectionSettings) -> Detection | None:
+    """Return the things on one table, among the points that are of no table before it; None if it is no table."""
+    table, neighbours = _neighbours(table, settings)
+    points, kept, top = table.view.points, table.view.places, table.top.on
+    outlook = table.view.outlook
+    few = top[:: max(1, len(top) // settings.plane.refinement_size)]
+    frame = table_frame(table.plane, points[few] if len(top) else points, outlook, settings.viewer)
+    viewer = moved(outlook.eye[None], frame)[0]
     at = np.ascontiguousarray(moved(points, frame))
     view = _TableView(frame, at, np.linalg.norm(at - viewer, axis=1), viewer, top)
-    eye = table.outlook.eye if table.outlook.known else None
-    neighbours = neighbour_table(points, kept, cloud.organised, settings.surface, eye)
     rising = raised(view.heights, view.distance, neighbours, settings)
     colours = None if cloud.colours is None else cloud.colours[kept]
-    found = _things(view, rising, neighbours, colours, settings)
+    pieces = _pieces(view, table, rising, neighbours, colours, settings)
+    found = pieces.things
     large = _too_large(view, settings)
+    seen_so = missing_lines(cloud.organised, kept)
+    if not seen_so:  # lines without depth are no holes
+        on = pieces.of >= 0
+        on[top] = True
+        seen_so = holes(cloud.organised, kept, on, settings.notes)
+    missed = (*left_out(points, table.top, view.heights, pieces, settings), *seen_so)
+    labels = np.full(len(cloud), BACKGROUND, np.int32)
     if not found.max(initial=BACKGROUND) >= 0:
         if not large and max(_sides(view)) < settings.scale.min_bare_table_length:
-            return _nothing(cloud, None, np.eye(4), _no_table(settings, 0))
-        why = ("nothing is on the table", *(large or _too_small(view, settings)), *_a_wall(view, settings))
-        return _nothing(cloud, table.plane, view.frame, *why)
+            return None
+        wall = _a_wall(view, settings)
+        why = ("nothing is on the table", *(large or _too_small(view, settings)), *(wall or missed))
+        shows = Shows.ROOM if large or wall or _is_floor(view, settings) else Shows.TABLE
+        return Detection(cloud, table.plane, view.frame, labels, np.zeros((0, 2, 3)), (), why, shows)
     members = [view.points[found == k] for k in range(int(found.max()) + 1)]
-    table_seen = view.points[(np.abs(view.heights) < settings.plane.table_band) & (found == BACKGROUND), :2]
+    bare = view.top[found[view.top] == BACKGROUND]
+    table_seen = occupied_cells(view.points[bare, :2], settings.outlines.bare_cell)
     rims = [rim_of(thing[:, :2], table_seen, settings.outlines) for thing in members]
     boxes = np.stack([upright_box(thing, settings.outlines, rim) for thing, rim in zip(members, rims, strict=True)])
     low = boxes[:, 0, :2]
     order = np.lexsort((low[:, 1], low[:, 0].round(2)))
-    labels = np.full(len(cloud), BACKGROUND, np.int32)
     labels[kept] = np.append(np.argsort(order), BACKGROUND)[found]
     oriented = tuple(oriented_box(members[k], settings.outlines, rims[k]) for k in order)
-    notes = large or _too_small(view, settings)
-    return Detection(cloud, table.plane, view.frame, labels, boxes[order], oriented, notes)
+    sizes = odd_sizes((boxes[:, 1] - boxes[:, 0]).max(axis=1), settings.notes)
+    notes = (*(large or _too_small(view, settings)), *sizes, *missed)
+    shows = Shows.ROOM if large or _is_floor(view, settings) else Shows.TABLE
+    return Detection(cloud, table.plane, view.frame, labels, boxes[order], oriented, notes, shows)
 
 
-def _is_alone(points: NDArray[np.float64], settings: DetectionSettings) -> bool:
-    """Return whether all there is, but for a few points, is as small as a thing."""
-    axes = np.linalg.svd(np.cov(points.T))[0]
-    limits = settings.scale
-    outliers = (limits.outlier_percent, 100 - limits.outlier_percent)
-    low, high = np.percentile(points @ axes, outliers, axis=0)
-    _, middle, longest = np.sort(high - low).tolist()
-    return bool(settings.least_length <= longest < limits.max_single_object_length and middle < limits.min_table_length)
+def _neighbours(table: FoundTable, settings: DetectionSettings) -> tuple[FoundTable, NDArray[np.int32]]:
+    """Return the neighbours of all points around a table (n, 8), and the table, as seen from where it can be seen."""
+    view = table.view
+    if view.organised is not None:
+        return table, neighbour_table(view.points, view.places, view.organised, settings.surface)
+    around = np.flatnonzero(table.top.beyond(view.points) <= settings.top.margin)
+    points, places = view.points[around], view.places[around]
+    near = neighbour_table(points, places, None, settings.surface, view.outlook.eye if view.outlook.known else None)
+    if view.outlook.known and not has_enough(near, settings.surface):
+        outlook = likely(replace(view.outlook, known=False), points, table.plane, settings)
+        table = replace(table, view=replace(view, outlook=outlook))
+        near = neighbour_table(points, places, None, settings.surface)
+    neighbours = np.full((len(view.points), NEIGHBOURS), -1, np.int32)
+    neighbours[around] = np.where(near < 0, -1, around[near])
+    return table, neighbours
 
 
-def _alone(
-    cloud: PointCloud,
-    kept: NDArray[np.intp],
-    points: NDArray[np.float64],
-    outlook: Outlook,
-    settings: DetectionSettings,
-) -> Detection:
-    """Return one thing, all that is seen, as if it stood on a table: upright as told, else as the image, else as the
-    cloud."""
+def _alone(cloud: PointCloud, view: View, settings: DetectionSettings) -> Detection:
+    """Return one thing, all that is seen: upright as told, else as the image, else as the cloud.
+
+    Only what was told is relied on: else which way up it stands is not known.
+    """
+    points, outlook = view.points, believed(view.outlook, view.points, settings)
     ups = (outlook.upwards, outlook.up, np.array([0.0, 0.0, 1.0]))
     up = next(direction for direction in ups if direction is not None)
     below = Plane(up, float(np.percentile(points @ up, settings.scale.outlier_percent)))
@@ -179,11 +214,15 @@ def _alone(
     frame = table_frame(below, points, outlook, settings.viewer)
     thing = moved(points, frame)
     labels = np.full(len(cloud), BACKGROUND, np.int32)
-    labels[kept] = 0
+    labels[view.places] = 0
     box = upright_box(thing, settings.outlines)
     sides = " by ".join(f"{100 * side:.0f}" for side in (box[1] - box[0]).tolist())
-    note = f"no table was found: all there is, {sides} cm, was taken for one thing seen alone"
-    return Detection(cloud, None, frame, labels, box[None], (oriented_box(thing, settings.outlines),), (note,))
+    notes = [f"no table was found: all there is, {sides} cm, was taken for one thing seen alone"]
+    told = outlook.upwards is not None
+    if not told:
+        notes.append("which way up it stands is not known: --up tells it")
+    oriented = (oriented_box(thing, settings.outlines),)
+    return Detection(cloud, None, frame, labels, box[None], oriented, tuple(notes), Shows.OBJECT, told)
 
 
 @dataclass(frozen=True, eq=False)
@@ -196,7 +235,7 @@ class _TableView:
     eye: NDArray[np.float64]  # (3,)
     top: NDArray[np.intp]  # (m,) the points of the connected piece that is the table
 
-    @property
+    @cached_property
     def heights(self) -> NDArray[np.float64]:
         return np.ascontiguousarray(self.points[:, 2])
 
@@ -227,7 +266,8 @@ def _too_large(view: _TableView, settings: DetectionSettings) -> tuple[str, ...]
 
 def _sides(view: _TableView) -> tuple[float, float]:
     """Return how far the table reaches across and away, in metres."""
-    across, deep = np.ptp(view.points[view.top, :2], axis=0).tolist() if len(view.top) else (0.0, 0.0)
+    few = view.top[:: max(1, len(view.top) // 10_000)]
+    across, deep = np.ptp(view.points[few, :2], axis=0).tolist() if len(few) else (0.0, 0.0)
     return across, deep
 
 
@@ -240,39 +280,43 @@ def _a_wall(view: _TableView, settings: DetectionSettings) -> tuple[str, ...]:
     return (f"most of what is seen is more than {rise} above what was taken for the table: it may be a wall",)
 
 
-def _things(
+def _is_floor(view: _TableView, settings: DetectionSettings) -> bool:
+    """Return whether what was taken for the table lies so far below the sensor, and is so long, as floors are."""
+    limits = settings.scale
+    return bool(view.eye[2] > limits.min_floor_drop and max(_sides(view)) > limits.min_floor_length)
+
+
+def _pieces(
     view: _TableView,
+    table: FoundTable,
     rising: Raised,
     neighbours: NDArray[np.int32],
     colours: NDArray[np.uint8] | None,
     settings: DetectionSettings,
-) -> NDArray[np.int32]:
-    """Return the number of its thing for each point (n,), in no particular order, -1 for none."""
-    found = np.full(len(view.points), BACKGROUND, np.int32)
+) -> Pieces:
+    """Return the pieces of surface above the table, and which of them are things."""
+    of = np.full(len(view.points), BACKGROUND, np.int32)
     chosen = np.flatnonzero(rising.above)
     if not len(chosen):
-        return found
+        return Pieces(of, np.zeros(0, np.int8))
     number = np.full(len(view.points) + 1, BACKGROUND, np.int32)
     number[chosen] = np.arange(len(chosen))
     sigma = rising.noise * view.distance[chosen] ** 2
     painted = None if colours is None else colours[chosen]
     surface = surface_of(view.points[chosen], painted, number[neighbours[chosen]], sigma, view.eye, settings.surface)
-    pieces = segments(surface, settings)
-    table = view.points[np.abs(view.heights) < settings.plane.table_band]
-    within = above_outline(table, surface.points, settings.outlines)
+    found = segments(surface, settings)
+    counts = np.bincount(found)
+    within = np.bincount(found, table.top.is_below(table.view.points[chosen])) / counts
     least = np.maximum(settings.height, settings.heights.object_noise_ratio * rising.upper(view.distance[chosen]))
-    result = np.full(len(pieces), BACKGROUND, np.int32)
-    n = 0
-    for piece in range(int(pieces.max()) + 1):
-        of = pieces == piece
-        if of.sum() < settings.least_points or within[of].mean() < settings.heights.min_share_above_table:
-            continue
-        rise = np.quantile(surface.points[of, 2] / least[of], settings.heights.object_quantile)
-        if rise > 1.0 and np.ptp(surface.points[of], axis=0).max() >= settings.least_length:
-            result[of] = n
-            n += 1
-    found[chosen] = result
-    return found
+    fates = np.full(len(counts), Fate.DISCARDED, np.int8)
+    fates[(counts >= settings.least_points) & (within < settings.heights.min_share_above_table)] = Fate.BESIDE
+    for piece in np.flatnonzero((counts >= settings.least_points) & (fates == Fate.DISCARDED)).tolist():
+        points = surface.points[found == piece]
+        rise = np.quantile(points[:, 2] / least[found == piece], settings.heights.object_quantile)
+        if rise > 1.0 and np.ptp(points, axis=0).max() >= settings.least_length:
+            fates[piece] = Fate.REPORTED
+    of[chosen] = found
+    return Pieces(of, fates)
 
 
 def segments(surface: Surface, settings: DetectionSettings) -> NDArray[np.int32]:
@@ -283,5 +327,7 @@ def segments(surface: Surface, settings: DetectionSettings) -> NDArray[np.int32]
     return whole_things(Parts(regions, patches, meeting, settings.joining)).of[patches.of]
 
 
-def _nothing(cloud: PointCloud, plane: Plane | None, frame: NDArray[np.float64], *why: str) -> Detection:
-    return Detection(cloud, plane, frame, np.full(len(cloud), BACKGROUND, np.int32), np.zeros((0, 2, 3)), (), why)
+def _nothing(cloud: PointCloud, view: View, settings: DetectionSettings, why: str) -> Detection:
+    labels = np.full(len(cloud), BACKGROUND, np.int32)
+    shows = Shows.ROOM if len(view.points) > 3 and is_large(view.points, settings) else Shows.NOTHING
+    return Detection(cloud, None, np.eye(4), labels, np.zeros((0, 2, 3)), (), (why,), shows)

@@ -6,12 +6,14 @@ and from above the bowl of a glass hides its stem. Each of these has a rule; a r
 
 from __future__ import annotations
 
+import heapq
 from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
 
 from deixis.perception.detection.parts import (
+    Pairs,
     Parts,
     apart,
     continues,
@@ -22,156 +24,161 @@ from deixis.perception.detection.parts import (
     slenderness,
 )
 
-Pairs = NDArray[np.intp]
+Rule = Callable[[Parts, int | None], Pairs]
+"""Gives the pairs of parts that are one, among all or among those with one part. Whether two parts are one depends on
+these two alone."""
 
 
 def whole_things(parts: Parts) -> Parts:
-    """Return parts joined until they are things, rule by rule."""
-    parts = _without_fragments(parts)
-    for rule in (
-        of_one_colour,
-        enclosed,
-        bridged,
-        round_rims,
-        enclosed,
-        of_one_colour,
-        insides,
-        on_a_foot,
-        necks,
-        handles,
-        insides,
-        end_to_end,
-        sides,
-    ):
-        parts = _applied(rule, parts)
-    return parts
-
-
-def _applied(rule: Callable[[Parts], Pairs], parts: Parts) -> Parts:
-    """Return a rule applied as long as it finds something, each time to the two that meet longest."""
-    while len(pairs := rule(parts)):
-        longest = int(np.argmax(parts.lengths[pairs[:, 0], pairs[:, 1]]))
-        parts = parts.joined(pairs[longest : longest + 1])
-    return parts
-
-
-def _without_fragments(parts: Parts) -> Parts:
+    """Join parts until they are things, rule by rule; return them."""
     while len(pairs := fragments(parts)):
-        parts = parts.joined(pairs)
+        parts.join_all(pairs.first, pairs.second)
+    _apply(of_one_colour, parts)
+    _apply(enclosed, parts)
+    for rule in (bridged, round_rims):
+        while len(pairs := rule(parts)):
+            longest = int(np.argmax(pairs.length))
+            parts.join(int(pairs.first[longest]), int(pairs.second[longest]))
+    for each in (enclosed, of_one_colour, insides, on_a_foot, necks, handles, insides, end_to_end, sides):
+        _apply(each, parts)
     return parts
+
+
+def _apply(rule: Rule, parts: Parts) -> None:
+    """Join the pair that meets longest, of those that a rule gives, as long as there is one."""
+    heap: list[tuple[float, int, int, int, int]] = []
+
+    def push(pairs: Pairs) -> None:
+        rows = zip(pairs.length.tolist(), pairs.first.tolist(), pairs.second.tolist(), strict=True)
+        for length, a, b in rows:
+            heapq.heappush(heap, (-length, a, b, parts.changes[a], parts.changes[b]))
+
+    push(rule(parts, None))
+    while heap:
+        _, a, b, *changes = heapq.heappop(heap)
+        if changes == [parts.changes[a], parts.changes[b]]:
+            push(rule(parts, parts.join(a, b)))
 
 
 def fragments(parts: Parts) -> Pairs:
     """Return pieces that are too small, each with the part that it meets longest and most smoothly."""
-    pull = parts.smooth * (2.0 - np.where(parts.lengths > 0, parts.evidence, 2.0))
-    small = np.flatnonzero((parts.areas < parts.settings.fragment_area) & (pull.max(axis=1, initial=0.0) > 0))
-    return np.stack([small, pull[small].argmax(axis=1)], axis=1)
+    pairs = parts.meetings()
+    pull = pairs.met[:, 1] * (2.0 - pairs.evidence)
+    small = (parts.measures.areas[pairs.first] < parts.settings.fragment_area) & (pull > 0)
+    pairs, pull = pairs.where(small), pull[small]
+    order = np.lexsort((pairs.second, -pull, pairs.first))
+    best = np.zeros(len(pairs), dtype=np.bool_)
+    best[order[np.unique(pairs.first[order], return_index=True)[1]]] = True
+    return pairs.where(best)
 
 
-def of_one_colour(parts: Parts) -> Pairs:
+def of_one_colour(parts: Parts, part: int | None = None) -> Pairs:
     """Return parts of one colour that meet without much of a crease: the head and the handle of a fork, a draped
     napkin."""
-    smooth = parts.evidence < parts.settings.same_colour_evidence
-    return _pairs(_alike(parts) & smooth & (np.abs(parts.rise) < parts.settings.resting_rise))
+    pairs = parts.meetings(part)
+    smooth = pairs.evidence < parts.settings.same_colour_evidence
+    return pairs.where(smooth & (np.abs(pairs.rise) < parts.settings.resting_rise) & _alike(parts, pairs))
 
 
-def enclosed(parts: Parts) -> Pairs:
+def enclosed(parts: Parts, part: int | None = None) -> Pairs:
     """Return a part within the outline of one that is above it where they meet, both of one colour: the well of a
     plate."""
-    limits = parts.settings
-    low = (parts.rise < limits.well_rise) & (parts.lengths > 0) & ~_differ(parts)
-    low &= parts.tops[:, None] <= parts.tops[None] + limits.well_top_tolerance
-    low &= parts.bulge[:, None] < limits.max_well_bulge
-    return _chosen(_pairs(low), lambda low, rim: inside(parts, low, rim) > limits.min_inside_share)
+    limits, seen, pairs = parts.settings, parts.measures, parts.meetings(part)
+    low = (pairs.rise < limits.well_rise) & ~_differ(parts, pairs)
+    low &= seen.tops[pairs.first] <= seen.tops[pairs.second] + limits.well_top_tolerance
+    low &= seen.bulge[pairs.first] < limits.max_well_bulge
+    return _chosen(pairs.where(low), lambda low, rim: inside(parts, low, rim) > limits.min_inside_share)
 
 
-def insides(parts: Parts) -> Pairs:
+def insides(parts: Parts, part: int | None = None) -> Pairs:
     """Return the inside of a cup, with its outside: it is curved inwards, and its rim is as high."""
-    bent = parts.bulge < -parts.settings.min_cavity_bend
-    deep = parts.tops - parts.bottoms > parts.settings.min_cavity_depth
-    hollow = (bent & deep)[:, None] & deep[None] & (parts.lengths > 0) & ~_differ(parts)
-    return _pairs(hollow & _level(parts) & (parts.rise < 0.0))
+    seen, pairs = parts.measures, parts.meetings(part)
+    bent = seen.bulge < -parts.settings.min_cavity_bend
+    deep = seen.tops - seen.bottoms > parts.settings.min_cavity_depth
+    hollow = (bent & deep)[pairs.first] & deep[pairs.second] & ~_differ(parts, pairs)
+    return pairs.where(hollow & _level(parts, pairs) & (pairs.rise < 0.0))
 
 
 def bridged(parts: Parts) -> Pairs:
     """Return two parts of one surface, parted by something narrow that lies on both."""
-    under = _under(parts)
-    pairs = _pairs(np.triu(_both(under) & _alike(parts) & (parts.gaps < parts.settings.max_hidden_gap)))
-    return _chosen(pairs, lambda a, b: continues(parts, a, b, np.flatnonzero(under[a] & under[b])))
+    pairs, over = _below_one(parts)
+    low, high = parts.measures.low, parts.measures.high
+    gaps = np.maximum(low[pairs.first] - high[pairs.second], low[pairs.second] - high[pairs.first]).clip(0.0)
+    pairs = pairs.where(_alike(parts, pairs) & (np.linalg.norm(gaps, axis=1) < parts.settings.max_hidden_gap))
+    return _chosen(pairs, lambda a, b: continues(parts, a, b, over[a, b]))
 
 
 def round_rims(parts: Parts) -> Pairs:
     """Return two pieces of a rim that is round, parted by something that lies on both: a plate, and a napkin across
     it."""
-    pairs = _pairs(np.triu(_both(_under(parts)) & _alike(parts) & _level(parts)))
+    pairs, _ = _below_one(parts)
+    pairs = pairs.where(_alike(parts, pairs) & _level(parts, pairs))
     return _chosen(pairs, lambda a, b: parts.once(roundness, a, b) > parts.settings.min_rim_share)
 
 
-def _level(parts: Parts) -> NDArray[np.bool_]:
-    """Return which parts are equally high, (p, p)."""
-    result: NDArray[np.bool_] = np.abs(parts.tops[:, None] - parts.tops[None]) < parts.settings.level_tolerance
-    return result
+def _below_one(parts: Parts) -> tuple[Pairs, dict[tuple[int, int], list[int]]]:
+    """Return pairs of parts, the lesser first, on which one and the same thing lies, and the things that do."""
+    met = parts.meetings()
+    met = met.where(met.rise < -parts.settings.covering_rise)
+    below: dict[int, list[int]] = {}
+    for low, cover in zip(met.first.tolist(), met.second.tolist(), strict=True):
+        below.setdefault(cover, []).append(low)
+    over: dict[tuple[int, int], list[int]] = {}
+    for cover in sorted(below):
+        for k, a in enumerate(below[cover]):
+            for b in below[cover][k + 1 :]:
+                over.setdefault((a, b), []).append(cover)
+    return parts.pairs(np.array(sorted(over), np.intp).reshape(-1, 2)), over
 
 
-def _under(parts: Parts) -> NDArray[np.bool_]:
-    """Return which parts others lie on, (p, p)."""
-    return (parts.rise < -parts.settings.covering_rise) & (parts.lengths > 0)
-
-
-def _both(under: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Return on which two parts (p, p) one and the same thing lies."""
-    counted = under.astype(np.float64)
-    both: NDArray[np.bool_] = counted @ counted.T > 0
-    return both
-
-
-def on_a_foot(parts: Parts) -> Pairs:
+def on_a_foot(parts: Parts, part: int | None = None) -> Pairs:
     """Return something high above a flat foot of its colour that is no wider: a glass, its stem hidden or not."""
-    limits = parts.settings
-    high = parts.middles > 2 * limits.foot_height
-    foot = (parts.middles < limits.foot_height) & (parts.bottoms < limits.foot_height / 2)
-    same = (parts.rise > limits.stem_rise) & ~_differ(parts)
-    narrow = parts.widths[None] < limits.foot_width_ratio * parts.widths[:, None]
-    pairs = _pairs(high[:, None] & foot[None] & same & narrow)
+    limits, seen, pairs = parts.settings, parts.measures, parts.meetings(part)
+    high = seen.middles > 2 * limits.foot_height
+    foot = (seen.middles < limits.foot_height) & (seen.bottoms < limits.foot_height / 2)
+    same = (pairs.rise > limits.stem_rise) & ~_differ(parts, pairs)
+    narrow = seen.widths[pairs.second] < limits.foot_width_ratio * seen.widths[pairs.first]
+    pairs = pairs.where(high[pairs.first] & foot[pairs.second] & same & narrow)
     return _chosen(pairs, lambda glass, foot: inside(parts, foot, glass) > limits.min_foot_inside_share)
 
 
-def necks(parts: Parts) -> Pairs:
+def necks(parts: Parts, part: int | None = None) -> Pairs:
     """Return something narrow right on the middle of what is much higher than wide: the neck of a bottle, its cap."""
-    limits = parts.settings
-    narrow = parts.widths[:, None] < limits.attachment_ratio * parts.widths[None]
-    upright = parts.tops - parts.bottoms > limits.bottle_slenderness * parts.widths
-    above = parts.bottoms[:, None] > parts.tops[None] - limits.shoulder_depth
-    off = np.linalg.norm(parts.centres[:, None] - parts.centres[None], axis=2)
-    centred = off < limits.neck_offset_ratio * parts.widths[None]
-    pairs = _pairs(narrow & upright[None] & above & centred & (parts.lengths > 0))
+    limits, seen, pairs = parts.settings, parts.measures, parts.meetings(part)
+    neck, bottle, widths = pairs.first, pairs.second, seen.widths
+    narrow = widths[neck] < limits.attachment_ratio * widths[bottle]
+    upright = seen.tops - seen.bottoms > limits.bottle_slenderness * widths
+    above = seen.bottoms[neck] > seen.tops[bottle] - limits.shoulder_depth
+    off = np.linalg.norm(seen.centres[neck] - seen.centres[bottle], axis=1)
+    pairs = pairs.where(narrow & upright[bottle] & above & (off < limits.neck_offset_ratio * widths[bottle]))
     return _chosen(pairs, lambda neck, bottle: inside(parts, neck, bottle) > limits.min_inside_share)
 
 
-def handles(parts: Parts) -> Pairs:
+def handles(parts: Parts, part: int | None = None) -> Pairs:
     """Return something small that stands on nothing, and the larger thing of its colour and height beside which it
     is."""
-    limits = parts.settings
-    small = parts.widths[:, None] < limits.attachment_ratio * parts.widths[None]
-    small &= parts.areas[:, None] < limits.attachment_ratio * parts.areas[None]
-    clear = parts.bottoms[:, None] > parts.bottoms[None] + limits.handle_clearance
-    as_high = parts.tops[:, None] < parts.tops[None] + limits.level_tolerance
-    pairs = _pairs(small & clear & as_high & ~_differ(parts) & (parts.gaps < limits.attachment_gap))
+    limits, seen, pairs = parts.settings, parts.measures, parts.near(parts.settings.attachment_gap, part)
+    handle, body, widths = pairs.first, pairs.second, seen.widths
+    small = widths[handle] < limits.attachment_ratio * widths[body]
+    small &= seen.areas[handle] < limits.attachment_ratio * seen.areas[body]
+    clear = seen.bottoms[handle] > seen.bottoms[body] + limits.handle_clearance
+    as_high = seen.tops[handle] < seen.tops[body] + limits.level_tolerance
     # Of a fragment all may be within the outline: the body may be seen around it.
-    most = np.where(parts.areas < limits.fragment_area, 1.0, limits.max_handle_inside_share)
+    most = np.where(seen.areas < limits.fragment_area, 1.0, limits.max_handle_inside_share)
 
     def belong(handle: int, body: int) -> bool:
         near = apart(parts, handle, body) < limits.attachment_gap
         return bool(near and inside(parts, handle, body) <= most[handle])
 
-    return _chosen(pairs, belong)
+    return _chosen(pairs.where(small & clear & as_high & ~_differ(parts, pairs)), belong)
 
 
-def end_to_end(parts: Parts) -> Pairs:
+def end_to_end(parts: Parts, part: int | None = None) -> Pairs:
     """Return two low pieces of one colour in a line, together long and narrow: the head and the handle of a spoon."""
-    limits = parts.settings
-    low = parts.tops < limits.max_cutlery_height
-    pairs = _pairs(np.triu(low[:, None] & low[None] & (parts.gaps < limits.max_cutlery_gap) & ~_differ(parts)))
+    limits, pairs = parts.settings, parts.near(parts.settings.max_cutlery_gap, part)
+    low = parts.measures.tops < limits.max_cutlery_height
+    ordered = pairs.first < pairs.second
+    pairs = pairs.where(ordered & low[pairs.first] & low[pairs.second] & ~_differ(parts, pairs))
 
     def belong(a: int, b: int) -> bool:
         return parts.once(slenderness, a, b) > limits.min_cutlery_slenderness and _lie_as_one(parts, a, b)
@@ -183,45 +190,52 @@ def _lie_as_one(parts: Parts, a: int, b: int) -> bool:
     """Return whether two pieces in a line can be one rigid thing for how high they lie: both come down to what it
     lies on, or it leans and its slope goes on from the one to the other. Cutlery on a plate does neither to cutlery
     beside it."""
-    down = abs(parts.bottoms[a] - parts.bottoms[b]) < parts.settings.resting_difference
+    bottoms = parts.measures.bottoms
+    down = abs(bottoms[a] - bottoms[b]) < parts.settings.resting_difference
     return bool(down or parts.once(offset, a, b) < parts.settings.resting_rise)
 
 
-def sides(parts: Parts) -> Pairs:
+def sides(parts: Parts, part: int | None = None) -> Pairs:
     """Return a thin upright piece, and the thing of its colour whose side it is: seen so aslant that the edge is a
     jump."""
-    limits = parts.settings
-    low = parts.tops[:, None] < parts.tops[None] + limits.resting_rise
-    beside = (parts.gaps < limits.attachment_gap) & low & ~_differ(parts)
-    sheets = np.array([_is_sheet(parts, part) for part in range(len(parts))], dtype=np.bool_)
-    pairs = _pairs(sheets[:, None] & beside & (parts.areas[:, None] < parts.areas[None]))
-    return _chosen(pairs, lambda side, thing: apart(parts, side, thing) < limits.attachment_gap)
+    limits, seen, pairs = parts.settings, parts.measures, parts.near(parts.settings.attachment_gap, part)
+    low = seen.tops[pairs.first] < seen.tops[pairs.second] + limits.resting_rise
+    less = seen.areas[pairs.first] < seen.areas[pairs.second]
+    pairs = pairs.where(low & less & ~_differ(parts, pairs))
+    sheet = {part: _is_sheet(parts, part) for part in set(pairs.first.tolist())}
+    near = limits.attachment_gap
+    return _chosen(pairs, lambda side, thing: sheet[side] and apart(parts, side, thing) < near)
 
 
 def _is_sheet(parts: Parts, part: int) -> bool:
-    patches = parts.members(part)
+    patches = parts.members[part]
     normal = parts.patches.normals[patches].mean(axis=0)
     upright = abs(normal[2]) < parts.settings.max_sheet_normal * np.linalg.norm(normal)
     return bool(upright and extents(parts.patches.middles[patches, :2])[1] < parts.settings.patch_width)
 
 
 def _chosen(pairs: Pairs, belong: Callable[[int, int], bool]) -> Pairs:
-    return pairs[np.array([belong(a, b) for a, b in pairs.tolist()], dtype=np.bool_)]
+    rows = zip(pairs.first.tolist(), pairs.second.tolist(), strict=True)
+    return pairs.where(np.array([belong(a, b) for a, b in rows], dtype=np.bool_))
 
 
-def _alike(parts: Parts) -> NDArray[np.bool_]:
-    """Return which parts are of one plain colour, (p, p)."""
-    plain = parts.motley < parts.settings.max_plain_variation
-    return (parts.unlike() < parts.settings.max_same_colour) & plain[:, None] & plain[None]
-
-
-def _differ(parts: Parts) -> NDArray[np.bool_]:
-    """Return which parts are surely not of one colour, (p, p): they differ by more than both vary in themselves."""
-    varied = np.minimum(parts.motley[:, None], parts.motley[None])
-    result: NDArray[np.bool_] = parts.unlike() >= np.maximum(parts.settings.min_other_colour, varied)
+def _level(parts: Parts, pairs: Pairs) -> NDArray[np.bool_]:
+    """Return in which pairs both are equally high, (k,)."""
+    tops = parts.measures.tops
+    result: NDArray[np.bool_] = np.abs(tops[pairs.first] - tops[pairs.second]) < parts.settings.level_tolerance
     return result
 
 
-def _pairs(which: NDArray[np.bool_]) -> Pairs:
-    """Return the pairs of different parts that are marked in (p, p)."""
-    return np.argwhere(which & ~np.eye(len(which), dtype=np.bool_))
+def _alike(parts: Parts, pairs: Pairs) -> NDArray[np.bool_]:
+    """Return in which pairs both are of one plain colour, (k,)."""
+    plain = parts.measures.motley < parts.settings.max_plain_variation
+    return (parts.unlike(pairs) < parts.settings.max_same_colour) & plain[pairs.first] & plain[pairs.second]
+
+
+def _differ(parts: Parts, pairs: Pairs) -> NDArray[np.bool_]:
+    """Return in which pairs the two are surely not of one colour, (k,): they differ by more than both vary in
+    themselves."""
+    motley = parts.measures.motley
+    varied = np.minimum(motley[pairs.first], motley[pairs.second])
+    result: NDArray[np.bool_] = parts.unlike(pairs) >= np.maximum(parts.settings.min_other_colour, varied)
+    return result

@@ -17,8 +17,6 @@ from deixis.perception.detection.viewpoint import directions
 NEIGHBOURS = 8
 """Number of neighbours of a point."""
 
-_AROUND = ((-1, -1), (-1, 0), (-1, 1), (0, -1), (0, 1), (1, -1), (1, 0), (1, 1))
-
 
 def neighbour_table(
     points: NDArray[np.float64],
@@ -37,8 +35,12 @@ def neighbour_table(
     [-1, -1, -1, -1, 1, -1, -1, 2]
     """
     if organised is not None:
-        return _pixels(kept, *organised)
-    places = points if eye is None else directions(points, eye)
+        return _pixels(kept, *organised, settings)
+    return _nearest(points if eye is None else directions(points, eye), settings)
+
+
+def _nearest(places: NDArray[np.float64], settings: SurfaceSettings) -> NDArray[np.int32]:
+    """Return the nearest of the places (n, 3), in no order, but for those much farther away than usual."""
     from scipy.spatial import cKDTree
 
     count = min(NEIGHBOURS + 1, len(places))
@@ -53,9 +55,27 @@ def neighbour_table(
     return found
 
 
-def _pixels(kept: NDArray[np.intp], rows: int, columns: int) -> NDArray[np.int32]:
-    number = np.full((rows + 2, columns + 2), -1, np.int32)
+def has_enough(table: NDArray[np.int32], settings: SurfaceSettings) -> bool:
+    """Return whether most points have neighbours enough, by some rows of a table (n, 8).
+
+    They have not where points that are next to each other in direction are apart: they were not seen from there.
+    """
+    few = table[:: max(1, len(table) // settings.neighbour_sample_size)]
+    enough = (few >= 0).sum(axis=1) >= settings.min_neighbours
+    return not len(few) or bool(enough.mean() >= settings.min_neighbours_share)
+
+
+def _pixels(kept: NDArray[np.intp], rows: int, columns: int, settings: SurfaceSettings) -> NDArray[np.int32]:
+    """Return the pixels around each; of an image in which lines or many pixels have no depth, the next ones that have
+    it, in the same directions."""
+    from deixis.perception.detection.kernels import pixel_neighbours
+
+    number = np.full((rows, columns), -1, np.int32)
     row, column = np.divmod(kept, columns)
-    number[row + 1, column + 1] = np.arange(len(kept))
-    table = [number[row + 1 + down, column + 1 + right] for down, right in _AROUND]
-    return np.ascontiguousarray(np.stack(table, axis=1))
+    number[row, column] = np.arange(len(kept))
+    table = np.full((len(kept), NEIGHBOURS), -1, np.int32)
+    for steps in range(1, settings.max_pixel_steps + 1):
+        pixel_neighbours(number, row, column, steps, table)
+        if has_enough(table, settings):
+            break
+    return table

@@ -1,4 +1,4 @@
-"""Outlines as seen from above: that of the table, circles where the rest of a rim is hidden, boxes around things."""
+"""Outlines as seen from above: connected pieces, circles where the rest of a rim is hidden, boxes around things."""
 
 from __future__ import annotations
 
@@ -13,29 +13,6 @@ from deixis.perception.scene import OrientedBox, turned_axes
 
 SECTORS = 36
 """Number of sectors into which a circle is divided."""
-
-
-def above_outline(
-    table: NDArray[np.float64], points: NDArray[np.float64], settings: OutlineSettings
-) -> NDArray[np.bool_]:
-    """Return which of the points (n, 3) are above or below the convex hull of the table's points (m, 3), shape (n,).
-
-    Only the largest connected piece of the table counts, so that what is level elsewhere in the room is left out.
-    """
-    from scipy.spatial import ConvexHull, QhullError
-
-    plan = table[:: max(1, len(table) // settings.table_sample_size), :2]
-    piece = plan[in_largest_piece(plan, settings.table_cell)]
-    if len(piece) < 3:
-        return np.zeros(len(points), dtype=np.bool_)
-    try:
-        sides = ConvexHull(piece).equations
-    except QhullError:
-        return np.zeros(len(points), dtype=np.bool_)
-    inside = np.ones(len(points), dtype=np.bool_)
-    for a, b, c in sides.tolist():  # all at once would be tens of numbers for each point of the cloud
-        inside &= a * points[:, 0] + b * points[:, 1] + c <= settings.table_slack
-    return inside
 
 
 def in_largest_piece(plan: NDArray[np.float64], cell_size: float) -> NDArray[np.bool_]:
@@ -57,6 +34,22 @@ def in_largest_piece(plan: NDArray[np.float64], cell_size: float) -> NDArray[np.
     of = pieces[cell[:, 0], cell[:, 1]]
     largest: NDArray[np.bool_] = of == np.bincount(of).argmax()
     return largest
+
+
+def occupied_cells(plan: NDArray[np.float64], cell: float) -> NDArray[np.float64]:
+    """Return the middles (k, 2) of the squares of a grid in which there are places (n, 2)."""
+    if not len(plan):
+        return np.zeros((0, 2))
+    at = np.floor(plan / cell).astype(np.int64)
+    low = at.min(axis=0)
+    rows, columns = (at.max(axis=0) - low + 1).tolist()
+    if rows * columns > 50 * len(plan) + 1000:  # a few are far away
+        few: NDArray[np.float64] = np.unique(at, axis=0).astype(np.float64) + 0.5
+        return few * cell
+    grid = np.zeros((rows, columns), dtype=np.bool_)
+    grid[at[:, 0] - low[0], at[:, 1] - low[1]] = True
+    middles: NDArray[np.float64] = (np.argwhere(grid) + low + 0.5) * cell
+    return middles
 
 
 def corners_of(plan: NDArray[np.float64]) -> NDArray[np.float64] | None:
@@ -123,6 +116,7 @@ def rim_of(plan: NDArray[np.float64], table: NDArray[np.float64], settings: Outl
     gaps = np.sort(np.diff(np.append(seen, seen[0] + SECTORS)) - 1)
     if SECTORS - gaps[-1] < settings.min_rim_sectors or gaps[:-1].max(initial=0) > settings.rim_gap_sectors:
         return None
+    table = table[(np.abs(table - circle.centre) < circle.radius).all(axis=1)]
     within = table[circle.off(table) * circle.radius < -settings.rim_inset]
     bare = len(np.unique(np.floor(within / settings.bare_cell), axis=0)) * settings.bare_cell**2
     return circle if bare < settings.bare_share * np.pi * circle.radius**2 else None

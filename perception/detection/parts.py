@@ -1,15 +1,17 @@
-"""Parts: pieces of surface of which things consist, and how they meet.
+"""Parts: pieces of surface of which things consist, how they meet, and how they are joined.
 
 What speaks for or against one thing is read off the patches: how long two parts meet, which of them is above the other
 there, whether their colours are alike; and how two parts lie to each other: one within the other as seen from above,
-apart, in one line, in one plane.
+apart, in one line, in one plane. Only pairs that meet, or that are near each other, are ever looked at, so that the
+time grows with the number of these.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, field, replace
-from functools import cached_property
+import contextlib
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, fields
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,213 +23,298 @@ from deixis.perception.detection.supervoxels import Supervoxels, means, sums
 
 Measure = Callable[["Parts", NDArray[np.intp], NDArray[np.intp]], float]
 
+_NONE = np.zeros(0, np.intp)
+
 
 @dataclass(frozen=True, eq=False)
-class Parts:
-    """``of`` (s,) is the part, 0 to p - 1, that each patch belongs to. Heights are those above the table."""
+class Measures:
+    """What is known of p parts. Heights are those above the table, colours have their lightness scaled down."""
 
-    of: NDArray[np.int32]
-    patches: Supervoxels
-    meeting: Boundaries
-    settings: JoiningSettings
-    known: dict[tuple[object, ...], float] = field(default_factory=dict, repr=False)
+    sizes: NDArray[np.float64]  # (p,): points
+    areas: NDArray[np.float64]  # (p,): square metres of surface that are seen
+    tops: NDArray[np.float64]  # (p,): the height of the highest patch
+    bottoms: NDArray[np.float64]  # (p,): the height of the lowest patch
+    middles: NDArray[np.float64]  # (p,): the mean height
+    low: NDArray[np.float64]  # (p, 2): least corner of the box around a part as seen from above
+    high: NDArray[np.float64]  # (p, 2): its greatest corner
+    colours: NDArray[np.float64]  # (p, 3): the mean
+    motley: NDArray[np.float64]  # (p,): how much the colours of the patches vary, a standard deviation
+    bulge: NDArray[np.float64]  # (p,): 1 a sphere from outside, 0 a plane, -1 a sphere from inside
 
-    def __len__(self) -> int:
-        return int(self.of.max()) + 1 if len(self.of) else 0
+    @classmethod
+    def of(cls, part: NDArray[np.integer], patches: Supervoxels, chosen: NDArray[np.intp] | slice) -> Measures:
+        """Return the measures of the parts, from 0, that the chosen patches belong to."""
+        places, weights = patches.middles[chosen], patches.weights[chosen]
+        tints, sizes, normals = patches.tints[chosen], patches.sizes[chosen], patches.normals[chosen]
+        count = int(part.max()) + 1 if len(part) else 0
+        low, high = np.full((count, 3), np.inf), np.full((count, 3), -np.inf)
+        np.minimum.at(low, part, places)
+        np.maximum.at(high, part, places)
+        centres, colours = means(part, places, sizes), means(part, tints, weights)
+        varied = ((tints - colours[part]) ** 2).sum(axis=1)
+        out = places - centres[part]
+        along = sums(part, (out * normals).sum(axis=1) * sizes)
+        return cls(
+            sizes=sums(part, sizes),
+            areas=sums(part, patches.areas[chosen]),
+            tops=high[:, 2],
+            bottoms=low[:, 2],
+            middles=centres[:, 2],
+            low=low[:, :2],
+            high=high[:, :2],
+            colours=colours,
+            motley=np.sqrt(sums(part, varied * weights) / sums(part, weights)),
+            bulge=along / np.maximum(sums(part, np.linalg.norm(out, axis=1) * sizes), 1e-9),
+        )
 
-    def members(self, part: int) -> NDArray[np.intp]:
-        """Return its patches."""
-        return np.flatnonzero(self.of == part)
+    def put(self, part: int, other: Measures) -> None:
+        """Replace what is known of a part."""
+        for each in fields(self):
+            getattr(self, each.name)[part] = getattr(other, each.name)[0]
 
-    def once(self, measure: Measure, a: int, b: int) -> float:
-        """Return what a function of the patches of two parts gives, worked out once: joining others does not change
-        it."""
-        key = (measure, *self._marks[a], *self._marks[b])
-        if key not in self.known:
-            self.known[key] = measure(self, self.members(a), self.members(b))
-        return self.known[key]
-
-    @cached_property
-    def _marks(self) -> list[tuple[int, int]]:
-        """The first patch of each part and how many it has: parts only grow, so that these tell one from all others."""
-        _, first, count = np.unique(self.of, return_index=True, return_counts=True)
-        return list(zip(first.tolist(), count.tolist(), strict=True))
-
-    @cached_property
-    def areas(self) -> NDArray[np.float64]:
-        """Square metres of surface that are seen, (p,)."""
-        return sums(self.of, self.patches.areas)
-
-    @cached_property
-    def tops(self) -> NDArray[np.float64]:
-        """The height of the highest patch, (p,)."""
-        result = np.full(len(self), -np.inf)
-        np.maximum.at(result, self.of, self.patches.middles[:, 2])
-        return result
-
-    @cached_property
-    def bottoms(self) -> NDArray[np.float64]:
-        """The height of the lowest patch, (p,)."""
-        result = np.full(len(self), np.inf)
-        np.minimum.at(result, self.of, self.patches.middles[:, 2])
-        return result
-
-    @cached_property
-    def middles(self) -> NDArray[np.float64]:
-        """The mean height, (p,)."""
-        return means(self.of, self.patches.middles, self.patches.sizes)[:, 2]
-
-    @cached_property
-    def plans(self) -> NDArray[np.float64]:
-        """The least and the greatest corner of the box around a part as seen from above, (2, p, 2)."""
-        low, high = np.full((len(self), 2), np.inf), np.full((len(self), 2), -np.inf)
-        np.minimum.at(low, self.of, self.patches.middles[:, :2])
-        np.maximum.at(high, self.of, self.patches.middles[:, :2])
-        return np.stack([low, high])
-
-    @cached_property
+    @property
     def centres(self) -> NDArray[np.float64]:
-        """The middle of that box, (p, 2)."""
-        result: NDArray[np.float64] = self.plans.mean(axis=0)
+        """The middle of the box as seen from above, (p, 2)."""
+        result: NDArray[np.float64] = (self.low + self.high) / 2
         return result
 
-    @cached_property
+    @property
     def widths(self) -> NDArray[np.float64]:
         """The longer side of that box, (p,)."""
-        result: NDArray[np.float64] = (self.plans[1] - self.plans[0]).max(axis=1)
+        result: NDArray[np.float64] = (self.high - self.low).max(axis=1)
         return result
 
-    @cached_property
-    def gaps(self) -> NDArray[np.float64]:
-        """How far those boxes are apart, (p, p): no patches of two parts are nearer, as seen from above."""
-        low, high = self.plans
-        apart = np.maximum(low[:, None] - high[None], low[None] - high[:, None]).clip(0.0)
-        result: NDArray[np.float64] = np.linalg.norm(apart, axis=2)
-        return result
 
-    @cached_property
-    def colours(self) -> NDArray[np.float64]:
-        """The mean colour, lightness scaled down, (p, 3)."""
-        return means(self.of, self.patches.tints, self.patches.weights)
+@dataclass(frozen=True, eq=False)
+class Pairs:
+    """k ordered pairs of parts, and how the two meet: ``first`` and ``second`` (k,), and ``met`` (k, 4).
 
-    @cached_property
-    def motley(self) -> NDArray[np.float64]:
-        """How much the colours of its patches vary, a standard deviation, (p,)."""
-        off, weights = ((self.patches.tints - self.colours[self.of]) ** 2).sum(axis=1), self.patches.weights
-        return np.sqrt(sums(self.of, off * weights) / sums(self.of, weights))
+    The columns of ``met`` are the length of their boundary in pairs of neighbours, of that without a jump of depth, and
+    the sums over it of the evidence for two things, and of the height of the first above the second.
+    """
 
-    @cached_property
-    def bulge(self) -> NDArray[np.float64]:
-        """How convex a part is, (p,): 1 a sphere from outside, 0 a plane, -1 a sphere from inside."""
-        out = self.patches.middles - means(self.of, self.patches.middles, self.patches.sizes)[self.of]
-        along = sums(self.of, (out * self.patches.normals).sum(axis=1) * self.patches.sizes)
-        return along / np.maximum(sums(self.of, np.linalg.norm(out, axis=1) * self.patches.sizes), 1e-9)
+    first: NDArray[np.intp]
+    second: NDArray[np.intp]
+    met: NDArray[np.float64]
 
-    @cached_property
-    def lengths(self) -> NDArray[np.float64]:
-        """How long two parts meet, in pairs of neighbours, (p, p)."""
-        return self._between(np.ones(len(self.meeting.pairs)))
+    def __len__(self) -> int:
+        return len(self.first)
 
-    @cached_property
-    def smooth(self) -> NDArray[np.float64]:
-        """How long they meet without a jump of depth, (p, p)."""
-        return self._between(1 - self.meeting.jumped)
+    def where(self, chosen: NDArray[np.bool_]) -> Pairs:
+        """Return the pairs that are marked in (k,)."""
+        return Pairs(self.first[chosen], self.second[chosen], self.met[chosen])
 
-    @cached_property
+    @property
+    def length(self) -> NDArray[np.float64]:
+        """How long they meet, in pairs of neighbours, (k,)."""
+        return self.met[:, 0]
+
+    @property
     def evidence(self) -> NDArray[np.float64]:
-        """What speaks for two things, a mean over where they meet, (p, p); infinite where they do not."""
-        total = self._between(self.meeting.evidence)
-        return np.divide(total, self.lengths, out=np.full_like(total, np.inf), where=self.lengths > 0)
+        """What speaks for two things, a mean over where they meet, (k,); infinite where they do not."""
+        length = self.length
+        evidence: NDArray[np.float64] = np.divide(
+            self.met[:, 2], length, out=np.full(len(self), np.inf), where=length > 0
+        )
+        return evidence
 
-    @cached_property
+    @property
     def rise(self) -> NDArray[np.float64]:
-        """How far the first part is above the second where they meet, a mean, (p, p); 0 where they do not."""
-        i, j = self.meeting.pairs.T
-        height = self.patches.middles[:, 2]
-        total = self._between(height[i] - height[j], sign=-1.0)
-        return np.divide(total, self.lengths, out=np.zeros_like(total), where=self.lengths > 0)
+        """How far the first part is above the second where they meet, a mean, (k,); 0 where they do not."""
+        length = self.length
+        rise: NDArray[np.float64] = np.divide(self.met[:, 3], length, out=np.zeros(len(self)), where=length > 0)
+        return rise
 
-    def unlike(self) -> NDArray[np.float64]:
-        """Return the difference between the colours of parts, (p, p)."""
-        result: NDArray[np.float64] = np.linalg.norm(self.colours[:, None] - self.colours[None], axis=2)
+
+class Parts:
+    """The parts that s patches belong to, by ``of`` (s,); joining two of them changes it.
+
+    A part keeps the number of the first of those that it was joined from. ``measures`` are those of each, out of date
+    where a part was joined to a lesser one.
+    """
+
+    def __init__(
+        self, of: NDArray[np.integer], patches: Supervoxels, meeting: Boundaries, settings: JoiningSettings
+    ) -> None:
+        self.patches, self.settings, self._meeting = patches, settings, meeting
+        self._start(of)
+
+    def _start(self, of: NDArray[np.integer]) -> None:
+        self._known: dict[tuple[object, ...], float] = {}
+        self._hulls: dict[int, tuple[int, NDArray[np.float64] | None]] = {}  # with how often the part had changed
+        self._trees: dict[int, tuple[int, Any]] = {}
+        count = int(of.max()) + 1 if len(of) else 0
+        order = np.argsort(of, kind="stable")
+        self.members = np.split(order, np.cumsum(np.bincount(of, minlength=count))[:-1]) if count else []
+        self.measures = Measures.of(of, self.patches, slice(None))
+        self.there = np.ones(count, dtype=np.bool_)
+        self.changes = [0] * count
+        first, second, met = _between(of, self.patches, self._meeting)
+        self._around: list[dict[int, NDArray[np.float64]]] = [{} for _ in range(count)]
+        for a, b, row in zip(first.tolist(), second.tolist(), met, strict=True):
+            self._around[a][b] = row
+
+    def __len__(self) -> int:
+        return int(self.there.sum())
+
+    @property
+    def of(self) -> NDArray[np.int32]:
+        """The part of each patch, (s,), from 0 in the order of their first patches."""
+        result = np.zeros(sum(map(len, self.members)), np.int32)
+        for number, part in enumerate(np.flatnonzero(self.there).tolist()):
+            result[self.members[part]] = number
         return result
 
-    def joined(self, pairs: NDArray[np.intp]) -> Parts:
-        """Return the same with the parts of each pair (k, 2) made one."""
+    def join_all(self, first: NDArray[np.intp], second: NDArray[np.intp]) -> None:
+        """Join the parts of each pair, and number all anew."""
         from scipy.sparse import coo_array
         from scipy.sparse.csgraph import connected_components
 
-        count = len(self)
-        links = coo_array((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(count, count))
-        of = connected_components(links, directed=False)[1][self.of].astype(np.int32)
-        return replace(self, of=of)
+        of = np.zeros(sum(map(len, self.members)), np.int64)
+        for part, members in enumerate(self.members):
+            of[members] = part
+        count = len(self.members)
+        links = coo_array((np.ones(len(first)), (first, second)), shape=(count, count))
+        self._start(np.unique(connected_components(links, directed=False)[1][of], return_inverse=True)[1])
 
-    def _between(self, values: NDArray[np.float64], sign: float = 1.0) -> NDArray[np.float64]:
-        """Return sums over where parts meet, weighted by length; the other way round with another ``sign``."""
-        a, b = self.of[self.meeting.pairs].T.astype(np.int64)
-        apart = a != b
-        count, weighted = len(self), values * self.meeting.lengths
-        total = sums(a[apart] * count + b[apart], weighted[apart], count * count).reshape(count, count)
-        result: NDArray[np.float64] = total + sign * total.T
+    def join(self, a: int, b: int) -> int:
+        """Join two parts; return the number of what they are together."""
+        a, b = min(a, b), max(a, b)
+        self.members[a] = np.sort(np.concatenate([self.members[a], self.members[b]]))
+        self.members[b] = _NONE
+        self.there[b] = False
+        self.changes[a] += 1
+        self.changes[b] += 1
+        self.measures.put(a, Measures.of(np.zeros(len(self.members[a]), np.intp), self.patches, self.members[a]))
+        own = self._around[a]
+        own.pop(b, None)
+        for c, row in self._around[b].items():
+            if c != a:
+                back = self._around[c]
+                del back[b]
+                own[c] = own[c] + row if c in own else row
+                back[a] = own[c] * (1.0, 1.0, 1.0, -1.0)
+        self._around[b] = {}
+        return a
+
+    def meetings(self, part: int | None = None) -> Pairs:
+        """Return all pairs that meet, each both ways round, or those with one ``part``."""
+        parts: Iterable[int] = range(len(self._around)) if part is None else (part,)
+        ends = [(a, b) for a in parts for b in self._around[a]]
+        if part is not None:
+            ends += [(b, a) for a, b in ends]
+        return self.pairs(np.array(sorted(ends), np.intp).reshape(-1, 2))
+
+    def near(self, gap: float, part: int | None = None) -> Pairs:
+        """Return all pairs whose boxes are less than a ``gap`` (metres) apart as seen from above, each both ways round,
+        or those with one ``part``: no patches of others are nearer. Parts of few points are left out."""
+        there = np.flatnonzero(self.there & (self.measures.sizes >= self.settings.min_near_points))
+        low, high = self.measures.low[there], self.measures.high[there]
+        if part is None:
+            from deixis.perception.detection.kernels import near_boxes
+
+            order = np.argsort(low[:, 0], kind="stable")
+            ends = there[order][near_boxes(low[order], high[order], gap)]
+            ends = np.concatenate([ends, ends[:, ::-1]])
+            return self.pairs(ends[np.lexsort((ends[:, 1], ends[:, 0]))])
+        apart = np.maximum(low - self.measures.high[part], self.measures.low[part] - high).clip(0.0)
+        others = there[((apart**2).sum(axis=1) < gap**2) & (there != part)]
+        if self.measures.sizes[part] < self.settings.min_near_points:
+            others = others[:0]
+        ends = np.stack([np.full(len(others), part), others], axis=1)
+        return self.pairs(np.concatenate([ends, ends[:, ::-1]]))
+
+    def pairs(self, ends: NDArray[np.intp]) -> Pairs:
+        """Return pairs of parts (k, 2), and how they meet."""
+        nothing = np.zeros(4)
+        met = [self._around[a].get(b, nothing) for a, b in ends.tolist()]
+        return Pairs(ends[:, 0], ends[:, 1], np.array(met).reshape(-1, 4))
+
+    def unlike(self, pairs: Pairs) -> NDArray[np.float64]:
+        """Return the difference between the colours of the two parts of each pair, (k,)."""
+        colours = self.measures.colours
+        result: NDArray[np.float64] = np.linalg.norm(colours[pairs.first] - colours[pairs.second], axis=1)
         return result
+
+    def hull(self, part: int) -> NDArray[np.float64] | None:
+        """Return the half planes (k, 3) of a part's convex outline as seen from above; None of patches in a line."""
+        from scipy.spatial import ConvexHull, QhullError
+
+        if (found := self._hulls.get(part)) is None or found[0] != self.changes[part]:
+            sides = None
+            if len(self.members[part]) >= 3:
+                with contextlib.suppress(QhullError):
+                    sides = ConvexHull(self.patches.middles[self.members[part], :2]).equations
+            self._hulls[part] = found = (self.changes[part], sides)
+        return found[1]
+
+    def plan_tree(self, part: int) -> Any:
+        """Return a k-d tree of a part's patches as seen from above."""
+        from scipy.spatial import cKDTree
+
+        if (found := self._trees.get(part)) is None or found[0] != self.changes[part]:
+            self._trees[part] = found = (self.changes[part], cKDTree(self.patches.middles[self.members[part], :2]))
+        return found[1]
+
+    def once(self, measure: Measure, a: int, b: int) -> float:
+        """Return what a function of the patches of two parts gives, computed once: joining others does not change
+        it."""
+        key = (measure, a, self.changes[a], b, self.changes[b])
+        if key not in self._known:
+            self._known[key] = measure(self, self.members[a], self.members[b])
+        return self._known[key]
+
+
+def _between(
+    of: NDArray[np.integer], patches: Supervoxels, meeting: Boundaries
+) -> tuple[NDArray[np.intp], NDArray[np.intp], NDArray[np.float64]]:
+    """Return the pairs of parts that meet, both ways round, and how they meet as :class:`Pairs` has it."""
+    i, j = meeting.pairs.T
+    a, b = of[i].astype(np.int64), of[j].astype(np.int64)
+    apart = a != b
+    a, b, i, j = a[apart], b[apart], i[apart], j[apart]
+    length = meeting.lengths[apart]
+    rise = (patches.middles[i, 2] - patches.middles[j, 2]) * length
+    columns = [length, (1 - meeting.jumped[apart]) * length, meeting.evidence[apart] * length, rise]
+    count = int(of.max()) + 1 if len(of) else 1
+    codes, place = np.unique(np.concatenate([a * count + b, b * count + a]), return_inverse=True)
+    both = [np.concatenate([column, column if k < 3 else -column]) for k, column in enumerate(columns)]
+    met = np.stack([sums(place, column, len(codes)) for column in both], axis=1)
+    return codes // count, codes % count, met
 
 
 def inside(parts: Parts, inner: int, outer: int) -> float:
     """Return the share of a part's patches that lie within the convex outline of another, as seen from above."""
-    return parts.once(_share_inside, inner, outer)
-
-
-def _share_inside(parts: Parts, inner: NDArray[np.intp], outer: NDArray[np.intp]) -> float:
-    plan = parts.patches.middles[:, :2]
-    hull = _hull(plan[outer])
+    hull = parts.hull(outer)
     if hull is None:
         return 0.0
-    return float((plan[inner] @ hull[:, :2].T + hull[:, 2] <= parts.settings.inside_tolerance).all(axis=1).mean())
+    plan = parts.patches.middles[parts.members[inner], :2]
+    return float(((plan @ hull[:, :2].T + hull[:, 2]).max(axis=1) <= parts.settings.inside_tolerance).mean())
 
 
 def _covered(parts: Parts, cover: int, places: NDArray[np.float64]) -> bool:
     """Return whether most places (k, 3) are within a part's outline, or no farther from it than it is higher: hidden
     by it."""
-    hull = _hull(parts.patches.middles[parts.members(cover), :2])
+    hull = parts.hull(cover)
     if hull is None:
         return True
     outside = (places[:, :2] @ hull[:, :2].T + hull[:, 2]).max(axis=1)
-    return bool((outside < parts.tops[cover] - places[:, 2]).mean() > parts.settings.min_covered_share)
+    return bool((outside < parts.measures.tops[cover] - places[:, 2]).mean() > parts.settings.min_covered_share)
 
 
 def apart(parts: Parts, a: int, b: int) -> float:
     """Return the least distance between patches of two parts, as seen from above."""
-    return parts.once(_least_distance, a, b)
+    return float(parts.plan_tree(b).query(parts.patches.middles[parts.members[a], :2])[0].min())
 
 
-def _least_distance(parts: Parts, one: NDArray[np.intp], two: NDArray[np.intp]) -> float:
-    from scipy.spatial import cKDTree
-
-    plan = parts.patches.middles[:, :2]
-    return float(cKDTree(plan[two]).query(plan[one])[0].min())
-
-
-def _hull(plan: NDArray[np.float64]) -> NDArray[np.float64] | None:
-    """Return the half planes (k, 3) of a convex hull; None for points in a line."""
-    from scipy.spatial import ConvexHull, QhullError
-
-    if len(plan) < 3:
-        return None
-    try:
-        result: NDArray[np.float64] = ConvexHull(plan).equations
-    except QhullError:
-        return None
-    return result
-
-
-def continues(parts: Parts, a: int, b: int, over: NDArray[np.intp]) -> bool:
+def continues(parts: Parts, a: int, b: int, over: Iterable[int]) -> bool:
     """Return whether one surface goes on in the other, under a part that is over both: where they are nearest, that
     part is between them, and their planes are the same."""
     if parts.once(_share_of_one_plane, a, b) <= parts.settings.min_coplanar_share:
         return False
-    p, q = _nearest(parts, parts.members(a), parts.members(b))
+    p, q = _nearest(parts, parts.members[a], parts.members[b])
     between = (parts.patches.middles[p] + parts.patches.middles[q]) / 2
-    return any(_covered(parts, int(part), between) for part in over)  # else a fork and a knife beside a plate
+    return any(_covered(parts, part, between) for part in over)  # else a fork and a knife beside a plate
 
 
 def _share_of_one_plane(parts: Parts, one: NDArray[np.intp], two: NDArray[np.intp]) -> float:

@@ -176,6 +176,8 @@ def _largest(
 ) -> Plane | None:
     """Return the plane through three of the points that most points are on; one far away counts for the area it
     stands for."""
+    from deixis.perception.detection.kernels import support
+
     triples = points[rng.integers(len(points), size=(trials, 3))]
     normals = np.cross(triples[:, 1] - triples[:, 0], triples[:, 2] - triples[:, 0])
     length = np.linalg.norm(normals, axis=1)
@@ -184,10 +186,7 @@ def _largest(
         return None
     normals = normals[good] / length[good, None]
     offsets = (normals * triples[good, 0]).sum(axis=1)
-    held = np.array(
-        [tolerance[np.abs(points @ n - d) <= tolerance].sum() for n, d in zip(normals, offsets, strict=True)]
-    )
-    best = int(np.argmax(held))
+    best = int(np.argmax(support(points, tolerance, normals, offsets)))
     return Plane(normals[best], float(offsets[best]))
 
 

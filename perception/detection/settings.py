@@ -59,9 +59,30 @@ class ScaleSettings(_Thresholds):
     max_table_length: float = 6.0
     """Metres: nothing that a robot lays is longer: a note doubts the unit. Shown by
     test_a_table_that_no_robot_lays_is_noted."""
-    max_single_object_length: float = 0.4
-    """Metres: a cloud that is no longer, and otherwise narrower than a table, is one thing. Shown by
+    max_small_length: float = 0.4
+    """Metres: a cloud that is no longer, and otherwise narrower than a table, is one object. Shown by
     test_a_cloud_no_larger_than_a_thing_is_one_thing_without_a_table."""
+    max_object_length: float = 1.2
+    """Metres: a longer cloud is no object that is seen alone. Shown by test_what_a_cloud_shows_is_told."""
+    max_sheet_thickness: float = 0.03
+    """Metres: what is thinner and as wide as a table is a bare table. Shown by test_what_a_cloud_shows_is_told."""
+    object_gap: float = 0.02
+    """Metres of the grid on which one object is connected. Shown by test_what_a_cloud_shows_is_told."""
+    min_connected_share: float = 0.9
+    """Share of the points of one object that are connected. Shown by test_what_a_cloud_shows_is_told."""
+    min_inset: float = 0.03
+    """Metres from the outline of a face of an object to what stands on it. Shown by test_what_a_cloud_shows_is_told."""
+    min_inset_share: float = 0.3
+    """Share of the points of what stands there that are so far inside: an adjoining face has hardly any. Shown by
+    test_what_a_cloud_shows_is_told."""
+    min_room_width: float = 1.5
+    """Metres: what is as large along two axes, and shows no table, is a room. Shown by
+    test_what_a_cloud_shows_is_told."""
+    min_floor_drop: float = 1.1
+    """Metres that a sensor is above a floor at least: above a table it is mostly less. No scene or test tried shows
+    it."""
+    min_floor_length: float = 2.2
+    """Metres that are seen of a floor at least. No scene or test tried shows it."""
     outlier_percent: float = 0.5
     """Percent of the points at either end that say nothing of how large a thing is: strays of a sensor. No scene or
     test tried shows it."""
@@ -74,7 +95,7 @@ class PlaneSettings(_Thresholds):
     sample_size: int = 10_000
     """Points that planes are looked for among: enough for a table of a twentieth of the view, and it bounds the time.
     No scene or test tried shows it."""
-    refinement_size: int = 50_000
+    refinement_size: int = 20_000
     """Points that the table's plane is fitted to: more of them change it by less than noise does. No scene or test
     tried shows it."""
     ransac_trials: int = 300
@@ -121,12 +142,23 @@ class ViewpointSettings(_Thresholds):
     """Share by which the angle from pixel to pixel changes to the next, at most: 0.002 to 0.014 was measured from where
     images were taken, 0.3 and more from 30 cm beside it. Noise is along the rays, and from elsewhere across. No scene
     or test tried shows it."""
-    direction_change_quantile: float = 0.9
-    """Share of the pixels for which that holds: edges of things are left out. Shown by
-    test_a_cloud_whose_origin_is_no_viewpoint_keeps_its_own_y_axis."""
-    image_lines: int = 100
-    """Rows and columns of an image that are looked at: a hundred settle directions to a hundredth of a degree. No scene
+    image_lines: int = 40
+    """Rows and columns of an image that are looked at: so many settle directions to a hundredth of a degree. No scene
     or test tried shows it."""
+    image_steps: int = 80
+    """Places in each of these that are looked at. No scene or test tried shows it."""
+    max_pinhole_misfit: float = 2.5
+    """Pixels by which points of an image are off, seen by the camera that fits best, where noise across the rays makes
+    the directions uneven: a millimetre at 80 cm makes 1.6 of it. Shown by
+    test_noise_in_all_directions_hides_no_viewpoint."""
+    max_smooth_misfit: float = 0.8
+    """Pixels of that misfit by the share by which directions change from pixel to pixel: 0.45 was measured in noise,
+    1.2 to 14 from a wrong place. Shown by test_noise_in_all_directions_hides_no_viewpoint."""
+    pinhole_quantile: float = 0.95
+    """Share of the points for which that holds: what stands on a table is at least the rest of them. No scene or test
+    tried shows it."""
+    pinhole_sample_size: int = 2000
+    """Points that this camera is fitted to. No scene or test tried shows it."""
     sample_size: int = 10_000
     """Points of a cloud that is no image that are looked at. No scene or test tried shows it."""
     neighbours: int = 8
@@ -137,6 +169,9 @@ class ViewpointSettings(_Thresholds):
     max_far_share: float = 0.05
     """Share of such neighbours in one view: 0.002 to 0.02 was measured from the right place, 0.6 from a wrong one on
     the table. Shown by test_points_seen_from_elsewhere_have_neighbours_that_are_apart."""
+    doubtful_far_share: float = 0.022
+    """Share from which another place is looked for that has half of it: 0.03 and more was measured where one cloud
+    holds looks from two places. No scene or test tried shows it."""
     min_eye_height: float = 0.05
     """Metres above the table from which its top is seen at all. No scene or test tried shows it."""
     assumed_distance: float = 1.5
@@ -189,6 +224,17 @@ class SurfaceSettings(_Thresholds):
     max_neighbour_ratio: float = 6.0
     """Points of a cloud that is no image are no neighbours beyond so many times the usual distance of the nearest.
     Shown by test_without_its_order_an_image_shows_the_same_things."""
+    min_neighbours: int = 5
+    """Neighbours that a point has at least, of eight. Shown by
+    test_a_table_is_seen_though_lines_of_the_image_are_missing."""
+    min_neighbours_share: float = 0.8
+    """Share of the points that have them; else neighbours are looked for beyond the pixels around, or nearest in space
+    instead of in direction. Shown by test_a_table_is_seen_though_lines_of_the_image_are_missing."""
+    neighbour_sample_size: int = 10_000
+    """Pixels of which these are counted. No scene or test tried shows it."""
+    max_pixel_steps: int = 4
+    """Pixels up to which they are looked for. Shown by
+    test_a_table_is_seen_though_lines_of_the_image_are_missing."""
     radius_noise_ratio: float = 6.0
     """Radius of the plane around a point in standard deviations of its noise: with fewer normals are mostly noise.
     Doubled, mosd 44 has three things fewer at half resolution."""
@@ -201,6 +247,9 @@ class SurfaceSettings(_Thresholds):
     radius_spacing_ratio: float = 2.5
     """That radius in distances between neighbours at least, so that a plane has points enough. Doubled, simulated
     setting 0 loses three things at half resolution."""
+    max_plane_points: int = 250
+    """Points that a plane is laid through at most: it bounds the time where points are scattered. Shown by
+    test_an_image_of_noise_takes_no_more_time_than_a_table."""
     min_jump: float = 0.006
     """Metres: neighbours that are less far apart are on one surface. Doubled, mosd 16 has two things fewer at half
     resolution."""
@@ -285,6 +334,9 @@ class JoiningSettings(_Thresholds):
     fragment_area: float = 7e-4
     """Square metres: a smaller piece of surface is no thing of its own where it meets another (2.6 cm square). Halved,
     mosd 44 has 5 parts more; doubled, it has 3 fewer."""
+    min_near_points: int = 10
+    """Points of a part that is joined with one that it does not meet: what has fewer is noise. No scene or test tried
+    shows it."""
     # Colour.
     max_same_colour: float = 9.0
     """Difference of colour below which parts are of one colour. Halved, simulated setting 11 has three parts more."""
@@ -413,17 +465,44 @@ class JoiningSettings(_Thresholds):
 
 
 @dataclass(frozen=True, slots=True)
-class OutlineSettings(_Thresholds):
-    """The outline of the table and of things as seen from above, and their boxes."""
+class TableTopSettings(_Thresholds):
+    """Which points are on the table's top, and what is above its outline."""
 
-    table_cell: float = 0.03
-    """Metres of the grid on which the points of a table are connected: holes below things are narrower. Shown by
-    test_what_is_bare_or_as_low_as_a_floor_is_no_second_table."""
-    table_sample_size: int = 30_000
+    max_cells: int = 80
+    """Cells of the image, along its longer side, in which the plane is looked for: 1.5 cm at one metre."""
+    min_cell_side: float = 4.0
+    """Points along the side of a cell, on the average, so that a cell of the table is hardly ever without one."""
+    plan_cell: float = 0.03
+    """Metres of the grid on which the points of a table are connected where it is not known from where they were seen:
+    holes below things are narrower. Shown by test_what_is_bare_or_as_low_as_a_floor_is_no_second_table."""
+    min_level_share: float = 0.25
+    """Share of a cell's points that are level with the plane where it shows the table: noise leaves half of them at two
+    metres and a half."""
+    min_part_cells: int = 3
+    """Cells of a part of the table at least; what is less is noise."""
+    max_covered_share: float = 0.8
+    """Share of a part that has something right above it: of a table it is less, of a strip of a wall all. Shown by
+    test_a_strip_of_a_wall_at_the_height_of_the_table_is_no_part_of_it."""
+    max_below_share: float = 0.1
+    """Share of a line between two parts of a table on which something lower is seen. Shown by
+    test_parts_of_a_table_are_one_if_a_pile_is_between_them."""
+    max_empty_share: float = 0.34
+    """Share of such a line on which nothing is seen: the shadow of what hides the rest. Shown by
+    test_a_second_table_is_told_of_and_can_be_looked_at."""
+    outline_sample_size: int = 30_000
     """Points of a table that its outline is drawn from. No scene or test tried shows it."""
-    table_slack: float = 0.02
+    slack: float = 0.02
     """Metres by which a thing's point may lie beyond the table's outline: things reach over the edge. No scene or test
     tried shows it."""
+    margin: float = 0.3
+    """Metres around the table's outline that are looked at for what reaches over its edge. No scene or test tried shows
+    it."""
+
+
+@dataclass(frozen=True, slots=True)
+class OutlineSettings(_Thresholds):
+    """The outlines of things as seen from above, and their boxes."""
+
     trim_share: float = 0.002
     """Share of the points at either end of an axis that are taken for noise. Shown by
     test_a_stray_point_in_a_thousand_does_not_stretch_a_box."""
@@ -453,6 +532,34 @@ class OutlineSettings(_Thresholds):
 
 
 @dataclass(frozen=True, slots=True)
+class NoteSettings(_Thresholds):
+    """What is said of that which is not reported."""
+
+    min_piece_points: int = 200
+    """Points of what is left out that is worth a note: fewer are hardly a thing. Shown by
+    test_what_is_not_reported_is_said."""
+    min_high_share: float = 0.02
+    """Points that are too high above the table, by those of its top. Shown by test_what_is_not_reported_is_said."""
+    min_discarded_share: float = 0.05
+    """Share of the points above the table that are in pieces too small or too low for things. Shown by
+    test_what_is_not_reported_is_said."""
+    overhang: float = 0.1
+    """Metres beyond the table's outline from which a piece reaches over its edge. Shown by
+    test_what_is_not_reported_is_said."""
+    min_overhang_share: float = 0.1
+    """Share of such a piece that is as far outside, and share that is inside. Shown by
+    test_what_is_not_reported_is_said."""
+    hole_cell: int = 8
+    """Pixels along the side of a cell in which depth may be missing. Shown by test_what_is_not_reported_is_said."""
+    max_hole_share: float = 0.1
+    """Share of the cells of a table that have no depth. Shown by test_what_is_not_reported_is_said."""
+    min_usual_length: float = 0.03
+    """Metres that things are long in the median, at least. Shown by test_what_is_not_reported_is_said."""
+    max_usual_length: float = 0.6
+    """Metres that they are long in the median, at most. Shown by test_what_is_not_reported_is_said."""
+
+
+@dataclass(frozen=True, slots=True)
 class DetectionSettings:
     """What detection may be told. The defaults fit things of a few millimetres to half a metre on a table, seen from
     half a metre to two metres.
@@ -478,12 +585,14 @@ class DetectionSettings:
     scale: ScaleSettings = field(default_factory=ScaleSettings)
     plane: PlaneSettings = field(default_factory=PlaneSettings)
     viewpoint: ViewpointSettings = field(default_factory=ViewpointSettings)
+    top: TableTopSettings = field(default_factory=TableTopSettings)
     heights: HeightSettings = field(default_factory=HeightSettings)
     surface: SurfaceSettings = field(default_factory=SurfaceSettings)
     supervoxels: SupervoxelSettings = field(default_factory=SupervoxelSettings)
     boundaries: BoundarySettings = field(default_factory=BoundarySettings)
     joining: JoiningSettings = field(default_factory=JoiningSettings)
     outlines: OutlineSettings = field(default_factory=OutlineSettings)
+    notes: NoteSettings = field(default_factory=NoteSettings)
 
     def __post_init__(self) -> None:
         for name in ("height", "reach", "least_length", "concavity", "step"):

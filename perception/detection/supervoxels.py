@@ -56,7 +56,7 @@ def supervoxels(surface: Surface, settings: SupervoxelSettings) -> Supervoxels:
     shape = (surface.points, surface.smooth, surface.normals, surface.colours)
     costs = (settings.turn_cost, settings.step_cost, settings.colour_cost, settings.colour_noise)
     found = grow(seeds, spacing, costs, *shape, surface.neighbours, surface.jump)
-    of = np.unique(found, return_inverse=True)[1].astype(np.int32)
+    of = (np.cumsum(np.bincount(found) > 0) - 1)[found].astype(np.int32)
     middles, normals = means(of, surface.smooth), means(of, surface.normals)
     colours = means(of, surface.colours, surface.points[:, 2].clip(settings.min_colour_height))
     normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
@@ -79,8 +79,15 @@ def sums(of: NDArray[np.integer], values: NDArray[np.float64] | None = None, cou
 
 def _seeds(points: NDArray[np.float64], spacing: float) -> NDArray[np.int64]:
     """Return for each occupied cell of a grid the point nearest to the mean of its points."""
+    from deixis.perception.detection.kernels import nearest_to_means
+
     cells = np.floor(points / spacing).astype(np.int64)
-    of = np.unique(cells, axis=0, return_inverse=True)[1].ravel()
-    off = ((points - means(of, points)[of]) ** 2).sum(axis=1)
-    order = np.lexsort((off, of))
-    return order[np.r_[0, np.cumsum(np.bincount(of))[:-1]]].astype(np.int64)
+    cells -= cells.min(axis=0)
+    across, deep, high = (cells.max(axis=0) + 1).tolist()
+    if across * deep * high < 2**62:
+        codes = (cells[:, 0] * deep + cells[:, 1]) * high + cells[:, 2]
+        found, of = np.unique(codes, return_inverse=True)
+    else:
+        found, of = np.unique(cells, axis=0, return_inverse=True)
+    seeds: NDArray[np.int64] = nearest_to_means(points, of.ravel(), len(found))
+    return seeds

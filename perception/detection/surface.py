@@ -43,13 +43,11 @@ def surface_of(
 ) -> Surface:
     """Return the surface through points (n, 3) with colours (n, 3), seen from ``eye`` (3,) with noise ``sigma``
     (n,)."""
-    from deixis.perception.detection.kernels import spreads
+    from deixis.perception.detection.kernels import gaps, mixed, planes
 
     distance = np.linalg.norm(points - eye, axis=1)
-    there = neighbours >= 0
-    away = np.linalg.norm(points[neighbours] - points[:, None], axis=2)
-    relative = np.where(there, away, 0.0).sum(axis=1) / np.maximum(there.sum(axis=1), 1) / np.maximum(distance, 1e-6)
-    known = relative[there.any(axis=1)]
+    apart = gaps(points, neighbours)
+    known = (apart / np.maximum(distance, 1e-6))[apart >= 0]
     # the mean distance of eight neighbours is 1.2 sides of a pixel; it grows with the distance from the sensor
     spacing = distance * float(np.median(known) if len(known) else 0.0) / 1.2
     jump = np.maximum(
@@ -57,14 +55,8 @@ def surface_of(
     )
     noisy = np.clip(settings.radius_noise_ratio * sigma, settings.min_radius, settings.max_radius)
     radius = np.maximum(noisy, settings.radius_spacing_ratio * spacing)
-    middles, covariances = spreads(points, neighbours, radius, jump)
-    normals = np.linalg.eigh(covariances)[1][:, :, 0]
-    normals *= np.where(((eye - points) * normals).sum(axis=1) < 0, -1.0, 1.0)[:, None]
-    off = ((points - middles) * normals).sum(axis=1)
-    smooth = points - off[:, None] * normals
+    normals, smooth = planes(points, neighbours, radius, jump, eye, settings.max_plane_points)
     lab = np.zeros((len(points), 3))
     if colours is not None:
-        own, there = lab_of_srgb(colours.astype(np.float64)), neighbours >= 0
-        total = own + np.where(there[:, :, None], own[neighbours], 0.0).sum(axis=1)
-        lab = total / (1 + there.sum(axis=1))[:, None]
+        lab = mixed(lab_of_srgb(colours.astype(np.float64)), neighbours)
     return Surface(points, smooth, normals, lab, neighbours, sigma, jump, spacing)

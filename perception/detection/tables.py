@@ -8,38 +8,42 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.perception.detection.outline import above_outline, in_largest_piece
 from deixis.perception.detection.plane import Outlook, Plane, level_of, table_plane, tolerance_at
 from deixis.perception.detection.settings import DetectionSettings
-from deixis.perception.detection.viewpoint import likely
+from deixis.perception.detection.table_top import TableTop, largest_part_length, table_top
+from deixis.perception.detection.viewpoint import View, believed, likely
 
 
 @dataclass(frozen=True, eq=False)
 class FoundTable:
-    """Its plane, from where it is seen, and the numbers (k,) of the points that are of no table before it."""
+    """A table's plane and top, and the points that are of no table before it."""
 
     plane: Plane
-    outlook: Outlook
-    points: NDArray[np.intp]
+    top: TableTop
+    view: View
 
 
-def tables(points: NDArray[np.float64], outlook: Outlook, settings: DetectionSettings) -> Iterator[FoundTable]:
-    """Yield the tables under points (n, 3), all finite; none where nothing large is level."""
-    view = outlook
-    base = table_plane(points, view, settings)
-    if base is None and view.up is not None and view.right is not None:
-        view = replace(view, up=-view.up, right=-view.right)
-        base = table_plane(points, view, settings)
-    plane, outlook = base, view if base is None else likely(view, points, base, settings)
-    left = np.arange(len(points))
+def tables(view: View, settings: DetectionSettings) -> Iterator[FoundTable]:
+    """Yield the tables of a view; none where nothing large is level.
+
+    Each table has an outlook of its own: one cloud may hold looks from several places.
+    """
+    points, outlook = view.points, believed(view.outlook, view.points, settings)
+    base = table_plane(points, outlook, settings)
+    if base is None and outlook.up is not None and outlook.right is not None:
+        outlook = replace(outlook, up=-outlook.up, right=-outlook.right)
+        base = table_plane(points, outlook, settings)
+    plane, left = base, replace(view, outlook=outlook)
     while plane is not None:
-        yield FoundTable(plane, outlook, left)
-        places = points[left]
-        plan = places @ plane.across.T
-        on = np.abs(plane.heights(places)) < settings.plane.table_band
-        left = left[~above_outline(plan[on], plan, settings.outlines)]
-        enough = len(left) >= settings.plane.min_inlier_share * len(points)
-        plane = _another(points[left], plane, outlook, settings) if enough else None
+        top = table_top(left, plane, settings)
+        around = left.points[top.beyond(left.points) <= settings.top.margin]
+        around = around if len(around) else left.points
+        own = believed(outlook if outlook.known else view.outlook, around, settings)
+        own = likely(own, around, plane, settings)
+        yield FoundTable(plane, top, replace(left, outlook=own))
+        left = left.take(np.flatnonzero(~top.is_below(left.points)))
+        enough = len(left.points) >= settings.plane.min_inlier_share * len(points)
+        plane = _another(left.points, plane, own, settings) if enough else None
 
 
 def _another(points: NDArray[np.float64], plane: Plane, outlook: Outlook, settings: DetectionSettings) -> Plane | None:
@@ -56,7 +60,6 @@ def _another(points: NDArray[np.float64], plane: Plane, outlook: Outlook, settin
     level = level_of(other, few, near, few[np.abs(other.heights(few)) > near], limits)
     if len(level.points) < limits.min_inlier_share * len(few) or not level.bears(len(few), limits):
         return None
-    plan = level.points @ other.across.T
-    long = np.ptp(plan[in_largest_piece(plan, settings.outlines.table_cell)], axis=0).max()
+    long = largest_part_length(level.points, other, settings.top)
     drop = abs(np.median(plane.heights(level.points)))
     return other if long >= settings.scale.min_table_length and drop < limits.floor_drop else None

@@ -7,7 +7,7 @@ from elsewhere they are not.
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +15,24 @@ from numpy.typing import NDArray
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.detection.plane import Outlook, Plane
 from deixis.perception.detection.settings import DetectionSettings, ViewpointSettings
+
+
+@dataclass(frozen=True, eq=False)
+class View:
+    """The points of a cloud that have a depth, and from where they are seen.
+
+    ``points`` (n, 3) are in the cloud's frame, ``places`` (n,) their numbers in the cloud, which is an image of
+    ``organised`` rows and columns or none.
+    """
+
+    points: NDArray[np.float64]
+    places: NDArray[np.intp]
+    organised: tuple[int, int] | None
+    outlook: Outlook
+
+    def take(self, chosen: NDArray[np.intp]) -> View:
+        """Return the chosen points alone."""
+        return replace(self, points=self.points[chosen], places=self.places[chosen])
 
 
 def outlook_of(cloud: PointCloud, settings: DetectionSettings) -> Outlook:
@@ -26,55 +44,94 @@ def outlook_of(cloud: PointCloud, settings: DetectionSettings) -> Outlook:
         upwards = upwards / np.linalg.norm(upwards)
     if cloud.organised is None or min(cloud.organised) < 2:
         return Outlook(eye, upwards=upwards)
-    image = cloud.points.reshape(*cloud.organised, 3)
-    limits = settings.viewpoint
-    columns, rows = (_rays(pixels, eye, limits.image_lines) for pixels in (image, image.swapaxes(0, 1)))
-    uneven = (_uneven(rays, limits.direction_change_quantile) for rays in (columns, rows))
-    if max(uneven) > limits.max_direction_change:
-        return Outlook(eye, upwards=upwards, known=False)
-    down, right = _direction(columns), _direction(rows)
-    if down is None or right is None:
+    image, limits = _without_empty_lines(cloud.points.reshape(*cloud.organised, 3)), settings.viewpoint
+    if min(image.shape[:2]) < 2:
         return Outlook(eye, upwards=upwards)
-    return Outlook(eye, -down, right, upwards)
+    uneven = max(_uneven(_rays(pixels, eye, limits)) for pixels in (image, image.swapaxes(0, 1)))
+    camera = _best_camera(image, eye, limits)
+    if camera is None:
+        return Outlook(eye, upwards=upwards)
+    # From a wrong place the misfit is smooth; noise across the rays makes steps uneven far more than it makes misfits.
+    noisy = camera.misfit < min(limits.max_pinhole_misfit, limits.max_smooth_misfit * uneven)
+    if uneven > limits.max_direction_change and not noisy:
+        return Outlook(eye, upwards=upwards, known=False)
+    return Outlook(eye, -camera.down, camera.right, upwards)
 
 
-def _rays(image: NDArray[np.float32], eye: NDArray[np.float64], lines: int) -> NDArray[np.float64]:
-    """Return unit vectors from the eye to the pixels of an image (r, c, 3), in about ``lines`` of its columns."""
-    rays = image[:, :: max(1, image.shape[1] // lines)] - eye
+def _without_empty_lines(image: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Return the rows and columns of an image (r, c, 3) in which anything has a depth: some cameras leave lines out."""
+    there = np.isfinite(image[..., 2])
+    return image[there.any(axis=1)][:, there.any(axis=0)]
+
+
+def _rays(image: NDArray[np.float32], eye: NDArray[np.float64], settings: ViewpointSettings) -> NDArray[np.float64]:
+    """Return unit vectors (t, 3, c, 3) from the eye to pixels of an image (r, c, 3): t times to three that follow each
+    other down, in each of c columns."""
+    rows, columns = image.shape[:2]
+    first = np.arange(0, max(rows - 2, 1), max(1, rows // settings.image_steps))
+    triples = image[np.minimum(first[:, None] + np.arange(3), rows - 1), :: max(1, columns // settings.image_lines)]
+    rays = triples - eye
     with np.errstate(invalid="ignore", divide="ignore"):
-        unit: NDArray[np.float64] = rays / np.linalg.norm(rays, axis=2, keepdims=True)
+        unit: NDArray[np.float64] = rays / np.linalg.norm(rays, axis=3, keepdims=True)
     return unit
 
 
-def _uneven(rays: NDArray[np.float64], quantile: float) -> float:
-    """Return by what share most steps from ray to ray along the first axis of (r, c, 3) change to the next, at most,
-    beyond what those of a pinhole camera do: up to 45 degrees aside, twice the step's angle."""
-    steps = np.diff(rays, axis=0)
-    angles = np.linalg.norm(steps[1:], axis=2)
+def _uneven(rays: NDArray[np.float64]) -> float:
+    """Return by what share most steps from ray to ray of (t, 3, c, 3) change to the next, at most, beyond what those of
+    a pinhole camera do: up to 45 degrees aside, twice the step's angle. The edges of things are left out."""
+    first, second = rays[:, 1] - rays[:, 0], rays[:, 2] - rays[:, 1]
+    angles = np.linalg.norm(second, axis=2)
     with np.errstate(invalid="ignore", divide="ignore"):
-        change = np.linalg.norm(np.diff(steps, axis=0), axis=2) / angles - 2 * angles
-    return float(np.quantile(change[np.isfinite(change)], quantile)) if np.isfinite(change).any() else 0.0
+        change = np.linalg.norm(second - first, axis=2) / angles - 2 * angles
+    return float(np.quantile(change[np.isfinite(change)], 0.9)) if np.isfinite(change).any() else 0.0
 
 
-def _direction(rays: NDArray[np.float64]) -> NDArray[np.float64] | None:
-    """Return where the first axis of an image leads, from rays (r, c, 3): the direction that is in the planes of all
-    columns.
+@dataclass(frozen=True, eq=False)
+class _Pinhole:
+    """The pinhole camera that sees an image from a place: where its columns and rows lead, unit vectors (3,), and by
+    how many pixels most points are off."""
 
-    The mean step from ray to ray is aslant where more of one side of the image is seen.
+    down: NDArray[np.float64]
+    right: NDArray[np.float64]
+    misfit: float
+
+
+def _best_camera(image: NDArray[np.float32], eye: NDArray[np.float64], settings: ViewpointSettings) -> _Pinhole | None:
+    """Return the camera at the eye that sees the points of an image (r, c, 3) nearest to their pixels; None of too few.
+
+    By the direct linear transformation (Abdel-Aziz and Karara, Direct linear transformation from comparator
+    coordinates, 1971).
     """
-    one, other = rays[:-1].reshape(-1, 3), rays[1:].reshape(-1, 3)
-    both = np.isfinite(one + other).all(axis=1)
-    if both.sum() < 2:
+    row, column = np.nonzero(np.isfinite(image[..., 2]))
+    few = slice(None, None, max(1, len(row) // settings.pinhole_sample_size))
+    row, column = row[few], column[few]
+    if len(row) < 10 or not np.ptp(row) or not np.ptp(column):
         return None
-    across = np.cross(one[both], other[both])
-    along: NDArray[np.float64] = np.linalg.eigh(across.T @ across)[1][:, 0]
-    step = (other[both] - one[both]).mean(axis=0) @ along
-    return along * np.sign(step) if abs(step) > 0 else None
+    size = float(max(image.shape[:2]))
+    at = np.stack([column - column.mean(), row - row.mean()], axis=1) / size
+    rays = directions(image[row, column].astype(np.float64), eye)
+    zero = np.zeros_like(rays)
+    terms = np.concatenate([np.hstack([rays, zero, -at[:, :1] * rays]), np.hstack([zero, rays, -at[:, 1:] * rays])])
+    camera = np.linalg.eigh(terms.T @ terms)[1][:, 0].reshape(3, 3)
+    depth = rays @ camera[2]
+    camera *= np.sign(np.median(depth)) or 1.0
+    with np.errstate(invalid="ignore", divide="ignore"):
+        off = size * np.linalg.norm(rays @ camera[:2].T / (rays @ camera[2])[:, None] - at, axis=1)
+    ways = []
+    for along, other in ((1, 0), (0, 1)):  # a column is where its own coordinate does not change
+        way = np.cross(camera[other], camera[2])
+        length = float(np.linalg.norm(way))
+        if not length > 0:
+            return None
+        ways.append(way / length * (np.sign(camera[along] @ way) or 1.0))
+    return _Pinhole(ways[0], ways[1], float(np.quantile(np.nan_to_num(off, nan=np.inf), settings.pinhole_quantile)))
 
 
 def believed(outlook: Outlook, points: NDArray[np.float64], settings: DetectionSettings) -> Outlook:
     """Return the outlook on the points (n, 3), if they may have been seen from there; else one from above, as not
     known."""
+    if outlook.up is not None:  # of an image, that has been looked at
+        return outlook
     limits = settings.viewpoint
     few = _sample(points, settings)
     if outlook.known and apart(few, outlook.eye, limits) < limits.max_far_share:
@@ -85,18 +142,24 @@ def believed(outlook: Outlook, points: NDArray[np.float64], settings: DetectionS
 
 def likely(outlook: Outlook, points: NDArray[np.float64], plane: Plane, settings: DetectionSettings) -> Outlook:
     """Return the outlook, if it is known and above the table; else from where the points (n, 3) look most as if
-    seen."""
+    seen. One that is doubtful gives way to another that is twice as likely."""
     limits = settings.viewpoint
-    if outlook.known and plane.heights(outlook.eye[None])[0] > limits.min_eye_height:
-        return outlook
     few = _sample(points, settings)
+    told: float = np.inf
+    if outlook.known and plane.heights(outlook.eye[None])[0] > limits.min_eye_height:
+        told = 0.0 if outlook.up is not None else apart(few, outlook.eye, limits)
+        if told < limits.doubtful_far_share:
+            return outlook
     on = few[np.abs(plane.heights(few)) < settings.plane.table_band]
     middle = (on if len(on) else few).mean(axis=0)
     turns = np.arange(limits.assumed_azimuths) * 2 * np.pi / limits.assumed_azimuths
     level = np.column_stack([np.cos(turns), np.sin(turns)]) @ plane.across
     aslant = np.cos(limits.assumed_elevation) * level + np.sin(limits.assumed_elevation) * plane.normal
     places = [middle + limits.assumed_distance * direction for direction in (plane.normal, *aslant)]
-    eye = min(places, key=lambda place: apart(few, place, limits))
+    shares = [apart(few, place, limits) for place in places]
+    eye = places[int(np.argmin(shares))]
+    if told < limits.max_far_share and min(shares) > told / 2:
+        return outlook
     return replace(outlook, eye=eye, up=None, right=None, known=False)
 
 

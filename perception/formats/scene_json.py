@@ -42,7 +42,7 @@ UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "px": 1.0}
 """Accepted units, and how many metres one is; pixels stay pixels."""
 
 MAX_BYTES = 256 * 2**20
-_SCENE_KEYS = {"frame", "viewpoint", "unit", "objects"}
+_SCENE_KEYS = {"frame", "viewpoint", "unit", "objects", "shows"}
 _OBJECT_KEYS = {"id", "min", "max", "label", "confidence", "cloud", "colour", "oriented"}
 _ORIENTED_KEYS = {"centre", "yaw", "extents"}
 

@@ -70,16 +70,18 @@ def _read_clouds() -> None:
 
 
 def compile_detection() -> None:
-    """Detects a block on a table."""
+    """Detects a block on a table, as an image and as bare points."""
     import numpy as np
 
     from deixis.perception.clouds.cloud import PointCloud
     from deixis.perception.detection.detect import detect
 
-    x, y = (axis.ravel() for axis in np.mgrid[-0.3:0.3:0.01, 0.5:1.1:0.01])
+    x_and_y = np.mgrid[-0.3:0.3:0.01, 0.5:1.1:0.01]
+    x, y = x_and_y.reshape(2, -1)
     block = (abs(x) < 0.05) & (abs(y - 0.8) < 0.05)
     points = np.stack([x, y, np.where(block, -0.64, -0.7)], axis=1)
     detect(PointCloud(points.astype(np.float32)))
+    detect(PointCloud(points.astype(np.float32), organised=x_and_y.shape[1:]))
 
 
 def compile_features() -> None:

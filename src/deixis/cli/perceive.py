@@ -49,7 +49,7 @@ def perceive(
     from deixis.errors import DeixisError
     from deixis.perception.detection.settings import DetectionSettings
     from deixis.perception.formats.scene_json import scene_to_dict
-    from deixis.report.seen import scene_lines
+    from deixis.report.seen import scene_lines, shows_line
     from deixis.workflows.perceive import perceive as run
     from deixis.workflows.perceive import write_scene
 
@@ -71,12 +71,13 @@ def perceive(
 
         plot_perceived(scene, plot)
     if as_json or out is None:
-        print_json(scene_to_dict(written))
+        print_json({**scene_to_dict(written), "shows": str(found.shows)})
         for note in found.notes:
             print_note(note)
     else:
         print_lines(scene_lines(scene))
         print_lines(f"Note: {note}." for note in found.notes)
+        print_lines([shows_line(found.shows)])
         print_written(out if seen else None)
     if not as_json:
         print_written(labels, plot, aside=out is None)

@@ -23,6 +23,20 @@ def scene_lines(scene: Scene) -> list[str]:
     return lines or ["Nothing was found."]
 
 
+_SHOWN = {
+    "table": "The cloud shows a table.",
+    "tables": "The cloud shows several tables, of which one was looked at.",
+    "object": "The cloud shows one object, without a table.",
+    "room": "The cloud shows a room.",
+    "nothing": "The cloud shows neither a table nor an object.",
+}
+
+
+def shows_line(shows: str) -> str:
+    """Return what a cloud shows, as a sentence."""
+    return _SHOWN[shows]
+
+
 def taught_line(taught: Taught, name: str) -> str:
     """Return what a view that was taught is of, and how many views there are now."""
     corrected = f", and no longer of '{taught.before}'" if taught.before else ""

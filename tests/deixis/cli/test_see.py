@@ -288,7 +288,10 @@ def test_a_table_with_nothing_on_it_is_an_answer(tmp_path: Path) -> None:
     code, out, err = deixis("perceive", tmp_path / "bare.pcd")
     assert code == 1
     assert json.loads(out)["objects"] == []
+    assert json.loads(out)["shows"] == "table"
     assert "nothing is on the table" in err
+    (tmp_path / "bare.scene.json").write_text(out)
+    assert read_scene(tmp_path / "bare.scene.json").objects == ()
 
 
 @pytest.fixture(scope="module")

@@ -42,14 +42,14 @@ def test_the_inside_of_a_cup_is_the_cup() -> None:
 
 def test_the_inside_of_a_cup_is_the_cup_though_a_handle_is_taken_for_a_part_of_it() -> None:
     parts = _cup(PLAIN, 0.0, handle=12)
-    assert -0.4 < parts.bulge[1] < -0.1
+    assert -0.4 < parts.measures.bulge[1] < -0.1
     assert len(whole_things(parts)) == 1
 
 
 @pytest.mark.parametrize(("mottle", "count"), [(0.0, 2), (16.0, 1)])
 def test_colours_differ_only_by_more_than_they_vary(mottle: float, count: int) -> None:
     parts = _cup(np.array([0.0, 0.0, 13.0]), mottle)
-    assert parts.unlike()[0, 1] > 12
+    assert parts.unlike(parts.meetings())[0] > 12
     assert len(whole_things(parts)) == count
 
 
@@ -66,7 +66,7 @@ def test_a_glass_whose_stem_is_seen_stands_on_its_foot_but_not_on_a_plate(width:
     patches = Supervoxels(number, ones, middles, normals, np.zeros_like(middles), 1e-4 * ones, SupervoxelSettings())
     meeting = Boundaries(np.array([[0, len(stem) + len(bowl) + 27]]), np.ones(1), np.full(1, 1.2), np.ones(1))
     parts = Parts(of, patches, meeting, JoiningSettings())
-    assert 0.015 < parts.rise[0, 1] < 0.03
+    assert 0.015 < parts.meetings().rise[0] < 0.03
     assert len(whole_things(parts)) == count
 
 
@@ -117,7 +117,8 @@ def test_a_surface_goes_on_below_what_lies_between_its_parts() -> None:
         _grid((-0.01, 0.01), (-0.1, 0.1), 0.02),
         [_grid((side, side + 0.06), (-0.1, 0.1), 0.01) for side in (-0.08, 0.02)],
     )
-    assert bridged(_below(knife, *halves)).tolist() == [[1, 2]]
+    pairs = bridged(_below(knife, *halves))
+    assert (pairs.first.tolist(), pairs.second.tolist()) == ([1], [2])
 
 
 def test_cutlery_on_two_sides_of_a_plate_is_not_one_thing_below_it() -> None:
@@ -131,7 +132,8 @@ def test_a_round_plate_goes_on_below_a_napkin_however_wide() -> None:
     disc = _grid((-0.13, 0.13), (-0.13, 0.13), 0.01)
     disc = disc[np.linalg.norm(disc[:, :2], axis=1) < 0.132]
     halves = [disc[side * disc[:, 0] > 0.065] for side in (-1, 1)]
-    assert round_rims(_below(_grid((-0.06, 0.06), (-0.1, 0.1), 0.02), *halves)).tolist() == [[1, 2]]
+    pairs = round_rims(_below(_grid((-0.06, 0.06), (-0.1, 0.1), 0.02), *halves))
+    assert (pairs.first.tolist(), pairs.second.tolist()) == ([1], [2])
 
 
 @pytest.mark.parametrize("length", [0.06, 0.16])

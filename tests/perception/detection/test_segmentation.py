@@ -79,6 +79,39 @@ def test_no_boundary_that_speaks_for_one_thing_is_left(count: int, seed: int) ->
         assert (lengths[meets] * evidence[meets]).sum() / lengths[meets].sum() >= 0.5 - 1e-9
 
 
+def merged_by_search(
+    meeting: Boundaries, colours: NDArray[np.float64], weights: NDArray[np.float64], limits: BoundarySettings
+) -> list[int]:
+    """The regions of agglomeration, each time by looking at all pairs anew."""
+    of = list(range(len(weights)))
+    while True:
+        edges: dict[tuple[int, int], tuple[float, float]] = {}
+        for (a, b), length, evidence in zip(meeting.pairs.tolist(), meeting.lengths, meeting.evidence, strict=True):
+            pair = (min(of[a], of[b]), max(of[a], of[b]))
+            before = edges.get(pair, (0.0, 0.0))
+            edges[pair] = (before[0] + length, before[1] + length * evidence)
+        best = (np.inf, 0, 0)
+        for (a, b), (length, total) in edges.items():
+            if a == b or total / length >= limits.merge_limit:
+                continue
+            means = [np.average(colours[np.array(of) == k], axis=0, weights=weights[np.array(of) == k]) for k in (a, b)]
+            share = min(float(np.linalg.norm(means[0] - means[1])) / limits.full_colour_difference, 1.0)
+            best = min(best, (total / length + limits.colour_delay * share, a, b))
+        if best[0] >= limits.merge_limit + limits.colour_delay:
+            return [int(k) for k in np.unique(of, return_inverse=True)[1]]
+        of = [best[1] if k == best[2] else k for k in of]
+
+
+@settings(max_examples=30, deadline=None)
+@given(st.integers(2, 14), st.integers(0, 10**6))
+def test_agglomeration_merges_as_a_search_of_all_pairs_does(count: int, seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    pairs = np.argwhere(np.triu(rng.random((count, count)) < 0.4, 1)).astype(np.int64)
+    meeting = Boundaries(pairs, rng.integers(1, 9, len(pairs)).astype(float), rng.random(len(pairs)), np.zeros(0))
+    given = (meeting, 8 * rng.random((count, 3)), 0.1 + rng.random(count), BoundarySettings())
+    assert agglomerated(*given).tolist() == merged_by_search(*given)
+
+
 @pytest.mark.parametrize(("tint", "expected"), [(0.0, [0, 0, 1]), (20.0, [0, 1, 1])])
 def test_colour_decides_what_is_merged_first(tint: float, expected: list[int]) -> None:
     """A knife that ends smoothly on one half of a rim, and hangs over the other: the rim is made whole first."""

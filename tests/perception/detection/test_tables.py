@@ -54,6 +54,26 @@ def test_what_is_bare_or_as_low_as_a_floor_is_no_second_table(boxes_seen: Look, 
     assert detect(cloud, DetectionSettings(table=2)).notes == ("there is no table 2: one table was found",)
 
 
+@pytest.mark.parametrize("covered", [True, False])
+def test_parts_of_a_table_are_one_if_a_pile_is_between_them(boxes_seen: Look, covered: bool) -> None:
+    """Two slabs at the same height, side by side, and a cube on each; between them boxes, or the floor."""
+    slabs = [((-0.45, -0.3, -0.03), (-0.1, 0.3, 0.0)), ((0.1, -0.3, -0.03), (0.45, 0.3, 0.0))]
+    cubes = [((-0.3, -0.05, 0.0), (-0.22, 0.03, 0.07)), ((0.22, -0.05, 0.0), (0.3, 0.03, 0.07))]
+    pile = [((-0.11, y, -0.03), (0.11, y + 0.14, 0.05 + y / 5)) for y in (-0.35, -0.2, -0.05, 0.1, 0.25)]
+    floor = [((-2.0, -2.0, -0.8), (2.0, 2.0, -0.75))]
+    cloud = boxes_seen([*slabs, *cubes, *(pile if covered else floor)], half=0.0)
+    found = detect(cloud)
+    best = [max(of_thing(found, cloud, k, cube) for k in range(len(found.boxes))) for cube in (3, 4)]
+    assert sum(share > 0.8 for share in best) == 1 + covered
+
+
+def test_a_strip_of_a_wall_at_the_height_of_the_table_is_no_part_of_it(boxes_seen: Look) -> None:
+    tall = ((-0.1, 0.2, 0.0), (0.1, 0.26, 0.5))
+    cloud = boxes_seen([CUBE, tall, ((-1.0, 0.9, -0.6), (1.0, 0.95, 1.0))], half=0.4)
+    found = detect(cloud)
+    assert len(found.boxes) == 2 and np.abs(found.boxes[..., :2]).max() < 0.5
+
+
 def test_tables_are_numbered_from_one() -> None:
     with pytest.raises(CloudError, match="numbered from 1"):
         DetectionSettings(table=0)

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.detection.detect import Detection, detect
 from deixis.perception.detection.neighbours import neighbour_table
-from deixis.perception.detection.settings import SurfaceSettings, ViewpointSettings
-from deixis.perception.detection.viewpoint import apart
+from deixis.perception.detection.settings import DetectionSettings, SurfaceSettings, ViewpointSettings
+from deixis.perception.detection.viewpoint import apart, outlook_of
 from deixis.perception.errors import CloudError
 
 Look = Callable[..., PointCloud]
@@ -101,6 +101,34 @@ def test_a_camera_held_upside_down_sees_the_same_table(boxes_seen: Look) -> None
     one, other = detect(cloud), detect(PointCloud(points, organised=cloud.organised))
     assert other.boxes == pytest.approx(one.boxes, abs=0.003)
     assert (other.labels[::-1] == one.labels).mean() > 0.99
+
+
+@pytest.mark.parametrize("lost", ["rows", "columns", "two of three rows", "chequered", "half at random"])
+def test_a_table_is_seen_though_lines_of_the_image_are_missing(boxes_seen: Look, lost: str) -> None:
+    cloud = boxes_seen([CUBE, LOW, STACKED])
+    assert cloud.organised is not None
+    row, column = np.indices(cloud.organised)
+    masks = {
+        "rows": row % 2 == 0,
+        "columns": column % 2 == 0,
+        "two of three rows": row % 3 > 0,
+        "chequered": (row + column) % 2 == 0,
+        "half at random": np.random.default_rng(0).random(row.shape) < 0.5,
+    }
+    points = cloud.points.copy()
+    points[masks[lost].ravel()] = np.nan
+    found, whole = detect(replace(cloud, points=points)), detect(cloud)
+    assert len(found.boxes) == 3
+    kept = np.isfinite(points).all(axis=1)
+    assert ((found.labels >= 0) == (whole.labels >= 0))[kept].mean() > 0.99
+
+
+def test_noise_in_all_directions_hides_no_viewpoint(boxes_seen: Look) -> None:
+    cloud = boxes_seen([CUBE, PLANK])
+    noise = np.random.default_rng(0).normal(0, 1e-3, cloud.points.shape)
+    noisy = replace(cloud, points=(cloud.points + noise).astype(np.float32))
+    assert outlook_of(noisy, DetectionSettings()).known
+    assert detect(noisy).frame[0, :3] == pytest.approx([1, 0, 0], abs=0.01)
 
 
 def test_a_cloud_in_millimetres_is_refused_and_told_so(boxes_seen: Look) -> None:

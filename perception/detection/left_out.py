@@ -1,0 +1,147 @@
+"""What is above a table, or hidden there, and is not reported as a thing: said in notes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import IntEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.perception.detection.settings import DetectionSettings, NoteSettings
+from deixis.perception.detection.table_top import TableTop
+
+
+class Fate(IntEnum):
+    """What became of a point that was looked at."""
+
+    NOT_RAISED = 0
+    REPORTED = 1
+    BESIDE = 2
+    """It is of a piece that is mostly beside the table."""
+    DISCARDED = 3
+    """It is of a piece too small, or too low, for a thing."""
+
+
+@dataclass(frozen=True, eq=False)
+class Pieces:
+    """The pieces of surface above a table: ``of`` (n,) is each point's, -1 for none, and ``fates`` (p,) theirs."""
+
+    of: NDArray[np.int32]
+    fates: NDArray[np.int8]
+
+    @property
+    def points(self) -> NDArray[np.int64]:
+        """How many points each piece has, (p,)."""
+        return np.bincount(self.of[self.of >= 0], minlength=len(self.fates))
+
+    @property
+    def things(self) -> NDArray[np.int32]:
+        """The number of its thing for each point (n,), from 0, -1 for none."""
+        reported = self.fates == Fate.REPORTED
+        number = np.append(np.where(reported, np.cumsum(reported) - 1, -1), -1).astype(np.int32)
+        result: NDArray[np.int32] = number[self.of]
+        return result
+
+
+def left_out(
+    points: NDArray[np.float64],
+    top: TableTop,
+    heights: NDArray[np.float64],
+    pieces: Pieces,
+    settings: DetectionSettings,
+) -> tuple[str, ...]:
+    """Return notes on what is above the table and not reported, among points (n, 3) at ``heights`` (n,) above it."""
+    limits = settings.notes
+    beyond = top.beyond(points)
+    high = (heights > settings.reach) & (beyond < 0)
+    notes = []
+    if high.sum() > limits.min_high_share * max(len(top.on), 1):
+        notes.append(
+            f"something is more than {100 * settings.reach:.0f} cm above the table, where nothing is looked for:"
+            " a person, a lamp or a wall"
+        )
+    counts = pieces.points
+    beside = (pieces.fates == Fate.BESIDE) & (counts >= limits.min_piece_points)
+    if beside.any():
+        some = "a piece" if beside.sum() == 1 else f"{beside.sum()} pieces"
+        notes.append(f"{some} beside the table, of {counts[beside].sum()} points, {_was(beside)} left out")
+    discarded = counts[pieces.fates == Fate.DISCARDED].sum()
+    if discarded > limits.min_discarded_share * counts.sum() and discarded >= limits.min_piece_points:
+        notes.append(
+            f"{discarded} of the {counts.sum()} points that rise above the table are in pieces too small or too low for"
+            " things"
+        )
+    if _reaches_over(points, beyond, heights, pieces, limits):
+        notes.append("something reaches over the edge of the table: a hand or an arm, or a thing that hangs over it")
+    return tuple(notes)
+
+
+def _was(which: NDArray[np.bool_]) -> str:
+    return "was" if which.sum() == 1 else "were"
+
+
+def _reaches_over(
+    points: NDArray[np.float64],
+    beyond: NDArray[np.float64],
+    heights: NDArray[np.float64],
+    pieces: Pieces,
+    settings: NoteSettings,
+) -> bool:
+    """Return whether a piece above the table goes on far beyond its outline, at a height above it."""
+    chosen = np.flatnonzero(pieces.of >= 0)
+    of, count = pieces.of[chosen], len(pieces.fates)
+    total = np.bincount(of, minlength=count)
+    outside = np.bincount(of[beyond[chosen] > settings.overhang], minlength=count)
+    inside = np.bincount(of[beyond[chosen] < 0], minlength=count)
+    both = (outside > settings.min_overhang_share * total) & (inside > settings.min_overhang_share * total)
+    return bool((both & (outside >= settings.min_piece_points)).any())
+
+
+def missing_lines(organised: tuple[int, int] | None, places: NDArray[np.intp]) -> tuple[str, ...]:
+    """Return a note where many rows or columns of an image have no depth between others that have it."""
+    if organised is None or not len(places):
+        return ()
+    notes = []
+    for name, lines in zip(("rows", "columns"), np.divmod(places, organised[1]), strict=True):
+        seen = np.zeros(int(lines.max() - lines.min()) + 1, dtype=np.bool_)
+        seen[lines - lines.min()] = True
+        if (~seen).sum() > 0.1 * len(seen):
+            notes.append(f"{(~seen).sum()} of {len(seen)} {name} of the image have no depth")
+    return tuple(notes)
+
+
+def holes(
+    organised: tuple[int, int] | None, places: NDArray[np.intp], on: NDArray[np.bool_], settings: NoteSettings
+) -> tuple[str, ...]:
+    """Return a note where much of the table has no depth: which of the points at these ``places`` of an image are
+    ``on`` the table or what stands there, (n,)."""
+    if organised is None or not on.any():
+        return ()
+    from scipy.ndimage import binary_closing, binary_fill_holes
+
+    rows, columns = np.divmod(places, organised[1])
+    shape = tuple(-(-side // settings.hole_cell) for side in organised)
+    cell = rows // settings.hole_cell * shape[1] + columns // settings.hole_cell
+    total = np.bincount(cell, minlength=shape[0] * shape[1]).reshape(shape)
+    table = np.bincount(cell[on], minlength=shape[0] * shape[1]).reshape(shape) > 0
+    whole = binary_fill_holes(binary_closing(table, np.ones((3, 3)), iterations=3))
+    # a cell without depth is a hole; so are the pixels that most cells with depth lack
+    usual = float(np.median(total[table]))
+    empty = whole & (total < 0.2 * usual)
+    share = empty.sum() / whole.sum()
+    if share <= settings.max_hole_share:
+        return ()
+    return (f"{share:.0%} of the table as seen has no depth: shiny, dark or transparent things there are not seen",)
+
+
+def odd_sizes(lengths: NDArray[np.float64], settings: NoteSettings) -> tuple[str, ...]:
+    """Return a note where the things, by their longest sides (k,), are of no size that tableware has."""
+    if len(lengths) < 2:
+        return ()
+    usual = float(np.median(lengths))
+    if settings.min_usual_length <= usual <= settings.max_usual_length:
+        return ()
+    return (
+        f"half of the things are {'over' if usual > 0.1 else 'under'} {100 * usual:.0f} cm long: is the unit another?",
+    )

@@ -1,0 +1,182 @@
+"""The table's top: which of the points level with its plane are on it, and what is above its outline.
+
+Things may hide so much of a table that its visible parts are not connected. Two parts are of one table where what lies
+between them, as seen from the sensor, is hidden by something above the plane. Where the view passes through the plane
+to something lower, or to nothing at all, there is no table.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.perception.detection.outline import in_largest_piece
+from deixis.perception.detection.plane import Plane
+from deixis.perception.detection.settings import DetectionSettings, TableTopSettings
+from deixis.perception.detection.viewpoint import View, directions
+
+_EMPTY, _LEVEL, _ABOVE, _BELOW = 0, 1, 2, 3
+"""What a cell of the image shows: nothing, the plane, something above it, or something below it."""
+
+
+@dataclass(frozen=True, eq=False)
+class TableTop:
+    """The points (n, 3) of a view that are on a table's top, by their numbers ``on`` (k,), and the top's outline."""
+
+    plane: Plane
+    points: NDArray[np.float64]
+    on: NDArray[np.intp]
+    settings: DetectionSettings
+
+    @cached_property
+    def outline(self) -> NDArray[np.float64]:
+        """The convex hull of the top in the plan of ``plane.across``, as half planes (h, 3); none of too few points."""
+        from scipy.spatial import ConvexHull, QhullError
+
+        step = max(1, len(self.on) // self.settings.top.outline_sample_size)
+        try:
+            sides: NDArray[np.float64] = ConvexHull(self.points[self.on[::step]] @ self.plane.across.T).equations
+        except (QhullError, ValueError):
+            return np.zeros((0, 3))
+        return sides
+
+    def beyond(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return how far points (n, 3) are outside the outline as seen from above, in metres, (n,); within it below 0.
+
+        Where the top has no outline, all are infinitely far.
+        """
+        from deixis.perception.detection.kernels import greatest_offset
+
+        offsets: NDArray[np.float64] = greatest_offset(points @ self.plane.across.T, self.outline)
+        return offsets
+
+    def is_below(self, points: NDArray[np.float64]) -> NDArray[np.bool_]:
+        """Return over which of the points (n, 3), or below them, the top is, (n,)."""
+        result: NDArray[np.bool_] = self.beyond(points) <= self.settings.top.slack
+        return result
+
+
+def table_top(view: View, plane: Plane, settings: DetectionSettings) -> TableTop:
+    """Return the top of the table of a ``plane``: its largest connected part, and all parts that things cut off."""
+    limits = settings.top
+    cells = _cells(view, plane, limits)
+    heights = plane.heights(view.points)
+    level = np.abs(heights) < settings.plane.table_band
+    shape = tuple((cells.max(axis=0) + 1).tolist()) if len(cells) else (0, 0)
+    flat = cells[:, 0] * (shape[1] if len(cells) else 1) + cells[:, 1]
+    shown = _shown(flat, heights, level, shape, limits)
+    from scipy.ndimage import label
+
+    parts, count = label(shown == _LEVEL, np.ones((3, 3)))
+    of = np.where(level, parts.ravel()[flat], 0) if len(cells) else np.zeros(0, np.int64)
+    sizes = np.bincount(of, minlength=count + 1)
+    sizes[0] = 0
+    if not sizes.any():
+        return TableTop(plane, view.points, np.zeros(0, np.intp), settings)
+    chosen = np.zeros(count + 1, dtype=np.bool_)
+    chosen[sizes.argmax()] = True
+    wide = np.bincount(parts.ravel(), minlength=count + 1) >= limits.min_part_cells
+    left = [int(part) for part in np.argsort(-sizes) if part and wide[part] and not chosen[part]]
+    while more := [part for part in left if _goes_on(shown, chosen[parts], parts == part, limits)]:
+        chosen[[part for part in more if not _is_upright(view.points, of == part, heights, plane, settings)]] = True
+        left = [part for part in left if part not in more]
+    return TableTop(plane, view.points, np.flatnonzero(chosen[of]), settings)
+
+
+def _cells(view: View, plane: Plane, settings: TableTopSettings) -> NDArray[np.int64]:
+    """Return the cell of the image (row, column) that each point is in, (n, 2), from 0.
+
+    Points of an image are in blocks of pixels, others in blocks of directions from the sensor; where that is not known,
+    in squares of the plan.
+    """
+    if not len(view.points):
+        return np.zeros((0, 2), np.int64)
+    count = min(float(settings.max_cells), np.sqrt(len(view.points)) / settings.min_cell_side)
+    if view.organised is not None:
+        size = max(1, round(max(view.organised) / max(count, 1.0)))
+        blocks: NDArray[np.int64] = np.stack(np.divmod(view.places, view.organised[1]), axis=1) // size
+        return blocks
+    if view.outlook.known:
+        rays = directions(view.points, view.outlook.eye)
+        ahead = rays.mean(axis=0)
+        ahead /= max(float(np.linalg.norm(ahead)), 1e-9)
+        depth = np.maximum(rays @ ahead, 0.1)  # nothing is seen farther aside than 84 degrees
+        at = rays @ np.linalg.svd(ahead[None])[2][1:].T / depth[:, None]
+        side = float(np.ptp(np.percentile(at, (1, 99), axis=0), axis=0).max()) / max(count, 1.0)
+    else:
+        at = view.points @ plane.across.T
+        side = settings.plan_cell
+    low, high = np.percentile(at, (0.1, 99.9), axis=0)
+    side = max(side, float((high - low).max()) / 1000, 1e-9)
+    cells: NDArray[np.int64] = np.floor((np.clip(at, low, high) - low) / side).astype(np.int64)
+    return cells
+
+
+def _shown(
+    flat: NDArray[np.int64],
+    heights: NDArray[np.float64],
+    level: NDArray[np.bool_],
+    shape: tuple[int, ...],
+    settings: TableTopSettings,
+) -> NDArray[np.int8]:
+    """Return what each cell shows, of that ``shape``, by the cells (n,) of points with ``heights`` (n,)."""
+    count = int(np.prod(shape))
+    total = np.bincount(flat, minlength=count)
+    on = np.bincount(flat[level], minlength=count)
+    below = np.bincount(flat[~level & (heights < 0)], minlength=count)
+    shown = np.where(total > 0, _ABOVE, _EMPTY).astype(np.int8)
+    shown[below > total / 2] = _BELOW
+    shown[(on > 0) & (on >= settings.min_level_share * total)] = _LEVEL
+    return shown.reshape(shape)
+
+
+def _is_upright(
+    points: NDArray[np.float64],
+    part: NDArray[np.bool_],
+    heights: NDArray[np.float64],
+    plane: Plane,
+    settings: DetectionSettings,
+) -> bool:
+    """Return whether nearly all of a part (n,) has something right above it: a strip of a wall or of a tall thing."""
+    limits = settings.top
+    above = (heights > settings.plane.table_band) & (heights < settings.reach)
+    plan = np.floor(points[part | above] @ plane.across.T / limits.plan_cell).astype(np.int64)
+    plan -= plan.min(axis=0)
+    codes = plan[:, 0] * (int(plan[:, 1].max()) + 1) + plan[:, 1]
+    of_part = part[part | above]
+    own = np.unique(codes[of_part])
+    return bool(np.isin(own, codes[~of_part]).mean() > limits.max_covered_share)
+
+
+def _goes_on(
+    shown: NDArray[np.int8], top: NDArray[np.bool_], part: NDArray[np.bool_], settings: TableTopSettings
+) -> bool:
+    """Return whether a part of the plane (r, c) is of the same table as its ``top`` (r, c).
+
+    Straight lines are drawn from the cells of the part that face the top to the nearest cells of that. Most must pass
+    over what hides the plane.
+    """
+    from scipy.spatial import cKDTree
+
+    starts, ends = np.argwhere(part), np.argwhere(top)
+    distance, nearest = cKDTree(ends).query(starts)
+    steps = int(np.ceil(distance.max())) + 1
+    along = np.linspace(0.0, 1.0, steps + 1)[1:-1]
+    line = np.rint(starts[:, None] + (ends[nearest] - starts)[:, None] * along[None, :, None]).astype(np.int64)
+    met, own = (grid[line[..., 0], line[..., 1]] for grid in (shown, part))
+    between = ~own & ~top[line[..., 0], line[..., 1]]
+    facing = (own & (along * distance[:, None] > 1.5)).sum(axis=1) == 0
+    count = np.maximum(between.sum(axis=1), 1)
+    below, empty = ((between & (met == kind)).sum(axis=1) for kind in (_BELOW, _EMPTY))
+    gap = empty * distance / steps  # cells
+    hidden = (below <= settings.max_below_share * count) & ((empty <= settings.max_empty_share * count) | (gap <= 1.0))
+    return bool(hidden[facing].mean() > 0.5) if facing.any() else False
+
+
+def largest_part_length(points: NDArray[np.float64], plane: Plane, settings: TableTopSettings) -> float:
+    """Return the longer side, in metres, of the largest connected part of points (n, 3) in the plan of a plane."""
+    plan = points @ plane.across.T
+    return float(np.ptp(plan[in_largest_piece(plan, settings.plan_cell)], axis=0).max())

@@ -1,0 +1,70 @@
+"""What a cloud shows, and what that means for the frame of its things and for how they are compared."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from deixis.learning.views import SPIN_IMAGE_ROOTS, UPRIGHT, descriptors_in
+from deixis.perception.clouds.cloud import PointCloud
+from deixis.perception.detection.detect import detect
+from deixis.perception.detection.settings import DetectionSettings
+from deixis.perception.detection.shown import Shows, share_connected
+
+Look = Callable[..., PointCloud]
+Box = tuple[tuple[float, float, float], tuple[float, float, float]]
+
+CUBE: Box = ((-0.04, -0.04, 0.0), (0.04, 0.04, 0.08))
+
+
+def shell(extents: tuple[float, float, float], spacing: float = 0.004) -> NDArray[np.float64]:
+    """Three sides of a box, as a camera above one of its corners sees them."""
+    x, y, z = (np.arange(0.0, side, spacing) for side in extents)
+    top, front, side = (np.stack(np.meshgrid(*pair), axis=-1).reshape(-1, 2) for pair in ((x, y), (x, z), (y, z)))
+    return np.concatenate(
+        [
+            np.column_stack([top, np.full(len(top), extents[2])]),
+            np.column_stack([front[:, 0], np.zeros(len(front)), front[:, 1]]),
+            np.column_stack([np.zeros(len(side)), side]),
+        ]
+    )
+
+
+@pytest.mark.parametrize("extents", [(0.08, 0.08, 0.1), (0.45, 0.3, 0.3), (0.2, 0.06, 0.3), (0.6, 0.2, 0.2)])
+def test_one_object_is_one_object_however_large(extents: tuple[float, float, float]) -> None:
+    points = shell(extents)
+    turn = np.linalg.qr(np.random.default_rng(0).normal(size=(3, 3)))[0]
+    found = detect(PointCloud((points @ turn.T + (0.0, 0.0, 1.0)).astype(np.float32)))
+    assert (found.shows, len(found.boxes), found.table) == (Shows.OBJECT, 1, None)
+    assert (found.labels == 0).all()
+
+
+def test_what_a_cloud_shows_is_told(boxes_seen: Look) -> None:
+    assert detect(boxes_seen([CUBE])).shows == Shows.TABLE
+    assert detect(boxes_seen([])).shows == Shows.TABLE
+    other: Box = ((0.32, -0.2, -0.03), (0.67, 0.2, 0.0))
+    assert detect(boxes_seen([CUBE, other, ((0.4, -0.05, 0.0), (0.47, 0.02, 0.07))], half=0.2)).shows == Shows.TABLES
+    wall: Box = ((-3.0, 2.0, -1.0), (3.0, 2.1, 3.0))
+    assert detect(boxes_seen([wall], half=0.0)).shows == Shows.ROOM
+    few = np.random.default_rng(0).uniform(-0.3, 0.3, (30, 3)).astype(np.float32)
+    assert detect(PointCloud(few)).shows == Shows.NOTHING
+    sheet = np.mgrid[0:0.5:0.005, 0:0.4:0.005, 0:1].astype(float).reshape(3, -1).T
+    assert detect(PointCloud(sheet.astype(np.float32))).shows == Shows.TABLE
+
+
+def test_two_pieces_apart_are_no_single_object() -> None:
+    one = shell((0.3, 0.1, 0.1))
+    assert share_connected(one, 0.02) == 1.0
+    assert share_connected(np.concatenate([one, one + np.array([0.6, 0.0, 0.0])]), 0.02) == pytest.approx(0.5, abs=0.05)
+
+
+def test_without_a_table_things_are_compared_in_no_frame() -> None:
+    cloud = PointCloud(shell((0.08, 0.08, 0.1)).astype(np.float32))
+    assert detect(cloud).scene().frame == "object"
+    assert descriptors_in(detect(cloud).scene().frame) == (SPIN_IMAGE_ROOTS,)
+    told = detect(cloud, DetectionSettings(up=(0.0, 0.0, 1.0)))
+    assert (told.shows, told.scene().frame) == (Shows.OBJECT, "table")
+    assert descriptors_in(told.scene().frame)[0] == UPRIGHT
