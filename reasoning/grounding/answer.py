@@ -15,6 +15,7 @@ from deixis.ontology.relation import Relation
 if TYPE_CHECKING:
     import networkx as nx
 
+    from deixis.reasoning.grounding.hypotheses import Side
     from deixis.reasoning.grounding.questions.inquiry import Exchange
     from deixis.reasoning.grounding.viewpoint import Viewpoint
 
@@ -75,6 +76,8 @@ class Grounding:
     """The answer of an engine, with all that qualifies it.
 
     ``probabilities`` says what those of the matches are worth, and ``probability_error`` by how much they may be off.
+    ``fits`` is the probability that the description is of this scene at all, from whichever side; None of engines
+    without a posterior. ``sides`` are those from which it may speak, with probabilities that add up to ``fits``.
     ``pivotal`` is None where it was not looked for what would change without a fact, as where the description is taken
     to be of another scene. ``finished`` says whether the engine came to its end within the time limit. By ``gap``
     (nats) another answer may be likelier at most: 0 where this one is proved the best, infinite where the engine has no
@@ -96,6 +99,8 @@ class Grounding:
     pivotal: tuple[Pivotal, ...] | None = None
     probabilities: Standing = Standing.NONE
     probability_error: float = 0.0
+    fits: float | None = None
+    sides: tuple[tuple[Side, float], ...] = ()
     finished: bool = True
     gap: float = math.inf
     exchanges: tuple[Exchange, ...] | None = None

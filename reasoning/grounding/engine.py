@@ -16,6 +16,7 @@ from deixis.reasoning.grounding.similarity import (
 )
 
 if TYPE_CHECKING:
+    from deixis.reasoning.grounding.hypotheses import Verdict
     from deixis.reasoning.grounding.matching.posterior import Posterior
 
 
@@ -31,11 +32,20 @@ class Alignment:
     notes: tuple[str, ...] = ()
     finished: bool = True  # whether the time limit left the search its course
     gap: float = math.inf  # by how much another map may be more likely (log) at most; infinite where nobody knows
-    posterior: Posterior | None = None  # of engines that work with likelihoods
-    sides: int = 1  # from so many sides, each by its probability
-    of_another: bool = False  # whether nothing is matched because the description is probably of another scene
+    verdict: Verdict | None = None  # over maps, sides and scenes: of engines that work with likelihoods
+    seen: Evidence | None = None  # from the side from which the assignment is read, where that is not the evidence's
     margins: NDArray[np.float64] | None = None  # (n1,) what the next best choice for each would lose; nan: not known
     runners_up: NDArray[np.int64] | None = None  # (n1,) that choice, or UNMATCHED
+
+    @property
+    def posterior(self) -> Posterior | None:
+        """The posterior of matches over all hypotheses."""
+        return None if self.verdict is None else self.verdict.posterior
+
+    @property
+    def of_another(self) -> bool:
+        """Whether the description is probably of another scene, so that only what labels tell is matched."""
+        return self.verdict is not None and self.verdict.fits < 0.5
 
     @property
     def graph_similarity(self) -> float:

@@ -11,11 +11,22 @@ from __future__ import annotations
 
 from deixis.errors import UnknownTermError
 from deixis.reasoning.grounding.engine import Engine
+from deixis.reasoning.grounding.evidence.evidence import Evidence
+from deixis.reasoning.grounding.hypotheses import STATED_SIDES, Side
 from deixis.reasoning.grounding.options import EngineName, Select
 
 
-def engine_named(name: str, select: Select = Select.FACTS) -> Engine:
-    """Return the engine of that name (:class:`EngineName`); raises UnknownTermError for another."""
+def engine_named(
+    name: str,
+    select: Select = Select.FACTS,
+    sides: tuple[Side, ...] = STATED_SIDES,
+    seen: tuple[Evidence | None, ...] = (),
+) -> Engine:
+    """Return the engine of that name (:class:`EngineName`); raises UnknownTermError for another.
+
+    ``sides`` and ``seen`` are for engines with a posterior (:func:`deixis.reasoning.grounding.hypotheses.weigh`): from
+    where a description may speak, and what is seen from there.
+    """
     from deixis.reasoning.grounding.map_engines import BaselineEngine, ExactEngine, ScalableEngine
     from deixis.reasoning.grounding.matching.baselines import blondel_similarity, heymans_singh_similarity
 
@@ -27,9 +38,9 @@ def engine_named(name: str, select: Select = Select.FACTS) -> Engine:
         from deixis.reasoning.grounding.matching.exact import warm
 
         warm()  # so that a time limit is spent on searching, not on compiling
-        return ExactEngine()
+        return ExactEngine(sides, seen)
     if name == EngineName.SCALABLE:
-        return ScalableEngine()
+        return ScalableEngine(sides, seen)
     if name == EngineName.BLONDEL:
         return BaselineEngine("blondel", blondel_similarity)
     if name == EngineName.HEYMANS_SINGH:

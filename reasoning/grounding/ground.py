@@ -48,13 +48,14 @@ def ground(
     columns = np.array(sorted(range(len(evidence.scene.nodes)), key=lambda i: evidence.scene.nodes[i]), int)
     in_order, stated = _facts_in_order(evidence.reordered(rows, columns))
     alignment = engine.align(in_order, deadline.share(1 - SENSITIVITY_SHARE))
+    in_order = in_order if alignment.seen is None else alignment.seen
     known = zip(in_order.unary, in_order.allowed, strict=True)
     alone = [(row.tobytes(), mask.tobytes()) for row, mask in known]
     groups = tuple(interchangeable(in_order.description, alone))
     outcomes = _outcomes(in_order, alignment, stated)
     matches = _matches(in_order, alignment, outcomes, groups)
     names = evidence.description.nodes
-    posterior = alignment.posterior
+    posterior, verdict = alignment.posterior, alignment.verdict
     pivotal = _pivotal(in_order, alignment, matches, Deadline.after(sensitivity_seconds))
     return Grounding(
         engine=alignment.engine,
@@ -72,6 +73,8 @@ def ground(
         pivotal=pivotal,
         probabilities=Standing.NONE if posterior is None else (Standing.EXACT if posterior.exact else Standing.SAMPLED),
         probability_error=0.0 if posterior is None else posterior.error,
+        fits=None if verdict is None else verdict.fits,
+        sides=() if verdict is None else tuple((one.side, one.probability) for one in verdict.sides),
         seconds=time.perf_counter() - started,
     )
 
@@ -169,7 +172,7 @@ def _pivotal(
     """
     if alignment.posterior is None or not alignment.proved_best or alignment.of_another:
         return None
-    found, seen, probable = [], 0, alignment.posterior.exact and alignment.sides == 1
+    found, seen, probable = [], 0, alignment.posterior.exact
     for dropped in leave_one_out(evidence.problem, alignment.assignment, probable, deadline):
         seen += 1
         pivotal = _without(evidence, alignment, matches, dropped)
@@ -202,7 +205,8 @@ def _without(evidence: Evidence, alignment: Alignment, matches: dict[str, Match]
     other = dropped.assignment != alignment.assignment
     if not dropped.better:
         other[:] = False
-    sure = is_decided(dropped.probability, 0.0)
+    share = 1.0 if alignment.verdict is None else alignment.verdict.best.probability
+    sure = is_decided(share * dropped.probability, 0.0)
     decided = np.array([name in matches and matches[name].decided for name in nodes], dtype=bool)
     known = ~np.isnan(dropped.probability) & ~other & (alignment.assignment != UNMATCHED)
     targets = zip(nodes, dropped.assignment.tolist(), strict=True)

@@ -16,10 +16,10 @@ from numpy.typing import NDArray
 from deixis.deadline import Deadline
 from deixis.reasoning.grounding.engine import Alignment
 from deixis.reasoning.grounding.evidence.evidence import Evidence
+from deixis.reasoning.grounding.hypotheses import STATED_SIDES, Side, side_text, weigh
 from deixis.reasoning.grounding.matching.baselines import NodeSimilarity
 from deixis.reasoning.grounding.matching.exact import exact
-from deixis.reasoning.grounding.matching.posterior import log_marginal_likelihood, posterior
-from deixis.reasoning.grounding.matching.problem import UNMATCHED, Problem
+from deixis.reasoning.grounding.matching.problem import Problem
 from deixis.reasoning.grounding.matching.scalable import scalable
 from deixis.reasoning.grounding.similarity import assign
 from deixis.reasoning.grounding.similarity_engine import CUT_SHORT, paper_similarity
@@ -33,31 +33,42 @@ SIMILARITY_SHARE = 0.3
 SIMILARITY_CELLS_PER_SECOND, MAX_LATENESS = 2e7, 0.1
 """Pairs of things by relation that the similarity looks at in a second before its first step; it may be so late."""
 
-UNRELATED_PRIOR = 0.02
-"""Prior probability that a description is of another scene."""
-
 UNRELATED_NOTE = "the description{} fits so little that it is probably of another scene"
+
+OTHER_SIDE_NOTE = (
+    "the description fits the scene {} better than as its viewpoint is stated: with probability {:.2f} it is so seen"
+)
 
 
 @dataclass(frozen=True)
 class ExactEngine:
-    """The likeliest map, proved so as far as the time allows."""
+    """The likeliest map, proved so as far as the time allows.
+
+    ``sides`` are those from which the description may speak, that of the evidence first; ``seen`` is what is seen from
+    each, where that is more than the scene turned.
+    """
+
+    sides: tuple[Side, ...] = STATED_SIDES
+    seen: tuple[Evidence | None, ...] = ()
 
     def align(self, evidence: Evidence, deadline: Deadline) -> Alignment:
         found = exact(evidence.problem, deadline.share(PROOF_SHARE))
         notes = () if found.proved else ("the time limit struck before the alignment was proved the best",)
         gap = 0.0 if found.proved else found.gap
-        return _answer("exact", evidence, found.assignment, deadline, notes, gap=gap, finished=found.proved)
+        return _answer("exact", self, evidence, found.assignment, deadline, notes, gap=gap, finished=found.proved)
 
 
 @dataclass(frozen=True)
 class ScalableEngine:
-    """The likeliest map that annealing and belief propagation find; it proves nothing."""
+    """The likeliest map that annealing and belief propagation find; it proves nothing. The rest as for the other."""
+
+    sides: tuple[Side, ...] = STATED_SIDES
+    seen: tuple[Evidence | None, ...] = ()
 
     def align(self, evidence: Evidence, deadline: Deadline) -> Alignment:
         found = scalable(evidence.problem, deadline.share(SEARCH_SHARE))
         notes = () if found.finished else ("the time limit struck before the search came to its end",)
-        return _answer("scalable", evidence, found.assignment, deadline, notes, finished=found.finished)
+        return _answer("scalable", self, evidence, found.assignment, deadline, notes, finished=found.finished)
 
 
 @dataclass(frozen=True)
@@ -81,7 +92,8 @@ class BaselineEngine:
 
 
 def _answer(
-    engine: str,
+    name: str,
+    engine: ExactEngine | ScalableEngine,
     evidence: Evidence,
     assignment: NDArray[np.int64],
     deadline: Deadline,
@@ -90,21 +102,30 @@ def _answer(
     finished: bool,
     gap: float = math.inf,
 ) -> Alignment:
-    """Return the map with its probability, where the time sufficed for one, and the paper's similarity for
-    comparison."""
+    """Return the likeliest map of the likeliest side with its probability over all hypotheses, where the time sufficed
+    for one, and the paper's similarity for comparison."""
     matrix, converged, unknown = _similarity(evidence, deadline.share(SIMILARITY_SHARE))
-    unrelated = _of_another_scene(evidence, assignment, deadline)
-    probable = posterior(evidence.problem, deadline, start=assignment)
-    known = math.isfinite(probable.error)
+    seen = tuple(None if other is None else other.in_order_of(evidence) for other in engine.seen)
+    found = weigh(evidence, assignment, deadline, engine.sides, seen)
     notes += unknown
-    if unrelated > 0.5:
-        assignment, probable = np.full_like(assignment, UNMATCHED), probable.mixed_with_absence(unrelated)
+    if found is None:
+        late = "there was no time to find out how probable the matches are"
+        return Alignment(name, assignment, matrix, converged, gap == 0, (*notes, late), finished, gap)
+    best = found.best
+    from_elsewhere = best.evidence is not evidence
+    if found.fits < 0.5:
+        assignment = found.by_labels
         colours = evidence.colours is not None and evidence.colours.any()
         used = ["how large such things usually are"] * bool(evidence.sizes.any()) + ["their colours"] * bool(colours)
         notes += (UNRELATED_NOTE.format(f", with {' and '.join(used)}," if used else ""),)
-    notes += () if known else ("there was no time to find out how probable the matches are",)
+    elif from_elsewhere:
+        again = exact(best.evidence.problem, deadline)
+        assignment, gap, finished = again.assignment, 0.0 if again.proved else again.gap, finished and again.proved
+        if engine.sides is STATED_SIDES and best is not found.sides[0]:
+            side = side_text(best.side.angle, best.side.mirrored)
+            notes += (OTHER_SIDE_NOTE.format(side, best.probability / found.fits),)
     return Alignment(
-        engine=engine,
+        engine=name,
         assignment=assignment,
         matrix=matrix,
         converged=converged,
@@ -112,19 +133,9 @@ def _answer(
         notes=notes,
         finished=finished,
         gap=gap,
-        posterior=probable if known else None,
-        of_another=unrelated > 0.5,
+        verdict=found,
+        seen=best.evidence if from_elsewhere and found.fits >= 0.5 else None,
     )
-
-
-def _of_another_scene(evidence: Evidence, assignment: NDArray[np.int64], deadline: Deadline) -> float:
-    """Return how probable it is that the description has nothing to do with the scene; 0 where that is not known.
-
-    Labels say themselves what is there, whatever is wrong on the table; and where nothing was found, nothing is to say.
-    """
-    if evidence.labels.any() or (assignment == UNMATCHED).all() or deadline.passed:
-        return 0.0
-    return UNRELATED_PRIOR / (UNRELATED_PRIOR + math.exp(min(log_marginal_likelihood(evidence.problem), 100.0)))
 
 
 def _similarity(evidence: Evidence, deadline: Deadline) -> tuple[NDArray[np.float64], bool, tuple[str, ...]]:

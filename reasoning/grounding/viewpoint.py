@@ -1,5 +1,4 @@
-"""Viewpoints: the side from which a description speaks, recovered together with the matches, and matches averaged over
-sides.
+"""Viewpoints: the sides from which a description may speak, recovered together with the matches.
 
 A *viewpoint* is how far the scene has to be turned, and whether it has to be mirrored, so that left is what the speaker
 calls left. For each the matching problem is built anew; its log evidence is the logarithm of the sum over all maps of
@@ -12,8 +11,8 @@ turned by t, the enclosing box has W + H = (w + h)(|cos t| + |sin t|) and W - H 
 are about square are taken for round things, whose box does not change. At an eighth of a turn a long thing is square,
 too, and cannot be told from a round one.
 
-The probability of a match is the sum over sides of p(side) p(match | side): what holds from a side that is itself
-doubtful is no more probable than the side.
+The probability of a match sums over sides (:mod:`deixis.reasoning.grounding.hypotheses`): what holds from a side that
+is itself doubtful is no more probable than the side.
 """
 
 from __future__ import annotations
@@ -27,9 +26,7 @@ from numpy.typing import NDArray
 
 from deixis.deadline import Deadline
 from deixis.reasoning.geometry.rectangle import require_boxes
-from deixis.reasoning.grounding.engine import Alignment, Engine
-from deixis.reasoning.grounding.evidence.evidence import Evidence
-from deixis.reasoning.grounding.matching.posterior import Posterior, posterior
+from deixis.reasoning.geometry.turning import turned
 from deixis.reasoning.grounding.matching.problem import Problem
 
 Array = NDArray[np.float64]
@@ -38,7 +35,6 @@ MIRROR_PRIOR = 0.05
 COARSE_ANGLES = 24  # angles that are tried at first: every 15 degrees
 FINE_PER_COARSE = 5  # by how much the grid is finer where it is worth it
 REFINEMENT_MARGIN = 6.0  # nats below the best, within which an angle is looked at finely
-MAX_ROUND_CONTRAST = 0.05  # |W - H| / (W + H) below which a box is taken for that of a round thing
 VIEWPOINT_MARGIN = 12.0  # nats by which its best map lags behind, beyond which a viewpoint's other maps are not listed
 MAP_MARGIN = 4.0  # nats below the best, within which maps are listed
 MAX_LISTED_MAPS = 300  # maps at the most
@@ -51,7 +47,7 @@ class Viewpoint:
 
     ``log_evidence`` is in nats; ``assignment`` (n1,) is the best map as seen from there. ``concentration`` is the mean
     resultant length of the angles that were taken together (Mardia and Jupp 2000, 2.3): 1 for a single one, 0 where
-    they are the whole circle, so that their mean says nothing.
+    they are the whole circle, so that their mean says nothing. ``prior`` is their share of all sides.
     """
 
     angle: float
@@ -60,6 +56,7 @@ class Viewpoint:
     log_evidence: float
     assignment: NDArray[np.int64]
     concentration: float = 1.0
+    prior: float = 1.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,43 +80,6 @@ class Viewpoints:
     def ties(self) -> tuple[Viewpoint, ...]:
         best = self.best.log_evidence
         return tuple(view for view in self.viewpoints if abs(view.log_evidence - best) <= TIE_TOLERANCE)
-
-
-def turned(boxes: Array, angle: float, mirrored: bool = False) -> Array:
-    """Return boxes (n, 2, d) as seen when the scene is turned about the origin; heights stay. Raises GraphError for
-    none.
-
-    >>> cup = np.array([[[1.0, 0.0], [3.0, 1.0]]])
-    >>> turned(cup, math.pi / 2).tolist()
-    [[[-1.0, 1.0], [0.0, 3.0]]]
-    """
-    require_boxes(boxes)
-    quarters = angle / (math.pi / 2)
-    low, high = boxes[:, 0, :2], boxes[:, 1, :2]
-    if mirrored:
-        flip = np.array([-1.0, 1.0])
-        low, high = np.minimum(low * flip, high * flip), np.maximum(low * flip, high * flip)
-    if abs(quarters - round(quarters)) < 1e-9:
-        lower = low
-        upper = high
-        for _ in range(round(quarters) % 4):
-            lower, upper = np.stack([-upper[:, 1], lower[:, 0]], axis=1), np.stack([-lower[:, 1], upper[:, 0]], axis=1)
-        low, high = lower + 0.0, upper + 0.0
-    else:
-        cos, sin = math.cos(angle), math.sin(angle)
-        centres = (low + high) / 2 @ np.array([[cos, sin], [-sin, cos]])
-        width, height = (high - low).T
-        total, difference = width + height, width - height
-        spread, contrast = abs(cos) + abs(sin), abs(cos) - abs(sin)
-        sum_, limit = total / spread, total / spread
-        apart = np.clip(difference / contrast, -limit, limit) if abs(contrast) > 1e-9 else np.zeros(len(total))
-        oblong = np.abs(difference) > MAX_ROUND_CONTRAST * total
-        extents = np.stack([sum_ + apart, sum_ - apart], axis=1) / 2
-        halves = np.where(oblong[:, None], extents, np.stack([width, height], axis=1)) / 2
-        low, high = centres - halves, centres + halves
-    result = boxes.astype(np.float64, copy=True)
-    result[:, 0, :2], result[:, 1, :2] = low, high
-    return result
 
 
 def recover_viewpoint(
@@ -269,7 +229,8 @@ def _viewpoint(mode: list[_AngleEvidence], mirror: bool) -> tuple[Viewpoint, flo
     shares = [one.log_evidence + math.log(one.tried.share) for one in mode]
     score = _log_sum(shares) + math.log(prior)
     angle, concentration = _mean_angle(mode)
-    view = Viewpoint(angle, peak.tried.mirrored, 0.0, peak.log_evidence, peak.assignment, concentration)
+    share = prior * sum(one.tried.share for one in mode)
+    view = Viewpoint(angle, peak.tried.mirrored, 0.0, peak.log_evidence, peak.assignment, concentration, share)
     return view, score
 
 
@@ -292,56 +253,3 @@ def _mean_angle(mode: list[_AngleEvidence]) -> tuple[float, float]:
 def _log_sum(values: Sequence[float]) -> float:
     most = max(values, default=-math.inf)
     return most + math.log(sum(math.exp(value - most) for value in values)) if most > -math.inf else most
-
-
-FIRST_VIEWPOINT_SHARE = 0.5
-"""Share of the time for the likeliest side, which is all the answer where there is no time for others."""
-
-
-@dataclass(frozen=True, eq=False)
-class OtherSide:
-    """How probable another side is, and the same description beside the scene as seen from there."""
-
-    probability: float
-    evidence: Evidence
-
-
-@dataclass(frozen=True, eq=False)
-class FromSides:
-    """An engine that aligns as seen from the side of its evidence, which has a ``probability``, with the ``others``."""
-
-    engine: Engine
-    probability: float
-    others: tuple[OtherSide, ...]
-
-    def align(self, evidence: Evidence, deadline: Deadline) -> Alignment:
-        found = self.engine.align(evidence, deadline.share(FIRST_VIEWPOINT_SHARE))
-        if found.posterior is None or not self.others:
-            return found
-        parts = [(self.probability, found.posterior), *self._others(evidence, deadline)]
-        looked = sum(share for share, _ in parts)
-        note = f"a match is as probable as from all sides looked from: {len(parts)}, together {looked:.2f} probable"
-        return replace(found, posterior=_mixed(parts), sides=len(parts), notes=(*found.notes, note))
-
-    def _others(self, evidence: Evidence, deadline: Deadline) -> list[tuple[float, Posterior]]:
-        """Return from each other side, as far as the time allows: its probability, and what it makes of the matches."""
-        found = []
-        for number, side in enumerate(self.others):
-            if deadline.passed:
-                break
-            rows = [side.evidence.description.index(name) for name in evidence.description.nodes]
-            columns = [side.evidence.scene.index(name) for name in evidence.scene.nodes]
-            seen = side.evidence.reordered(np.array(rows, dtype=np.int64), np.array(columns, dtype=np.int64)).problem
-            there = posterior(seen, deadline.share(1 / (len(self.others) - number)))
-            if np.isfinite(there.error):
-                found.append((side.probability, there))
-        return found
-
-
-def _mixed(parts: list[tuple[float, Posterior]]) -> Posterior:
-    """Return the sum by probabilities; sides that nobody looked from add nothing, so that it is at least so
-    probable."""
-    marginals = np.sum([share * there.marginals for share, there in parts], axis=0)
-    return Posterior(
-        marginals, all(there.exact for _, there in parts), sum(share * there.error for share, there in parts)
-    )

@@ -17,18 +17,20 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.errors import GraphError
 from deixis.ontology.colours import Colours
 from deixis.ontology.graph import RelationGraph
 from deixis.ontology.kinds import Kinds
 from deixis.ontology.relation import Reading
 from deixis.ontology.sizes import Sizes
-from deixis.reasoning.geometry.rectangle import SceneRelations
+from deixis.reasoning.geometry.rectangle import SceneRelations, scene_relations
+from deixis.reasoning.geometry.turning import turned
 from deixis.reasoning.grounding.evidence.colours import colour_evidence
 from deixis.reasoning.grounding.evidence.degrees import log_likelihood_ratio
 from deixis.reasoning.grounding.evidence.facts import fact_tables, hedged
 from deixis.reasoning.grounding.evidence.labels import Label, classes
 from deixis.reasoning.grounding.evidence.meaning import OUTLIERS, SHIPPED, Meaning
-from deixis.reasoning.grounding.evidence.unary import label_ratios, size_evidence
+from deixis.reasoning.grounding.evidence.unary import LABEL_ERROR, label_ratios, size_evidence
 from deixis.reasoning.grounding.matching.problem import UNMATCHED, Problem
 
 MAX_ABSENCE_ODDS = 0.015
@@ -38,6 +40,24 @@ PRESENT_LOG_ODDS = -30.0
 """Log-odds of absence of an object that a certain label, or an answer, says is there."""
 
 
+UNRELIABLE_PRIOR, UNRELIABLE_ERROR = 0.01, 0.7
+"""Probability that the labels of a scene are not to be trusted, and that one of them is wrong then: whoever is wrong
+once is often wrong again."""
+
+
+@dataclass(frozen=True, eq=False)
+class DoubtedLabels:
+    """What labels say where they are not to be trusted: log-likelihood ratios (n1, n2), and by how much likelier, in
+    nats, all labels together are then, of things that the description does not mention."""
+
+    ratios: NDArray[np.float64]
+    log_likelihood: float
+
+    def reordered(self, both: tuple[NDArray[np.intp], ...]) -> DoubtedLabels:
+        """Return the same with objects and things in another order, as ``numpy.ix_`` has it."""
+        return replace(self, ratios=self.ratios[both])
+
+
 @dataclass(frozen=True, eq=False)
 class Evidence:
     """A description of n1 objects by m facts beside a scene of n2 things, with all that speaks for each match.
@@ -45,8 +65,9 @@ class Evidence:
     ``labels``, ``sizes`` and ``colours`` (n1, n2) are finite log-likelihood ratios of each object being each perceived
     thing; no ``colours`` where none are known. ``allowed`` (n1, n2) says which object may be which thing: a certain
     label, or an answer, rules matches out. ``identified`` (n2,) are the things of which a certain label, or an answer,
-    says what they are. Masks that are left out rule nothing out and identify nothing. ``consistent`` says whether the
-    firm facts can hold together, where that is known already.
+    says what they are. ``doubted_labels`` are what labels say that are not to be trusted. Masks that are left out rule
+    nothing out and identify nothing. ``consistent`` says whether the firm facts can hold together, where that is known
+    already.
     """
 
     description: RelationGraph
@@ -55,6 +76,7 @@ class Evidence:
     sizes: NDArray[np.float64]
     meaning: Meaning = SHIPPED
     colours: NDArray[np.float64] | None = None
+    doubted_labels: DoubtedLabels | None = None
     allowed: NDArray[np.bool_] = field(default_factory=lambda: np.array(True))
     identified: NDArray[np.bool_] = field(default_factory=lambda: np.array(False))
     consistent: bool | None = None
@@ -78,11 +100,27 @@ class Evidence:
         present: NDArray[np.bool_] = np.any((self.labels > 0) & self.identified[None, :], axis=1)
         return present
 
+    @property
+    def absent(self) -> NDArray[np.float64]:
+        """What leaving each object out is worth, shape (n1,)."""
+        return np.where(self.present, PRESENT_LOG_ODDS, absence(*self.labels.shape))
+
+    @cached_property
+    def label_readings(self) -> tuple[tuple[float, Evidence], ...]:
+        """The evidence with its labels taken as they are, then as not to be trusted, each with its log weight.
+
+        There is one reading of weight 0 where no label can be doubted.
+        """
+        if self.doubted_labels is None:
+            return ((0.0, self),)
+        doubted = replace(self, labels=self.doubted_labels.ratios, doubted_labels=None)
+        trusted = math.log1p(-UNRELIABLE_PRIOR)
+        return ((trusted, self), (math.log(UNRELIABLE_PRIOR) + self.doubted_labels.log_likelihood, doubted))
+
     @cached_property
     def problem(self) -> Problem:
         """The matching problem to be searched. A scene without boxes is taken literally, by the names of its pairs."""
-        absent = np.where(self.present, PRESENT_LOG_ODDS, absence(*self.labels.shape))
-        boxes = self.scene.boxes
+        absent, boxes = self.absent, self.scene.boxes
         if boxes is None or not self.meaning.graded:
             # the crisp reading, chance being one pair for each of the names
             graph, edges = self.description, self.facts
@@ -154,6 +192,18 @@ class Evidence:
             totals += np.where(matched, said, 0.0).sum(axis=1)
         return totals
 
+    def seen_from(self, angle: float, mirrored: bool) -> Evidence:
+        """Return the same evidence where the facts speak of the scene turned by ``angle`` (radians, counter-clockwise),
+        having mirrored left and right if so; what the things are by themselves is the same from all sides.
+
+        Raises GraphError where the scene has no boxes.
+        """
+        scene = self.scene
+        if scene.boxes is None:
+            raise GraphError("a scene without boxes cannot be seen from another side")
+        boxes = turned(scene.boxes, angle, mirrored)
+        return replace(self, scene=scene_relations(scene.nodes, boxes, scene.vocabulary, scene.kinds))
+
     def reordered(self, rows: NDArray[np.int64], columns: NDArray[np.int64]) -> Evidence:
         """Return the same evidence with the objects and the perceived things in another order."""
         both = np.ix_(rows, columns)
@@ -164,9 +214,16 @@ class Evidence:
             labels=self.labels[both],
             sizes=self.sizes[both],
             colours=None if self.colours is None else self.colours[both],
+            doubted_labels=None if self.doubted_labels is None else self.doubted_labels.reordered(both),
             allowed=self.allowed[both],
             identified=self.identified[columns],
         )
+
+    def in_order_of(self, other: Evidence) -> Evidence:
+        """Return the same evidence with objects and things in the order of another's, whose names are the same."""
+        rows = [self.description.index(name) for name in other.description.nodes]
+        columns = [self.scene.index(name) for name in other.scene.nodes]
+        return self.reordered(np.array(rows, dtype=np.int64), np.array(columns, dtype=np.int64))
 
 
 def absence(objects: int, things: int) -> float:
@@ -205,21 +262,29 @@ def evidence_from(
     meaning: Meaning = SHIPPED,
     seen: NDArray[np.float64] | None = None,
     colours: Colours | None = None,
+    label_error: float = LABEL_ERROR,
 ) -> Evidence:
     """Return facts, labels, sizes and colours together, each by its weight; ``metric`` where the scene's boxes are in
     metres.
 
     ``seen`` are the things' colours in sRGB, shape (n2, 3), NaN where not known; ``colours`` are the known terms.
+    ``label_error`` is the probability that a label of confidence 1 is wrong; 0 takes such labels as identities.
     """
     weights, shape = meaning.weights, (len(description.nodes), len(scene.nodes))
     said, measured, allowed = np.zeros(shape), np.zeros(shape), np.ones(shape, dtype=bool)
+    doubted = None
     if weights.labels > 0:
-        ratios, allowed = label_ratios(description, labels, kinds)
-        said = weights.labels * ratios
+        told = label_ratios(description, labels, kinds, label_error)
+        said, allowed = weights.labels * told.ratios, told.allowed
+        if label_error > 0 and any(label is not None for label in labels):
+            unreliable = label_ratios(description, labels, kinds, UNRELIABLE_ERROR)
+            doubted = DoubtedLabels(
+                weights.labels * unreliable.ratios, weights.labels * (unreliable.by_chance - told.by_chance)
+            )
     if weights.sizes > 0 and scene.boxes is not None:
         measured = weights.sizes * size_evidence(classes(description), scene.boxes, sizes, meaning.sizes, metric)
     shades = None
     if weights.colours > 0 and seen is not None and colours is not None and description.colours:
         shades = weights.colours * colour_evidence(description.colours, seen, colours)
     identified = np.any(~allowed, axis=0)
-    return Evidence(description, scene, said, measured, meaning, shades, allowed, identified)
+    return Evidence(description, scene, said, measured, meaning, shades, doubted, allowed, identified)

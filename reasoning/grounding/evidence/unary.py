@@ -1,7 +1,8 @@
 """What is known of the things themselves, as log-likelihood ratios against chance: labels, sizes and proportions.
 
 Each source of evidence weighs as stated in :class:`UnaryWeights`; all are added up. Densities are mixed with
-``OUTLIERS`` of chance, so that a size never rules a thing out; only a certain label does.
+``OUTLIERS`` of chance, so that a size never rules a thing out; nor does a label, unless labels are taken to be free of
+error.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.ontology.graph import RelationGraph
-from deixis.ontology.kinds import Kinds
+from deixis.ontology.kinds import Kinds, plain_name
 from deixis.ontology.models.sizes import SizeModel
 from deixis.ontology.sizes import Sizes
 from deixis.ontology.vocabulary import DX
@@ -33,6 +34,15 @@ Array = NDArray[np.float64]
 
 OUTLIERS = 0.05
 """Share of things whose size says nothing of their kind."""
+
+LABEL_ERROR = 0.003
+"""Probability that a label said to be certain is wrong: three in a thousand."""
+
+BROADER_WORD = 0.2
+"""Probability that the right label of a thing is a broader word for it: *fork* of a dinner fork."""
+
+OTHER_WORDS = 10_000
+"""Words that label things of no known kind, each as likely: about the nouns that a speaker uses."""
 
 MAX_HEIGHT_RATIO, HEIGHT_ERROR = 2.0, 0.02
 """A thing is plainly too high for a kind where it is so many times as high as the highest ones, and so many metres."""
@@ -173,20 +183,76 @@ def _log_kernel(at: Array, centres: Array, spread: Array) -> Array:
     return result
 
 
-def label_ratios(
-    description: RelationGraph, labels: Sequence[Label | None], kinds: Kinds
-) -> tuple[Array, NDArray[np.bool_]]:
-    """Return what labels say of n1 objects being each of n2 things, and which of these matches they allow, each (n1,
-    n2).
+@dataclass(frozen=True, eq=False)
+class LabelRatios:
+    """What labels say of n1 objects being each of n2 things.
 
-    The log-likelihood ratios are finite: 0 for a match that a certain label rules out.
-    A label of confidence c names k of n1 objects: it is right with probability c, else drawn from all objects, so that
-    its ratio is c n1 / k + 1 - c for those, and 1 - c for the others.
+    ``ratios`` (n1, n2) are finite log-likelihood ratios. ``allowed`` (n1, n2) are all matches but those to which a
+    label leaves no probability, which are some only where labels are free of error. ``by_chance`` is the log-likelihood
+    of all labels of things that the description does not mention.
+    """
+
+    ratios: Array
+    allowed: NDArray[np.bool_]
+    by_chance: float
+
+
+def label_ratios(
+    description: RelationGraph, labels: Sequence[Label | None], kinds: Kinds, error: float = LABEL_ERROR
+) -> LabelRatios:
+    """Return what labels say of n1 objects being each of n2 things, and which of these matches they allow.
+
+    Parameters
+    ----------
+    description
+        The objects that the labels may name.
+    labels
+        One for each of the n2 things, None where perception gives it no name.
+    kinds
+        The kinds of things that words stand for.
+    error
+        Probability that a label of confidence 1 is wrong; of confidence c, a label is right with probability
+        c (1 - error).
+
+    Returns
+    -------
+    LabelRatios
+        How much likelier each label is of a thing that is the object than of one that the description does not mention.
+
+    Notes
+    -----
+    A right label of an object is a word that fits it, or with probability ``BROADER_WORD`` a broader word for it. A
+    right label of anything else in the world is a word for any of the known kinds, each as likely, or one of
+    ``OTHER_WORDS`` words for all the rest. A wrong label is a word of the description as often as any word of the
+    world. Naming follows :func:`deixis.reasoning.grounding.evidence.labels.naming`.
+
+    Examples
+    --------
+    >>> from deixis.ontology.tbox import default_ontology
+    >>> ontology = default_ontology()
+    >>> two = RelationGraph.from_facts(ontology.relations, ["target", "landmark"], [])
+    >>> label_ratios(two, [Label("landmark"), None], ontology.kinds).ratios.round(1).tolist()
+    [[-0.1, 0.0], [7.1, 0.0]]
     """
     n1 = len(description.nodes)
-    named = naming(description, labels, kinds).named
-    confidence = np.array([label.confidence if label is not None else 0.0 for label in labels])
-    ratios = 1 - confidence + confidence * named * n1 / np.maximum(named.sum(axis=0), 1)
-    allowed = ratios > 0
-    logs: Array = np.log(ratios, out=np.zeros_like(ratios), where=allowed)
-    return logs, allowed
+    known = naming(description, labels, kinds)
+    right = np.where(known.fitted, 1.0, BROADER_WORD) * known.named
+    confidence = np.array([label.confidence if label is not None else 0.0 for label in labels]) * (1 - error)
+    elsewhere = np.array([0.0 if label is None else _share_of_world(label.text, kinds) for label in labels])
+    of_script = known.named.any(axis=0) / max(n1, 1)
+    wrong = (of_script + elsewhere) / 2
+    likely = confidence * right + (1 - confidence) * wrong
+    by_chance = confidence * elsewhere + (1 - confidence) * wrong
+    allowed = (likely > 0) | (by_chance == 0)
+    ratios = np.divide(likely, by_chance, out=np.ones_like(likely), where=allowed & (by_chance > 0))
+    background = np.log(by_chance[by_chance > 0]).sum()
+    return LabelRatios(np.log(ratios), allowed, float(background))
+
+
+def _share_of_world(word: str, kinds: Kinds) -> float:
+    """Return how probable a word is as the right label of anything in the world."""
+    kind = kinds.of_word(word) or kinds.of_word(plain_name(word))
+    if kind is None:
+        return 1 / OTHER_WORDS
+    narrower = sum(kind.iri in other.broader for other in kinds if other.iri != kind.iri)
+    return (1 + BROADER_WORD * narrower) / len(kinds)

@@ -1,5 +1,4 @@
-"""The posterior of matches: by enumeration where few maps count, else by sampling; and the marginal likelihood of a
-description.
+"""The posterior of matches: by enumeration where few maps count, else by sampling.
 
 The probability of a map is proportional to the exponential of its value. The sum over all maps but a stated mass is
 exact (``summing.py``). Whether it can be had is judged from sums that leave out more, which cost little. Else several
@@ -12,7 +11,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter, defaultdict
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -103,11 +102,13 @@ class Posterior:
 
     ``error``: at most so much mass is missing where ``exact``; otherwise the largest standard error of a marginal over
     ladders and halves of their runs, which is no guarantee, and infinite where there are not two to compare.
+    ``log_total`` is the logarithm of the sum of the exponentials of all maps' values; nan where it is not known.
     """
 
     marginals: Marginals
     exact: bool
     error: float
+    log_total: float = math.nan
 
     @property
     def entropy(self) -> Marginals:
@@ -116,12 +117,6 @@ class Posterior:
         logs = np.log(p, out=np.zeros_like(p), where=p > 0)
         entropy: Marginals = np.maximum(0.0, -(p * logs).sum(axis=1))
         return entropy
-
-    def mixed_with_absence(self, probability: float) -> Posterior:
-        """The same, where with some probability nobody is anything."""
-        marginals = (1 - probability) * self.marginals
-        marginals[:, -1] += probability
-        return replace(self, marginals=marginals)
 
 
 def posterior(
@@ -170,7 +165,8 @@ def exact_posterior(
         raise MatchingError(f"the mass that may be missing lies between 0 and 1, not at {mass}")
     n1, n2 = problem.unary.shape
     if n1 == 0 or n2 == 0:
-        return Posterior(np.ones((n1, 1)) if n2 == 0 else np.zeros((0, n2 + 1)), True, 0.0)
+        nobody = np.ones((n1, 1)) if n2 == 0 else np.zeros((0, n2 + 1))
+        return Posterior(nobody, True, 0.0, float(problem.absent.sum()))
     compiled, width = problem.compiled, n2 + 1
     if len(compiled.kind) * width * width > FACTOR_CELLS or deadline.passed:
         return None
@@ -186,7 +182,8 @@ def exact_posterior(
             return None
         error = missing / (total + missing)
         if error <= mass:
-            return Posterior(averaged(marginals / total, exchangeable(problem)), True, error)
+            summed = math.log(total + missing) + parts.log_scale
+            return Posterior(averaged(marginals / total, exchangeable(problem)), True, error, summed)
         if (
             looked_at * SMALL_SEARCH_RATIO > nodes
             and looked_at * NODE_GROWTH ** math.log(error / mass, ERROR_FALL) > nodes
@@ -261,52 +258,3 @@ def _agreement(shares: NDArray[np.float64], allowed: NDArray[np.bool_], sweeps: 
     error = float(halves.std(axis=0, ddof=1).max() / math.sqrt(len(halves)))
     anything = allowed / allowed.sum(axis=1, keepdims=True)
     return (sweeps * halves.mean(axis=0) + anything) / (sweeps + 1), max(error, 1 / sweeps)
-
-
-MARGINAL_SHARES = (1e-3, 1e-5, 1e-7, 1e-10, 1e-15, 1e-25)
-"""Shares of the most that all maps can sum up to, below which partial maps are not looked into, one after another."""
-
-MAX_MISSING_SHARE = 0.01
-"""The share of a sum that may be missing of it for the bound to be near enough."""
-
-MAX_NODES = 5_000
-"""Partial maps that are looked at for each share at the most."""
-
-
-def log_marginal_likelihood(problem: Problem) -> float:
-    """At most by how much likelier, in nats, the evidence is than by chance, over all maps by what leaving out costs.
-
-    An upper bound: what the search turns back from counts in full. Infinite where there is no object or no thing, and
-    for a problem that is too large for the sum.
-
-    >>> ends, nothing = np.zeros((0, 2), np.int64), np.zeros((0, 1, 1), np.float32)
-    >>> alone = Problem(ends, ends[:, 0], nothing, np.array([[-2.0]]), np.array([-9.0]))
-    >>> round(log_marginal_likelihood(alone), 2)
-    -2.0
-    """
-    n1, n2 = problem.unary.shape
-    slots = len(problem.compiled.kind)
-    if not n1 or not n2 or slots * (n2 + 1) ** 2 > FACTOR_CELLS:
-        return math.inf
-    parts = factors(problem.compiled)
-    most = least = float(np.log(parts.weights.sum(axis=1)).sum())
-    for share in MARGINAL_SHARES:
-        _, (found, missing, _) = add_up(problem.compiled, parts, share * math.exp(min(most, 600.0)), MAX_NODES)
-        if missing == math.inf:
-            break
-        least = min(least, math.log(max(found + missing, 1e-300)))
-        if missing <= MAX_MISSING_SHARE * found:
-            break
-    return least + parts.log_scale - _log_prior(problem)
-
-
-def _log_prior(problem: Problem) -> float:
-    """The logarithm of the sum over all maps of what is left out alone."""
-    n2 = problem.unary.shape[1]
-    matched = np.zeros(1)  # by how many objects are matched, the sum over which they are
-    for absent in problem.absent.tolist():
-        matched = np.logaddexp(np.append(matched + absent, -np.inf), np.append(-np.inf, matched))
-    k = np.arange(min(len(matched), n2 + 1))
-    from scipy.special import gammaln
-
-    return float(np.logaddexp.reduce(matched[k] + gammaln(n2 + 1) - gammaln(n2 - k + 1)))

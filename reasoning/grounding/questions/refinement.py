@@ -97,6 +97,8 @@ def narrowed(evidence: Evidence, done: Inquiry) -> Evidence:
     that are not in it: there only what was said of a single object counts.
     """
     labels, allowed = evidence.labels.copy(), evidence.allowed.copy()
+    doubted = evidence.doubted_labels
+    doubted = None if doubted is None else replace(doubted, ratios=doubted.ratios.copy())
     identified, out = evidence.identified.copy(), np.zeros(evidence.labels.shape, dtype=bool)
     if done.start.complete or done.start.groups:
         resolved = [swap.question.about for swap in done.exchanges if swap.outcome is ExchangeOutcome.RESOLVED]
@@ -124,9 +126,10 @@ def narrowed(evidence: Evidence, done: Inquiry) -> Evidence:
             p = question.thing if answer == YES else done.situation.things.index(answer)
             others = np.arange(len(labels)) != question.subject
             allowed[others, p], allowed[question.subject, p] = False, True
-            labels[others, p], labels[question.subject, p] = 0.0, -PRESENT_LOG_ODDS
+            for told in (labels,) if doubted is None else (labels, doubted.ratios):
+                told[others, p], told[question.subject, p] = 0.0, -PRESENT_LOG_ODDS
             identified[p], out[question.subject, p] = True, False
-    return replace(evidence, labels=labels, allowed=allowed & ~out, identified=identified)
+    return replace(evidence, labels=labels, doubted_labels=doubted, allowed=allowed & ~out, identified=identified)
 
 
 def _possible(candidates: Candidates, shape: tuple[int, ...]) -> NDArray[np.bool_]:

@@ -10,6 +10,7 @@ from deixis.reasoning.entailment.conflict import Conflict
 from deixis.reasoning.grounding.evidence.evidence import Evidence, evidence_from
 from deixis.reasoning.grounding.evidence.labels import Label
 from deixis.reasoning.grounding.evidence.meaning import SHIPPED, Meaning
+from deixis.reasoning.grounding.evidence.unary import LABEL_ERROR
 
 
 def evidence_of(script: Script, scene: Scene, meaning: Meaning = SHIPPED) -> Evidence:
@@ -17,8 +18,11 @@ def evidence_of(script: Script, scene: Scene, meaning: Meaning = SHIPPED) -> Evi
     return graph_evidence(script.graph(), scene, script.ontology, meaning)
 
 
-def graph_evidence(description: RelationGraph, scene: Scene, ontology: Ontology, meaning: Meaning) -> Evidence:
-    """The same of a description that is a graph already."""
+def graph_evidence(
+    description: RelationGraph, scene: Scene, ontology: Ontology, meaning: Meaning, label_error: float = LABEL_ERROR
+) -> Evidence:
+    """The same of a description that is a graph already; of labels said to be certain a share ``label_error`` is
+    wrong."""
     labels = list(scene_labels(scene).values())
     return evidence_from(
         description,
@@ -30,6 +34,7 @@ def graph_evidence(description: RelationGraph, scene: Scene, ontology: Ontology,
         meaning=meaning,
         seen=scene.colours,
         colours=ontology.colours,
+        label_error=label_error,
     )
 
 

@@ -43,6 +43,8 @@ def grounding_lines(found: Grounding) -> list[str]:
     rest = "".join(f", {number} {words[outcome]}" for outcome, number in counts.items() if number)
     lines += ["", f"Facts: {len(found.outcomes)} stated, {len(found.satisfied)} satisfied" + rest]
     lines += [f"    violated: {violation_text(entry)}" for entry in found.violated]
+    if found.fits is not None:
+        lines.append(f"The description is of this scene with probability {_probability(found.fits).strip()}.")
     left_out = (*found.unmatched_objects, *found.unmatched_perceived)
     for reason in dict.fromkeys(left.reason for left in left_out):
         names = [left.name for left in left_out if left.reason == reason]

@@ -135,6 +135,7 @@ def grounding_to_dict(found: Grounding) -> dict[str, Any]:
             "standing": found.probabilities.value,
             "error": None if found.probabilities is Standing.NONE else _rounded(found.probability_error),
         },
+        "fits": _rounded(found.fits),
         "proved_best": found.proved_best,
         "gap": _rounded(found.gap),
         "finished": found.finished,

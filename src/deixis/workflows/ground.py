@@ -203,12 +203,13 @@ def answer(request: GroundingRequest, stage: Stage = lambda _: nullcontext()) ->
         found = _answer_with_questions(request, request.ask, seen, deadline.left)
         before = notes if side is None else side.notes + side.doubt
     else:
-        engine = engine_named(request.engine, Select(request.select))
+        select = Select(request.select)
         with stage("grounding"):
             if side is None:
+                engine = engine_named(request.engine, select)
                 found, before = ground_evidence(request.evidence(request.scene), engine, deadline, contradiction), notes
             else:
-                found = ground_from_sides(request.evidence, side, engine, deadline, contradiction)
+                found = ground_from_sides(request.evidence, side, request.engine, select, deadline, contradiction)
                 before = side.notes
     viewpoints = None if side is None else side.viewpoints.viewpoints if side.viewpoints else ()
     return replace(found.noting(before), viewpoints=viewpoints)

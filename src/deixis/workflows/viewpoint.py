@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
@@ -11,13 +10,15 @@ from numpy.typing import NDArray
 
 from deixis.deadline import Deadline
 from deixis.perception.scene import Scene
+from deixis.reasoning.geometry.turning import turned
 from deixis.reasoning.grounding.answer import Grounding
-from deixis.reasoning.grounding.engine import Engine
+from deixis.reasoning.grounding.engines import engine_named
 from deixis.reasoning.grounding.evidence.evidence import Evidence
 from deixis.reasoning.grounding.ground import ground as ground_evidence
+from deixis.reasoning.grounding.hypotheses import Side, side_text
 from deixis.reasoning.grounding.matching.problem import UNMATCHED, Problem
-from deixis.reasoning.grounding.options import DECIDED
-from deixis.reasoning.grounding.viewpoint import FromSides, OtherSide, Viewpoint, Viewpoints, recover_viewpoint, turned
+from deixis.reasoning.grounding.options import DECIDED, Select
+from deixis.reasoning.grounding.viewpoint import Viewpoint, Viewpoints, recover_viewpoint
 
 MIN_VIEWPOINT_PROBABILITY, MAX_VIEWPOINTS = 0.005, 8
 """Least probability of a viewpoint that contributes to the probabilities of matches, and the most such viewpoints."""
@@ -35,8 +36,9 @@ class ViewpointScene:
     scene: Scene
     viewpoints: Viewpoints | None = None
     notes: tuple[str, ...] = ()
-    others: tuple[tuple[float, Scene], ...] = ()  # as seen from other sides, each with its probability
+    others: tuple[tuple[Viewpoint, Scene], ...] = ()  # as seen from other sides
     share: float = 1.0  # how probable this side is
+    side: Viewpoint | None = None
     evidence: Evidence | None = None  # as seen from this side, where it was worked out already
 
     @property
@@ -75,26 +77,28 @@ def recover_scene(
         quarters = _from_all_quarters(scene, recover_viewpoint(present, problem, deadline=deadline))
         return replace(quarters, evidence=evidence)
     known = evidence if not best.angle and not best.mirrored else None
-    return ViewpointScene(scene_from(scene, best), found, _notes(found), _others(scene, found), best.probability, known)
+    others = _others(scene, found)
+    return ViewpointScene(scene_from(scene, best), found, _notes(found), others, best.probability, best, known)
 
 
 def _from_all_quarters(scene: Scene, found: Viewpoints) -> ViewpointScene:
     """As it stands, with the other quarter turns for the whole circle, of which no part is likelier than another."""
     upright = next(view for view in found.viewpoints if not view.angle and not view.mirrored)
     rest = replace(found, viewpoints=(upright, *(view for view in found.viewpoints if view is not upright)))
-    return ViewpointScene(scene, None, (_NO_VIEWPOINT_NOTE,), _others(scene, rest), upright.probability)
+    return ViewpointScene(scene, None, (_NO_VIEWPOINT_NOTE,), _others(scene, rest), upright.probability, upright)
 
 
-def _others(scene: Scene, found: Viewpoints) -> tuple[tuple[float, Scene], ...]:
-    """What is seen from the sides after the first, with how probable they are, where that is worth a look."""
+def _others(scene: Scene, found: Viewpoints) -> tuple[tuple[Viewpoint, Scene], ...]:
+    """What is seen from the sides after the first, where that is worth a look."""
     worth = [view for view in found.viewpoints[1:MAX_VIEWPOINTS] if view.probability >= MIN_VIEWPOINT_PROBABILITY]
-    return tuple((view.probability, scene_from(scene, view)) for view in worth)
+    return tuple((view, scene_from(scene, view)) for view in worth)
 
 
 def ground_from_sides(
     evidence_of: Callable[[Scene], Evidence],
     side: ViewpointScene,
-    engine: Engine,
+    engine: str,
+    select: Select,
     deadline: Deadline,
     notes: tuple[str, ...],
 ) -> Grounding:
@@ -102,9 +106,14 @@ def ground_from_sides(
 
     Where nothing tells a side, the map is that of the scene as it stands, with the probabilities from all around.
     """
-    others = tuple(OtherSide(share, evidence_of(scene)) for share, scene in side.others)
-    aligning = FromSides(engine, side.share, others) if others else engine
-    return ground_evidence(side.evidence or evidence_of(side.scene), aligning, deadline, notes)
+    here = side.side
+    if here is None:
+        return ground_evidence(side.evidence or evidence_of(side.scene), engine_named(engine, select), deadline, notes)
+    views = (here, *(view for view, _ in side.others))
+    sides = tuple(Side(view.angle, view.mirrored, view.prior) for view in views)
+    seen = (None, *(evidence_of(scene) for _, scene in side.others))
+    evidence = side.evidence or evidence_of(side.scene)
+    return ground_evidence(evidence, engine_named(engine, select, sides, seen), deadline, notes)
 
 
 def scene_from(scene: Scene, view: Viewpoint) -> Scene:
@@ -122,19 +131,12 @@ def _with_boxes(scene: Scene, boxes: NDArray[np.float64]) -> Scene:
 
 def _notes(found: Viewpoints) -> tuple[str, ...]:
     best = found.best
-    notes = [f"the scene was taken {turn_text(best)}, with probability {best.probability:.2f}"]
+    notes = [f"the scene was taken {side_text(best.angle, best.mirrored)}, with probability {best.probability:.2f}"]
     if len(found.ties) > 1:
-        others = ", or ".join(turn_text(view) for view in found.ties if view is not best)
+        others = ", or ".join(side_text(view.angle, view.mirrored) for view in found.ties if view is not best)
         notes.append(f"the description fits as well {others}")
     if not found.everywhere:
         notes.append("there was no time to look from every side, so that the probability is approximate")
     elif not found.exact:
         notes.append("not all groundings were counted for every side, so that the probability is approximate")
     return tuple(notes)
-
-
-def turn_text(view: Viewpoint) -> str:
-    """Return how the scene is turned or mirrored for a viewpoint, in words."""
-    degrees = round(math.degrees(view.angle)) % 360
-    turn = "as it stands" if degrees == 0 else f"turned by {degrees} degrees counter-clockwise"
-    return f"mirrored and {turn}" if view.mirrored else turn

@@ -57,7 +57,8 @@ def test_json_holds_what_is_promised(engine: str) -> None:
     assert (code, err) == (0, "")
     gap = {"gap": float if engine == "exact" else type(None)}
     pivotal = {"pivotal": list if engine == "exact" else type(None)}
-    assert {key: type(value) for key, value in data.items()} == PROMISED | QUALIFYING | pivotal | gap
+    fits = {"fits": float if engine == "exact" else type(None)}
+    assert {key: type(value) for key, value in data.items()} == PROMISED | QUALIFYING | pivotal | gap | fits
     assert data["engine"] == engine
     assert data["proved_best"] is (engine == "exact")
     assert len(data["matches"]) == 12
@@ -75,6 +76,12 @@ def test_json_holds_what_is_promised(engine: str) -> None:
         assert 0 <= match["score"] <= 1
     assert data["facts"].keys() == {"stated", "satisfied", "violated", "waived", "open"}
     assert data["facts"]["stated"] == 11
+
+
+def test_the_text_says_how_probably_the_description_is_of_the_scene() -> None:
+    told = "The description is of this scene with probability"
+    assert told in deixis("ground", FULL, SCENE)[1]
+    assert told not in deixis("ground", FULL, SCENE, "--engine", "similarity")[1]
 
 
 def test_a_violated_fact_is_told_with_its_line_and_what_was_perceived(tmp_path: Path) -> None:

@@ -22,6 +22,7 @@ from deixis.reasoning.grounding.answer import Grounding, Outcome
 from deixis.reasoning.grounding.engines import engine_named
 from deixis.reasoning.grounding.evidence.evidence import no_unary_evidence
 from deixis.reasoning.grounding.ground import ground
+from deixis.reasoning.grounding.hypotheses import AS_IT_STANDS
 from deixis.reasoning.grounding.options import DECIDED
 
 MakeGraph = Callable[..., RelationGraph]
@@ -267,7 +268,7 @@ def test_the_names_of_the_pairs_are_worked_out_once(
     for module in (rectangle, facts):
         monkeypatch.setattr(module, "box_relations", counted)
     scene = formal_setting()
-    answer(graph_of(*full_script), scene)
+    ground(evidence(graph_of(*full_script), scene), engine_named("exact", sides=AS_IT_STANDS))
     answer(graph_of(*full_script), scene, "similarity")
     assert counts == [len(scene.objects)]
 

@@ -14,9 +14,10 @@ from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.geometry.rectangle import SceneRelations, scene_relations
 from deixis.reasoning.grounding.answer import Grounding
 from deixis.reasoning.grounding.engines import engine_named
-from deixis.reasoning.grounding.evidence.evidence import Evidence
+from deixis.reasoning.grounding.evidence.evidence import Evidence, evidence_from
 from deixis.reasoning.grounding.evidence.labels import Label
-from deixis.reasoning.grounding.evidence.unary import label_ratios
+from deixis.reasoning.grounding.evidence.meaning import Meaning
+from deixis.reasoning.grounding.evidence.unary import LABEL_ERROR, UnaryWeights
 from deixis.reasoning.grounding.ground import ground
 
 MakeGraph = Callable[..., RelationGraph]
@@ -25,20 +26,29 @@ KINDS = default_ontology().kinds
 FORK_AND_PLATE = [KINDS.words[word].iri for word in ("fork", "plate")]
 
 
-def labelled(description: RelationGraph, labels: dict[str, Label]) -> Grounding:
+def labelled(description: RelationGraph, labels: dict[str, Label], error: float = LABEL_ERROR) -> Grounding:
     scene = formal_setting()
-    return labelled_scene(description, scene.relations(R), [labels.get(thing.id) for thing in scene.objects])
+    return labelled_scene(description, scene.relations(R), [labels.get(thing.id) for thing in scene.objects], error)
 
 
-def labelled_scene(description: RelationGraph, scene: SceneRelations, labels: list[Label | None]) -> Grounding:
-    said, allowed = label_ratios(description, labels, KINDS)
-    identified = np.any(~allowed, axis=0)
-    evidence = Evidence(description, scene, said, np.zeros_like(said), allowed=allowed, identified=identified)
-    return ground(evidence, engine_named("exact"))
+def labelled_scene(
+    description: RelationGraph, scene: SceneRelations, labels: list[Label | None], error: float = LABEL_ERROR
+) -> Grounding:
+    return ground(labels_alone(description, scene, labels, error), engine_named("exact"))
 
 
-def test_a_certain_label_fixes_its_thing_against_all_facts(graph_of: MakeGraph, full_script: list[str]) -> None:
-    found = labelled(graph_of(*full_script), {"dinner_fork": Label("napkin"), "napkin": Label("dinner_fork")})
+def labels_alone(
+    description: RelationGraph, scene: SceneRelations, labels: list[Label | None], error: float
+) -> Evidence:
+    meaning = Meaning(weights=UnaryWeights(sizes=0.0))
+    return evidence_from(
+        description, scene, labels, KINDS, default_ontology().sizes, meaning=meaning, label_error=error
+    )
+
+
+def test_labels_free_of_error_fix_their_things_against_all_facts(graph_of: MakeGraph, full_script: list[str]) -> None:
+    wrong = {"dinner_fork": Label("napkin"), "napkin": Label("dinner_fork")}
+    found = labelled(graph_of(*full_script), wrong, error=0.0)
     assert (pairs(found)["napkin"], pairs(found)["dinner_fork"]) == ("dinner_fork", "napkin")
     assert found.violated
 
@@ -50,8 +60,10 @@ def test_a_label_settles_what_the_facts_leave_open(graph_of: MakeGraph, figure_7
     assert "salad_fork" not in {name for group in found.interchangeable for name in group}
 
 
-def test_a_certain_label_that_names_nothing_leaves_its_thing_out(graph_of: MakeGraph, full_script: list[str]) -> None:
-    found = labelled(graph_of(*full_script), {"soup_spoon": Label("gizmo")})
+def test_a_label_free_of_error_that_names_nothing_leaves_its_thing_out(
+    graph_of: MakeGraph, full_script: list[str]
+) -> None:
+    found = labelled(graph_of(*full_script), {"soup_spoon": Label("gizmo")}, error=0.0)
     (thing,) = found.unmatched_perceived
     assert thing.name == "soup_spoon"
     assert thing.reason == "the labels of the scene leave it nothing in the description that it could be"
@@ -63,7 +75,7 @@ def test_an_object_that_labels_leave_nothing_is_left_out_with_that_reason(
 ) -> None:
     scene = scene_relations(["p", "q"], boxes_of([(0, 1), (0, 1)], [(2, 3), (0, 1)]), R)
     description = graph_of("left(a, b)")
-    found = labelled_scene(description, scene, [Label("a"), Label("a")])
+    found = labelled_scene(description, scene, [Label("a"), Label("a")], error=0.0)
     assert pairs(found) == {"a": "p"} or pairs(found) == {"a": "q"}
     assert [(entry.name, entry.reason) for entry in found.unmatched_objects] == [
         ("b", "the labels of the scene leave it nothing that it could be")
@@ -82,12 +94,12 @@ def test_an_uncertain_label_weighs_against_facts_and_loses_or_wins(graph_of: Mak
 
 
 def test_a_narrower_label_says_where_the_broader_object_is(graph_of: MakeGraph, boxes_of: MakeBoxes) -> None:
-    """The facts have it the other way round, and a certain label is stronger."""
+    """The fact has it the other way round, and two certain labels are stronger."""
     scene = scene_relations(["p", "q"], boxes_of([(0, 1), (0, 1)], [(2, 3), (0, 1)]), R)
     description = graph_of("left(fork, plate)", kinds=FORK_AND_PLATE)
     found = labelled_scene(description, scene, [Label("dinner plate"), Label("dinner fork")])
     assert pairs(found) == {"fork": "q", "plate": "p"}
-    assert all(match.decided for match in found.matches.values())
+    assert all((match.probability or 0) > 0.95 for match in found.matches.values())
 
 
 def test_beside_a_thing_of_its_very_name_an_object_is_none_of_a_narrower_one(
@@ -98,4 +110,4 @@ def test_beside_a_thing_of_its_very_name_an_object_is_none_of_a_narrower_one(
     scene = scene_relations(["p", "q", "r"], boxes, R)
     found = labelled_scene(description, scene, [Label("dinner fork"), Label("plate"), Label("fork")])
     assert pairs(found) == {"fork": "r", "plate": "q"}
-    assert found.matches["fork"].decided
+    assert (found.matches["fork"].probability or 0) > 0.95

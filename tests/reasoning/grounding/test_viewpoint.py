@@ -17,10 +17,11 @@ from deixis.errors import GraphError
 from deixis.experiments.place_settings import formal_setting
 from deixis.grammar.parser import parse_script, read_script
 from deixis.ontology.graph import RelationGraph
+from deixis.reasoning.geometry.turning import turned
 from deixis.reasoning.grounding.evidence.facts import fact_tables
 from deixis.reasoning.grounding.matching.exact import exact
 from deixis.reasoning.grounding.matching.problem import Problem
-from deixis.reasoning.grounding.viewpoint import COARSE_ANGLES, Viewpoints, recover_viewpoint, turned
+from deixis.reasoning.grounding.viewpoint import COARSE_ANGLES, Viewpoints, recover_viewpoint
 
 Boxes = NDArray[np.float64]
 FORMAL = read_script(str(Path(__file__).parents[3] / "examples" / "formal_dinner.layout")).graph()

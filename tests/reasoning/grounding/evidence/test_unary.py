@@ -139,18 +139,39 @@ def test_a_learned_range_replaces_the_shipped_one() -> None:
     assert size_evidence([SPOON], small, SIZES, {SPOON: learned})[0, 0] > size_evidence([SPOON], small, SIZES)[0, 0]
 
 
-def test_labels_weigh_by_confidence_and_a_certain_one_decides() -> None:
+def test_labels_weigh_by_how_much_likelier_they_are_than_of_anything_else() -> None:
     labels = [Label("soup spoon", 0.8), None, Label("dinner plate", 1.0)]
-    found, allowed = label_ratios(TWO, labels, KINDS)
-    assert np.exp(found[:, 0]) == pytest.approx([0.8 * 2 + 0.2, 0.2])
-    assert found[:, 1].tolist() == [0.0, 0.0]
-    assert found[1, 2] == pytest.approx(np.log(2))
-    assert allowed.tolist() == [[True, True, False], [True, True, True]]
+    found = label_ratios(TWO, labels, KINDS, error=0.01)
+    world = 1 / len(KINDS)
+    right, wrong = 0.8 * 0.99, (1 - 0.8 * 0.99) * (1 / 2 + world) / 2
+    by_chance = right * world + wrong
+    assert np.exp(found.ratios[:, 0]) == pytest.approx([(right + wrong) / by_chance, wrong / by_chance])
+    assert found.ratios[:, 1].tolist() == [0.0, 0.0]
+    assert found.ratios[1, 2] > found.ratios[0, 0] > 1 and found.ratios[0, 2] < 0
+    assert found.allowed.all()
+
+
+def test_labels_free_of_error_rule_out_what_they_do_not_name() -> None:
+    found = label_ratios(TWO, [Label("dinner plate"), Label("soup spoon", 0.8)], KINDS, error=0.0)
+    assert found.allowed.tolist() == [[False, True], [True, True]]
+    assert np.isfinite(found.ratios).all()
+
+
+def test_a_broader_word_says_less_than_the_very_kind() -> None:
+    words = ("dinner plate", "plate", "tableware")
+    said = [label_ratios(TWO, [Label(word)], KINDS).ratios[1, 0] for word in words]
+    assert said[0] > said[1] > said[2] > 0
+
+
+def test_a_name_that_is_no_kind_says_more_than_a_kind() -> None:
+    named = RelationGraph.from_facts(R, ["thingamajig", "dinner_plate"], [], kinds=[None, PLATE])
+    found = label_ratios(named, [Label("thingamajig"), Label("dinner plate")], KINDS).ratios
+    assert found[0, 0] > found[1, 1] > 4
 
 
 def test_a_label_of_no_confidence_says_nothing() -> None:
-    found, allowed = label_ratios(TWO, [Label("soup spoon", 0.0)], KINDS)
-    assert (found == 0).all() and allowed.all()
+    found = label_ratios(TWO, [Label("soup spoon", 0.0)], KINDS)
+    assert found.ratios == pytest.approx(np.zeros((2, 1))) and found.allowed.all()
 
 
 def test_all_evidence_adds_up_with_its_weights() -> None:
@@ -158,7 +179,7 @@ def test_all_evidence_adds_up_with_its_weights() -> None:
     seen = scene_relations(["a", "b", "c"], TABLE, R)
     both = evidence_from(TWO, seen, labels, KINDS, SIZES).unary
     sizes = size_evidence([SPOON, PLATE], TABLE, SIZES)
-    assert both == pytest.approx(label_ratios(TWO, labels, KINDS)[0] + sizes)
+    assert both == pytest.approx(label_ratios(TWO, labels, KINDS).ratios + sizes)
     half = UnaryWeights(labels=0.0, sizes=0.5)
     certain = [Label("dinner plate", 1.0), None, None]
     assert evidence_from(TWO, seen, certain, KINDS, SIZES, meaning=Meaning(weights=half)).unary == pytest.approx(

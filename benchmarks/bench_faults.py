@@ -1,0 +1,170 @@
+"""What *decided* is worth where a scene is not what its description says: right and decided matches under each fault.
+
+Generated tables of 11 objects, each fully described by 22 facts; the description tells their kinds, or words alone.
+Then something is wrong: three things bear labels, said to be certain, that name other objects; the table is seen from
+the other side, or in a mirror; its things lie at each other's places; two boxes are merged into one; two things are
+missed. A match is right where the object is that very thing; either of two merged ones may be the merged box. Of words
+alone nothing tells which thing lies at which place: things at shuffled places are then right at the places that are
+described. ``bench_fits.py`` measures how often such descriptions are noticed.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.deadline import Deadline
+from deixis.experiments.generated_tables import GeneratedTable, generate
+from deixis.ontology.tbox import default_ontology
+from deixis.reasoning.geometry.rectangle import scene_relations
+from deixis.reasoning.geometry.turning import turned
+from deixis.reasoning.grounding.answer import Grounding
+from deixis.reasoning.grounding.engines import engine_named
+from deixis.reasoning.grounding.evidence.evidence import evidence_from
+from deixis.reasoning.grounding.evidence.labels import Label
+from deixis.reasoning.grounding.ground import ground
+from deixis.reasoning.grounding.matching.problem import UNMATCHED
+
+OBJECTS, FACTS = 11, 22
+Boxes = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class FaultyScene:
+    """The boxes (n2, 2, 2) that are seen, their labels, and the boxes that each object may rightly be."""
+
+    boxes: Boxes
+    truth: tuple[frozenset[int], ...]
+    labels: tuple[Label | None, ...]
+
+
+def untouched(table: GeneratedTable, rng: np.random.Generator) -> FaultyScene:
+    """Return the table as it was laid."""
+    return _scene(table.boxes, table.truth.tolist())
+
+
+def labels_wrong(table: GeneratedTable, rng: np.random.Generator, certain: int = 3) -> FaultyScene:
+    """Return the table with labels on three things that name three other objects."""
+    rows = rng.permutation(len(table.truth))[:certain]
+    labels: list[Label | None] = [None] * len(table.boxes)
+    for row in rows.tolist():
+        other = int(rng.choice(np.delete(np.arange(len(table.truth)), row)))
+        labels[int(table.truth[row])] = Label(f"d{other:04}")
+    return _scene(table.boxes, table.truth.tolist(), labels)
+
+
+def other_side(table: GeneratedTable, rng: np.random.Generator) -> FaultyScene:
+    """Return the table as somebody opposite sees it."""
+    return _scene(turned(table.boxes, math.pi), table.truth.tolist())
+
+
+def mirrored(table: GeneratedTable, rng: np.random.Generator) -> FaultyScene:
+    """Return the table with left and right exchanged."""
+    return _scene(turned(table.boxes, 0.0, True), table.truth.tolist())
+
+
+def shuffled(table: GeneratedTable, rng: np.random.Generator) -> FaultyScene:
+    """Return the things of the table at each other's places."""
+    return _scene(moved_to(table.boxes, rng.permutation(len(table.boxes))), table.truth.tolist())
+
+
+def by_place(table: GeneratedTable, seen: FaultyScene) -> FaultyScene:
+    """Return the same scene where an object is whatever lies at its place."""
+    apart = np.linalg.norm(table.boxes.mean(axis=1)[:, None] - seen.boxes.mean(axis=1)[None], axis=2)
+    return _scene(seen.boxes, apart.argmin(axis=1)[table.truth].tolist())
+
+
+def moved_to(boxes: Boxes, places: NDArray[np.int64]) -> Boxes:
+    """Return boxes (n, 2, 2) of the same sizes, each at the place of another (n,)."""
+    centres, halves = boxes.mean(axis=1)[places], (boxes[:, 1] - boxes[:, 0]) / 2
+    return np.stack([centres - halves, centres + halves], axis=1)
+
+
+def merged(table: GeneratedTable, rng: np.random.Generator) -> FaultyScene:
+    """Return the table with two neighbouring boxes seen as one."""
+    first = int(rng.integers(len(table.boxes)))
+    centres = table.boxes.mean(axis=1)
+    apart = np.linalg.norm(centres - centres[first], axis=1)
+    apart[first] = np.inf
+    second = int(apart.argmin())
+    low = np.minimum(table.boxes[first, 0], table.boxes[second, 0])
+    high = np.maximum(table.boxes[first, 1], table.boxes[second, 1])
+    boxes = table.boxes.copy()
+    boxes[first] = np.stack([low, high])
+    place = np.arange(len(boxes))
+    place[second] = first
+    place = np.where(place > second, place - 1, place)
+    return _scene(np.delete(boxes, second, axis=0), [int(place[p]) for p in table.truth])
+
+
+def missed(table: GeneratedTable, rng: np.random.Generator, count: int = 2) -> FaultyScene:
+    """Return the table without two of its things."""
+    gone = rng.permutation(len(table.boxes))[:count]
+    place = np.full(len(table.boxes), UNMATCHED)
+    kept = np.setdiff1d(np.arange(len(table.boxes)), gone)
+    place[kept] = np.arange(len(kept))
+    return _scene(table.boxes[kept], place[table.truth].tolist())
+
+
+FAULTS: dict[str, Callable[[GeneratedTable, np.random.Generator], FaultyScene]] = {
+    "untouched": untouched,
+    "three labels wrong, said to be certain": labels_wrong,
+    "seen from the other side": other_side,
+    "mirrored": mirrored,
+    "things at shuffled places": shuffled,
+    "two boxes merged": merged,
+    "two missed": missed,
+}
+
+
+def _scene(boxes: Boxes, truth: list[int], labels: list[Label | None] | None = None) -> FaultyScene:
+    right = tuple(frozenset({p} - {UNMATCHED}) for p in truth)
+    return FaultyScene(boxes, right, tuple(labels or [None] * len(boxes)))
+
+
+def grounded(table: GeneratedTable, seen: FaultyScene, kinds: bool) -> Grounding:
+    """Return the answer of the engine that is the default."""
+    ontology = default_ontology()
+    scene = scene_relations([f"o{p:04}" for p in range(len(seen.boxes))], seen.boxes, ontology.relations)
+    description = table.description(kinds=kinds)
+    evidence = evidence_from(description, scene, seen.labels, ontology.kinds, ontology.sizes)
+    return ground(evidence, engine_named("exact"), Deadline.after(30.0))
+
+
+def decided_and_right(found: Grounding, seen: FaultyScene) -> tuple[int, int]:
+    """Return how many matches are decided, and how many of those are right."""
+    decided = {name: int(match.perceived[1:]) for name, match in found.matches.items() if match.decided}
+    return len(decided), sum(p in seen.truth[int(name[1:])] for name, p in decided.items())
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--tables", type=int, default=18, help="tables for each fault")
+    parser.add_argument("--seed", type=int, default=1)
+    options = parser.parse_args()
+    print(
+        f"{options.tables} tables of {OBJECTS} objects, {FACTS} facts: right of decided, of {OBJECTS} objects a table"
+    )
+    print(f"{'fault':<40}{'kinds':<28}words alone")
+    for name, fault in FAULTS.items():
+        told = []
+        for kinds in (True, False):
+            counts = np.zeros(2, dtype=int)
+            for number in range(options.tables):
+                table = generate(OBJECTS, FACTS / OBJECTS, 0.0, seed=1000 * options.seed + number)
+                seen = fault(table, np.random.default_rng([options.seed, number]))
+                if fault is shuffled and not kinds:
+                    seen = by_place(table, seen)
+                counts += decided_and_right(grounded(table, seen, kinds), seen)
+            share = counts[0] / (OBJECTS * options.tables)
+            told.append(f"{counts[1]} of {counts[0]} ({share:.2f} decided)")
+        print(f"{name:<40}{told[0]:<28}{told[1]}", flush=True)
+
+
+if __name__ == "__main__":
+    main()

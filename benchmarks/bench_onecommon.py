@@ -1,0 +1,50 @@
+"""People's words for dots: which of seven is meant, where the dot that it is described by is labelled for certain.
+
+OneCommon (Udagawa and Aizawa 2019), ``$DEIXIS_DATA/onecommon/direction_pairs.json``: ``target left of landmark`` with
+the landmark's dot labelled ``landmark``. Prints the share of targets and of landmarks that are found, and how probable
+the landmark is.
+"""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+from common import data_folder
+
+from deixis.deadline import Deadline
+from deixis.ontology.graph import Fact, RelationGraph
+from deixis.ontology.tbox import default_ontology
+from deixis.reasoning.geometry.rectangle import scene_relations
+from deixis.reasoning.grounding.engines import engine_named
+from deixis.reasoning.grounding.evidence.evidence import evidence_from
+from deixis.reasoning.grounding.evidence.labels import Label
+from deixis.reasoning.grounding.ground import ground
+
+
+def main() -> None:
+    folder = data_folder("onecommon")
+    if folder is None:
+        return
+    ontology, engine = default_ontology(), engine_named("exact")
+    found, probable = [], []
+    for one in json.loads((folder / "direction_pairs.json").read_text(encoding="utf-8")):
+        said = Fact("target", (ontology.relations[one["word"]],), "landmark")
+        description = RelationGraph.from_facts(ontology.relations, ["target", "landmark"], [said])
+        dots = np.array([(dot["x"], dot["y"], dot["radius"]) for dot in one["dots"]])
+        boxes = np.stack([dots[:, :2] - dots[:, 2:], dots[:, :2] + dots[:, 2:]], axis=1)
+        labels = [Label("landmark") if p == one["landmark"] else None for p in range(len(boxes))]
+        scene = scene_relations([f"o{p}" for p in range(len(boxes))], boxes, ontology.relations)
+        evidence = evidence_from(description, scene, labels, ontology.kinds, ontology.sizes, metric=False)
+        matches = ground(evidence, engine, Deadline.after(5.0)).matches
+        found.append(
+            [name in matches and matches[name].perceived == f"o{one[name]}" for name in ("target", "landmark")]
+        )
+        probable.append((matches["landmark"].probability or 0.0) if "landmark" in matches else 0.0)
+    target, landmark = np.mean(found, axis=0)
+    print(f"{len(found)} descriptions: target found {target:.2f}, landmark {landmark:.2f}")
+    print(f"landmark probable {np.mean(probable):.4f} in the mean, {min(probable):.4f} at the least")
+
+
+if __name__ == "__main__":
+    main()

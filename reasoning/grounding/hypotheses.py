@@ -1,0 +1,319 @@
+"""What a description may be of: this scene as it is stated, seen from another side or in a mirror, or another scene.
+
+All of it is one posterior with the maps. A side weighs its prior times a power of the likelihood of the facts as seen
+from there, Z / U: Z sums the value of all maps, U the same without facts. *Another scene* explains kinds and labels as
+well as this one, or, where those speak against it, by chance; and the facts as well as scenes do that the facts are not
+about. How well that is depends on M, how much the facts could say beyond telling the things apart: the sum of the
+largest entry of each, less the entropy of the maps where no fact is known, but at least 0.
+
+    log weight of a side     = log prior + FACTS_POWER (log Z - log U)
+    log weight of another    = log prior + CHANCE_SHARE M - KINDS_POWER min(0, log U - log U0 + KINDS_SLACK n1)
+
+U0 sums what leaving out costs alone, n1 is the number of objects. Where somebody pointed an object out, or a label that
+is free of error names it, the description is of this scene.
+
+The power of facts is below 1 since facts are counted as independent, and are not: places in one plane that please one
+fact please others. ``benchmarks/bench_fits.py`` fits the powers to right and wrong pairs of descriptions and scenes
+(:mod:`deixis.reasoning.grounding.fitting.fits`). FACTS_POWER is what tables alone give, where photographs
+give less than half; the ratio of CHANCE_SHARE to it, about a half, lies between those of the two, and is large enough
+that four of five tables whose things lie at shuffled places are noticed under the prior of another scene.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.deadline import Deadline
+from deixis.reasoning.grounding.evidence.evidence import Evidence
+from deixis.reasoning.grounding.matching.permanents import entropy_without_facts, log_prior, log_sum_without_facts
+from deixis.reasoning.grounding.matching.posterior import Posterior, posterior
+from deixis.reasoning.grounding.matching.problem import UNMATCHED, Problem
+from deixis.reasoning.grounding.matching.scalable import scalable
+
+FACTS_POWER, CHANCE_SHARE, KINDS_POWER = 0.7, 0.37, 1.4
+
+KINDS_SLACK = 0.7
+"""By how many nats for each object kinds may fit less than chance before that speaks for another scene: in images,
+sizes of things that are described rightly do so, too."""
+
+ANOTHER_PRIOR = 0.01
+"""Prior probability that a description is of another scene: one in a hundred."""
+
+
+@dataclass(frozen=True, slots=True)
+class Side:
+    """A side from which a description may speak: the scene turned by ``angle`` (radians, counter-clockwise), having
+    mirrored left and right if so, with its prior probability among all sides."""
+
+    angle: float
+    mirrored: bool
+    prior: float
+
+
+@dataclass(frozen=True, slots=True)
+class FitEvidence:
+    """What tells whether a description is of a scene, in nats.
+
+    ``facts`` is the log-likelihood ratio of the facts given kinds and labels, log Z - log U; ``most`` is M, what it
+    could be at most; ``kinds`` is by how much kinds and labels fit the scene less than chance and a slack, at most 0.
+    """
+
+    facts: float
+    most: float
+    kinds: float
+
+    @property
+    def beside(self) -> float:
+        """The log-likelihood, up to the same power, of another scene."""
+        return CHANCE_SHARE * self.most - KINDS_POWER * self.kinds
+
+    @property
+    def log_odds(self) -> float:
+        """By how much the evidence adds to the log-odds that the description is of this scene."""
+        return FACTS_POWER * self.facts - self.beside
+
+
+OPPOSITE_PRIOR, BESIDE_PRIOR, MIRROR_PRIOR = 0.001, 0.0002, 0.001
+"""Prior probabilities that a stated viewpoint is wrong: the speaker sits opposite; at the one or the other end; or left
+and right are exchanged (each of the other mirror images has that of an end)."""
+
+STATED_SIDES = (
+    Side(0.0, False, 1 - OPPOSITE_PRIOR - MIRROR_PRIOR - 5 * BESIDE_PRIOR),
+    Side(math.pi, False, OPPOSITE_PRIOR),
+    Side(0.0, True, MIRROR_PRIOR),
+    Side(math.pi / 2, False, BESIDE_PRIOR),
+    Side(3 * math.pi / 2, False, BESIDE_PRIOR),
+    Side(math.pi / 2, True, BESIDE_PRIOR),
+    Side(math.pi, True, BESIDE_PRIOR),
+    Side(3 * math.pi / 2, True, BESIDE_PRIOR),
+)
+"""Sides from which a description may speak of a scene whose viewpoint is stated: strong evidence, and not certain."""
+
+AS_IT_STANDS = (Side(0.0, False, 1.0),)
+"""The one side of a scene whose viewpoint is certain."""
+
+MAX_THINGS = 150
+"""Things up to which other sides are looked from; of larger scenes they are as likely as another scene."""
+
+NEGLIGIBLE = 1e-3
+"""Share of the likeliest side's weight below which a side's maps are not listed."""
+
+SEARCH_EFFORT = 0.05
+"""Effort of the search that shows whether a side is worth a look."""
+
+ENTROPY_SHARE = 0.27
+"""By how much the logarithm of the sum is above the best value, for each nat of the sum of the objects' entropies: the
+least squares of 100 tables on which both are exact (``benchmarks/bench_fits.py``)."""
+
+
+@dataclass(frozen=True, eq=False)
+class SeenSide:
+    """A side, its posterior probability, the evidence as seen from there, and the best map found (n1,)."""
+
+    side: Side
+    probability: float
+    evidence: Evidence
+    assignment: NDArray[np.int64]
+
+
+@dataclass(frozen=True, eq=False)
+class Verdict:
+    """All hypotheses together: the posterior of matches over them, the sides, and how probable one of them is.
+
+    ``fits`` is the probability that the description is of this scene from whichever side; ``evidence`` is what tells
+    it as seen from the first. ``sides`` begins with the first that was given. ``by_labels`` (n1,) is the map by labels
+    alone, and ``labelled`` its posterior: what is left in another scene.
+    """
+
+    posterior: Posterior
+    fits: float
+    evidence: FitEvidence
+    sides: tuple[SeenSide, ...]
+    by_labels: NDArray[np.int64]
+    labelled: Posterior
+
+    @property
+    def best(self) -> SeenSide:
+        """The likeliest side, the first of equals."""
+        return max(self.sides, key=lambda one: round(one.probability, 9))
+
+
+def weigh(
+    evidence: Evidence,
+    assignment: NDArray[np.int64],
+    deadline: Deadline = Deadline.never(),
+    sides: Sequence[Side] = STATED_SIDES,
+    seen: Sequence[Evidence | None] = (),
+    another: float = ANOTHER_PRIOR,
+) -> Verdict | None:
+    """Return the posterior over maps, sides and scenes; None where the time did not suffice for the first side.
+
+    Parameters
+    ----------
+    evidence
+        All that speaks for each match as seen from the first of the sides.
+    assignment
+        The best map (n1,) known from there.
+    deadline
+        Sides that there was no time to look from are as likely as another scene makes them, and say nothing of matches.
+    sides
+        The sides and their priors.
+    seen
+        What is seen from each of them, in the order of ``evidence``; for None the scene is turned as the side says.
+    another
+        Prior probability of another scene.
+
+    Examples
+    --------
+    >>> from deixis.ontology.graph import Fact, RelationGraph
+    >>> from deixis.ontology.tbox import default_ontology
+    >>> from deixis.reasoning.geometry.rectangle import scene_relations
+    >>> from deixis.reasoning.grounding.evidence.evidence import no_unary_evidence
+    >>> relations = default_ontology().relations
+    >>> said = RelationGraph.from_facts(relations, ["cup", "mug"], [Fact("cup", (relations["left"],), "mug")])
+    >>> boxes = np.array([[[0.0, 0.0], [0.1, 0.1]], [[0.2, 0.0], [0.3, 0.1]]])
+    >>> known = no_unary_evidence(said, scene_relations(["p", "q"], boxes, relations))
+    >>> found = weigh(known, np.array([0, 1]))
+    >>> round(found.fits, 2), [round(one.probability, 3) for one in found.sides[:3]]
+    (0.99, [0.992, 0.001, 0.001])
+    """
+    first = _maps_of(evidence, assignment, deadline.share(0.6), 0.0, -math.inf)
+    if first.found is None or not math.isfinite(first.found.error):
+        return None
+    problem, readings = evidence.problem, evidence.label_readings
+    alone = _log_sum([weight + log_sum_without_facts(_without_facts(known)) for weight, known in readings])
+    most = float(problem.tables.max(axis=(1, 2), initial=0.0)[problem.kinds].sum()) if len(problem.ends) else 0.0
+    most = max(0.0, most - entropy_without_facts(_without_facts(evidence)))
+    told = FitEvidence(
+        first.log_total - alone, most, min(0.0, alone - log_prior(problem) + KINDS_SLACK * len(problem.absent))
+    )
+    maps = [first]
+    weights = [math.log(sides[0].prior) + FACTS_POWER * told.facts]
+    rest = list(zip(sides[1:], seen[1:] if seen else (None,) * len(sides[1:]), strict=True))
+    for number, (side, known) in enumerate(rest):
+        if deadline.passed or evidence.scene.boxes is None or len(evidence.scene.nodes) > MAX_THINGS:
+            maps.append(replace(first, found=None))
+            weights.append(math.log(side.prior) + CHANCE_SHARE * most)
+            continue
+        turned = evidence.seen_from(side.angle, side.mirrored) if known is None else known
+        least = (max(weights) + math.log(NEGLIGIBLE) - math.log(side.prior)) / FACTS_POWER + alone
+        left = deadline.share(1 / (len(rest) - number))
+        there = _maps_of(turned, None, left, first.log_total - first.log_best, least)
+        maps.append(there)
+        weights.append(math.log(side.prior) + FACTS_POWER * (there.log_total - alone))
+    elsewhere = math.log(another / (1 - another)) + told.beside
+    weights.append(-math.inf if evidence.present.any() else elsewhere)  # what somebody pointed out is of this scene
+    shares = np.exp(np.array(weights) - _log_sum(weights)).tolist()
+    by_labels, labelled = _by_labels(evidence)
+    parts = [(share, one.found) for share, one in zip(shares[:-1], maps, strict=True) if one.found is not None]
+    listed = tuple(
+        SeenSide(side, share, one.evidence, one.assignment)
+        for side, share, one in zip(sides, shares, maps, strict=False)
+    )
+    return Verdict(_mixed([*parts, (shares[-1], labelled)]), 1 - shares[-1], told, listed, by_labels, labelled)
+
+
+@dataclass(frozen=True, eq=False)
+class _Maps:
+    """The maps of a description in a scene as seen from one side, over both readings of its labels.
+
+    ``evidence`` is that of the likelier reading, ``assignment`` (n1,) its best map, ``log_best`` what that is worth.
+    ``found`` is the posterior, None where the maps are not worth listing.
+    """
+
+    evidence: Evidence
+    assignment: NDArray[np.int64]
+    log_best: float
+    log_total: float
+    found: Posterior | None
+
+
+def _maps_of(
+    evidence: Evidence, assignment: NDArray[np.int64] | None, deadline: Deadline, spread: float, least: float
+) -> _Maps:
+    """Return the maps of both readings of the labels; listed are those that come to a share of ``least`` or more.
+
+    ``assignment`` is the best map of the first reading, where it is known. ``spread`` is by how much the logarithm of
+    the sum is taken to be above that of the best map, where maps are not listed.
+    """
+    seen: list[tuple[float, float, Evidence, NDArray[np.int64], Posterior | None]] = []
+    for weight, known in evidence.label_readings:
+        problem = known.problem
+        best = assignment if assignment is not None and not seen else None
+        if best is None:
+            best = scalable(problem, deadline.share(0.5), effort=SEARCH_EFFORT).assignment
+        value = problem.value(best)
+        found, total = None, value + spread
+        enough = max([least, *(one[1] + math.log(NEGLIGIBLE) for one in seen)])
+        if weight + total >= enough and (not seen or not deadline.passed):
+            found = posterior(problem, deadline, start=best)
+            total = log_total(found, value)
+        seen.append((weight + value, weight + total, known, best, found))
+    together = _log_sum([total for _, total, *_ in seen])
+    parts = [(math.exp(total - together), found) for _, total, _, _, found in seen if found is not None]
+    log_best, _, known, best, _ = max(seen, key=lambda one: one[0])
+    return _Maps(known, best, log_best, together, _mixed(parts) if parts else None)
+
+
+def _mixed(parts: Sequence[tuple[float, Posterior]]) -> Posterior:
+    """Return the sum of posteriors by their shares; what has no posterior adds nothing to a match."""
+    return Posterior(
+        np.sum([share * one.marginals for share, one in parts], axis=0),
+        all(one.exact for _, one in parts),
+        sum(share * one.error for share, one in parts),
+    )
+
+
+def _without_facts(evidence: Evidence) -> Problem:
+    """Return the problem of the same evidence with no fact."""
+    n2 = len(evidence.scene.nodes)
+    ends, nothing = np.zeros((0, 2), dtype=np.int64), np.zeros((0, n2, n2), dtype=np.float32)
+    return Problem(ends, ends[:, 0], nothing, evidence.unary, evidence.absent, evidence.allowed)
+
+
+def _log_sum(values: Sequence[float]) -> float:
+    return float(np.logaddexp.reduce(np.array(values)))
+
+
+def log_total(found: Posterior, value: float) -> float:
+    """Return the logarithm of the sum of all maps: exact, or estimated from the best value and the entropies."""
+    return found.log_total if math.isfinite(found.log_total) else value + ENTROPY_SHARE * float(found.entropy.sum())
+
+
+def _by_labels(evidence: Evidence) -> tuple[NDArray[np.int64], Posterior]:
+    """Return the best map and the posterior of what only labels tell: nothing of objects that no label speaks for.
+
+    That an object of another scene is not here is as likely as not.
+    """
+    from deixis.reasoning.grounding.matching.exact import exact
+
+    spoken = evidence.allowed & (evidence.labels > 0)
+    rows, nobody = np.flatnonzero(spoken.any(axis=1)), np.full(len(spoken), UNMATCHED)
+    marginals = np.zeros((len(spoken), spoken.shape[1] + 1))
+    marginals[:, -1] = 1.0
+    if not len(rows):
+        return nobody, Posterior(marginals, True, 0.0)
+    bare = _without_facts(evidence)
+    labelled = replace(
+        bare, unary=np.where(spoken, evidence.labels, 0.0)[rows], absent=np.zeros(len(rows)), allowed=spoken[rows]
+    )
+    found = posterior(labelled)
+    marginals[rows] = found.marginals
+    nobody[rows] = exact(labelled).assignment
+    return nobody, replace(found, marginals=marginals)
+
+
+def side_text(angle: float, mirrored: bool) -> str:
+    """Return how the scene is turned or mirrored for a side, in words.
+
+    >>> side_text(math.pi, False), side_text(0.0, True)
+    ('turned by 180 degrees counter-clockwise', 'mirrored and as it stands')
+    """
+    degrees = round(math.degrees(angle)) % 360
+    turn = "as it stands" if degrees == 0 else f"turned by {degrees} degrees counter-clockwise"
+    return f"mirrored and {turn}" if mirrored else turn

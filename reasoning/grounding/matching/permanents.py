@@ -1,0 +1,130 @@
+"""The sum over all maps of what speaks for their matches one by one, without facts: a permanent of partial maps.
+
+It is what the evidence of kinds, sizes, colours and labels comes to before anything is said of pairs. Up to
+``MAX_EXACT`` objects or things it is exact, by subsets of the smaller side (Ryser's problem by dynamic programming,
+Held and Karp 1962). Beyond, belief propagation gives the Bethe approximation of the permanent (Huang and Jebara 2009,
+arXiv:0908.1769; Vontobel 2013, IEEE Trans. Inf. Theory 59), corrected by its error where nothing speaks for a match.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import gammaln
+
+from deixis.reasoning.grounding.matching.problem import Problem
+
+Array = NDArray[np.float64]
+
+MAX_EXACT = 12
+"""Objects or things up to which the sum is exact."""
+
+ITERATIONS, TOLERANCE, MAX_CELLS = 200, 1e-5, 1e7
+"""Rounds of messages at most, the change of a logarithm below which they have settled, and messages of all rounds."""
+
+STEP = 1e-3
+"""Step in the power by which the slope is taken."""
+
+LOWEST = -700.0
+"""Logarithm that stands for what is not allowed."""
+
+
+def log_prior(problem: Problem) -> float:
+    """Return the logarithm of the sum over all maps of what is left out alone.
+
+    >>> none = np.zeros((0, 2), np.int64)
+    >>> problem = Problem(none, none[:, 0], np.zeros((0, 2, 2), np.float32), np.ones((2, 2)), np.zeros(2))
+    >>> round(float(np.exp(log_prior(problem))))  # 2 maps that match both, 4 that match one, 1 that matches none
+    7
+    """
+    return _log_prior(problem.absent, problem.unary.shape[1])
+
+
+def log_sum_without_facts(problem: Problem) -> float:
+    """Return the logarithm of the sum over all maps of the exponential of their value without facts.
+
+    >>> none = np.zeros((0, 2), np.int64)
+    >>> unary = np.log(np.array([[2.0, 1.0], [1.0, 1.0]]))
+    >>> problem = Problem(none, none[:, 0], np.zeros((0, 2, 2), np.float32), unary, np.zeros(2))
+    >>> round(float(np.exp(log_sum_without_facts(problem))))  # 2 * 1 + 1 * 1, 2 + 1 + 1 + 1, and 1
+    9
+    """
+    n1, n2 = problem.unary.shape
+    if problem.allowed.all() and not problem.unary.any():
+        return log_prior(problem)
+    gains = np.where(problem.allowed, problem.unary - problem.absent[:, None], LOWEST)  # against leaving out
+    if min(n1, n2) <= MAX_EXACT:
+        total = _by_subsets(gains if n2 <= n1 else gains.T)
+    else:
+        nothing = np.broadcast_to(-problem.absent[:, None], gains.shape)
+        error = _log_prior(problem.absent, n2) - problem.absent.sum() - _bethe(nothing)
+        total = _bethe(gains) + error
+    return float(total + problem.absent.sum())
+
+
+def entropy_without_facts(problem: Problem) -> float:
+    """Return the entropy, in nats, of the maps where no fact is known: the logarithm of how many of them are open.
+
+    It is the logarithm of their sum less its slope by the power to which all of it is raised.
+
+    >>> none = np.zeros((0, 2), np.int64)
+    >>> problem = Problem(none, none[:, 0], np.zeros((0, 3, 3), np.float32), np.zeros((3, 3)), np.full(3, -30.0))
+    >>> round(float(np.exp(entropy_without_facts(problem))))  # three things in any order
+    6
+    """
+
+    def raised(power: float) -> float:
+        return log_sum_without_facts(replace(problem, unary=power * problem.unary, absent=power * problem.absent))
+
+    slope = (raised(1 + STEP) - raised(1 - STEP)) / (2 * STEP)
+    return max(0.0, raised(1.0) - slope)
+
+
+def _log_prior(absent: Array, n2: int) -> float:
+    matched = np.zeros(1)  # by how many objects are matched, the sum over which they are
+    for one in absent.tolist():
+        matched = np.logaddexp(np.append(matched + one, -np.inf), np.append(-np.inf, matched))
+    k = np.arange(min(len(matched), n2 + 1))
+    return float(np.logaddexp.reduce(matched[k] + gammaln(n2 + 1) - gammaln(n2 - k + 1)))
+
+
+def _by_subsets(gains: Array) -> float:
+    """Return the logarithm of the sum over partial matchings of rows with k columns (n, k), of few columns."""
+    k = gains.shape[1]
+    totals = np.full(1 << k, -np.inf)  # by the set of columns that are taken
+    totals[0] = 0.0
+    sets = np.arange(1 << k)
+    for row in gains:
+        following = totals.copy()
+        for column, gain in enumerate(row.tolist()):
+            free = sets[(sets >> column & 1) == 0]
+            taken = free | 1 << column
+            following[taken] = np.logaddexp(following[taken], totals[free] + gain)
+        totals = following
+    return float(np.logaddexp.reduce(totals))
+
+
+def _bethe(gains: Array) -> float:
+    """Return the Bethe approximation of the same, of any size: minus the free energy where messages have settled."""
+    wanted = np.zeros_like(gains)  # what each thing tells each object: the logarithm of how free it is
+    for _ in range(int(np.clip(MAX_CELLS / max(gains.size, 1), 1, ITERATIONS))):
+        offers = gains - _sum_of_others(gains + wanted)
+        following = -_sum_of_others(offers.T).T
+        change = np.abs(following - wanted).max(initial=0.0)
+        wanted = (wanted + following) / 2
+        if change < TOLERANCE:
+            break
+    offers = gains - _sum_of_others(gains + wanted)
+    rows = np.logaddexp(0.0, np.logaddexp.reduce(gains + wanted, axis=1)).sum()
+    columns = np.logaddexp(0.0, np.logaddexp.reduce(offers, axis=0)).sum()
+    return float(rows + columns - np.logaddexp(0.0, offers + wanted).sum())
+
+
+def _sum_of_others(terms: Array) -> Array:
+    """Return log(1 + the sum of the exponentials of the other terms of the row), shape (n, k)."""
+    most = np.maximum(terms.max(axis=1, keepdims=True), 0.0)
+    weights = np.exp(terms - most)
+    result: Array = most + np.log(np.maximum(np.exp(-most) + weights.sum(axis=1, keepdims=True) - weights, 1e-300))
+    return result
