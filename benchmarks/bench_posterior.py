@@ -17,7 +17,7 @@ import numpy as np
 
 from deixis.experiments.generated_tables import generate
 from deixis.reasoning.grounding.evidence.facts import fact_tables
-from deixis.reasoning.grounding.matching import posterior as settings
+from deixis.reasoning.grounding.matching import ladders as settings
 from deixis.reasoning.grounding.matching.posterior import Posterior, posterior
 from deixis.reasoning.grounding.matching.problem import Problem
 

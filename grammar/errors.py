@@ -71,6 +71,10 @@ class ScriptError(DeixisError, ValueError):
         return "\n".join(shown)
 
 
+class ScriptTimeError(DeixisError, TimeoutError):
+    """The time limit passed before a script was read."""
+
+
 class ScriptFileError(DeixisError, OSError):
     """A script file that cannot be read: missing, no file, too large, or no UTF-8; one line that names it."""
 

@@ -10,9 +10,17 @@ from pathlib import Path
 from lark import Token
 from lark.exceptions import UnexpectedToken
 
+from deixis.deadline import Deadline
 from deixis.grammar.diagnostics import bad_token, unexpected
 from deixis.grammar.draft import Draft, Place, place
-from deixis.grammar.errors import MAX_PROBLEMS_SHOWN, Diagnostic, Refusal, ScriptError, ScriptFileError
+from deixis.grammar.errors import (
+    MAX_PROBLEMS_SHOWN,
+    Diagnostic,
+    Refusal,
+    ScriptError,
+    ScriptFileError,
+    ScriptTimeError,
+)
 from deixis.grammar.files import Includes, read_text
 from deixis.grammar.language import Language, language_of
 from deixis.grammar.names import key_of
@@ -22,11 +30,16 @@ from deixis.grammar.tree import span_of
 from deixis.ontology.facts import Source
 from deixis.ontology.tbox import Ontology, default_ontology
 
+STATEMENTS_PER_CLOCK_CHECK = 200
 
-def parse_script(text: str, file: str = "<text>", ontology: Ontology | None = None) -> Script:
+
+def parse_script(
+    text: str, file: str = "<text>", ontology: Ontology | None = None, deadline: Deadline = Deadline.never()
+) -> Script:
     """Return the script that a text is; ``file`` is what its places are called.
 
-    Raises ScriptError with all problems of the text; an include is one, since a text lies in no folder.
+    Raises ScriptError with all problems of the text; an include is one, since a text lies in no folder. Raises
+    ScriptTimeError at the ``deadline``.
 
     >>> [str(fact) for fact in parse_script("the fork is to the left of the plate").facts]
     ['left(fork, plate)']
@@ -39,13 +52,14 @@ def parse_script(text: str, file: str = "<text>", ontology: Ontology | None = No
     did you mean 'left of'?
     """
     ontology = ontology or default_ontology()
-    return _script(FileReader(text, file, Draft(ontology), language_of(ontology)))
+    return _script(FileReader(text, file, Draft(ontology), language_of(ontology)), deadline)
 
 
-def read_script(path: str | Path, ontology: Ontology | None = None) -> Script:
+def read_script(path: str | Path, ontology: Ontology | None = None, deadline: Deadline = Deadline.never()) -> Script:
     """Return the script in a file, with the files that it includes.
 
-    Raises ScriptFileError where the file cannot be read, ScriptError with all problems of it and of what it includes.
+    Raises ScriptFileError where the file cannot be read, ScriptError with all problems of it and of what it includes,
+    ScriptTimeError at the ``deadline``.
     """
     ontology = ontology or default_ontology()
     text = read_text(Path(path), str(path))
@@ -53,11 +67,15 @@ def read_script(path: str | Path, ontology: Ontology | None = None) -> Script:
         raise ScriptFileError(f"{path}:1:1: this is JSON, and no layout script; is it a scene? The script comes first")
     real = Path(path).resolve()
     includes = Includes(real.parent, [real])
-    return _script(FileReader(text, str(path), Draft(ontology), language_of(ontology), includes))
+    return _script(FileReader(text, str(path), Draft(ontology), language_of(ontology), includes), deadline)
 
 
-def _script(reader: FileReader) -> Script:
-    statements = tuple(reader.read())
+def _script(reader: FileReader, deadline: Deadline) -> Script:
+    statements = []
+    for statement in reader.read():
+        statements.append(statement)
+        if len(statements) % STATEMENTS_PER_CLOCK_CHECK == 0 and deadline.passed:
+            raise ScriptTimeError(f"{reader.file}: the time limit passed after {len(statements)} statements were read")
     if reader.draft.problems:
         raise ScriptError(tuple(reader.draft.problems))
     first = statements[0] if statements else None
@@ -67,7 +85,7 @@ def _script(reader: FileReader) -> Script:
         name=header.name,
         title=header.title,
         viewpoint=header.viewpoint,
-        statements=statements,
+        statements=tuple(statements),
         comments=tuple(reader.comments),
         ontology=reader.draft.ontology,
     )

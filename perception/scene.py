@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.deadline import Deadline
 from deixis.ontology.colours import Rgb
 from deixis.ontology.graph import RelationGraph
 from deixis.ontology.relation import Relations
@@ -196,17 +197,22 @@ class Scene:
             shapes.append(box)
         return shapes
 
-    def relations(self, vocabulary: Relations, tolerance: float = 0.0) -> SceneRelations:
+    def relations(
+        self, vocabulary: Relations, tolerance: float = 0.0, deadline: Deadline = Deadline.never()
+    ) -> SceneRelations:
         """Return the exact relation of every ordered pair
         (:class:`deixis.reasoning.geometry.rectangle.SceneRelations`).
 
-        It is computed by the first call for each vocabulary and tolerance (in the scene's unit), and kept.
+        It is computed by the first call for each vocabulary and tolerance (in the scene's unit), and kept. Raises
+        OutOfTimeError at the ``deadline``.
         """
         key = (id(vocabulary), tolerance)
         if key not in self._relations:
             from deixis.reasoning.geometry.rectangle import scene_relations
 
-            self._relations[key] = scene_relations(self.ids, self.boxes, vocabulary, tolerance=tolerance)
+            self._relations[key] = scene_relations(
+                self.ids, self.boxes, vocabulary, tolerance=tolerance, deadline=deadline
+            )
         return self._relations[key]
 
     def graph(self, vocabulary: Relations, tolerance: float = 0.0) -> RelationGraph:

@@ -11,6 +11,14 @@ class LimitError(DeixisError, OverflowError):
     """A question that is larger than what can be answered in bounded time and memory; nothing was decided."""
 
 
+class OutOfTimeError(LimitError, TimeoutError):
+    """The time limit struck before a search was done; nothing was decided."""
+
+
+class OutOfMemoryError(DeixisError, MemoryError):
+    """A question that takes more memory than its limit; nothing was decided, and none of it was taken."""
+
+
 class InconsistencyError(DeixisError, ValueError):
     """Axioms that cannot all hold."""
 

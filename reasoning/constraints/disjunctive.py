@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from deixis.deadline import Deadline
 from deixis.reasoning.constraints.difference import Difference, DifferenceNetwork
-from deixis.reasoning.errors import LimitError
+from deixis.reasoning.errors import OutOfTimeError
 
 Piece = tuple[Difference, ...]
 
@@ -71,10 +71,6 @@ class Clauses(Sequence[Clause]):
 
         distances = np.ascontiguousarray(network.distances).copy()
         return int(dive(distances, *self._arrays, last, network.free)), distances
-
-
-class OutOfTimeError(LimitError, TimeoutError):
-    """The time limit struck before a search was done; nothing was decided."""
 
 
 class SearchOutcome(Enum):

@@ -16,10 +16,11 @@ from numpy.typing import NDArray
 
 from deixis.deadline import Deadline
 from deixis.reasoning.constraints.difference import ORDERS, STRICT, ZERO, Difference, DifferenceNetwork
-from deixis.reasoning.constraints.disjunctive import Clauses, OutOfTimeError, Search, SearchOutcome, solution
+from deixis.reasoning.constraints.disjunctive import Clauses, Search, SearchOutcome, solution
 from deixis.reasoning.entailment.bounds import AXES, bounds_of, order_differences
 from deixis.reasoning.entailment.closed import AxisRows, Groups, Orders, groups_of, order_graph, orders_of
 from deixis.reasoning.entailment.demands import Choice, Demands
+from deixis.reasoning.errors import OutOfTimeError
 
 
 @dataclass(frozen=True, eq=False)

@@ -17,7 +17,6 @@ from numpy.typing import NDArray
 from deixis.deadline import Deadline
 from deixis.ontology.graph import Fact, RelationGraph
 from deixis.ontology.relation import Reading, Relation, Relations
-from deixis.reasoning.constraints.disjunctive import OutOfTimeError
 from deixis.reasoning.constraints.minimal import minimal_subset
 from deixis.reasoning.constraints.paths import ShortestPaths
 from deixis.reasoning.constraints.proof import Proof, Rule
@@ -25,6 +24,7 @@ from deixis.reasoning.entailment.bounds import Bound, Conjunction, EndpointBound
 from deixis.reasoning.entailment.closed import order_graph
 from deixis.reasoning.entailment.closing import consistent
 from deixis.reasoning.entailment.demands import Choice, Demands, demands_of, demands_of_facts
+from deixis.reasoning.errors import OutOfTimeError
 
 
 @dataclass(frozen=True, slots=True)

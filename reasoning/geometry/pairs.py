@@ -14,9 +14,14 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.deadline import Deadline
+from deixis.reasoning.errors import OutOfTimeError
 from deixis.reasoning.geometry.rectangle import require_boxes
 
 Array = NDArray[np.float64]
+
+ROW_CELLS = 1 << 18
+"""Pairs whose distances are held at a time."""
 
 SLACK = 0.1
 """What is added to half the sum of two extents before offsets are divided by it, as a share of the pair's mean size."""
@@ -24,76 +29,82 @@ SLACK = 0.1
 
 @dataclass(frozen=True, eq=False)
 class PairGeometry:
-    """All ordered pairs of n boxes in the plan (and in height, where d is 3); row: subject, column: object.
+    """Ordered pairs of boxes in the plan (and in height, where d is 3); row: subject, column: object.
 
-    Built by :func:`pair_geometry`. Arrays of pairs have shape (n, n), or (n, n, 2) with x and y last; what holds for
-    one axis lies together in memory, since that is how it is read.
+    Built by :func:`pair_geometry`, of all pairs of n boxes, or by :class:`PairBlocks`, of a block of them: n subjects
+    and m objects. Arrays of pairs have shape (n, m), or (n, m, 2) with x and y last; what holds for one axis lies
+    together in memory, since that is how it is read.
     """
 
-    boxes: Array  # (n, 2, d)
+    boxes: Array  # (n, 2, d): the subjects
+    objects: Array  # (m, 2, d)
+    crowd: Array  # (n, m): share of the other things nearer to one of the two than its partner is; mean over both
 
     def __len__(self) -> int:
         return len(self.boxes)
 
     @cached_property
-    def _corners(self) -> tuple[Array, Array]:
-        """Least and greatest corner in the plan, each of shape (2, n)."""
-        return self.boxes[:, 0, :2].T.copy(), self.boxes[:, 1, :2].T.copy()
+    def reverse(self) -> PairGeometry:
+        """The same pairs the other way round, shape (m, n): of all pairs of n boxes these themselves."""
+        if self.objects is self.boxes:
+            return self
+        other = PairGeometry(self.objects, self.boxes, self.crowd.T)
+        other.__dict__["reverse"] = self
+        return other
 
     @cached_property
-    def size(self) -> Array:
-        """Mean extent in the plan, shape (n,)."""
-        extents: Array = (self.boxes[:, 1, :2] - self.boxes[:, 0, :2]).mean(axis=1)
-        return extents
+    def _corners(self) -> tuple[Array, Array, Array, Array]:
+        """Least and greatest corner in the plan, each of shape (2, n); those of the objects, (2, m)."""
+        return tuple(side[:, corner, :2].T.copy() for side in (self.boxes, self.objects) for corner in (0, 1))  # type: ignore[return-value]
 
     @cached_property
     def pair_size(self) -> Array:
-        """Mean size of the two, shape (n, n)."""
-        mean: Array = (self.size[:, None] + self.size[None, :]) / 2
+        """Mean size of the two, shape (n, m): of their mean extents in the plan."""
+        subjects, objects = _sizes(self.boxes), _sizes(self.objects)
+        mean: Array = (subjects[:, None] + objects[None, :]) / 2
         return mean
 
     @cached_property
     def offset(self) -> Array:
-        """Subject's centre less object's, shape (n, n, 2), 1 about where the boxes touch; odd under exchange.
+        """Subject's centre less object's, shape (n, m, 2), 1 about where the boxes touch; odd under exchange.
 
         Between two points, the direction alone: length 1, or 0 where both are one.
         """
-        low, high = self._corners
-        centres, extents = (low + high) / 2, high - low
-        apart = centres[:, :, None] - centres[:, None, :]
-        unit = (extents[:, :, None] + extents[:, None, :]) / 2 + SLACK * self.pair_size
+        low, high, other_low, other_high = self._corners
+        apart = ((low + high) / 2)[:, :, None] - ((other_low + other_high) / 2)[:, None, :]
+        unit = ((high - low)[:, :, None] + (other_high - other_low)[:, None, :]) / 2 + SLACK * self.pair_size
         if not self.pair_size.all():
             unit = np.where(self.pair_size > 0, unit, np.hypot(*apart))
         return _axes_last(_ratio(apart, unit))
 
     @cached_property
     def distance(self) -> Array:
-        """Length of the offset, shape (n, n)."""
+        """Length of the offset, shape (n, m)."""
         length: Array = np.hypot(self.offset[:, :, 0], self.offset[:, :, 1])
         return length
 
     @cached_property
     def gap(self) -> Array:
         """Distance between the boxes, as g / (1 + g) with g in mean sizes of the pair: 0 touching, towards 1 afar."""
-        low, high = self._corners
-        before = low[:, :, None] - high[:, None, :]
-        apart = np.hypot(*np.maximum(np.maximum(before, before.transpose(0, 2, 1)), 0.0))
+        low, high, other_low, other_high = self._corners
+        before, after = low[:, :, None] - other_high[:, None, :], other_low[:, None, :] - high[:, :, None]
+        apart = np.hypot(*np.maximum(np.maximum(before, after), 0.0))
         return _ratio(apart, apart + self.pair_size)
 
     @cached_property
     def inside(self) -> Array:
-        """Share of the subject's extent on each axis that lies within the object's, shape (n, n, 2)."""
+        """Share of the subject's extent on each axis that lies within the object's, shape (n, m, 2)."""
         return _axes_last(_share_inside(*self._corners))
 
     @cached_property
     def smaller(self) -> Array:
         """How much smaller the subject is: (b - a) / (a + b) of the sizes, -1 to 1; odd under exchange."""
-        a, b = self.size[:, None], self.size[None, :]
+        a, b = _sizes(self.boxes)[:, None], _sizes(self.objects)[None, :]
         return _ratio(b - a, a + b)
 
     @cached_property
     def edges(self) -> Array:
-        """Signed distances of edges in mean sizes, each as v / (1 + |v|), shape (3, n, n, 2).
+        """Signed distances of edges in mean sizes, each as v / (1 + |v|), shape (3, n, m, 2).
 
         Subject's lower edge less object's upper one; the two upper edges; the two lower edges.
         """
@@ -105,7 +116,7 @@ class PairGeometry:
 
         Clipped to -1 and 2; beside an object without an extent on y, 0.5 at its place and -1 or 2 off it.
         """
-        return _level(self.boxes[:, 0, 1], self.boxes[:, 1, 1])
+        return _level(self.boxes[:, 0, 1], self.objects[:, 0, 1], self.objects[:, 1, 1])
 
     @cached_property
     def rise(self) -> Array | None:
@@ -113,24 +124,50 @@ class PairGeometry:
         if self.boxes.shape[2] < 3:
             return None
         low, high = self.boxes[:, 0, 2], self.boxes[:, 1, 2]
-        height = high - low
-        edges = _edges(low[None], high[None], (height[:, None] + height[None, :]) / 2)
+        other_low, other_high = self.objects[:, 0, 2], self.objects[:, 1, 2]
+        unit = ((high - low)[:, None] + (other_high - other_low)[None, :]) / 2
+        edges = _edges(low[None], high[None], other_low[None], other_high[None], unit)
         rise: Array = np.minimum(edges[1, 0], edges[2, 0])
         return rise
 
-    @cached_property
-    def crowd(self) -> Array:
-        """Share of the other things that are nearer to one of the two than its partner is; mean over both, 0 to 1."""
-        n = len(self)
-        if n < 3:
-            return np.zeros((n, n))
-        distance = np.round(self.distance, 9)  # what is as far, as any two points are, is not nearer by rounding
-        np.fill_diagonal(distance, np.inf)
-        ordered = np.sort(distance, axis=1)
-        nearer = np.stack([np.searchsorted(ordered[i], distance[i], side="left") for i in range(n)]) / (n - 2)
-        crowd: Array = (nearer + nearer.T) / 2
-        np.fill_diagonal(crowd, 0.0)
-        return crowd
+
+@dataclass(frozen=True, eq=False)
+class PairBlocks:
+    """All pairs of n boxes (n, 2, d), a block at a time, so that no more than a block is held.
+
+    Only how crowded a pair is depends on the other boxes: ``nearer`` (n, n) counts those nearer to the subject than
+    the object is.
+    """
+
+    boxes: Array
+    nearer: NDArray[np.uint16 | np.uint32]
+
+    @classmethod
+    def of(cls, boxes: Array, deadline: Deadline = Deadline.never()) -> PairBlocks:
+        """Return the blocks of boxes that are known to be some; raises OutOfTimeError at the ``deadline``."""
+        n = len(boxes)
+        nearer = np.zeros((n, n), np.uint16 if n < 1 << 16 else np.uint32)
+        rows = max(1, ROW_CELLS // max(n, 1))
+        for start in range(0, n, rows):
+            if start and deadline.passed:
+                raise OutOfTimeError(
+                    f"the time limit passed while {n} things were compared; raise it, or look at fewer"
+                )
+            some = boxes[start : start + rows]
+            distance = PairGeometry(some, boxes, np.zeros((0, 0))).distance
+            distance = np.round(distance, 9)  # what is as far, as any two points are, is not nearer by rounding
+            distance[np.arange(len(some)), np.arange(start, start + len(some))] = np.inf
+            for row, count in zip(distance, nearer[start : start + rows], strict=True):
+                count[:] = np.searchsorted(np.sort(row), row, side="left")
+        np.fill_diagonal(nearer, 0)
+        return cls(boxes, nearer)
+
+    def block(self, subjects: slice, objects: slice) -> PairGeometry:
+        """Return the pairs of these subjects with these objects."""
+        others = max(len(self.boxes) - 2, 1)
+        counts = self.nearer[subjects, objects].astype(np.float64) + self.nearer[objects, subjects].T
+        known = self.boxes[subjects]
+        return PairGeometry(known, known if subjects == objects else self.boxes[objects], counts / (2 * others))
 
 
 def pair_geometry(boxes: NDArray[np.float64]) -> PairGeometry:
@@ -143,7 +180,13 @@ def pair_geometry(boxes: NDArray[np.float64]) -> PairGeometry:
     """
     boxes = np.asarray(boxes, dtype=np.float64)
     require_boxes(boxes)
-    return PairGeometry(boxes)
+    return PairBlocks.of(boxes).block(slice(0, len(boxes)), slice(0, len(boxes)))
+
+
+def _sizes(boxes: Array) -> Array:
+    """Mean extents in the plan, shape (n,)."""
+    sizes: Array = (boxes[:, 1, :2] - boxes[:, 0, :2]).mean(axis=1)
+    return sizes
 
 
 def _ratio(part: Array, whole: Array) -> Array:
@@ -160,9 +203,12 @@ def _axes_last(pairs: Array) -> Array:
     return np.moveaxis(pairs, -3, -1)
 
 
-def _share_inside(low: Array, high: Array) -> Array:
-    """Shape (axes, n, n), of corners (axes, n); of a subject without an extent: 1 where the object holds it, else 0."""
-    shared = np.minimum(high[:, :, None], high[:, None, :]) - np.maximum(low[:, :, None], low[:, None, :])
+def _share_inside(low: Array, high: Array, other_low: Array, other_high: Array) -> Array:
+    """Shape (axes, n, m), of corners (axes, n) and (axes, m).
+
+    Of a subject without an extent it is 1 where the object holds it, else 0.
+    """
+    shared = np.minimum(high[:, :, None], other_high[:, None, :]) - np.maximum(low[:, :, None], other_low[:, None, :])
     extent = np.broadcast_to((high - low)[:, :, None], shared.shape)
     share = np.minimum(_ratio(np.maximum(shared, 0.0), extent), 1.0)
     if extent.all():
@@ -171,19 +217,20 @@ def _share_inside(low: Array, high: Array) -> Array:
     return result
 
 
-def _edges(low: Array, high: Array, unit: Array) -> Array:
-    """Shape (3, axes, n, n), of corners (axes, n)."""
+def _edges(low: Array, high: Array, other_low: Array, other_high: Array, unit: Array) -> Array:
+    """Shape (3, axes, n, m), of corners (axes, n) and (axes, m)."""
     found = np.empty((3, len(low), *unit.shape))
-    for edges, subject, object in zip(found, (low, high, low), (high, high, low), strict=True):
+    ends = ((low, other_high), (high, other_high), (low, other_low))
+    for edges, (subject, object) in zip(found, ends, strict=True):
         apart = subject[:, :, None] - object[:, None, :]
         edges[:] = _ratio(apart, np.abs(apart) + unit)
     return found
 
 
-def _level(low: Array, high: Array) -> Array:
-    """Where each lower edge lies between two other edges, shape (n, n), clipped to -1 and 2."""
-    above = low[:, None] - low[None, :]
-    extent = np.broadcast_to((high - low)[None, :], above.shape)
+def _level(low: Array, other_low: Array, other_high: Array) -> Array:
+    """Where each lower edge lies between two other edges, shape (n, m), clipped to -1 and 2."""
+    above = low[:, None] - other_low[None, :]
+    extent = np.broadcast_to((other_high - other_low)[None, :], above.shape)
     flat = np.where(above == 0, 0.5, np.where(above > 0, 2.0, -1.0))
     bounded = np.clip(above, -extent, 2 * extent)
     level: Array = np.divide(bounded, extent, out=flat, where=extent > 0)

@@ -18,11 +18,16 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.deadline import Deadline
 from deixis.errors import GraphError
 from deixis.ontology.allen import SYMBOLS, Allen
 from deixis.ontology.graph import PaperGraph, RelationGraph
 from deixis.ontology.relation import Reading, Relation, Relations
+from deixis.reasoning.errors import OutOfTimeError
 from deixis.reasoning.geometry.allen import allen_relations
+
+ROW_CELLS = 1 << 18
+"""Pairs that are related at a time."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,15 +66,9 @@ def box_relations(
     ('<,d', 'exactly_left')
     """
     require_boxes(boxes)
-    low, high = boxes[:, 0], boxes[:, 1]
-    codes = [
-        allen_relations(low[:, None, axis], high[:, None, axis], low[None, :, axis], high[None, :, axis], tolerance)
-        for axis in range(boxes.shape[2])
-    ]
-    z = codes[2] if len(codes) == 3 else None
     order = np.arange(len(boxes)) if ranks is None else ranks
-    names = _names(codes[0], codes[1], z, boxes, vocabulary, order)
-    return BoxRelations(codes[0], codes[1], z, names)
+    codes, names = _related(boxes, order, slice(0, len(boxes)), vocabulary, tolerance)
+    return BoxRelations(codes[0], codes[1], codes[2] if len(codes) == 3 else None, names)
 
 
 @dataclass(frozen=True, eq=False)
@@ -171,17 +170,26 @@ def scene_relations(
     vocabulary: Relations,
     kinds: Sequence[str | None] = (),
     tolerance: float = 0.0,
+    deadline: Deadline = Deadline.never(),
 ) -> SceneRelations:
     """Compute the exact relation of every ordered pair of the things of a scene.
 
     ``boxes`` and ``tolerance`` are those of :func:`box_relations`. Where the order of listing has to decide, that of
     the ids does, so that a scene means the same in whatever order it is listed. Raises GraphError for bad boxes, and
-    for ids that are not as many or not different.
+    for ids that are not as many or not different; OutOfTimeError at the ``deadline``.
     """
     if len(ids) != len(boxes) or len(set(ids)) != len(ids):
         raise GraphError(f"a scene of {len(boxes)} boxes needs as many different ids, got {len(set(ids))}")
+    require_boxes(boxes)
+    n = len(boxes)
     ranks = np.argsort(np.argsort(np.array(ids, dtype=np.str_)))
-    names = box_relations(boxes, vocabulary, tolerance, ranks).names
+    names = np.empty((n, n), np.int8)
+    step = max(1, ROW_CELLS // max(n, 1))
+    for start in range(0, n, step):
+        if start and deadline.passed:
+            raise OutOfTimeError(f"the time limit passed while {n} things were related; raise it, or look at fewer")
+        rows = slice(start, start + step)
+        names[rows] = _related(boxes, ranks, rows, vocabulary, tolerance)[1]
     return SceneRelations(vocabulary, tuple(ids), names, boxes, tuple(kinds))
 
 
@@ -196,29 +204,33 @@ def require_boxes(boxes: NDArray[np.float64]) -> None:
         raise GraphError(f"box {bad} has a greatest corner below its least corner")
 
 
-def _names(
-    x: NDArray[np.int8],
-    y: NDArray[np.int8],
-    z: NDArray[np.int8] | None,
-    boxes: NDArray[np.float64],
-    vocabulary: Relations,
-    ranks: NDArray[np.int64],
-) -> NDArray[np.int8]:
+def _related(
+    boxes: NDArray[np.float64], ranks: NDArray[np.int64], rows: slice, vocabulary: Relations, tolerance: float
+) -> tuple[list[NDArray[np.int8]], NDArray[np.int8]]:
+    """Return the Allen codes by axis and the exact names of some boxes (rows) with all, each of shape (r, n)."""
+    low, high = boxes[:, 0], boxes[:, 1]
+    codes = [
+        allen_relations(
+            low[rows, None, axis], high[rows, None, axis], low[None, :, axis], high[None, :, axis], tolerance
+        )
+        for axis in range(boxes.shape[2])
+    ]
+    x, y = codes[:2]
     exact = vocabulary.of_reading(Reading.EXACT)
     table = _name_table(exact)
     names = table[x, y]
     overlapping = _overlap_mask()[x] & _overlap_mask()[y]
     undecided = names < 0
-    if z is not None:
+    if len(codes) == 3:
         for relation in exact:
             if relation.z_atoms:
-                settled = overlapping & (relation.z_atoms >> z.astype(np.int64) & 1).astype(bool)
+                settled = overlapping & (relation.z_atoms >> codes[2].astype(np.int64) & 1).astype(bool)
                 names = np.where(settled, np.int8(relation.index), names)
                 undecided &= ~settled
-    offset = _offset_names(boxes, table, ranks)
-    names = np.where(undecided, offset, names)
-    np.fill_diagonal(names, -1)
-    return names
+    names = np.where(undecided, _offset_names(boxes, table, ranks, rows), names)
+    own = np.arange(len(boxes))[rows]
+    names[np.arange(len(own)), own] = -1
+    return codes, names
 
 
 def _name_table(exact: Sequence[Relation]) -> NDArray[np.int8]:
@@ -237,17 +249,19 @@ def _overlap_mask() -> NDArray[np.bool_]:
     return (codes > Allen.MEETS) & (codes < Allen.MET_BY)
 
 
-def _offset_names(boxes: NDArray[np.float64], table: NDArray[np.int8], ranks: NDArray[np.int64]) -> NDArray[np.int8]:
+def _offset_names(
+    boxes: NDArray[np.float64], table: NDArray[np.int8], ranks: NDArray[np.int64], rows: slice
+) -> NDArray[np.int8]:
     """A name by the larger offset of the centres on x and y; by rank where both are zero."""
     centres = boxes.mean(axis=1)[:, :2]
-    dx = centres[:, None, 0] - centres[None, :, 0]
-    dy = centres[:, None, 1] - centres[None, :, 1]
+    dx = centres[rows, None, 0] - centres[None, :, 0]
+    dy = centres[rows, None, 1] - centres[None, :, 1]
     left, right = table[Allen.BEFORE, Allen.EQUALS], table[Allen.AFTER, Allen.EQUALS]
     bottom, top = table[Allen.EQUALS, Allen.BEFORE], table[Allen.EQUALS, Allen.AFTER]
     on, under = table[Allen.DURING, Allen.DURING], table[Allen.CONTAINS, Allen.CONTAINS]
     by_x = np.where(dx < 0, left, right)
     by_y = np.where(dy < 0, bottom, top)
-    later = ranks[:, None] > ranks[None, :]
+    later = ranks[rows, None] > ranks[None, :]
     by_order = np.where(later, on, under)
     names = np.where(np.abs(dx) >= np.abs(dy), by_x, by_y)
     named: NDArray[np.int8] = np.where((dx == 0) & (dy == 0), by_order, names).astype(np.int8)

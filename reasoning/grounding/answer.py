@@ -25,7 +25,8 @@ class Standing(StrEnum):
 
     NONE = "none"  # the engine gives none
     EXACT = "exact"  # from all maps that count
-    SAMPLED = "sampled"  # an approximation
+    SAMPLED = "sampled"  # an approximation, with an error that independent chains tell
+    BELIEVED = "believed"  # belief propagation: an approximation of which no error is known
 
 
 class Outcome(StrEnum):

@@ -20,6 +20,7 @@ from deixis.reasoning.grounding.alternatives import (
 from deixis.reasoning.grounding.answer import FactOutcome, Grounding, Outcome, Pivotal, Standing
 from deixis.reasoning.grounding.engine import Alignment, Engine
 from deixis.reasoning.grounding.evidence.evidence import Evidence
+from deixis.reasoning.grounding.matching.posterior import Posterior
 from deixis.reasoning.grounding.matching.problem import UNMATCHED
 from deixis.reasoning.grounding.options import is_decided
 from deixis.reasoning.grounding.sensitivity import MAX_OBJECTS as MAX_SENSITIVITY_OBJECTS
@@ -71,12 +72,21 @@ def ground(
         converged=alignment.converged,
         notes=notes + _notes(evidence, alignment) + (_why_not_pivotal(in_order, alignment) if pivotal is None else ()),
         pivotal=pivotal,
-        probabilities=Standing.NONE if posterior is None else (Standing.EXACT if posterior.exact else Standing.SAMPLED),
+        probabilities=_standing(posterior),
         probability_error=0.0 if posterior is None else posterior.error,
         fits=None if verdict is None else verdict.fits,
         sides=() if verdict is None else tuple((one.side, one.probability) for one in verdict.sides),
         seconds=time.perf_counter() - started,
     )
+
+
+def _standing(posterior: Posterior | None) -> Standing:
+    """Return what the probabilities of an answer are worth."""
+    if posterior is None:
+        return Standing.NONE
+    if posterior.believed:
+        return Standing.BELIEVED
+    return Standing.EXACT if posterior.exact else Standing.SAMPLED
 
 
 def _facts_in_order(evidence: Evidence) -> tuple[Evidence, NDArray[np.int64]]:
@@ -159,7 +169,7 @@ def _decided(evidence: Evidence, alignment: Alignment, i: int, grouped: bool) ->
         similar = alignment.margins is not None and bool(alignment.margins[i] > 1e-9)
         return bool(evidence.allowed[i].sum() == 1) or (similar and not grouped)
     probability = alignment.posterior.marginals[i, alignment.assignment[i]]
-    return bool(is_decided(probability, alignment.posterior.error))
+    return bool(is_decided(probability, float(alignment.posterior.errors[i])))
 
 
 def _pivotal(

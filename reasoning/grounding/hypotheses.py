@@ -23,12 +23,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from deixis.deadline import Deadline
+from deixis.reasoning.errors import OutOfTimeError
 from deixis.reasoning.grounding.evidence.evidence import Evidence
 from deixis.reasoning.grounding.matching.permanents import entropy_without_facts, log_prior, log_sum_without_facts
 from deixis.reasoning.grounding.matching.posterior import Posterior, posterior
@@ -108,7 +110,7 @@ SEARCH_EFFORT = 0.05
 
 ENTROPY_SHARE = 0.27
 """By how much the logarithm of the sum is above the best value, for each nat of the sum of the objects' entropies: the
-least squares of 100 tables on which both are exact (``benchmarks/bench_fits.py``)."""
+least squares of a trial with 100 generated tables on which both are exact."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -183,7 +185,7 @@ def weigh(
     (0.99, [0.992, 0.001, 0.001])
     """
     first = _maps_of(evidence, assignment, deadline.share(0.6), 0.0, -math.inf)
-    if first.found is None or not math.isfinite(first.found.error):
+    if first.found is None or not (math.isfinite(first.found.error) or first.found.believed):
         return None
     problem, readings = evidence.problem, evidence.label_readings
     alone = _log_sum([weight + log_sum_without_facts(_without_facts(known)) for weight, known in readings])
@@ -196,14 +198,17 @@ def weigh(
     weights = [math.log(sides[0].prior) + FACTS_POWER * told.facts]
     rest = list(zip(sides[1:], seen[1:] if seen else (None,) * len(sides[1:]), strict=True))
     for number, (side, known) in enumerate(rest):
-        if deadline.passed or evidence.scene.boxes is None or len(evidence.scene.nodes) > MAX_THINGS:
+        there = None
+        if not (deadline.passed or evidence.scene.boxes is None or len(evidence.scene.nodes) > MAX_THINGS):
+            turned = evidence.seen_from(side.angle, side.mirrored) if known is None else known
+            least = (max(weights) + math.log(NEGLIGIBLE) - math.log(side.prior)) / FACTS_POWER + alone
+            left = deadline.share(1 / (len(rest) - number))
+            with suppress(OutOfTimeError):
+                there = _maps_of(turned, None, left, first.log_total - first.log_best, least)
+        if there is None:
             maps.append(replace(first, found=None))
             weights.append(math.log(side.prior) + CHANCE_SHARE * most)
             continue
-        turned = evidence.seen_from(side.angle, side.mirrored) if known is None else known
-        least = (max(weights) + math.log(NEGLIGIBLE) - math.log(side.prior)) / FACTS_POWER + alone
-        left = deadline.share(1 / (len(rest) - number))
-        there = _maps_of(turned, None, left, first.log_total - first.log_best, least)
         maps.append(there)
         weights.append(math.log(side.prior) + FACTS_POWER * (there.log_total - alone))
     elsewhere = math.log(another / (1 - another)) + told.beside
@@ -251,7 +256,7 @@ def _maps_of(
         found, total = None, value + spread
         enough = max([least, *(one[1] + math.log(NEGLIGIBLE) for one in seen)])
         if weight + total >= enough and (not seen or not deadline.passed):
-            found = posterior(problem, deadline, start=best)
+            found = posterior(problem, deadline, start=best, chains=not known.frugal)
             total = log_total(found, value)
         seen.append((weight + value, weight + total, known, best, found))
     together = _log_sum([total for _, total, *_ in seen])
@@ -262,10 +267,13 @@ def _maps_of(
 
 def _mixed(parts: Sequence[tuple[float, Posterior]]) -> Posterior:
     """Return the sum of posteriors by their shares; what has no posterior adds nothing to a match."""
+    parts = [(share, one) for share, one in parts if share > 0]
     return Posterior(
         np.sum([share * one.marginals for share, one in parts], axis=0),
         all(one.exact for _, one in parts),
         sum(share * one.error for share, one in parts),
+        np.sum([share * one.errors for share, one in parts], axis=0),
+        any(one.believed for _, one in parts),
     )
 
 
@@ -305,7 +313,7 @@ def _by_labels(evidence: Evidence) -> tuple[NDArray[np.int64], Posterior]:
     found = posterior(labelled)
     marginals[rows] = found.marginals
     nobody[rows] = exact(labelled).assignment
-    return nobody, replace(found, marginals=marginals)
+    return nobody, Posterior(marginals, found.exact, found.error, believed=found.believed)
 
 
 def side_text(angle: float, mirrored: bool) -> str:

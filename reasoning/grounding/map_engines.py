@@ -19,6 +19,7 @@ from deixis.reasoning.grounding.evidence.evidence import Evidence
 from deixis.reasoning.grounding.hypotheses import STATED_SIDES, Side, side_text, weigh
 from deixis.reasoning.grounding.matching.baselines import NodeSimilarity
 from deixis.reasoning.grounding.matching.exact import exact
+from deixis.reasoning.grounding.matching.posterior import Posterior
 from deixis.reasoning.grounding.matching.problem import Problem
 from deixis.reasoning.grounding.matching.scalable import scalable
 from deixis.reasoning.grounding.similarity import assign
@@ -32,6 +33,9 @@ SIMILARITY_SHARE = 0.3
 
 SIMILARITY_CELLS_PER_SECOND, MAX_LATENESS = 2e7, 0.1
 """Pairs of things by relation that the similarity looks at in a second before its first step; it may be so late."""
+
+APART, MAX_NAMED = 0.05, 10
+"""Error of a marginal from which chains are said to disagree on an object, and the most objects to be named."""
 
 UNRELATED_NOTE = "the description{} fits so little that it is probably of another scene"
 
@@ -124,6 +128,7 @@ def _answer(
         if engine.sides is STATED_SIDES and best is not found.sides[0]:
             side = side_text(best.side.angle, best.side.mirrored)
             notes += (OTHER_SIDE_NOTE.format(side, best.probability / found.fits),)
+    notes += _posterior_notes(best.evidence, found.posterior)
     return Alignment(
         engine=name,
         assignment=assignment,
@@ -136,6 +141,20 @@ def _answer(
         verdict=found,
         seen=best.evidence if from_elsewhere and found.fits >= 0.5 else None,
     )
+
+
+def _posterior_notes(evidence: Evidence, probable: Posterior) -> tuple[str, ...]:
+    """Return what is to be said of probabilities that are not known, or on which independent chains disagree."""
+    if probable.believed:
+        lacking = "memory" if evidence.frugal else "time"
+        return (f"no {lacking} was left to sample how probable matches are: these are beliefs, and nothing is decided",)
+    if not math.isfinite(probable.error):
+        return ("there was no time to find out how probable the matches are",)
+    apart = [name for name, error in zip(evidence.description.nodes, probable.errors, strict=True) if error > APART]
+    if probable.exact or not apart:
+        return ()
+    shown = ", ".join(apart[:MAX_NAMED]) + (", …" if len(apart) > MAX_NAMED else "")
+    return (f"independent chains disagree on {len(apart)} of {len(probable.errors)} objects: {shown}",)
 
 
 def _similarity(evidence: Evidence, deadline: Deadline) -> tuple[NDArray[np.float64], bool, tuple[str, ...]]:

@@ -48,8 +48,10 @@ DECIDED_LOWER_BOUND = 0.975
 """Probability of a decided match less the error of that probability, at least."""
 
 
-def is_decided(probability: NDArray[np.float64], error: float) -> NDArray[np.bool_]:
+def is_decided(probability: NDArray[np.float64], error: float | NDArray[np.float64]) -> NDArray[np.bool_]:
     """Return which of these probabilities (…,) are high enough, and known well enough, to call a match decided.
+
+    ``error`` is by how much they may be off: one number for all of them, or one for each.
 
     >>> import numpy as np
     >>> is_decided(np.array([0.98, 0.995]), 0.01).tolist(), is_decided(np.array([0.995]), 0.05).tolist()

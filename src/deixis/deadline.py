@@ -57,6 +57,10 @@ class Deadline:
             return self
         return type(self)(min(self.at, time.monotonic() + fraction * self.left))
 
+    def delayed(self, seconds: float) -> Self:
+        """Return the deadline so many seconds later: those that something took which does not count."""
+        return type(self)(self.at + seconds)
+
     def within(self, seconds: float) -> Self:
         """Return the earlier of this deadline and the one ``seconds`` from now."""
         return type(self)(min(self.at, time.monotonic() + seconds))

@@ -11,6 +11,7 @@ from deixis.knowledge_store import KnowledgeStore
 from deixis.memory.on_demand import default_memory
 from deixis.memory.owner import Closing, ThreadLock
 from deixis.memory.semantic.queries.limits import QUERY_MEMORY_LIMIT, QUERY_TIME_LIMIT
+from deixis.reasoning.grounding.memory_budget import DEFAULT_MEMORY_LIMIT
 from deixis.reasoning.grounding.options import DEFAULT_TIME_LIMIT, EngineName, Select, ViewpointName
 from deixis.view_store import ViewStore
 
@@ -103,6 +104,7 @@ class Session(Closing):
         sizes: bool = True,
         ask: Ask | None = None,
         max_questions: int | None = None,
+        memory_limit: float = DEFAULT_MEMORY_LIMIT,
     ) -> Grounding:
         """Ground as :func:`deixis.ground` does, with words and sizes as this memory has learned them."""
         from deixis.workflows.ground import ground
@@ -120,6 +122,7 @@ class Session(Closing):
             sizes=sizes,
             ask=ask,
             max_questions=max_questions,
+            memory_limit=memory_limit,
         )
 
     @_one_at_a_time

@@ -8,6 +8,8 @@ likelihood ratio; the outliers bound what a single fact can say against a pair, 
 
 from __future__ import annotations
 
+from functools import cached_property
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -42,7 +44,7 @@ def _log_degree(term: Term, feature: Array) -> Array:
     """
     bends = np.diff(np.diff(term.values) / np.diff(term.knots), prepend=0.0, append=0.0).tolist()
     logs = np.full_like(feature, term.values[0])
-    rows = max(1, BLOCK // max(1, len(logs)))
+    rows = max(1, BLOCK // max(1, logs.shape[1]))
     for start in range(0, len(logs), rows):
         part, sums = feature[start : start + rows], logs[start : start + rows]
         for knot, bend in zip(term.knots, bends, strict=True):
@@ -69,16 +71,25 @@ def word_degree(pairs: PairGeometry, word: str, models: RelationModels) -> Array
 
 
 class WordDegrees:
-    """The degrees of words over the pairs of one scene, each worked out once; an inverse's is the transpose."""
+    """The degrees of words over pairs of a scene, each worked out once; an inverse's is that of the pairs reversed."""
 
     def __init__(self, pairs: PairGeometry, models: RelationModels) -> None:
         self._pairs, self._models = pairs, models
         self._found: dict[str, Array] = {}
 
+    @cached_property
+    def reverse(self) -> WordDegrees:
+        """The degrees of the same pairs the other way round."""
+        if self._pairs.reverse is self._pairs:
+            return self
+        other = WordDegrees(self._pairs.reverse, self._models)
+        other.__dict__["reverse"] = self
+        return other
+
     def of_word(self, word: str) -> Array:
         """See :func:`word_degree`."""
         if word not in self._found:
-            inverse = self._found.get(INVERSES[word])
+            inverse = self.reverse._found.get(INVERSES[word])
             self._found[word] = word_degree(self._pairs, word, self._models) if inverse is None else inverse.T
         return self._found[word]
 

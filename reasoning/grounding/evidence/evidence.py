@@ -17,6 +17,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.deadline import Deadline
 from deixis.errors import GraphError
 from deixis.ontology.colours import Colours
 from deixis.ontology.graph import RelationGraph
@@ -67,7 +68,8 @@ class Evidence:
     label, or an answer, rules matches out. ``identified`` (n2,) are the things of which a certain label, or an answer,
     says what they are. ``doubted_labels`` are what labels say that are not to be trusted. Masks that are left out rule
     nothing out and identify nothing. ``consistent`` says whether the firm facts can hold together, where that is known
-    already.
+    already. By the ``deadline`` the facts' evidence has to be worked out: else :attr:`problem` raises OutOfTimeError.
+    ``frugal``: there is no memory for chains of maps to be drawn, so that probabilities are beliefs.
     """
 
     description: RelationGraph
@@ -80,6 +82,8 @@ class Evidence:
     allowed: NDArray[np.bool_] = field(default_factory=lambda: np.array(True))
     identified: NDArray[np.bool_] = field(default_factory=lambda: np.array(False))
     consistent: bool | None = None
+    deadline: Deadline = Deadline.never()
+    frugal: bool = False
 
     def __post_init__(self) -> None:
         shape = (len(self.description.nodes), len(self.scene.nodes))
@@ -143,6 +147,7 @@ class Evidence:
             absent=absent,
             allowed=self.allowed,
             names=self.scene.names,
+            deadline=self.deadline,
         )
         return Problem(facts.ends, facts.kinds, facts.tables, unary, absent, self.allowed)
 
@@ -263,6 +268,7 @@ def evidence_from(
     seen: NDArray[np.float64] | None = None,
     colours: Colours | None = None,
     label_error: float = LABEL_ERROR,
+    deadline: Deadline = Deadline.never(),
 ) -> Evidence:
     """Return facts, labels, sizes and colours together, each by its weight; ``metric`` where the scene's boxes are in
     metres.
@@ -287,4 +293,6 @@ def evidence_from(
     if weights.colours > 0 and seen is not None and colours is not None and description.colours:
         shades = weights.colours * colour_evidence(description.colours, seen, colours)
     identified = np.any(~allowed, axis=0)
-    return Evidence(description, scene, said, measured, meaning, shades, doubted, allowed, identified)
+    return Evidence(
+        description, scene, said, measured, meaning, shades, doubted, allowed, identified, deadline=deadline
+    )

@@ -23,18 +23,25 @@ from math import prod
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.deadline import Deadline
 from deixis.ontology.graph import RelationGraph
 from deixis.ontology.models.relations import SAYING, RelationModels
 from deixis.ontology.relation import Relation, Relations
-from deixis.reasoning.errors import SettingError
-from deixis.reasoning.geometry.pairs import PairGeometry, pair_geometry
-from deixis.reasoning.geometry.rectangle import box_relations
+from deixis.reasoning.errors import OutOfTimeError, SettingError
+from deixis.reasoning.geometry.pairs import PairBlocks, PairGeometry
+from deixis.reasoning.geometry.rectangle import box_relations, require_boxes
 from deixis.reasoning.grounding.evidence.degrees import WordDegrees, log_likelihood_ratio, saying_degree
 from deixis.reasoning.grounding.evidence.literalness import LITERAL, literal_share
 from deixis.reasoning.grounding.evidence.meaning import OUTLIERS, shipped_models
-from deixis.reasoning.grounding.matching.problem import Problem
+from deixis.reasoning.grounding.matching.problem import Problem, empty_tables
 
 Array = NDArray[np.float64]
+
+JUDGEMENT_SHARE = 0.2
+"""Share of the time left for judging how literally the facts are meant."""
+
+SIDE = 256
+"""Things on either side of a block of pairs that is looked at at once: small enough for a processor's cache."""
 
 IMPLIED = 0.1
 """How readily a literal speaker says *left* of a pair whose name is *top left*: nine times in ten, the name is said."""
@@ -71,6 +78,7 @@ def fact_tables(
     absent: Array | None = None,
     allowed: NDArray[np.bool_] | None = None,
     names: NDArray[np.integer] | None = None,
+    deadline: Deadline = Deadline.never(),
 ) -> FactTables:
     """Return the evidence of every fact for every ordered pair of n2 boxes (n2, 2, d).
 
@@ -79,7 +87,7 @@ def fact_tables(
     what is known of things by themselves (``unary``, shape (n1, n2), and the mask ``allowed``) and of their absence
     (``absent``, (n1,)), as in :class:`deixis.reasoning.grounding.matching.problem.Problem`. ``names`` (n2, n2) are the
     exact names of the pairs, where they are known already. Raises GraphError for boxes that are none, UnknownTermError
-    for a word that has no model, SettingError for a weight or a share beyond 0 to 1.
+    for a word that has no model, SettingError for a weight or a share beyond 0 to 1, OutOfTimeError at the deadline.
     """
     if literal is not None and not 0 <= literal <= 1:
         raise SettingError(f"the share of facts that are meant literally lies between 0 and 1, not at {literal:g}")
@@ -95,20 +103,26 @@ def fact_tables(
         order = np.lexsort(np.reshape(boxes, (len(boxes), -1)).T[::-1])
     if names is None:
         names = box_relations(np.asarray(boxes, dtype=np.float64), description.vocabulary).names
-    names = names[np.ix_(order, order)]
-    pairs = pair_geometry(boxes[order])
-    said = _FactRatios(pairs, names, models or shipped_models(), description.vocabulary, saying, distinct)
+    names, boxes = names[np.ix_(order, order)], np.asarray(boxes[order], dtype=np.float64)
+    require_boxes(boxes)
+    nearer = PairBlocks.of(boxes, deadline)
+
+    def ratios(known: RelationModels) -> _FactRatios:
+        return _FactRatios(nearer, names, known, description.vocabulary, saying, distinct, deadline)
+
+    usual = ratios(shipped_models()) if models is None or literal is None else None
     if literal is None:
-        usual = (
-            _FactRatios(pairs, names, shipped_models(), description.vocabulary, saying, distinct) if models else said
-        )
+        assert usual is not None
         shape = len(description.nodes), len(boxes)
         alone = np.zeros(shape) if unary is None else np.ascontiguousarray(unary[:, order])
         away = np.full(shape[0], ABSENT_LOG_ODDS) if absent is None else absent
         may = np.ones(shape, dtype=bool) if allowed is None else allowed[:, order]
-        graded, exact = (Problem(ends, kinds, usual.tables(share), alone, away, may) for share in (0.0, LITERAL))
-        literal = literal_share(graded, exact, np.argsort(np.array(description.nodes, dtype=str)))
-    return FactTables(edges, ends, kinds, said.tables(literal, np.argsort(order)))
+        either = (Problem(ends, kinds, usual.tables(share), alone, away, may) for share in (0.0, LITERAL))
+        by_name = np.argsort(np.array(description.nodes, dtype=str))
+        literal = literal_share(either, by_name, deadline.share(JUDGEMENT_SHARE))
+    if usual is None or models is not None:
+        usual = ratios(models or shipped_models())
+    return FactTables(edges, ends, kinds, usual.tables(literal, np.argsort(order)))
 
 
 class _FactRatios:
@@ -119,21 +133,25 @@ class _FactRatios:
 
     def __init__(
         self,
-        pairs: PairGeometry,
+        pairs: PairBlocks,
         names: NDArray[np.integer],
         models: RelationModels,
         vocabulary: Relations,
         saying: bool,
         distinct: Sequence[tuple[int, bool, float]],
+        deadline: Deadline,
     ) -> None:
-        self.names = np.where(names < 0, len(vocabulary), names).astype(np.intp)
-        self.models, self.vocabulary = models, vocabulary
-        self.degrees = WordDegrees(pairs, models)
-        self.spoken = saying_degree(pairs, models).astype(np.float32) if saying else np.float32(1.0)
+        self.names = np.where(names < 0, len(vocabulary), names).astype(np.uint8)
+        self.models, self.vocabulary, self.deadline = models, vocabulary, deadline
         self.spoken_by_chance = models[SAYING].chance if saying else 1.0
         self.said = [(vocabulary.members(mask), positive, weight) for mask, positive, weight in distinct]
-        self.graded = [self._graded(relations, positive) for relations, positive, _ in self.said]
         self.literal = [self._literal(relations, positive) for relations, positive, _ in self.said]
+        self.graded = np.empty((len(self.said), *names.shape), np.float32)
+        starts = range(0, len(names), SIDE)
+        for subjects in (slice(start, start + SIDE) for start in starts):
+            for objects in (slice(start, start + SIDE) for start in starts if start <= subjects.start):
+                self._require_time()
+                self._fill(subjects, objects, pairs.block(subjects, objects), saying)
 
     def tables(self, share: float, order: NDArray[np.int64] | None = None) -> NDArray[np.float32]:
         """Return the evidence where ``share`` of facts is meant literally, shape (k, n2, n2), 0 on the diagonals.
@@ -141,34 +159,60 @@ class _FactRatios:
         ``order`` (n2,) lists the things as they shall stand.
         """
         n = len(self.names)
-        tables, said = np.empty((len(self.said), n, n), dtype=np.float32), np.empty((n, n), dtype=np.float32)
-        moved = None if order is None else order[:, None] * n + order
+        tables = empty_tables(len(self.said), n)
+        said = np.empty((n, n), dtype=np.float32)
         for table, (_, _, weight), graded, literal in zip(tables, self.said, self.graded, self.literal, strict=True):
+            self._require_time()
             offset = (weight * share * literal + (1 - weight)).astype(np.float32)
             np.take(offset, self.names, out=said, mode="clip")
             said += np.multiply(graded, np.float32(weight * (1 - share)), out=table)
             np.log(said, out=said)
             np.fill_diagonal(said, 0.0)
-            if moved is None:
+            if order is None:
                 table[:] = said
             else:
-                np.take(said, moved, out=table, mode="clip")
+                for row, place in zip(table, order, strict=True):
+                    np.take(said[place], order, out=row, mode="clip")
         return tables
 
-    def _graded(self, relations: tuple[Relation, ...], positive: bool) -> NDArray[np.float32]:
-        """Return degrees by pair, shape (n2, n2)."""
+    def _require_time(self) -> None:
+        """Raise OutOfTimeError at the deadline; a scene of one block takes no time worth mentioning."""
+        if len(self.names) > SIDE and self.deadline.passed:
+            raise OutOfTimeError(
+                f"the time limit passed before the evidence of {len(self.names)} things was worked out; raise it, or "
+                "ground a smaller scene"
+            )
+
+    def _fill(self, subjects: slice, objects: slice, pairs: PairGeometry, saying: bool) -> None:
+        """Work out the degrees of a block of pairs, and of the same pairs the other way round."""
+        degrees = WordDegrees(pairs, self.models)
+        both = [(subjects, objects, pairs, degrees), (objects, subjects, pairs.reverse, degrees.reverse)]
+        for rows, columns, some, fitting in both if subjects != objects else both[:1]:
+            spoken = saying_degree(some, self.models).astype(np.float32) if saying else np.float32(1.0)
+            for ratio, (relations, positive, _) in zip(self.graded, self.said, strict=True):
+                ratio[rows, columns] = self._ratio(relations, positive, fitting, self.names[rows, columns], spoken)
+
+    def _ratio(
+        self,
+        relations: tuple[Relation, ...],
+        positive: bool,
+        degrees_of: WordDegrees,
+        names: NDArray[np.uint8],
+        spoken: NDArray[np.float32] | np.float32,
+    ) -> NDArray[np.float32]:
+        """Return by how much likelier a graded speaker says a fact of each pair of a block than by chance."""
         outliers = float(np.mean([self.models.of(relation).outliers for relation in relations]))
         chances = np.array([self.models.of(relation).chance for relation in relations])
-        fitting = [self.degrees.of(relation) for relation in relations]
+        fitting = [degrees_of.of(relation) for relation in relations]
         if not positive:
             holds = [np.append(self.vocabulary.degrees[relation.index] > 0, False) for relation in relations]
-            chances = np.maximum(chances, [LITERAL_CHANCE * names.sum() for names in holds])
-            fitting = [np.maximum(degree, names[self.names]) for degree, names in zip(fitting, holds, strict=True)]
+            chances = np.maximum(chances, [LITERAL_CHANCE * known.sum() for known in holds])
+            fitting = [np.maximum(degree, known[names]) for degree, known in zip(fitting, holds, strict=True)]
         chance = float(combined(chances, positive)) * self.spoken_by_chance
         by_chance = outliers + (1 - outliers) * chance
         degrees = combined(fitting, positive)
         ratio: NDArray[np.float32] = degrees.astype(np.float32)
-        ratio *= self.spoken
+        ratio *= spoken
         ratio *= np.float32((1 - outliers) / by_chance)
         ratio += np.float32(outliers / by_chance)
         return ratio

@@ -9,11 +9,13 @@ so; a few facts that a scene happens to satisfy do not say much, and the answer 
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.deadline import Deadline
 from deixis.reasoning.grounding.matching.problem import Problem
 
 Order = NDArray[np.int64]
@@ -34,19 +36,25 @@ MAX_JUDGED_OBJECTS = 60
 """Of larger descriptions a connected part of so many objects is judged."""
 
 
-def literal_share(graded: Problem, literal: Problem, objects: Order) -> float:
+def literal_share(either: Iterable[Problem], objects: Order, deadline: Deadline = Deadline.never()) -> float:
     """Return the share of facts to be taken literally: that of a literal speaker times the probability that one speaks.
 
-    ``graded`` and ``literal`` are the same problem with the facts of either speaker. ``objects`` (n1,) lists one side
-    in an order that does not depend on how it was given, and the problems' things stand in such an order: the search is
-    one, and its result is then the same for the same scene.
+    ``either`` are the same problem with the facts of a graded and of a literal speaker, one after the other, so that
+    both need not be held at once. ``objects`` (n1,) lists one side in an order that does not depend on how it was
+    given, and the problems' things stand in such an order: the search is one, and its result is then the same for the
+    same scene. Past the ``deadline`` it is what is taken before anybody is heard.
 
     >>> there, order = np.array([[[0, 1], [0, 0]]], np.float32), np.arange(2)
     >>> problem = Problem(np.array([[0, 1]]), np.array([0]), there, np.zeros((2, 2)), np.full(2, -9.0))
-    >>> round(literal_share(problem, replace(problem, tables=3 * there), order), 2)
+    >>> round(literal_share((problem, replace(problem, tables=3 * there)), order), 2)
     0.58
     """
-    worth = [_best_value(_part(problem, objects)) if len(problem.ends) else 0.0 for problem in (graded, literal)]
+    worth = [
+        _best_value(_part(problem, objects), deadline) if len(problem.ends) and not deadline.passed else 0.0
+        for problem in either
+    ]
+    if deadline.passed:
+        return LITERAL * LITERAL_PRIOR
     odds = LITERAL_PRIOR / (1 - LITERAL_PRIOR) * np.exp(np.clip(worth[1] - worth[0], -500, 500))
     return float(LITERAL * odds / (1 + odds))
 
@@ -89,11 +97,12 @@ def _connected(ends: NDArray[np.int64], order: Order) -> Order:
     return np.array(list(reached), dtype=np.int64)
 
 
-def _best_value(problem: Problem) -> float:
+def _best_value(problem: Problem, deadline: Deadline) -> float:
     """Return what the best map is worth; of many objects about, by a short search."""
     from deixis.reasoning.grounding.matching.exact import exact
     from deixis.reasoning.grounding.matching.scalable import scalable
 
     if len(problem.absent) <= MAX_PROVED_OBJECTS:
-        return exact(problem).value
-    return scalable(problem, effort=SEARCH_EFFORT * min(1.0, FULL_EFFORT_OBJECTS / len(problem.absent))).value
+        return exact(problem, deadline).value
+    effort = SEARCH_EFFORT * min(1.0, FULL_EFFORT_OBJECTS / len(problem.absent))
+    return scalable(problem, deadline, effort=effort).value

@@ -46,7 +46,7 @@ def view(pairs: PairGeometry, word: str) -> View:
     if word == "on":
         return _support(pairs)
     if word == "under":
-        return {name: feature.T for name, feature in _support(pairs).items()}
+        return {name: feature.T for name, feature in _support(pairs.reverse).items()}
     return _direction(pairs, HEADINGS[word])
 
 
@@ -68,8 +68,9 @@ def _direction(pairs: PairGeometry, heading: tuple[int, int]) -> View:
         return result
 
     def abreast() -> Array:
-        covers = [pairs.inside[:, :, axis] for axis in ((0, 1) if len(axes) == 2 else (1 - axes[0],))]
-        return reduce(np.maximum, [share for one in covers for share in (one, one.T)])
+        across = (0, 1) if len(axes) == 2 else (1 - axes[0],)
+        shares = [(pairs.inside[:, :, axis], pairs.reverse.inside[:, :, axis].T) for axis in across]
+        return reduce(np.maximum, [share for both in shares for share in both])
 
     return _Features(
         {
@@ -107,21 +108,25 @@ class _Features(Mapping[str, Array]):
 
 def _clear(pairs: PairGeometry, axis: int, sign: int) -> Array:
     """Return the features of near edges along one axis."""
-    return _along(pairs.edges[0, :, :, axis], sign)
+    return _along(pairs, 0, axis, sign)
 
 
 def _trail(pairs: PairGeometry, axis: int, sign: int) -> Array:
     """Return the lesser of the offsets of starts and ends."""
-    return np.minimum(_along(pairs.edges[1, :, :, axis], sign), _along(pairs.edges[2, :, :, axis], sign))
+    return np.minimum(_along(pairs, 1, axis, sign), _along(pairs, 2, axis, sign))
 
 
 def _lead(pairs: PairGeometry, axis: int, sign: int) -> Array:
     """Return the greater of the two."""
-    return np.maximum(_along(pairs.edges[1, :, :, axis], sign), _along(pairs.edges[2, :, :, axis], sign))
+    return np.maximum(_along(pairs, 1, axis, sign), _along(pairs, 2, axis, sign))
 
 
-def _along(distances: Array, sign: int) -> Array:
-    return distances.T if sign < 0 else distances
+def _along(pairs: PairGeometry, edge: int, axis: int, sign: int) -> Array:
+    """Return the distances of an edge along one axis, or, against it, those of the pairs the other way round."""
+    if sign < 0:
+        return pairs.reverse.edges[edge, :, :, axis].T
+    distances: Array = pairs.edges[edge, :, :, axis]
+    return distances
 
 
 def _support(pairs: PairGeometry) -> View:
@@ -135,12 +140,12 @@ def _support(pairs: PairGeometry) -> View:
     found = {
         "across": pairs.inside[:, :, 0],
         "along": pairs.inside[:, :, 1],
-        "bears": pairs.inside[:, :, 0].T,
+        "bears": pairs.reverse.inside[:, :, 0].T,
         "foot": pairs.foot,
         "rest": pairs.edges[0, :, :, 1],
         "upper": pairs.edges[1, :, :, 1],
         "lower": pairs.edges[2, :, :, 1],
-        "spans": pairs.inside[:, :, 1].T,
+        "spans": pairs.reverse.inside[:, :, 1].T,
         "level": pairs.offset[:, :, 1] / (1 + np.abs(pairs.offset[:, :, 1])),
         "gap": pairs.gap,
     }

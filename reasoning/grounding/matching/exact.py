@@ -185,8 +185,8 @@ def _open_bound(stack: Stack) -> float:
 
 def _grid(problem: Problem) -> float:
     """The coarsest of a few steps of which all numbers are multiples, or 0: values that differ do so by a step."""
-    numbers = np.concatenate([np.unique(problem.tables), problem.unary[problem.allowed], problem.absent])
     for step in (1.0, 0.5, 0.25, 0.2, 0.1, 0.05):
-        if np.abs(numbers / step - np.round(numbers / step)).max(initial=0.0) < 1e-6:
+        parts = (problem.absent, *(row for table in problem.tables for row in table), problem.unary[problem.allowed])
+        if all(np.abs(part / step - np.round(part / step)).max(initial=0.0) < 1e-6 for part in parts):
             return step
     return 0.0

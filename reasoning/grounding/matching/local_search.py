@@ -59,17 +59,6 @@ def refresh(state, problem):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
-def said_twice(i, j, state, problem):  # type: ignore[no-untyped-def]
-    """What an exchange of the things of two objects is worth beyond the two gains, for the facts between the two."""
-    more, p, q = np.float32(0.0), state.labels[i], state.labels[j]
-    for slot in range(problem.first[i], problem.first[i + 1]):
-        if problem.other[slot] == j:
-            kind = problem.kind[slot]
-            more += problem.tables[kind, q, p] + problem.tables[kind, p, q]
-    return more
-
-
-@njit(cache=True)
 def exchange(i, p, state, problem):  # type: ignore[no-untyped-def]
     """Gives object i thing p (n2: leaves it out), and whoever had it what i had."""
     old, j = state.labels[i], state.holder[p]
@@ -192,7 +181,7 @@ def _draw(i, state, problem, temperature, noise, at, facts):  # type: ignore[no-
     old, out = state.labels[i], len(state.holder) - 1
     for slot in range(problem.first[i], problem.first[i + 1]):
         q, kind = state.labels[problem.other[slot]], problem.kind[slot]
-        if q < out:  # what kept_gains.said_twice adds up for one pair
+        if q < out:  # a fact with whoever has q is in both gains, as if the other one stayed
             facts[q] += problem.tables[kind, q, old] + problem.tables[kind, old, q]
     holder, gains, own = state.holder, state.gains, state.gains[i]
     base = own[old]

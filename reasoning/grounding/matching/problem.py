@@ -48,7 +48,7 @@ class Problem:
             raise MatchingError(f"a fact holds between two different objects, counted from 0 to {n1 - 1}")
         if ((self.kinds < 0) | (self.kinds >= len(self.tables))).any():
             raise MatchingError(f"a fact reads one of the tables, counted from 0 to {len(self.tables) - 1}")
-        if not np.isfinite(self.tables).all():
+        if not all(np.isfinite(table).all() for table in self.tables):
             raise MatchingError("what a fact says of a pair has to be a finite number")
         if not np.isfinite(self.absent).all():
             raise MatchingError("what leaving an object out is worth has to be a finite number")
@@ -104,6 +104,14 @@ class Problem:
             raise MatchingError("a map makes no match that is ruled out")
 
 
+def empty_tables(kinds: int, things: int) -> NDArray[np.float32]:
+    """Return room for the tables of a problem (k, n2, n2), to be filled in, that compiling it does not copy.
+
+    It is part of what :class:`Compiled` holds, which takes two thirds of the memory of tables and a copy.
+    """
+    return np.zeros((2 * kinds, things + 1, things + 1), np.float32)[:kinds, :things, :things]
+
+
 class Compiled(NamedTuple):
     """Slots of object i: ``first[i]`` to ``first[i + 1]``. The diagonals of the tables, which no map reads, are 0."""
 
@@ -123,10 +131,13 @@ def compile_problem(problem: Problem) -> Compiled:
     """
     k, n2, _ = problem.tables.shape
     m, n1 = len(problem.ends), len(problem.absent)
-    tables = np.zeros((2 * k, n2 + 1, n2 + 1), dtype=np.float32)
-    tables[:k, :n2, :n2] = problem.tables
+    tables = _room_of(problem.tables)
+    if tables is None:
+        tables = np.zeros((2 * k, n2 + 1, n2 + 1), dtype=np.float32)
+        tables[:k, :n2, :n2] = problem.tables
     tables[:, np.arange(n2), np.arange(n2)] = 0.0
-    tables[k:] = tables[:k].transpose(0, 2, 1)
+    for table, turned in zip(tables[:k], tables[k:], strict=True):
+        turned[:] = table.T
     owner = problem.ends.T.ravel()
     order = np.argsort(owner, kind="stable")
     position = np.empty(2 * m, dtype=np.int64)
@@ -140,6 +151,14 @@ def compile_problem(problem: Problem) -> Compiled:
         kind=np.concatenate([problem.kinds, problem.kinds + k])[order].astype(np.int64),
         twin=position[(order + m) % max(2 * m, 1)],
     )
+
+
+def _room_of(tables: NDArray[np.float32]) -> NDArray[np.float32] | None:
+    """Return what :func:`empty_tables` made for tables (k, n2, n2), or None for others."""
+    room, (k, n2, _) = tables.base, tables.shape
+    if not isinstance(room, np.ndarray) or room.shape != (2 * k, n2 + 1, n2 + 1) or room.dtype != np.float32:
+        return None
+    return room if room.ctypes.data == tables.ctypes.data else None
 
 
 def to_labels(assignment: NDArray[np.int64], n2: int) -> NDArray[np.int64]:

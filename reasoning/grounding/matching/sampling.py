@@ -1,9 +1,14 @@
 """Random maps by their probability: Markov chains at several temperatures that exchange maps; compiled.
 
 A step proposes an exchange: a thing, or being left out, for an object, and whoever had the thing gets what the object
-had (Metropolis et al. 1953). Its reverse is proposed as often, so that the chain's limit is the posterior. Hot chains
-cross valleys that the cold one would not, and hand it what they find (replica exchange; Geyer 1991, Hukushima and
-Nemoto 1996).
+had (Metropolis et al. 1953, Hastings 1970). Objects and things are drawn by a *guide*, fixed probabilities that come
+near the marginals, so that few proposals are wasted on what cannot be; Hastings' ratio makes up for it, and a share
+that is drawn evenly reaches every map. Hot chains cross valleys that the cold one would not, and hand it what they find
+(replica exchange; Geyer 1991, Hukushima and Nemoto 1996).
+
+A chain at coldness b has the density exp(r + b (v - r)), with v the value of a map and r what it pays for what it
+leaves out: at 0 nothing but that counts, at 1 it is the posterior. The mean of v - r over b from 0 to 1 is therefore
+the logarithm of by how much likelier the evidence is than by chance (thermodynamic integration; Gelman and Meng 1998).
 """
 
 from __future__ import annotations
@@ -13,116 +18,236 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.reasoning.grounding.matching.local_search import KeptMap, exchange, refresh, said_twice
 from deixis.reasoning.grounding.matching.problem import Compiled
 from deixis.reasoning.kernel import njit
 
-REFRESH = 64  # sweeps after which gains are computed anew
+EVEN_SHARE = 0.05
+"""Share of the proposals for an object that are drawn evenly from all things that it may be."""
+
+FLATTENING = 0.5
+"""Power of the beliefs by which the other proposals are drawn: chains need to leave what they believe in."""
+
+SETTLED_WEIGHT = 0.25
+"""How often a proposal is for an object of which the beliefs are certain, relative to one of which they say nothing."""
+
+START_DRAWS = 20
+"""Things that are drawn for an object of a first map, before it is left out because all of them are taken."""
 
 
-class Ladder(NamedTuple):
-    """r chains, each a map with its gains, and who is at which temperature: the first is the posterior's own."""
+class Guide(NamedTuple):
+    """How often an exchange is proposed, and Walker's alias tables to draw objects and things in constant time."""
 
-    labels: NDArray[np.int64]  # (r, n1)
-    holder: NDArray[np.int64]  # (r, n2 + 1)
-    gains: NDArray[np.float32]  # (r, n1, n2 + 1)
-    values: NDArray[np.float64]  # (r,): up to a constant
-    at: NDArray[np.int64]  # (r,): the chain at each temperature
-    coldness: NDArray[np.float64]  # (r,): 1 over the temperature, falling from 1
+    weight: NDArray[np.float32]  # (n1, n2 + 1): how often the object is drawn, times how often the thing is for it
+    keep: NDArray[np.float32]  # (n1, n2 + 1): probability that the thing drawn evenly is taken, else its alias
+    alias: NDArray[np.int32]  # (n1, n2 + 1)
+    keep_object: NDArray[np.float32]  # (1, n1): the same for objects
+    alias_object: NDArray[np.int32]  # (1, n1)
 
 
-def ladder(labels: NDArray[np.int64], problem: Compiled, coldness: NDArray[np.float64]) -> Ladder:
-    """As many chains as temperatures, all at one map (n1,)."""
-    r, (n1, width) = len(coldness), problem.unary.shape
-    return Ladder(
-        np.tile(labels, (r, 1)),
-        np.empty((r, width), dtype=np.int64),
-        np.empty((r, n1, width), dtype=np.float32),
-        np.zeros(r),
-        np.arange(r),
-        coldness,
-    )
+class Chains(NamedTuple):
+    """K chains of one ladder, each a map: the first is at the posterior's own coldness, the others are hotter."""
+
+    labels: NDArray[np.int64]  # (K, n1)
+    holder: NDArray[np.int64]  # (K, n2 + 1): who has the thing, -1 where nobody has; -1 for n2
+    values: NDArray[np.float64]  # (K,): v - r
+    coldness: NDArray[np.float64]  # (K,): falling from 1
+
+
+def new_chains(problem: Compiled, coldness: NDArray[np.float64]) -> Chains:
+    """Return chains at these temperatures (K,), their maps still to be drawn (:func:`begin`)."""
+    rungs, (n1, width) = len(coldness), problem.unary.shape
+    labels, holder = np.zeros((rungs, n1), np.int64), np.full((rungs, width), -1, np.int64)
+    return Chains(labels, holder, np.zeros(rungs), coldness)
+
+
+def guide_by(beliefs: NDArray[np.floating], allowed: NDArray[np.bool_]) -> Guide:
+    """Return the guide that beliefs (n1, n2 + 1) make; what is not ``allowed`` (n1, n2 + 1) is never proposed."""
+    chance = np.where(allowed, np.maximum(beliefs, 0.0).astype(np.float32) ** np.float32(FLATTENING), np.float32(0.0))
+    chance /= np.maximum(chance.sum(axis=1, keepdims=True), np.float32(1e-30))
+    chance *= np.float32(1.0 - EVEN_SHARE)
+    chance += np.float32(EVEN_SHARE) * allowed / allowed.sum(axis=1, keepdims=True).astype(np.float32)
+    often = SETTLED_WEIGHT + (1 - SETTLED_WEIGHT) * (1.0 - beliefs.max(axis=1, initial=0.0))
+    often = (often / often.sum()).astype(np.float32)
+    keep, alias = _alias_tables(chance)
+    keep_object, alias_object = _alias_tables(often[None, :])
+    return Guide(often[:, None] * chance, keep, alias, keep_object, alias_object)
 
 
 @njit(cache=True)
-def sample(chains, counts, problem, sweeps, rounds, thresholds, most, seed):  # type: ignore[no-untyped-def]
-    """So many sweeps, each of ``rounds`` over all objects in every chain, then exchanges between temperatures.
+def _alias_tables(chance):  # type: ignore[no-untyped-def]
+    """Walker's alias method (1977; Vose 1991): for each row of probabilities what to keep, and what to take instead."""
+    rows, width = chance.shape
+    keep, alias = np.ones((rows, width), np.float32), np.empty((rows, width), np.int32)
+    small, large, scaled = np.empty(width, np.int64), np.empty(width, np.int64), np.empty(width)
+    for i in range(rows):
+        few, many, total = 0, 0, 0.0
+        for p in range(width):
+            total += chance[i, p]
+        for p in range(width):
+            alias[i, p] = p
+            scaled[p] = chance[i, p] * width / total
+            if scaled[p] < 1.0:
+                small[few] = p
+                few += 1
+            else:
+                large[many] = p
+                many += 1
+        while few > 0 and many > 0:
+            few -= 1
+            low, high = small[few], large[many - 1]
+            keep[i, low], alias[i, low] = scaled[low], high
+            scaled[high] -= 1.0 - scaled[low]
+            if scaled[high] < 1.0:
+                many -= 1
+                small[few] = high
+                few += 1
+    return keep, alias
 
-    After each, what every object is in the coldest chain is counted, (n1, n2 + 1). ``thresholds`` are logarithms of
-    uniform random numbers, a power of 2 of them, read from random places on; ``most`` is what
-    :func:`most_said_twice` gives. Returns the share of exchanges made.
+
+@njit(cache=True, nogil=True)
+def begin(chains, problem, guide, seed):  # type: ignore[no-untyped-def]
+    """Gives every chain a map of its own, drawn by the guide."""
+    np.random.seed(seed)
+    n1, width = guide.weight.shape
+    for k in range(len(chains.coldness)):
+        labels, holder = chains.labels[k], chains.holder[k]
+        holder[:] = -1
+        for i in np.random.permutation(n1):
+            labels[i] = width - 1
+            for _ in range(START_DRAWS):
+                p = _drawn(i, guide.keep, guide.alias)
+                if p < width - 1 and problem.allowed[i, p] and holder[p] < 0:
+                    labels[i], holder[p] = p, i
+                    break
+        chains.values[k] = _worth(labels, problem)
+
+
+@njit(cache=True)
+def _drawn(row, keep, alias):  # type: ignore[no-untyped-def]
+    p = np.random.randint(keep.shape[1])
+    return p if np.random.random() < keep[row, p] else np.int64(alias[row, p])
+
+
+@njit(cache=True)
+def _worth(labels, problem):  # type: ignore[no-untyped-def]
+    """The value of a map less what it pays for what it leaves out."""
+    total, out = 0.0, problem.unary.shape[1] - 1
+    for i in range(len(labels)):
+        if labels[i] < out:
+            total += problem.unary[i, labels[i]]
+        for slot in range(problem.first[i], problem.first[i + 1]):
+            if problem.other[slot] > i:
+                total += problem.tables[problem.kind[slot], labels[i], labels[problem.other[slot]]]
+    return total
+
+
+@njit(cache=True, nogil=True)
+def cool(chains, problem, guide, coldness, sweeps, seed):  # type: ignore[no-untyped-def]
+    """So many sweeps of all chains, at other temperatures (K,) than their own, on the way to them."""
+    np.random.seed(seed)
+    steps = sweeps * chains.labels.shape[1]
+    for k in range(len(coldness)):
+        chains.values[k] += _walk(chains.labels[k], chains.holder[k], problem, guide, coldness[k], steps)
+
+
+@njit(cache=True, nogil=True)
+def sample(chains, counts, sums, problem, guide, sweeps, seed):  # type: ignore[no-untyped-def]
+    """So many sweeps over all objects in every chain, after each of them exchanges between temperatures.
+
+    After each, what every object is in the coldest chain is counted, (n1, n2 + 1), and the values of all chains are
+    added to ``sums`` (K,). Returns the number of exchanges made.
     """
     np.random.seed(seed)
-    made, tried = 0, 0
+    n1, rungs = chains.labels.shape[1], len(chains.coldness)
+    made = 0
     for sweep in range(sweeps):
-        for rung in range(len(chains.at)):
-            r = chains.at[rung]
-            state = KeptMap(chains.labels[r], chains.holder[r], chains.gains[r])
-            if sweep % REFRESH == 0:
-                refresh(state, problem)
-            chains.values[r] += _walk(state, problem, chains.coldness[rung], rounds, thresholds, most)
-        for rung in range(sweep % 2, len(chains.at) - 1, 2):
-            tried += 1
-            made += _swap(rung, chains)
-        cold = chains.labels[chains.at[0]]
-        for i in range(len(cold)):
-            counts[i, cold[i]] += 1
-    return made / max(tried, 1)
+        for k in range(rungs):
+            coldness = chains.coldness[k]
+            chains.values[k] += _walk(chains.labels[k], chains.holder[k], problem, guide, coldness, n1)
+        for k in range(sweep % 2, rungs - 1, 2):
+            made += _swap(k, chains)
+        for i in range(n1):
+            counts[i, chains.labels[0, i]] += 1
+        for k in range(rungs):
+            sums[k] += chains.values[k]
+    return made
 
 
 @njit(cache=True)
-def _swap(rung, chains):  # type: ignore[no-untyped-def]
-    """Exchanges the chains at two neighbouring temperatures, or not, as their maps' values say."""
-    cold, hot = chains.at[rung], chains.at[rung + 1]
-    gained = (chains.coldness[rung] - chains.coldness[rung + 1]) * (chains.values[hot] - chains.values[cold])
+def _swap(k, chains):  # type: ignore[no-untyped-def]
+    """Exchanges the maps at two neighbouring temperatures, or not, as their values say."""
+    gained = (chains.coldness[k] - chains.coldness[k + 1]) * (chains.values[k + 1] - chains.values[k])
     if gained < 0.0 and np.random.random() >= np.exp(gained):
         return False
-    chains.at[rung], chains.at[rung + 1] = hot, cold
+    for i in range(chains.labels.shape[1]):
+        chains.labels[k, i], chains.labels[k + 1, i] = chains.labels[k + 1, i], chains.labels[k, i]
+    for p in range(chains.holder.shape[1]):
+        chains.holder[k, p], chains.holder[k + 1, p] = chains.holder[k + 1, p], chains.holder[k, p]
+    chains.values[k], chains.values[k + 1] = chains.values[k + 1], chains.values[k]
     return True
 
 
 @njit(cache=True)
-def _walk(state, problem, coldness, rounds, thresholds, most):  # type: ignore[no-untyped-def]
-    """So many proposals for each object; returns what the exchanges that were made gained.
-
-    Objects come at random, not in turn: the way back from where one takes the thing of another and leaves it with none
-    is a proposal for the other.
-    """
-    labels, holder, gains = state.labels, state.holder, state.gains
-    n1, width = np.uint64(len(labels)), np.uint64(len(holder))
-    total, at = 0.0, np.random.randint(len(thresholds))
-    bits = np.uint64(np.random.randint(1, 1 << 62))
-    for _ in range(rounds * len(labels)):
-        bits = _shifted(bits)
-        i = np.int64((((bits >> np.uint64(16)) & np.uint64(0xFFFFFF)) * n1) >> np.uint64(24))
-        p = np.int64(((bits >> np.uint64(40)) * width) >> np.uint64(24))
-        at = (at + 1) & (len(thresholds) - 1)
-        old, j = labels[i], holder[p]
-        if p == old:
+def _walk(labels, holder, problem, guide, coldness, steps):  # type: ignore[no-untyped-def]
+    """So many proposals; returns what the exchanges that were made gained of v - r."""
+    out, total = guide.weight.shape[1] - 1, 0.0
+    for _ in range(steps):
+        i = _drawn(0, guide.keep_object, guide.alias_object)
+        p, old = _drawn(i, guide.keep, guide.alias), labels[i]
+        if p == old or not problem.allowed[i, p]:
             continue
-        gained = gains[i, p] - gains[i, old]
+        j = holder[p]
+        if j >= 0 and not problem.allowed[j, old]:
+            continue
+        gained, paid = _change(i, p, j, labels, problem)
+        there, back = np.float64(guide.weight[i, p]), np.float64(guide.weight[i, old])
+        if j >= 0 and old == out:  # only the other one's claim to its thing leads back
+            back = np.float64(guide.weight[j, p])
+        elif j >= 0:  # the other one proposes the same exchange, there and back
+            there += guide.weight[j, old]
+            back += guide.weight[j, p]
+        if np.random.random() * there >= back * np.exp(min(coldness * gained + paid, 700.0)):
+            continue
+        total += gained
+        labels[i] = p
         if j >= 0:
-            gained += gains[j, old] - gains[j, p]
-            if coldness * (gained + most) <= thresholds[at]:
-                continue
-            gained += said_twice(i, j, state, problem)
-        if coldness * gained > thresholds[at]:
-            exchange(i, p, state, problem)
-            total += gained
+            labels[j] = old
+        if p < out:
+            holder[p] = i
+        if old < out:
+            holder[old] = j
     return total
 
 
 @njit(cache=True)
-def _shifted(bits):  # type: ignore[no-untyped-def]
-    """The next 64 random bits (xorshift; Marsaglia 2003): several times as fast as the usual generator."""
-    bits ^= bits << np.uint64(13)
-    bits ^= bits >> np.uint64(7)
-    bits ^= bits << np.uint64(17)
-    return bits
-
-
-def most_said_twice(problem: Compiled) -> float:
-    """No facts between two objects make an exchange of their things worth more beyond the gains."""
-    owner = np.repeat(np.arange(len(problem.unary)), np.diff(problem.first))
-    pairs = np.unique(owner * len(problem.unary) + problem.other, return_counts=True)[1]
-    return 2.0 * float(pairs.max(initial=0)) * max(0.0, float(problem.tables.max(initial=0.0))) + 1e-3
+def _change(i, p, j, labels, problem):  # type: ignore[no-untyped-def]
+    """What it changes to give object i thing p, and i's thing to j, who had p (nobody: -1): of v - r, and of r."""
+    old, out = labels[i], problem.unary.shape[1] - 1
+    gained, paid = 0.0, 0.0
+    if p == out:
+        paid += problem.unary[i, out]
+    else:
+        gained += problem.unary[i, p]
+    if old == out:
+        paid -= problem.unary[i, out]
+    else:
+        gained -= problem.unary[i, old]
+    for slot in range(problem.first[i], problem.first[i + 1]):
+        kind, other = problem.kind[slot], problem.other[slot]
+        q = labels[other]
+        if other == j:
+            gained += problem.tables[kind, p, old] - problem.tables[kind, old, p]
+        else:
+            gained += problem.tables[kind, p, q] - problem.tables[kind, old, q]
+    if j < 0:
+        return gained, paid
+    if old == out:
+        paid += problem.unary[j, out]
+    else:
+        gained += problem.unary[j, old]
+    gained -= problem.unary[j, p]
+    for slot in range(problem.first[j], problem.first[j + 1]):
+        if problem.other[slot] != i:
+            kind, q = problem.kind[slot], labels[problem.other[slot]]
+            gained += problem.tables[kind, old, q] - problem.tables[kind, p, q]
+    return gained, paid

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from deixis.deadline import Deadline
 from deixis.reasoning.errors import SettingError
-from deixis.reasoning.grounding.matching.posterior import exchangeable
+from deixis.reasoning.grounding.matching.exchangeable import exchangeable
 from deixis.reasoning.grounding.matching.problem import UNMATCHED, Problem
 
 if TYPE_CHECKING:

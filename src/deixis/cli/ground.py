@@ -15,6 +15,7 @@ from deixis.cli.common import (
     AsJson,
     HideLabels,
     Image,
+    MemoryLimit,
     SceneFile,
     Script,
     TimeLimit,
@@ -26,6 +27,7 @@ from deixis.cli.common import (
     working,
 )
 from deixis.cli.output import StandardInput
+from deixis.deadline import Deadline
 from deixis.reasoning.grounding.options import EngineName, Select, ViewpointName
 
 if TYPE_CHECKING:
@@ -57,6 +59,7 @@ def ground(
     ] = None,
     plot: Annotated[Path | None, typer.Option(metavar="FILE", help="Draw the scene with the names found.")] = None,
     time_limit: TimeLimit = 10.0,
+    memory_limit: MemoryLimit = 2.0,
     hide_labels: HideLabels = False,
     image: Image = None,
     as_json: AsJson = False,
@@ -68,10 +71,12 @@ def ground(
     from deixis.workflows.read import load_scene, read_script
 
     require_plot(plot)
+    deadline = Deadline.after(time_limit)
     out = sys.stderr if as_json else sys.stdout  # of the dialogue
+    described, seen = read_script(script, deadline=deadline), load_scene(scene, hide_labels, image)
     request = GroundingRequest(
-        script=read_script(script),
-        scene=load_scene(scene, hide_labels, image),
+        script=described,
+        scene=seen,
         engine=engine,
         select=select,
         literal=literal,
@@ -80,9 +85,10 @@ def ground(
         ask=_dialogue(oracle, out) if ask or oracle is not None else None,
         max_questions=max_questions,
         time_limit=time_limit,
+        memory_limit=memory_limit,
         meaning=_meaning(memory),
+        deadline=deadline.delayed(ready_to_ground(engine)),
     )
-    ready_to_ground(engine)
     found = answer(request, working)
     if found.exchanges is not None:
         print(file=out)

@@ -98,7 +98,7 @@ def generate(
 ) -> GeneratedTable:
     """A table of ``objects`` described pieces and ``extra`` others, ``missing`` described ones then taken off."""
     rng = np.random.default_rng([seed, objects])
-    boxes, pieces = _lay_boxes(objects + extra, rng)
+    boxes, pieces = lay_boxes(objects + extra, rng)
     relations = default_ontology().relations
     ends = _draw_pairs(boxes, objects, round(facts_each * objects), rng)
     names = box_relations(boxes, relations).names[ends[:, 0], ends[:, 1]]
@@ -114,7 +114,7 @@ def generate(
     return GeneratedTable(boxes[shown], ends, words, wrong, truth[:objects], pieces[:objects])
 
 
-def _lay_boxes(count: int, rng: np.random.Generator) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+def lay_boxes(count: int, rng: np.random.Generator) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     """Boxes of seats in rows about four times as long as deep, each seat with three quarters of its pieces; which."""
     seats = max(1, round(count / (0.75 * len(PIECES)) + 0.5))
     columns = max(1, round(2 * np.sqrt(seats)))

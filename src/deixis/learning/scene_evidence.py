@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from deixis.deadline import Deadline
 from deixis.grammar.script import Script
 from deixis.ontology.graph import RelationGraph
 from deixis.ontology.tbox import Ontology
@@ -19,14 +20,19 @@ def evidence_of(script: Script, scene: Scene, meaning: Meaning = SHIPPED) -> Evi
 
 
 def graph_evidence(
-    description: RelationGraph, scene: Scene, ontology: Ontology, meaning: Meaning, label_error: float = LABEL_ERROR
+    description: RelationGraph,
+    scene: Scene,
+    ontology: Ontology,
+    meaning: Meaning,
+    label_error: float = LABEL_ERROR,
+    deadline: Deadline = Deadline.never(),
 ) -> Evidence:
-    """The same of a description that is a graph already; of labels said to be certain a share ``label_error`` is
-    wrong."""
+    """The same of a description that is a graph already, to be worked out until the deadline; of labels said to be
+    certain a share ``label_error`` is wrong."""
     labels = list(scene_labels(scene).values())
     return evidence_from(
         description,
-        scene.relations(ontology.relations),
+        scene.relations(ontology.relations, deadline=deadline),
         labels,
         ontology.kinds,
         ontology.sizes,
@@ -35,6 +41,7 @@ def graph_evidence(
         seen=scene.colours,
         colours=ontology.colours,
         label_error=label_error,
+        deadline=deadline,
     )
 
 

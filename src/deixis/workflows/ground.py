@@ -7,6 +7,7 @@ Python (:func:`deixis.ground`, ``Session.ground``) and the command line (``deixi
 from __future__ import annotations
 
 import math
+import time
 from collections.abc import Callable, Mapping
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, replace
@@ -21,21 +22,25 @@ from deixis.learning.scene_evidence import conflict_notes, graph_evidence, viewp
 from deixis.ontology.graph import RelationGraph
 from deixis.perception.scene import Scene
 from deixis.reasoning.entailment.conflict import Conflict, find_conflict
-from deixis.reasoning.entailment.implications import Implications
-from deixis.reasoning.errors import SettingError, require_time_limit
+from deixis.reasoning.entailment.implications import TIME_LIMIT, Implications
+from deixis.reasoning.errors import LimitError, OutOfTimeError, SettingError, require_time_limit
 from deixis.reasoning.grounding.answer import Grounding
 from deixis.reasoning.grounding.engines import engine_named
 from deixis.reasoning.grounding.evidence.evidence import Evidence
 from deixis.reasoning.grounding.evidence.meaning import SHIPPED, Meaning
 from deixis.reasoning.grounding.ground import ground as ground_evidence
+from deixis.reasoning.grounding.memory_budget import DEFAULT_MEMORY_LIMIT, leaves_room_for_chains, require_memory_limit
 from deixis.reasoning.grounding.options import DEFAULT_TIME_LIMIT, EngineName, Select, ViewpointName
 from deixis.workflows.read import as_scene, as_script
 
 if TYPE_CHECKING:
     from deixis.workflows.dialogue import Ask
 
-MEANWHILE = 0.2
-"""Seconds that the chains of a miniature may take beyond their compilation."""
+CONFLICT_SHARE = 0.15
+"""Share of the time limit that may be spent on whether the facts can hold together."""
+
+SIDES_HELD = {ViewpointName.STATED: 1, ViewpointName.QUARTER: 3, ViewpointName.UNKNOWN: 7}
+"""Times as many things as memory has to be for: the square of it is the number of sides looked from at once."""
 
 Stage = Callable[[str], AbstractContextManager[None]]
 """Accompanies one stage of the work, which it is told in words."""
@@ -70,6 +75,12 @@ class GroundingRequest:
         Ask at most so many.
     time_limit
         Seconds until the answer, proved or not; a person who answers is given the time that it takes.
+    memory_limit
+        Gigabytes (10^9 bytes) that the answer may take beyond the program itself. What takes more is refused before it
+        is begun.
+    deadline
+        When the answer is due, where the time limit began before the request was made, as with reading. None begins it
+        now.
     meaning
         How words and sizes are taken: as shipped, or as a memory has learned them (``Session.meaning()``).
 
@@ -90,9 +101,12 @@ class GroundingRequest:
     max_questions: int | None = None
     time_limit: float = DEFAULT_TIME_LIMIT
     meaning: Meaning = SHIPPED
+    memory_limit: float = DEFAULT_MEMORY_LIMIT
+    deadline: Deadline | None = None
 
     def __post_init__(self) -> None:
         require_time_limit(self.time_limit)
+        require_memory_limit(self.memory_limit)
         for what, value, choices in (
             ("select", self.select, Select),
             ("viewpoint", self.viewpoint, ViewpointName),
@@ -115,6 +129,13 @@ class GroundingRequest:
                 raise SettingError("nobody is asked `max_questions`: add --ask or --oracle (ask=), or leave it out")
         if not isinstance(self.meaning, Meaning):
             raise SettingError(f"`meaning` must be a Meaning, as of Session.meaning(), got {self.meaning!r:.60}")
+        object.__setattr__(self, "deadline", self.deadline or Deadline.after(self.time_limit))
+
+    @property
+    def due(self) -> Deadline:
+        """When the answer is due."""
+        assert self.deadline is not None
+        return self.deadline
 
     @cached_property
     def graph(self) -> RelationGraph:
@@ -124,12 +145,24 @@ class GroundingRequest:
     @cached_property
     def implied(self) -> Implications:
         """What the description implies."""
-        return Implications(self.graph)
+        return Implications(self.graph, min(TIME_LIMIT, self.due.share(CONFLICT_SHARE).left))
 
     @cached_property
     def conflict(self) -> Conflict | None:
-        """The facts that cannot hold together, as few as there are, where the script contradicts itself."""
+        """The facts that cannot hold together, as few as there are, where the script contradicts itself.
+
+        Raises OutOfTimeError where there was no time to find few, LimitError for more objects than can be closed.
+        """
         return find_conflict(self.implied)
+
+    @cached_property
+    def frugal(self) -> bool:
+        """Whether the memory limit leaves no room to sample marginals.
+
+        Raises OutOfMemoryError where it leaves none for an answer.
+        """
+        things = len(self.scene.objects) * SIDES_HELD[ViewpointName(self.viewpoint)]
+        return not leaves_room_for_chains(self.graph, things, self.memory_limit)
 
     @cached_property
     def effective_meaning(self) -> Meaning:
@@ -139,8 +172,12 @@ class GroundingRequest:
 
     def evidence(self, scene: Scene) -> Evidence:
         """Return all that speaks for who is who in the scene as seen from one side."""
-        known = graph_evidence(self.graph, scene, self.script.ontology, self.effective_meaning)
-        return replace(known, consistent=self.implied.consistent)
+        frugal = self.frugal
+        known = graph_evidence(self.graph, scene, self.script.ontology, self.effective_meaning, deadline=self.due)
+        try:
+            return replace(known, frugal=frugal, consistent=self.implied.consistent)
+        except LimitError:
+            return replace(known, frugal=frugal, consistent=False)  # nothing is to be inferred
 
 
 def ground(
@@ -152,6 +189,7 @@ def ground(
     meaning: Meaning = SHIPPED,
     viewpoint: str = ViewpointName.STATED,
     *,
+    memory_limit: float = DEFAULT_MEMORY_LIMIT,
     literal: bool = False,
     sizes: bool = True,
     ask: Ask | None = None,
@@ -160,7 +198,8 @@ def ground(
     """Work out which perceived thing each object of a script is.
 
     ``script`` and ``scene`` may be files; the options are those of :class:`GroundingRequest`. The answer comes within
-    about ``time_limit`` seconds, proved or not, and says which. Raises DeixisError for bad input.
+    about ``time_limit`` seconds, reading included, proved or not, and says which. Raises DeixisError for bad input,
+    OutOfTimeError or OutOfMemoryError where the limits leave no answer at all.
 
     >>> import deixis
     >>> boxes = {"o1": [0.0, 0.0], "o2": [0.4, 0.0], "o3": [0.8, 0.0]}
@@ -170,9 +209,12 @@ def ground(
     >>> [match.perceived for match in found.matches.values()], len(found.exchanges)
     (['o2', 'o3', 'o1'], 2)
     """
+    require_time_limit(time_limit)
+    deadline = Deadline.after(time_limit)
+    described, seen = as_script(script, deadline=deadline), as_scene(scene)
     request = GroundingRequest(
-        script=as_script(script),
-        scene=as_scene(scene),
+        script=described,
+        scene=seen,
         engine=engine,
         select=select,
         literal=literal,
@@ -182,17 +224,21 @@ def ground(
         max_questions=max_questions,
         time_limit=time_limit,
         meaning=meaning,
+        memory_limit=memory_limit,
+        deadline=deadline.delayed(seconds_to_get_ready(engine)),
     )
     return answer(request)
 
 
 def answer(request: GroundingRequest, stage: Stage = lambda _: nullcontext()) -> Grounding:
-    """Answer a request; ``stage`` accompanies its stages, other than the dialogue."""
+    """Answer a request; ``stage`` accompanies its stages, other than the dialogue.
+
+    Raises OutOfTimeError or OutOfMemoryError where the request's limits leave no answer at all.
+    """
     from deixis.workflows.viewpoint import ground_from_sides, recover_scene
 
     ready_to_ground(request.engine)
-    contradiction = conflict_notes(request.conflict)
-    deadline = Deadline.after(request.time_limit)
+    deadline, contradiction = request.due, _contradiction(request)
     side, notes = None, viewpoint_notes(request.script.viewpoint, request.scene)
     if request.viewpoint != ViewpointName.STATED:
         any_angle = request.viewpoint == ViewpointName.UNKNOWN
@@ -215,6 +261,16 @@ def answer(request: GroundingRequest, stage: Stage = lambda _: nullcontext()) ->
     return replace(found.noting(before), viewpoints=viewpoints)
 
 
+def _contradiction(request: GroundingRequest) -> tuple[str, ...]:
+    """Return what is to be said of facts that cannot hold together, or of not having found out."""
+    try:
+        return conflict_notes(request.conflict)
+    except OutOfTimeError:
+        return ("the script contradicts itself, so that not all of it can hold",)
+    except LimitError:
+        return ("whether all facts can hold together was not looked into: they are about too many objects",)
+
+
 def _answer_with_questions(request: GroundingRequest, ask: Ask, scene: Scene, time_limit: float) -> Grounding:
     """Ground a script in a scene, by asking what would tell the likeliest groundings apart."""
     from deixis.reasoning.grounding.questions.inquiry import Inquiry
@@ -233,19 +289,27 @@ def _answer_with_questions(request: GroundingRequest, ask: Ask, scene: Scene, ti
 
         return hold
 
-    refined = refine(request.evidence(scene), request.implied, start, time_limit)
+    evidence = replace(request.evidence(scene), deadline=Deadline.never())  # a person may take long
+    refined = refine(evidence, request.implied, start, time_limit)
     print(*closing_lines(refined.inquiry), sep="\n", file=dialogue.out)
-    notes = conflict_notes(request.conflict)
+    notes = _contradiction(request)
     found = ground_evidence(refined.evidence, engine_named(request.engine), refined.deadline, notes)
     return replace(found, exchanges=refined.inquiry.exchanges)
+
+
+def seconds_to_get_ready(engine: str) -> float:
+    """Get ready to ground, and return the seconds that it took: they count for no time limit."""
+    started = time.monotonic()
+    ready_to_ground(engine)
+    return time.monotonic() - started
 
 
 @cache
 def ready_to_ground(engine: str) -> None:
     """Compiles, or loads compiled, what grounding with an engine needs, so that no time limit is spent on it.
 
-    A miniature goes the way of any grounding, and the probabilities of another are sampled as those of many things
-    are. Raises UnknownTermError for a name that no engine has.
+    A miniature goes the way of any grounding, and chains are run as for the probabilities of many things. Raises
+    UnknownTermError for a name that no engine has.
     """
     from deixis.grammar.parser import parse_script
     from deixis.reasoning.grounding.evidence.evidence import evidence_from
@@ -260,12 +324,6 @@ def ready_to_ground(engine: str) -> None:
     known, seen = script.ontology, scene.relations(script.ontology.relations)
     evidence = evidence_from(script.graph(), seen, [None] * len(boxes), known.kinds, known.sizes)
     ground_evidence(evidence, chosen, Deadline.after(3600.0))
-    # Asks for less mass to be missing than a sum over maps can promise, which leaves sampling.
-    import numpy as np
+    from deixis.reasoning.grounding.matching.ladders import warm
 
-    from deixis.reasoning.grounding.matching.posterior import posterior
-    from deixis.reasoning.grounding.matching.problem import Problem
-
-    unary, tables = np.array([[0.0, -60.0], [0.0, 0.0]]), np.zeros((1, 2, 2), np.float32)
-    problem = Problem(np.array([[0, 1]]), np.array([0]), tables, unary, np.full(2, -80.0))
-    posterior(problem, Deadline.after(MEANWHILE), mass=1e-30)
+    warm()

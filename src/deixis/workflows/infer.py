@@ -10,12 +10,12 @@ from pathlib import Path
 from deixis.deadline import Deadline
 from deixis.grammar.script import Script
 from deixis.ontology.facts import Fact
-from deixis.reasoning.constraints.disjunctive import OutOfTimeError
 from deixis.reasoning.constraints.proof import Rule
 from deixis.reasoning.entailment.closing import consistent
 from deixis.reasoning.entailment.conflict import Conflict, find_conflict
 from deixis.reasoning.entailment.demands import demands_of
 from deixis.reasoning.entailment.implications import TIME_LIMIT, Implications
+from deixis.reasoning.errors import OutOfTimeError
 from deixis.workflows.read import as_script
 
 MAX_STEPS_LISTED = 12

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from deixis.deadline import Deadline
 from deixis.errors import DeixisError
 from deixis.grammar.parser import parse_script
 from deixis.grammar.parser import read_script as read_script_file
@@ -19,15 +20,23 @@ if TYPE_CHECKING:
 SCRIPT_ENDING, SCENE_ENDING = ".layout", ".scene.json"
 
 
-def read_script(path: str | Path | None = None, *, text: str | None = None, ontology: Ontology | None = None) -> Script:
+def read_script(
+    path: str | Path | None = None,
+    *,
+    text: str | None = None,
+    ontology: Ontology | None = None,
+    deadline: Deadline = Deadline.never(),
+) -> Script:
     """Reads a layout script from a file, or from ``text``.
 
-    Raises ScriptError with every mistake in it, each with file, line and column; TypeError unless exactly one of the
-    two is given.
+    Raises ScriptError with every mistake in it, each with file, line and column; ScriptTimeError at the ``deadline``;
+    TypeError unless exactly one of the two is given.
     """
     if (path is None) == (text is None):
         raise TypeError("read_script takes a path or text=, and one of them only")
-    return parse_script(text, ontology=ontology) if text is not None else read_script_file(str(path), ontology=ontology)
+    if text is not None:
+        return parse_script(text, ontology=ontology, deadline=deadline)
+    return read_script_file(str(path), ontology, deadline)
 
 
 def load_scene(file: str | Path, hide_labels: bool = False, image: str | None = None) -> Scene:
@@ -38,9 +47,11 @@ def load_scene(file: str | Path, hide_labels: bool = False, image: str | None = 
     return scene.without_labels() if hide_labels else scene
 
 
-def as_script(script: Script | str | Path, ontology: Ontology | None = None) -> Script:
-    """Return the script itself, or the one in the file of that name."""
-    return script if isinstance(script, Script) else read_script(script, ontology=ontology)
+def as_script(
+    script: Script | str | Path, ontology: Ontology | None = None, deadline: Deadline = Deadline.never()
+) -> Script:
+    """Return the script itself, or the one in the file of that name, read until the deadline."""
+    return script if isinstance(script, Script) else read_script(script, ontology=ontology, deadline=deadline)
 
 
 def as_scene(scene: Scene | str | Path | Mapping[str, Any]) -> Scene:

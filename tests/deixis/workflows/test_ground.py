@@ -156,22 +156,22 @@ def test_graph_closure_and_relations_are_computed_once(monkeypatch: pytest.Monke
     import deixis.reasoning.geometry.rectangle as rectangle
     import deixis.workflows.ground as module
 
-    closures, scenes, related = [], [], rectangle.box_relations
+    closures, scenes, related = [], [], rectangle.scene_relations
 
     class Counted(Implications):
         def __init__(self, *arguments: Any) -> None:
             closures.append(arguments)
             super().__init__(*arguments)
 
-    def counted(*arguments: Any) -> rectangle.BoxRelations:
+    def counted(*arguments: Any, **options: Any) -> rectangle.SceneRelations:
         scenes.append(arguments)
-        return related(*arguments)
+        return related(*arguments, **options)
 
     package.ground(SCRIPT1, SCENE)  # whatever is compiled first
     monkeypatch.setattr(module, "Implications", Counted)
     monkeypatch.setattr("deixis.reasoning.grounding.similarity.Implications", Counted)
     monkeypatch.setattr("deixis.reasoning.grounding.questions.situation.Implications", Counted)
-    monkeypatch.setattr(rectangle, "box_relations", counted)
+    monkeypatch.setattr(rectangle, "scene_relations", counted)
     script, scene = package.read_script(SCRIPT1), read_scene(SCENE)
     answer(GroundingRequest(script, scene, ask=TRUTH))
     of_the_whole = [arguments for arguments in closures if arguments[0].nodes == script.objects]

@@ -6,6 +6,7 @@ import math
 import random
 import time
 from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 import pytest
@@ -259,14 +260,17 @@ def test_the_names_of_the_pairs_are_worked_out_once(
     import deixis.reasoning.geometry.rectangle as rectangle
     import deixis.reasoning.grounding.evidence.facts as facts
 
-    related, counts = rectangle.box_relations, []
+    related, counts = rectangle.scene_relations, []
 
-    def counted(boxes: NDArray[np.float64], *others: object) -> rectangle.BoxRelations:
-        counts.append(len(boxes))
-        return related(boxes, *others)  # type: ignore[arg-type]
+    def counted(ids: Sequence[str], *others: Any, **options: Any) -> rectangle.SceneRelations:
+        counts.append(len(ids))
+        return related(ids, *others, **options)
 
-    for module in (rectangle, facts):
-        monkeypatch.setattr(module, "box_relations", counted)
+    def again(*_: object) -> None:
+        raise AssertionError("the names of the pairs are known already")
+
+    monkeypatch.setattr(rectangle, "scene_relations", counted)
+    monkeypatch.setattr(facts, "box_relations", again)
     scene = formal_setting()
     ground(evidence(graph_of(*full_script), scene), engine_named("exact", sides=AS_IT_STANDS))
     answer(graph_of(*full_script), scene, "similarity")

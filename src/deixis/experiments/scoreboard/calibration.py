@@ -24,7 +24,7 @@ class Forecasts:
     group: Group
     probability: NDArray[np.float64]  # (k,)
     right: NDArray[np.bool_]  # (k,)
-    error: float = 0.0  # by how much the probabilities may be off
+    error: float | NDArray[np.float64] = 0.0  # by how much the probabilities may be off, or (k,): each of them
 
     @classmethod
     def of(cls, contestant: str, case: Case, answer: ContestantAnswer) -> Forecasts:
@@ -34,7 +34,8 @@ class Forecasts:
         matched = np.flatnonzero(answer.assignment != UNMATCHED)
         given = answer.assignment[matched]
         right = given == case.truth[matched]
-        return cls(contestant, case.setting.group, answer.marginals[matched, given], right, answer.error)
+        errors = np.broadcast_to(answer.error, len(answer.marginals))[matched]
+        return cls(contestant, case.setting.group, answer.marginals[matched, given], right, errors)
 
 
 @dataclass(frozen=True, slots=True)

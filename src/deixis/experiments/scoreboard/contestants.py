@@ -27,7 +27,7 @@ class ContestantAnswer:
     assignment: NDArray[np.int64]
     proved: bool = False
     marginals: NDArray[np.float64] | None = None
-    error: float = 0.0  # by how much these may be off
+    error: float | NDArray[np.float64] = 0.0  # by how much these may be off, or (n1,): those of each object
 
 
 @dataclass(frozen=True)
@@ -64,7 +64,7 @@ def engine(
         found = engine_named(name).align(evidence, deadline)
         if found.posterior is None:
             return ContestantAnswer(found.assignment, found.proved_best)
-        return ContestantAnswer(found.assignment, found.proved_best, found.posterior.marginals, found.posterior.error)
+        return ContestantAnswer(found.assignment, found.proved_best, found.posterior.marginals, found.posterior.errors)
 
     return Contestant(called or name, settings, solve, most, meaning, ablation, learned)
 

@@ -11,11 +11,12 @@ from hypothesis import strategies as st
 from laid_boxes import tables
 from numpy.typing import NDArray
 
+from deixis.experiments.generated_tables import generate
 from deixis.ontology.graph import Fact, RelationGraph
 from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.errors import SettingError
 from deixis.reasoning.geometry.pairs import pair_geometry
-from deixis.reasoning.geometry.rectangle import scene_relations
+from deixis.reasoning.geometry.rectangle import box_relations, scene_relations
 from deixis.reasoning.grounding.evidence.degrees import relation_evidence
 from deixis.reasoning.grounding.evidence.evidence import no_unary_evidence
 from deixis.reasoning.grounding.evidence.facts import crisp_tables, fact_tables, hedged
@@ -156,3 +157,15 @@ def test_what_is_rarely_so_speaks_against_it_and_what_is_rarely_not_so_for_it() 
     assert np.array_equal(rarely, denied)
     assert rarely[0, 1] < 0 < rarely[1, 0]
     assert table("left", positive=False, weight=0.2)[0, 1] > 0
+
+
+def test_tables_made_block_by_block_are_those_of_the_whole_scene(monkeypatch: pytest.MonkeyPatch) -> None:
+    laid = generate(23, seed=3)
+    denied = [Fact(f.subject, f.relations, f.object, positive=False) for f in list(laid.description().facts())[:5]]
+    said = RelationGraph.from_facts(R, laid.description().nodes, [*laid.description().facts(), *denied])
+    whole = fact_tables(said, laid.boxes, literal=0.3).tables
+    monkeypatch.setattr("deixis.reasoning.grounding.evidence.facts.SIDE", 7)
+    monkeypatch.setattr("deixis.reasoning.geometry.pairs.ROW_CELLS", 50)
+    monkeypatch.setattr("deixis.reasoning.geometry.rectangle.ROW_CELLS", 50)
+    np.testing.assert_allclose(fact_tables(said, laid.boxes, literal=0.3).tables, whole, atol=1e-5)
+    assert laid.scene().names.tolist() == box_relations(laid.boxes, R).names.tolist()

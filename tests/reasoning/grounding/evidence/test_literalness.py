@@ -24,7 +24,7 @@ def share_of(table: GeneratedTable) -> float:
 
 def judged(description: RelationGraph, boxes: NDArray[np.float64]) -> float:
     graded, literal = (problem(description, boxes, share) for share in (0.0, LITERAL))
-    return literal_share(graded, literal, np.arange(len(description.nodes)))
+    return literal_share((graded, literal), np.arange(len(description.nodes)))
 
 
 def problem(description: RelationGraph, boxes: NDArray[np.float64], share: float) -> Problem:
@@ -72,8 +72,8 @@ def test_what_labels_say_counts_in_the_judgement() -> None:
     known = np.eye(3)[::-1] > 0
     graded, literal = (problem(said, boxes, share) for share in (0.0, LITERAL))
     order = np.arange(3)
-    free = literal_share(graded, literal, order)
-    told = literal_share(replace(graded, allowed=known), replace(literal, allowed=known), order)
+    free = literal_share((graded, literal), order)
+    told = literal_share((replace(graded, allowed=known), replace(literal, allowed=known)), order)
     assert told <= free
     mixed = fact_tables(said, boxes, allowed=known, absent=np.full(3, -30.0))
     assert mixed.tables == pytest.approx(fact_tables(said, boxes, literal=told).tables, abs=1e-4)

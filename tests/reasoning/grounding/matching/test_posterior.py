@@ -12,9 +12,12 @@ from hypothesis import strategies as st
 from matching_problems import every_map, problems
 
 from deixis.deadline import Deadline
+from deixis.reasoning.grounding.matching import ladders
 from deixis.reasoning.grounding.matching import posterior as module
-from deixis.reasoning.grounding.matching.posterior import exchangeable, posterior
+from deixis.reasoning.grounding.matching.exchangeable import exchangeable
+from deixis.reasoning.grounding.matching.posterior import posterior
 from deixis.reasoning.grounding.matching.problem import UNMATCHED, MatchingError, Problem
+from deixis.reasoning.grounding.options import is_decided
 
 NONE = np.zeros((0, 2), np.int64)
 
@@ -51,7 +54,7 @@ def test_what_is_missing_is_no_more_than_is_said(problem: Problem, mass: float) 
 def test_sampled_marginals_come_near_those_of_all_maps(problem: Problem, seed: int) -> None:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(module, "FACTOR_CELLS", -1)
-        patch.setattr(module, "PROPOSALS", 1e5)
+        patch.setattr(ladders, "PROPOSALS", 1e5)
         found = posterior(problem, seed=seed)
     assert found.exact == (0 in problem.unary.shape)
     np.testing.assert_allclose(found.marginals, brute(problem), atol=max(0.02, 6 * found.error))
@@ -121,8 +124,9 @@ def test_the_deadline_is_kept_and_nothing_is_claimed(seconds: float) -> None:
     found = posterior(problem, Deadline.after(seconds))
     assert time.perf_counter() - started < seconds + 2.0
     assert not found.exact
-    assert found.error == math.inf
-    np.testing.assert_allclose(found.marginals.sum(axis=1), 1.0)
+    assert found.error > 0.05
+    assert not is_decided(found.marginals.max(axis=1), found.errors).any()
+    np.testing.assert_allclose(found.marginals.sum(axis=1), 1.0, atol=1e-5)
 
 
 def test_past_the_deadline_the_start_is_all_that_is_said() -> None:
@@ -143,16 +147,6 @@ def test_a_mass_outside_its_range_is_refused(mass: float) -> None:
 def test_a_start_that_is_no_map_is_refused() -> None:
     with pytest.raises(MatchingError):
         posterior(large(2), start=np.array([1, 1]))
-
-
-def test_chains_that_all_begin_at_one_map_come_to_the_same_marginals(monkeypatch: pytest.MonkeyPatch) -> None:
-    problem = large(8)
-    monkeypatch.setattr(module, "FACTOR_CELLS", -1)
-    apart = posterior(problem)
-    monkeypatch.setattr(module, "MAX_OBJECTS_WITH_OWN_START", 4)
-    together = posterior(problem, start=np.full(8, -1))
-    assert together.marginals.tolist() != apart.marginals.tolist()
-    np.testing.assert_allclose(together.marginals, apart.marginals, atol=0.05)
 
 
 def large(n: int) -> Problem:

@@ -12,7 +12,7 @@ from matching_problems import problems, reordered
 
 from deixis.reasoning.errors import SettingError
 from deixis.reasoning.grounding.matching.exact import maps_within
-from deixis.reasoning.grounding.matching.posterior import exchangeable
+from deixis.reasoning.grounding.matching.exchangeable import exchangeable
 from deixis.reasoning.grounding.matching.problem import UNMATCHED, Problem
 from deixis.reasoning.grounding.questions.candidates import Candidates, candidates_of
 

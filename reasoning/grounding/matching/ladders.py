@@ -1,0 +1,268 @@
+"""Marginals and evidence of large problems: ladders of Markov chains that are run until they agree.
+
+A ladder is a set of chains from the posterior's own temperature to one at which chains mix within a few sweeps
+(``sampling.py``). Several ladders begin at maps of their own, drawn by belief propagation, and are cooled. What they
+differ by is the error of each object's marginals: where some chain is stuck, or had no time to mix, the ladders differ
+and the error says so (between-chain variance; Gelman and Rubin 1992).
+"""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from itertools import count
+
+import numpy as np
+from numpy.typing import NDArray
+from threadpoolctl import threadpool_limits
+
+from deixis.deadline import Deadline
+from deixis.reasoning.grounding.matching.belief_propagation import beliefs
+from deixis.reasoning.grounding.matching.exchangeable import averaged
+from deixis.reasoning.grounding.matching.problem import Compiled, Problem
+from deixis.reasoning.grounding.matching.sampling import (
+    Chains,
+    Guide,
+    begin,
+    cool,
+    guide_by,
+    new_chains,
+    sample,
+)
+
+Array = NDArray[np.float64]
+
+LADDERS = 8
+
+RUNGS_PER_ROOT, MIN_RUNGS, MAX_CHAIN_OBJECTS = 1.6, 3, 1600
+"""Temperatures that take a ladder to the hottest one, by the square root of the objects, the fewest, and the most that
+there are by the objects of all chains of a ladder; where they are fewer, the ladder ends before the hottest one."""
+
+MIN_COLDNESS = 0.3
+"""Coldness at which chains mix within a few sweeps: of the hottest chain of a ladder, and where all begin."""
+
+COOLING_TURNS, COOLING_SWEEPS, COOLING_SHARE = 200, 5, 0.5
+"""Turns in which every chain is first cooled to its own coldness, sweeps in each, and the share of the time for all: in
+a hurry, turns are left out evenly."""
+
+FIRST_SWEEPS = 50
+"""Sweeps of the first two parts of a run; the next two parts are twice as long, and so on."""
+
+TOLERANCE = 0.007
+"""Error of the marginals that is good enough."""
+
+PROPOSALS, MAX_PROPOSALS = 2e5, 4e8
+"""Proposals for each object in all chains, and for all objects, at the most."""
+
+BELIEF_DRAWS = 8.0
+"""Independent draws that the beliefs by which chains are guided count as."""
+
+PROPOSALS_PER_CLOCK_CHECK = 5e4
+
+GUIDE_SHARE = 0.2
+"""Share of the time that the guide may take."""
+
+CHAINS_SHARE = 0.9
+"""Share of the time after the guide that the chains may take; the rest is for comparing them."""
+
+EVIDENCE_TOLERANCE = 0.2
+"""Error of a log evidence that is good enough, in nats."""
+
+
+def sampled_marginals(
+    problem: Compiled, groups: tuple[tuple[int, ...], ...], deadline: Deadline, seed: int
+) -> tuple[Array, Array]:
+    """Return the marginals (n1, n2 + 1), and for each object by how much they may be off (n1,).
+
+    Ladders run part by part, each two parts twice as long as the two before, until the last two parts of all ladders
+    agree within ``TOLERANCE``; what comes before is left out, as being on the way. ``groups`` of objects have one
+    marginal each. Where the ``deadline`` leaves no two parts, the marginals are beliefs, and their errors infinite.
+    """
+    n1 = len(problem.unary)
+    steps = max(RUNGS_PER_ROOT * math.sqrt(n1), MIN_RUNGS)
+    rungs = max(int(min(steps, MAX_CHAIN_OBJECTS / n1)), MIN_RUNGS)
+    coldness = 1.0 - (1.0 - MIN_COLDNESS) * np.arange(rungs) / (steps - 1)
+    run, known = _begun(problem, np.maximum(coldness, MIN_COLDNESS), deadline, seed)
+    known = averaged(known, groups)
+    marginals, errors = known, np.full(n1, math.inf)
+    left = min(PROPOSALS, MAX_PROPOSALS / n1) / (LADDERS * rungs)
+    parts: list[_Part] = []
+    for number, part in enumerate(run.parts(left)):
+        part.counts[:] /= np.float32(part.sweeps)
+        parts = [*parts[-1:], _Part(part.sweeps, averaged(part.counts, groups) if groups else part.counts, part.values)]
+        marginals, errors = _agreement(parts, known)
+        if number and errors.max() <= TOLERANCE:
+            break
+    return marginals, errors
+
+
+def log_evidence(problem: Problem, deadline: Deadline = Deadline.never(), *, seed: int = 0) -> tuple[float, float]:
+    """Return by how much likelier, in nats, the evidence is than by chance over all allowed maps, and its error.
+
+    It is the logarithm of the sum over all maps of the exponential of their values, less that of the sum of what they
+    pay for what they leave out alone. The error is what ladders and a coarser rule differ by, infinite where the
+    ``deadline`` left no time.
+
+    >>> ends, nothing = np.zeros((0, 2), np.int64), np.zeros((0, 1, 1), np.float32)
+    >>> alone = Problem(ends, ends[:, 0], nothing, np.array([[-2.0]]), np.array([-9.0]))
+    >>> value, error = log_evidence(alone)
+    >>> abs(value + 2.0) < 0.1, error < EVIDENCE_TOLERANCE
+    (True, True)
+    """
+    n1, n2 = problem.unary.shape
+    if not n1 or not n2:
+        return 0.0, 0.0
+    rungs = int(max(2 * RUNGS_PER_ROOT * math.sqrt(n1), 4 * MIN_RUNGS)) | 1
+    coldness = np.linspace(1.0, 0.0, rungs) ** 1.5
+    run, _ = _begun(problem.compiled, coldness, deadline, seed)
+    found, error = math.nan, math.inf
+    for part in run.parts(min(PROPOSALS, MAX_PROPOSALS / n1) / (LADDERS * rungs)):
+        means = part.values / part.sweeps
+        fine, coarse = (-np.trapezoid(means[:, ::step], coldness[::step], axis=1) for step in (1, 2))
+        found = float(fine.mean())
+        error = float(fine.std(ddof=1) / math.sqrt(LADDERS) + abs(fine.mean() - coarse.mean()) / 3)
+        if error <= EVIDENCE_TOLERANCE:
+            break
+    return found, error
+
+
+def warm() -> None:
+    """Compiles the chains, or loads them compiled, so that a time limit is spent on running them."""
+    tables, ends = np.zeros((1, 2, 2), np.float32), np.array([[0, 1]])
+    tiny = Problem(ends, np.array([0]), tables, np.zeros((2, 2)), np.zeros(2))
+    next(_begun(tiny.compiled, np.array([1.0, 0.5]), Deadline.never(), 0)[0].parts(1.0))
+
+
+def believed_marginals(problem: Compiled, deadline: Deadline) -> Array:
+    """Return what belief propagation makes of the marginals (n1, n2 + 1) until the deadline."""
+    with threadpool_limits(1, "blas"):
+        return beliefs(problem, deadline).astype(np.float64)
+
+
+@dataclass(frozen=True, eq=False)
+class _Part:
+    """What ladders came to in so many sweeps."""
+
+    sweeps: int
+    counts: NDArray[np.float32]  # (LADDERS, n1, n2 + 1): how often, or in which share, each object was each thing
+    values: Array  # (LADDERS, K): sums
+
+
+@dataclass(frozen=True, eq=False)
+class _Run:
+    """Ladders under way, side by side in as many threads as there are processors."""
+
+    problem: Compiled
+    guide: Guide
+    ladders: tuple[Chains, ...]
+    seed: int
+    deadline: Deadline
+
+    @property
+    def rungs(self) -> int:
+        return len(self.ladders[0].coldness)
+
+    def parts(self, most: float) -> Iterator[_Part]:
+        """Yield one part after another, until the ``most`` sweeps, or until the deadline, which cuts the last short."""
+        with ThreadPoolExecutor(min(LADDERS, os.cpu_count() or 1)) as pool:
+            if not self._cool(pool):
+                return
+            done = 0
+            for number in count():
+                sweeps = FIRST_SWEEPS << (number // 2)
+                if number > 1 and done + sweeps > most:
+                    return
+                part = self._sampled(pool, number, sweeps)
+                done += part.sweeps
+                if part.sweeps:
+                    yield part
+                if part.sweeps < sweeps:
+                    return
+
+    def _cool(self, pool: ThreadPoolExecutor) -> bool:
+        """Begin the ladders and cool their chains, the faster the less time there is; False where there is none."""
+        seeds = np.random.default_rng([self.seed, 0])
+        for chains in self.ladders:
+            if self.deadline.passed:
+                return False
+            begin(chains, self.problem, self.guide, int(seeds.integers(1 << 30)))
+        until = self.deadline.share(COOLING_SHARE)
+        whole, way = until.left, 0.0
+        while way < 1.0:
+            if self.deadline.passed:
+                return False
+            elapsed = 1.0 - until.left / whole if 0.0 < whole < math.inf else 0.0
+            way = min(1.0, max(way + 1.0 / COOLING_TURNS, elapsed))
+            drawn = seeds.integers(1 << 30, size=LADDERS).tolist()
+            list(pool.map(self._cool_a_turn, self.ladders, drawn, [way] * LADDERS))
+        return True
+
+    def _cool_a_turn(self, chains: Chains, seed: int, way: float) -> None:
+        hottest = min(MIN_COLDNESS, chains.coldness[-1])
+        coldness = hottest + (chains.coldness - hottest) * way
+        cool(chains, self.problem, self.guide, coldness, COOLING_SWEEPS, seed)
+
+    def _sampled(self, pool: ThreadPoolExecutor, number: int, sweeps: int) -> _Part:
+        """Run all ladders for so many sweeps, or until the deadline."""
+        seeds = np.random.default_rng([self.seed, 1 + number])
+        counts = np.zeros((LADDERS, *self.problem.unary.shape), np.float32)
+        values, done = np.zeros((LADDERS, self.rungs)), 0
+        at_once = max(1, int(PROPOSALS_PER_CLOCK_CHECK / (self.rungs * len(self.problem.unary))))
+        while done < sweeps and not self.deadline.passed:
+            turn = min(at_once, sweeps - done)
+            drawn = seeds.integers(1 << 30, size=LADDERS).tolist()
+
+            def run(number: int, turn: int = turn, drawn: list[int] = drawn) -> None:
+                chains, seed = self.ladders[number], drawn[number]
+                sample(chains, counts[number], values[number], self.problem, self.guide, turn, seed)
+
+            list(pool.map(run, range(LADDERS)))
+            done += turn
+        return _Part(done, counts, values)
+
+
+def _begun(problem: Compiled, coldness: Array, deadline: Deadline, seed: int) -> tuple[_Run, Array]:
+    """Return a run at those temperatures (K,), and the beliefs (n1, n2 + 1) that guide it."""
+    known = believed_marginals(problem, deadline.share(GUIDE_SHARE))
+    ladders = tuple(new_chains(problem, coldness) for _ in range(LADDERS))
+    return _Run(problem, guide_by(known, problem.allowed), ladders, seed, deadline.share(CHAINS_SHARE)), known
+
+
+def _agreement(parts: list[_Part], known: Array) -> tuple[Array, Array]:
+    """Return the marginals (n1, n2 + 1) by the last parts, and the largest standard error of each object's (n1,).
+
+    The error is the larger of what the ladders differ by, and of what their parts do. An object's effective sample size
+    is that of independent draws with its error (Gelman and Rubin 1992), and the beliefs ``known`` (n1, n2 + 1) count as
+    ``BELIEF_DRAWS`` more: where chains mix, they decide; where each is stuck at a map of its own, they are a few draws
+    from which no probability near 0 or 1 can be told. An object that is the same thing in all draws has the effective
+    sample size of those that are not; of the quarter that mix worst.
+    """
+    sweeps = sum(part.sweeps for part in parts)
+    mean, squared = np.zeros_like(known), np.zeros_like(known)
+    for number in range(LADDERS):  # one after the other, to hold little
+        mean += _mean_of(parts, number, sweeps) / LADDERS
+    for number in range(LADDERS):
+        squared += (_mean_of(parts, number, sweeps) - mean) ** 2
+    squared /= LADDERS * (LADDERS - 1)
+    if len(parts) > 1:
+        halves, spread = LADDERS * len(parts), np.zeros_like(known)
+        for counts in (counts for part in parts for counts in part.counts):
+            spread += (counts - mean) ** 2
+        squared = np.maximum(squared, spread / (halves * (halves - 1)))
+    variance, noise = (mean * (1.0 - mean)).sum(axis=1), squared.sum(axis=1)
+    varied = variance > 1.0 / sweeps
+    draws = np.divide(variance, noise, out=np.full(len(mean), np.inf), where=varied & (noise > 0))
+    usual = np.quantile(draws[np.isfinite(draws)], 0.25) if np.isfinite(draws).any() else LADDERS
+    draws = np.clip(np.where(np.isfinite(draws), draws, usual), 1.0, LADDERS * sweeps)[:, None]
+    marginals = (draws * mean + BELIEF_DRAWS * known) / (draws + BELIEF_DRAWS)
+    errors = np.sqrt(squared.max(axis=1)) + 1.0 / (LADDERS * sweeps)
+    return marginals, errors
+
+
+def _mean_of(parts: list[_Part], number: int, sweeps: int) -> Array:
+    """Return the shares of one ladder over all parts (n1, n2 + 1)."""
+    mean: Array = np.sum([part.counts[number] * (part.sweeps / sweeps) for part in parts], axis=0)
+    return mean
