@@ -10,6 +10,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +18,8 @@ from numpy.typing import NDArray
 from deixis.deadline import Deadline
 from deixis.reasoning.constraints.minimal import minimal_subset
 from deixis.reasoning.errors import NetworkError
-from deixis.reasoning.qualitative.calculi.bridges import Link
+from deixis.reasoning.qualitative.calculi.bridges import Link, links_between
+from deixis.reasoning.qualitative.networks.boxes import find_boxes, rectangles, unrelated
 from deixis.reasoning.qualitative.networks.network import Constraint, Network, compacted
 from deixis.reasoning.qualitative.networks.search import Verdict, solve
 from deixis.reasoning.qualitative.networks.state import NetworkState, Progress
@@ -149,11 +151,17 @@ class _Ledger:
 
 @dataclass(frozen=True, eq=False)
 class JointSolution:
-    """The verdict on several networks together, with the closure it rests on."""
+    """The verdict on several networks together, with the closure it rests on.
+
+    ``boxes`` are ones that bear everything, shape (n, 2, 2), least and greatest corner, where they were looked for and
+    found; distances are in units of the reference length. ``reason`` tells in words why the verdict is undecided, or
+    why there are no boxes though they were asked for.
+    """
 
     verdict: Verdict
     closure: JointClosure
     reason: str = ""
+    boxes: NDArray[np.float64] | None = None
 
 
 def solve_jointly(
@@ -161,29 +169,79 @@ def solve_jointly(
     bridges: Sequence[Link],
     deadline: Deadline = Deadline.never(),
     progress: Progress | None = None,
+    scenario: bool = False,
 ) -> JointSolution:
-    """Decide several networks together, where closure and each part can."""
+    """Decide several networks together, or one that closure does not decide.
+
+    Closure refutes, and so does solving what boxes must bear; boxes that bear everything prove consistency.
+
+    Parameters
+    ----------
+    networks
+        Networks over the same things, each in its own calculus.
+    bridges
+        What joins the calculi.
+    deadline
+        When to stop.
+    progress
+        Called while networks are closed.
+    scenario
+        Whether to look for boxes also where the verdict does not need them.
+
+    Examples
+    --------
+    >>> from deixis.reasoning.qualitative.calculi.bridges import links_between
+    >>> from deixis.reasoning.qualitative.calculi.registry import calculus
+    >>> cd, distance = calculus("cd"), calculus("distance")
+    >>> north = Network(cd, 2, (Constraint(0, 1, cd.relation(["N"])),))
+    >>> far = Network(distance, 2, (Constraint(0, 1, distance.relation(["far"])),))
+    >>> solution = solve_jointly([north, far], links_between([cd, distance]))
+    >>> str(solution.verdict), bool((solution.boxes[0] - solution.boxes[1])[:, 1].mean() > 3)
+    ('consistent', True)
+    """
     closure = close_jointly(networks, bridges, deadline, progress)
     if closure.emptied is not None:
         return JointSolution(Verdict.INCONSISTENT, closure)
     if not closure.complete:
         return JointSolution(Verdict.UNDECIDED, closure, "the time limit was reached")
     speaking = [network for network in networks if network.constraints]
+    consistent = not speaking
     for network in speaking:
         solution = solve(network, deadline, progress)
-        if solution.verdict is Verdict.INCONSISTENT or len(speaking) == 1:
-            return JointSolution(solution.verdict, closure, solution.reason)
-    if not speaking:
+        if solution.verdict is Verdict.INCONSISTENT:
+            return JointSolution(solution.verdict, closure)
+        consistent = len(speaking) == 1 and solution.verdict is Verdict.CONSISTENT
+    if consistent and not scenario:
         return JointSolution(Verdict.CONSISTENT, closure)
-    reason = f"no contradiction was found in {_names(networks)} together, and that proves nothing"
+    found = find_boxes(networks, closure.relation, deadline)
+    if consistent or found.boxes is not None:
+        return JointSolution(Verdict.CONSISTENT, closure, found.reason, found.boxes)
+    if found.impossible and _boxes_refute(closure, bridges, deadline):
+        return JointSolution(Verdict.INCONSISTENT, closure)
+    others = "; regions of other shapes may" if found.impossible else ""
+    reason = f"no contradiction was found in {_names(networks)}, and that proves nothing: {found.reason}{others}"
     return JointSolution(Verdict.UNDECIDED, closure, reason)
+
+
+def _boxes_refute(closure: JointClosure, bridges: Sequence[Link], deadline: Deadline) -> bool:
+    """Return whether no boxes can bear what a closure leaves, with regions of any shape of which they are the bounds.
+
+    The closed relations of the rectangle algebra hold what regions say of their bounds. It says nothing where the
+    bridges leave apart what boxes would join.
+    """
+    calculi = [network.calculus for network in closure.networks]
+    joined = {(bridge.source.name, bridge.target.name) for bridge in bridges}
+    if unrelated(closure.networks) or {(b.source.name, b.target.name) for b in links_between(calculi)} - joined:
+        return False
+    left = rectangles(closure.networks, closure.relation, but="rcc8")
+    return solve(left, deadline).verdict is Verdict.INCONSISTENT
 
 
 @dataclass(frozen=True)
 class JointConflict:
     """Constraints, each with the name of its calculus, that cannot all hold.
 
-    ``minimal`` says that joint closure finds no contradiction after leaving out any one of them.
+    ``minimal`` says that no contradiction is found after leaving out any one of them.
     """
 
     constraints: tuple[tuple[str, Constraint], ...]
@@ -193,17 +251,26 @@ class JointConflict:
 def joint_conflict(
     networks: Sequence[Network], bridges: Sequence[Link], deadline: Deadline = Deadline.never()
 ) -> JointConflict | None:
-    """Return a deletion-minimal set of constraints that joint closure refutes; None where it refutes none in time."""
+    """Return a deletion-minimal set of constraints that joint closure refutes; None where it refutes none in time.
+
+    Where closure refutes nothing, it is a set of which solving shows that no boxes bear it.
+    """
     stated = [(n.calculus.name, c) for n in networks for c in n.constraints]
 
-    def refuted(kept: list[tuple[str, Constraint]]) -> list[tuple[str, Constraint]] | None:
+    def refuted(kept: list[tuple[str, Constraint]], solving: bool) -> list[tuple[str, Constraint]] | None:
+        if not kept:
+            return None
         chosen, _ = compacted([n.only(c for name, c in kept if name == n.calculus.name) for n in networks])
-        return kept if close_jointly(chosen, bridges, deadline).emptied is not None else None
+        closure = close_jointly(chosen, bridges, deadline)
+        if closure.emptied is None and not (solving and _boxes_refute(closure, bridges, deadline)):
+            return None
+        return kept
 
-    if refuted(stated) is None:
-        return None
-    found = minimal_subset(stated, refuted, deadline, keep_last=True)
-    return JointConflict(found.items, found.proved)
+    for solving in (False, True):
+        if refuted(stated, solving) is not None:
+            found = minimal_subset(stated, partial(refuted, solving=solving), deadline, keep_last=True)
+            return JointConflict(found.items, found.proved)
+    return None
 
 
 def _names(networks: Sequence[Network]) -> str:

@@ -36,6 +36,9 @@ def reason_lines(solved: SolvedNetwork, conflict: bool = True) -> Iterator[str]:
     """Yield what a verdict rests on, or what was asked for; ``conflict`` says that a conflict was looked for."""
     if solved.reason:
         yield f"    {solved.reason}"
+    if solved.boxes and solved.shown:
+        for thing, ((west, south), (east, north)) in _plain(solved):
+            yield f"    box {thing}: x from {west:.12g} to {east:.12g}, y from {south:.12g} to {north:.12g}"
     for each in solved.contributions:
         yield f"    {each.name}: {_count(each.pairs, 'pair')} narrowed, {_count(each.atoms, 'atom')} taken"
     if solved.conflict:
@@ -77,9 +80,15 @@ def solved_to_dict(solved: SolvedNetwork) -> dict[str, Any]:
         "contributions": [{"by": c.name, "pairs": c.pairs, "atoms": c.atoms} for c in solved.contributions],
         "conflict": [_constraint(network, c) for network, c in solved.conflict] or None,
         "conflict_minimal": solved.minimal if solved.conflict else None,
+        "boxes": [{"thing": thing, "low": low, "high": high} for thing, (low, high) in _plain(solved)] or None,
         "relations": [_constraint(network, c) for network in solved.shown for c in network.constraints] or None,
         "derivation": None if solved.step is None else _step(solved.step, networks),
     }
+
+
+def _plain(solved: SolvedNetwork) -> list[tuple[int, list[list[float]]]]:
+    """Return the boxes by thing, as lists of their corners."""
+    return [(thing, box.tolist()) for thing, box in solved.boxes.items()]
 
 
 def _constraint(network: Network, c: Constraint) -> dict[str, Any]:

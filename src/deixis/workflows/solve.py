@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cache
 from itertools import combinations
 from pathlib import Path
 from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
 
 from deixis.deadline import Deadline
 from deixis.errors import DeixisError
@@ -20,6 +23,7 @@ from deixis.reasoning.qualitative.networks.derivation import explain, require_pa
 from deixis.reasoning.qualitative.networks.network import Constraint, Network, compacted
 from deixis.reasoning.qualitative.networks.search import Verdict, solve
 from deixis.reasoning.qualitative.networks.state import Progress
+from deixis.reasoning.qualitative.relate import relate
 
 if TYPE_CHECKING:
     from deixis.grammar.formats.networks import NetworkText
@@ -55,7 +59,8 @@ class SolvedNetwork:
     """One network of a file, and what was found about it.
 
     ``seconds`` is the time that the verdict took. ``shown`` are the networks that were asked for, the closure or the
-    scenario, one for each calculus.
+    scenario, one for each calculus. ``boxes`` bear everything that several calculi, or one with distances, say: least
+    and greatest corner by thing, distances in units of the reference length.
     """
 
     text: NetworkText
@@ -67,6 +72,7 @@ class SolvedNetwork:
     minimal: bool = True
     contributions: tuple[Contribution, ...] = ()
     shown: tuple[Network, ...] = ()
+    boxes: Mapping[int, NDArray[np.float64]] = field(default_factory=dict)  # (2, 2)
     step: Step | None = None
     asked: tuple[int, int] | None = None
     explained: bool = True  # False where time ran out before it was clear why
@@ -115,20 +121,25 @@ def _solve_single(text: NetworkText, wish: Wish, progress: Progress | None, told
     small, things = text.network.compact()
     closure = close(small, deadline, progress)
     found = solve(small, deadline, progress, wish.scenario)
+    verdict, reason, boxes = found.verdict, found.reason, None
+    if verdict is Verdict.UNDECIDED and not small.calculus.decided_by_closure and not deadline.passed:
+        witness = solve_jointly((small,), (), deadline, progress)
+        verdict, reason, boxes = witness.verdict, witness.reason, witness.boxes
     seconds = time.perf_counter() - started
-    solved = SolvedNetwork(text, found.verdict, found.reason, closure.narrowed, seconds, asked=wish.explain)
+    solved = SolvedNetwork(text, verdict, reason, closure.narrowed, seconds, asked=wish.explain)
+    solved = _with_boxes(solved, boxes, things.tolist(), wish)
     told(solved)
-    if found.verdict is Verdict.INCONSISTENT and wish.conflict:
+    if verdict is Verdict.INCONSISTENT and wish.conflict:
         conflict = minimal_conflict(text.network, wish.extended(deadline), inconsistent=True)
         if conflict is not None:
             stated = tuple((text.network, c) for c in conflict.constraints)
             solved = replace(solved, conflict=stated, minimal=conflict.minimal)
-    elif wish.scenario and found.scenario is not None:
+    elif wish.scenario and found.scenario is not None and boxes is None:
         solved = replace(solved, shown=(_renumbered(text.network, found.scenario.constraints, things.tolist()),))
     elif wish.closure and closure.complete:
         relations = (Constraint(i, j, closure.relation(i, j)) for i, j in closure.known_pairs().tolist())
         solved = replace(solved, shown=(_renumbered(text.network, relations, things.tolist()),))
-    if wish.explain is not None and found.verdict is not Verdict.INCONSISTENT:
+    if wish.explain is not None and verdict is not Verdict.INCONSISTENT:
         deadline = wish.extended(deadline)
         step = explain(text.network, *wish.explain, deadline)
         solved = replace(solved, step=step, explained=step is not None or not deadline.passed)
@@ -137,15 +148,16 @@ def _solve_single(text: NetworkText, wish: Wish, progress: Progress | None, told
 
 def _solve_joint(text: NetworkText, wish: Wish, progress: Progress | None, told: Told) -> SolvedNetwork:
     started, deadline = time.perf_counter(), Deadline.after(wish.time_limit)
-    if wish.scenario or wish.explain is not None:
-        raise DeixisError("--scenario and --explain are for one calculus at a time")
+    if wish.explain is not None:
+        raise DeixisError("--explain is for one calculus at a time")
     links: Sequence[Link] = links_between([network.calculus for network in text.networks])
     networks, things = compacted(text.networks)
-    found = solve_jointly(networks, links, deadline, progress)
+    found = solve_jointly(networks, links, deadline, progress, wish.scenario)
     contributions = found.closure.contributions
     narrowed = sum(each.pairs for each in contributions)
     seconds = time.perf_counter() - started
     solved = SolvedNetwork(text, found.verdict, found.reason, narrowed, seconds, contributions=contributions)
+    solved = _with_boxes(solved, found.boxes, things.tolist(), wish)
     told(solved)
     if found.verdict is Verdict.INCONSISTENT and wish.conflict:
         solved = _with_conflict(solved, links, wish.extended(deadline))
@@ -163,6 +175,23 @@ def _solve_joint(text: NetworkText, wish: Wish, progress: Progress | None, told:
             ),
         )
     return solved
+
+
+def _with_boxes(
+    solved: SolvedNetwork, boxes: NDArray[np.float64] | None, things: list[int], wish: Wish
+) -> SolvedNetwork:
+    """With boxes (n, 2, 2) of these things, and what they bear in each calculus where a scenario is asked for."""
+    if boxes is None:
+        return solved
+    solved = replace(solved, boxes=dict(zip(things, boxes, strict=True)))
+    if not wish.scenario:
+        return solved
+    shown = []
+    for network in solved.text.networks:
+        codes = relate(boxes, network.calculus.name, reference=1.0).tolist()
+        pairs = combinations(range(len(boxes)), 2)
+        shown.append(_renumbered(network, (Constraint(i, j, 1 << codes[i][j]) for i, j in pairs), things))
+    return replace(solved, shown=tuple(shown))
 
 
 def _with_conflict(solved: SolvedNetwork, links: Sequence[Link], deadline: Deadline) -> SolvedNetwork:
