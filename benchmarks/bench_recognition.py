@@ -23,18 +23,21 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
+from scipy.spatial.distance import pdist
 
 from deixis.examples_data import example
 from deixis.grammar.parser import parse_script
 from deixis.learning import views as recognising
+from deixis.learning.views import known_by
 from deixis.perception.clouds.cloud import PointCloud
-from deixis.perception.features.registry import describer_named
+from deixis.perception.features.form import PARTS, form_parts
+from deixis.perception.features.registry import DESCRIBERS, describer_named
 from deixis.perception.recognition.calibration import auroc, expected_calibration_error
 from deixis.perception.recognition.distances import Target
 from deixis.perception.recognition.index import Nearest, ViewIndex, indexes_of
 from deixis.perception.recognition.instances import InstanceCategory
-from deixis.perception.recognition.recogniser import Recogniser
-from deixis.perception.recognition.settings import DEFAULT, PAPER
+from deixis.perception.recognition.joint import JointRecogniser
+from deixis.perception.recognition.settings import DEFAULT, MIN_LABEL_PROBABILITY, PAPER
 from deixis.perception.recognition.views import PackedViews, open_views, write_views
 from deixis.perception.simulator.tableware import make
 from deixis.perception.simulator.views import views_of
@@ -53,6 +56,9 @@ EACH = 8
 FIRST_TARGET = 10_000
 """The seed of the first thing that is only ever a target."""
 
+TABLE_COMPARISON = recognising.comparisons_in(recognising.TABLE)[0]
+"""What views of a table are compared by."""
+
 Descriptors = NDArray[np.float32]
 Describe = Callable[[PointCloud], Descriptors]
 SPIN_IMAGES: Describe = describer_named("spin_images").describe
@@ -64,8 +70,13 @@ def described(
 ) -> Iterator[tuple[str, Descriptors]]:
     """Views of things of a kind, by the thing's seed and the view's number."""
     for thing in things:
-        for number, view in enumerate(views_of(make(kind, seed=thing).mesh, each, seed=thing, upright=True)):
+        for number, view in enumerate(views_of_thing(kind, thing, each)):
             yield f"{kind} {thing} {number}", describe(view)
+
+
+def views_of_thing(kind: str, thing: int, each: int) -> list[PointCloud]:
+    """Views of one thing of a kind, in the table's frame."""
+    return views_of(make(kind, seed=thing).mesh, each, seed=thing, upright=True)
 
 
 def blocked(target: Descriptors, pack: PackedViews, block: int = 2_000) -> float:
@@ -183,16 +194,24 @@ def _with_things(kind: str, views: list[tuple[str, Descriptors]]) -> InstanceCat
 
 def constants() -> None:
     """Prints what is shipped, measured on simulated tableware."""
-    named = {name: describer_named(name).describe for name in ("spin_images", "fpfh", "good", "d2_extents", "upright")}
+    named = {name: describer_named(name).describe for name in DESCRIBERS}
     for name, describe in {"spin_image_roots": recognising.SPIN_IMAGE_ROOTS.describe, **named}.items():
         icds = [category.width(over_things=True).icd or np.nan for category in taught(6, 2, describe).values()]
         print(f"PRIOR_SPREADS: {name} {np.median(icds):.3g}", flush=True)
-    kinds = taught(6, 3, recognising.UPRIGHT.describe)
-    folds = [[kinds[kind] for place, kind in enumerate(KINDS) if place % 4 != fold] for fold in range(4)]
-    found = [Recogniser.of(known, recognising.UPRIGHT.settings).calibrated().calibration for known in folds]
-    for name in ("threshold", "even", "doubt", "choice"):
-        values = [getattr(each, name) for each in found]
-        print(f"SHIPPED: {name} {np.mean(values):.3g}, from {min(values):.3g} to {max(values):.3g}")
+    forms = [form_parts(view) for kind in KINDS for seed in range(4) for view in views_of_thing(kind, seed, 2)]
+    for name in PARTS:
+        print(f"PARTS: {name} {np.median(pdist([form[name] for form in forms if form is not None])):.4g}", flush=True)
+    for said, comparison in (("SHIPPED", (recognising.UPRIGHT,)), ("SHIPPED_JOINT", TABLE_COMPARISON)):
+        kinds = [taught(6, 3, descriptor.describe) for descriptor in comparison]
+        folds = [[kind for place, kind in enumerate(KINDS) if place % 4 != fold] for fold in range(4)]
+        found = [
+            known_by(comparison, [tuple(each[kind] for each in kinds) for kind in fold]).recogniser.calibrated()
+            for fold in folds
+        ]
+        for name in ("threshold", "even", "doubt", "choice", "slips", "weights"):
+            values = np.array([getattr(each.calibration, name) for each in found])
+            least, most = values.min(axis=0), values.max(axis=0)
+            print(f"{said}: {name} {np.round(values.mean(axis=0), 3)}, from {least.round(3)} to {most.round(3)}")
 
 
 def calibration(things: int = 6, each: int = 3) -> None:
@@ -200,34 +219,43 @@ def calibration(things: int = 6, each: int = 3) -> None:
     fresh = [
         (kind, view)
         for kind in KINDS
-        for _, view in described(kind, range(FIRST_TARGET, FIRST_TARGET + 3), each, recognising.UPRIGHT.describe)
+        for thing in range(FIRST_TARGET, FIRST_TARGET + 3)
+        for view in views_of_thing(kind, thing, each)
     ]
-    by_things = taught(things, each, recognising.UPRIGHT.describe)
-    by_views = {kind: replace(category, things={}) for kind, category in by_things.items()}
     print(
         f"\ncalibration: {things} things of {len(KINDS)} kinds, {each} views of each; 3 other things of each as targets"
     )
-    for said, categories in (("views held out", by_views), ("things held out", by_things)):
-        rows = [row for fold in range(4) for row in _answers(categories, fresh, fold)]
-        confidence, right, unknown, nd = (np.array(column) for column in zip(*rows, strict=True))
-        error, told = expected_calibration_error(confidence, right), auroc(nd[~unknown], nd[unknown])
-        print(
-            f"{said:16} expected calibration error {error:.3f}; answers right {right.mean():.3f}, mean confidence"
-            f" {confidence.mean():.3f}; unknown told from known: AUROC {told:.3f}"
-        )
+    for way, comparison in (("upright", (recognising.UPRIGHT,)), ("by default", TABLE_COMPARISON)):
+        by_things = [taught(things, each, descriptor.describe) for descriptor in comparison]
+        by_views = [{kind: replace(known, things={}) for kind, known in kinds.items()} for kinds in by_things]
+        seen = [(kind, [descriptor.describe(view) for descriptor in comparison]) for kind, view in fresh]
+        for said, kinds in (("views held out", by_views), ("things held out", by_things)):
+            rows = [row for fold in range(4) for row in _answers(comparison, kinds, seen, fold)]
+            confidence, right, unknown, nd = (np.array(column) for column in zip(*rows, strict=True))
+            error, told = expected_calibration_error(confidence, right), auroc(nd[~unknown], nd[unknown])
+            print(
+                f"{way}, {said:16} expected calibration error {error:.3f}; answers right {right.mean():.3f}, mean"
+                f" confidence {confidence.mean():.3f}; unknown told from known: AUROC {told:.3f}",
+                flush=True,
+            )
 
 
 def _answers(
-    categories: dict[str, InstanceCategory], fresh: Sequence[tuple[str, Descriptors]], fold: int
+    comparison: recognising.Comparison,
+    categories: Sequence[dict[str, InstanceCategory]],
+    fresh: Sequence[tuple[str, list[Descriptors]]],
+    fold: int,
 ) -> Iterator[tuple[float, bool, bool, float]]:
-    """Confidence, whether right, whether unknown, and ND; as many unknown targets as known ones, as the prior says."""
+    """Probability of the likeliest answer, whether right, whether unknown, and ND; as many unknown as known targets."""
     hidden = set(KINDS[fold::4])
-    rest = [category for kind, category in categories.items() if kind not in hidden]
-    known = Recogniser.of(rest, recognising.UPRIGHT.settings).calibrated()
+    rest = [tuple(each[kind] for each in categories) for kind in KINDS if kind not in hidden]
+    known = known_by(comparison, rest).recogniser.calibrated()
     for kind, view in fresh:
         found, unknown = known.recognise(view), kind in hidden
-        right = found.label == (None if unknown else kind)
-        row = (found.probability, right, unknown, found.candidates[0].normalised)
+        first = found.candidates[0]
+        likeliest = first.category if first.probability >= found.unknown else None
+        right = likeliest == (None if unknown else kind)
+        row = (max(first.probability, found.unknown), right, unknown, first.normalised)
         yield from [row] * (3 if unknown else 1)
 
 
@@ -247,18 +275,27 @@ def tables() -> None:
     seen, tested = ([found_on_table(seed) for seed in seeds] for seeds in (range(1, 7), range(31, 37)))
     print(f"\nthings found on {len(tested)} laid tables: {sum(map(len, tested))}")
     ways = (
-        ("equations 1-4", recognising.SPIN_IMAGE_ROOTS, PAPER),
-        ("spin images", recognising.SPIN_IMAGE_ROOTS, DEFAULT),
-        ("by default", recognising.UPRIGHT, DEFAULT),
+        ("equations 1-4", (recognising.SPIN_IMAGE_ROOTS,), PAPER),
+        ("spin images", (recognising.SPIN_IMAGE_ROOTS,), DEFAULT),
+        ("upright", (recognising.UPRIGHT,), DEFAULT),
+        ("by default", TABLE_COMPARISON, DEFAULT),
     )
-    for said, way, settings in ways:
-        settings = replace(settings, prior_spread=way.settings.prior_spread)
-        taught, asked = ([[(n, way.describe(c)) for n, c in table] for table in found] for found in (seen, tested))
+    for said, comparison, settings in ways:
+        taught, asked = (
+            [[(name, [each.describe(cloud) for each in comparison]) for name, cloud in table] for table in found]
+            for found in (seen, tested)
+        )
         for count in (1, 3, 6):
-            views = [(name, f"{place} {name}", view) for place in range(count) for name, view in taught[place]]
+            views = [(name, f"{place} {name}", rows) for place in range(count) for name, rows in taught[place]]
             names = sorted({name for name, _, _ in views})
-            categories = [InstanceCategory.of(n, [(key, view) for m, key, view in views if m == n]) for n in names]
-            known = Recogniser.of(categories, settings).calibrated()
+            categories = [
+                tuple(
+                    InstanceCategory.of(n, [(key, rows[place]) for m, key, rows in views if m == n])
+                    for place in range(len(comparison))
+                )
+                for n in names
+            ]
+            known = known_by(comparison, categories, settings).recogniser.calibrated()
             rows = np.array([_named(known, name, view) for table in asked for name, view in table])
             nearest, right, told = rows[:, :3].mean(axis=0)
             print(
@@ -268,11 +305,15 @@ def tables() -> None:
             )
 
 
-def _named(known: Recogniser, name: str, view: Descriptors) -> tuple[float, ...]:
+def _named(known: JointRecogniser, name: str, view: Sequence[Descriptors]) -> tuple[float, ...]:
     """Whether nearest, named and, without its category, unknown; least ND as it is and without its category."""
     found = known.recognise(view)
     least, others = found.candidates[0], [one.normalised for one in found.candidates if one.category != name]
-    unknown = min(others) > known.calibration.threshold
+    calibration = known.calibration
+    if known.parts[0].settings.by_threshold:
+        unknown = min(others) > calibration.threshold
+    else:
+        unknown = calibration.probabilities(np.array(others))[:-1].max() < MIN_LABEL_PROBABILITY
     return least.category == name, found.label == name, unknown, least.normalised, min(others)
 
 

@@ -60,6 +60,9 @@ def turned_axes(yaw: float) -> NDArray[np.float64]:
     return np.array([[cosine, sine, 0.0], [-sine, cosine, 0.0], [0.0, 0.0, 1.0]])
 
 
+CANDIDATE_ROUNDING = 1e-3
+"""By how much probabilities that were rounded may add up to more than 1."""
+
 MAX_COORDINATE = 1e9
 """Coordinates reach so far at the most, in metres or pixels."""
 
@@ -73,6 +76,7 @@ class PerceivedObject:
     right with probability ``confidence``. ``cloud`` holds its points in the scene's frame, or names their file, as seen
     from the scene's file; :meth:`Scene.cloud_of` gives the points either way. ``colour`` is the one that it is seen in,
     in sRGB. ``oriented`` is the narrowest box about it that is turned about the vertical, where there are heights.
+    ``candidates`` are names with the probability of each; what is missing to 1 is the probability of any other name.
     """
 
     id: str
@@ -83,6 +87,7 @@ class PerceivedObject:
     cloud: PointCloud | str | None = None
     colour: Rgb | None = None
     oriented: OrientedBox | None = None
+    candidates: tuple[tuple[str, float], ...] = ()
 
     def to_open3d(self) -> Any:
         """Return the box as an ``open3d.geometry.AxisAlignedBoundingBox``; one without heights lies at z = 0."""
@@ -221,7 +226,8 @@ class Scene:
 
     def without_labels(self) -> Scene:
         """Return the same scene with nothing named."""
-        return replace(self, objects=tuple(replace(thing, label=None, confidence=1.0) for thing in self.objects))
+        bare = (replace(thing, label=None, confidence=1.0, candidates=()) for thing in self.objects)
+        return replace(self, objects=tuple(bare))
 
     def reordered(self, order: Sequence[int]) -> Scene:
         """Return the same scene with its objects listed in another order."""
@@ -257,5 +263,10 @@ def _require_box(thing: PerceivedObject, file: str) -> None:
             )
     if not 0 <= thing.confidence <= 1:
         raise SceneError(f"{where}: a confidence lies between 0 and 1, not at {thing.confidence:g}")
+    shares = [share for _, share in thing.candidates]
+    if not all(share >= 0 for share in shares) or not sum(shares) <= 1 + CANDIDATE_ROUNDING:
+        raise SceneError(f"{where}: the probabilities of 'candidates' are 0 or more, and 1 together at most")
+    if len({name for name, _ in thing.candidates}) < len(thing.candidates):
+        raise SceneError(f"{where}: 'candidates' has a name twice")
     if thing.colour is not None and (len(thing.colour) != 3 or not all(0 <= part <= 255 for part in thing.colour)):
         raise SceneError(f"{where}: a colour is red, green and blue, each from 0 to 255, not {thing.colour}")

@@ -52,7 +52,7 @@ def estimate_normals(
     require_indices(wanted, points, "indices of normals")
     normals = np.full((len(points), 3), np.nan, np.float32) if at is None else np.empty((len(wanted), 3), np.float32)
     if len(wanted):
-        counts, covariances = _neighbourhoods(points[finite], points[wanted], radius, neighbours, threads)
+        counts, covariances = neighbourhoods(points[finite], points[wanted], radius, neighbours, threads)
         largest = np.abs(covariances).max(axis=(1, 2))
         scale = np.where(largest > 0, largest, 1.0)[:, None, None]
         values, vectors = np.linalg.eigh(covariances / scale)
@@ -68,13 +68,17 @@ def estimate_normals(
     return normals
 
 
-def _neighbourhoods(
+def neighbourhoods(
     points: NDArray[np.floating],
     places: NDArray[np.floating],
     radius: float | None,
     neighbours: int | None,
     threads: int | None,
 ) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+    """Return how many points (n, 3) lie around each of m places, and their covariances (m, 3, 3).
+
+    A neighbourhood is what lies within ``radius``, or the ``neighbours`` nearest points; one of the two is given.
+    """
     if (radius is None) == (neighbours is None):
         raise CloudError("give either a radius or a number of neighbours to estimate normals from")
     if radius is not None:

@@ -8,6 +8,7 @@ from types import MappingProxyType
 from deixis.errors import UnknownTermError
 from deixis.perception.features.d2_extents import D2ExtentsDescriber
 from deixis.perception.features.describer import Describer
+from deixis.perception.features.form import FormDescriber
 from deixis.perception.features.fpfh import FpfhDescriber
 from deixis.perception.features.good import GoodDescriber
 from deixis.perception.features.spin_images import SpinImageDescriber
@@ -20,6 +21,7 @@ DESCRIBERS: Mapping[str, Callable[[], Describer]] = MappingProxyType(
         "good": GoodDescriber,
         "d2_extents": D2ExtentsDescriber,
         "upright": UprightDescriber,
+        "form": FormDescriber,
     }
 )
 """Each makes a describer with its default settings; a further descriptor is one more line."""

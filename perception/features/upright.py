@@ -64,18 +64,23 @@ def upright_shape(points: NDArray[np.floating]) -> UprightShape | None:
     lowest, top = np.percentile(thinned[:, 2], (FOOT_PERCENTILE, TOP_PERCENTILE))
     foot = min(float(lowest), 0.0)
     height = max(float(top - foot), MIN_HEIGHT)
-    plan = thinned[:, :2]
+    aside = in_smallest_rectangle(thinned[:, :2])
+    sides = np.sort(np.ptp(aside, axis=0))[::-1]
+    radii = np.hypot(*aside.T)
+    over, outward = np.clip((thinned[:, 2] - foot) / height, 0.0, 1.0), radii / max(float(radii.max()), MIN_HEIGHT)
+    counts, _, _ = np.histogram2d(over, outward, bins=HISTOGRAM_CELLS, range=((0.0, 1.0), (0.0, 1.0)))
+    return UprightShape(np.sqrt(counts.ravel() / len(thinned)), np.log(np.array([height, *sides]) + EXTENT_OFFSET))
+
+
+def in_smallest_rectangle(plan: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return points (n, 2) along the sides of the smallest rectangle around them, from its middle."""
     angles = np.arange(PLAN_DIRECTIONS) * np.pi / 2 / PLAN_DIRECTIONS
     along = plan @ np.stack([np.cos(angles), np.sin(angles)])  # (n, turns)
     across = plan @ np.stack([-np.sin(angles), np.cos(angles)])
     least = int(np.argmin(np.ptp(along, axis=0) * np.ptp(across, axis=0)))
     turned = np.stack([along[:, least], across[:, least]], axis=1)
-    middle = (turned.min(axis=0) + turned.max(axis=0)) / 2
-    aside, sides = turned - middle, np.sort(np.ptp(turned, axis=0))[::-1]
-    radii = np.hypot(*aside.T)
-    over, outward = np.clip((thinned[:, 2] - foot) / height, 0.0, 1.0), radii / max(float(radii.max()), MIN_HEIGHT)
-    counts, _, _ = np.histogram2d(over, outward, bins=HISTOGRAM_CELLS, range=((0.0, 1.0), (0.0, 1.0)))
-    return UprightShape(np.sqrt(counts.ravel() / len(thinned)), np.log(np.array([height, *sides]) + EXTENT_OFFSET))
+    aside: NDArray[np.float64] = turned - (turned.min(axis=0) + turned.max(axis=0)) / 2
+    return aside
 
 
 @dataclass(frozen=True)

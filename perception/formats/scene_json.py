@@ -43,7 +43,7 @@ UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "px": 1.0}
 
 MAX_BYTES = 256 * 2**20
 _SCENE_KEYS = {"frame", "viewpoint", "unit", "objects", "shows"}
-_OBJECT_KEYS = {"id", "min", "max", "label", "confidence", "cloud", "colour", "oriented"}
+_OBJECT_KEYS = {"id", "min", "max", "label", "confidence", "cloud", "colour", "oriented", "candidates"}
 _ORIENTED_KEYS = {"centre", "yaw", "extents"}
 
 
@@ -131,6 +131,15 @@ def _object(data: Any, where: str, scale: float) -> PerceivedObject:
         cloud=None if cloud is None else text(cloud, f"{where}: 'cloud'"),
         colour=None if colour is None else _colour(colour, f"{where}: 'colour'"),
         oriented=None if oriented is None else _oriented(oriented, f"{where}: 'oriented'", scale),
+        candidates=_candidates(entry.get("candidates"), f"{where}: 'candidates'"),
+    )
+
+
+def _candidates(data: Any, where: str) -> tuple[tuple[str, float], ...]:
+    if data is None:
+        return ()
+    return tuple(
+        (text(name, where), number(share, f"{where}: '{shown(name)}'")) for name, share in mapping(data, where).items()
     )
 
 
@@ -193,6 +202,8 @@ def scene_to_dict(scene: Scene) -> dict[str, Any]:
         entry["label"] = thing.label
         if thing.label is not None and thing.confidence < 1:
             entry["confidence"] = thing.confidence
+        if thing.candidates:
+            entry["candidates"] = dict(thing.candidates)
         if isinstance(thing.cloud, str):
             entry["cloud"] = thing.cloud
         if thing.colour is not None:

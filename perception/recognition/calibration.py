@@ -4,11 +4,19 @@ The threshold makes the fewest wrong decisions between known and unknown (Youden
 known at all has Platt's probability (1999), a sigmoid of the least ND's logarithm: 1 / (1 + (ND / even)^doubt). Which
 category it then is, is a conditional logit (McFadden 1974): P(c) ~ ND(c)^-choice. Both are fitted by likelihood; a
 normal prior on their logarithms holds them near the shipped ones while held-out views are few.
+
+Some things look like what they are not, however near the distances are: a share of ``slips`` is spread over all answers
+as if nothing had been seen, so that no answer is surer than held-out ones deserve.
+
+Where things are compared by several descriptors, ND is the weighted geometric mean of theirs: a logarithmic opinion
+pool (Genest and Zidek 1986), since a power of ND is what a probability is proportional to. The weights are fitted in
+the same way.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,12 +33,28 @@ MIN_NORMALISED = 1e-6
 PRIOR_WIDTH = 1.0
 """Standard deviation of the logarithms of even, doubt and choice about the shipped ones."""
 
+WEIGHTS_WIDTH = 0.3
+"""The same of the ratios of weights: views of the same few things say less of these than their number suggests."""
+
+SLIPS_WIDTH = 0.5
+"""The same of the log-odds of slips."""
+
+MIN_SLIPS = 1e-3
+"""Share of slips that a fit begins with at least."""
+
+MAX_ROUNDS = 1_500
+"""Rounds of the search for the most probable parameters, at most."""
+
+WEIGHTS_ROUNDING = 1e-6
+"""By how much the sum of weights may differ from 1."""
+
 
 @dataclass(frozen=True)
 class Calibration:
     """``threshold``: an ND above it is unknown. ``even``: the least ND at which known and unknown are equally probable;
-    ``doubt``: how fast that changes. ``choice``: how much a nearer category is preferred. ``known`` and ``unknown``
-    count the held-out answers behind these.
+    ``doubt``: how fast that changes. ``choice``: how much a nearer category is preferred. ``slips`` is the share of
+    things of which distances say nothing. ``weights`` are those of the descriptors in the mean, and sum to 1.
+    ``known`` and ``unknown`` count the held-out answers behind these.
 
     With none the numbers are constants, measured once on simulated tableware (docs/recognition.md).
     """
@@ -41,8 +65,15 @@ class Calibration:
     choice: float
     known: int = 0
     unknown: int = 0
+    weights: tuple[float, ...] = (1.0,)
+    slips: float = 0.0
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "weights", tuple(self.weights))
+        if not (min(self.weights, default=-1.0) >= 0 and abs(sum(self.weights) - 1) < WEIGHTS_ROUNDING):
+            raise RecognitionError(f"a calibration's weights are 0 or more and sum to 1, not {self.weights}")
+        if not 0 <= self.slips < 1:
+            raise RecognitionError(f"a calibration's share of slips is 0 or more and below 1, not {self.slips}")
         for name in ("threshold", "even", "doubt", "choice"):
             if not (np.isfinite(getattr(self, name)) and getattr(self, name) > 0):
                 raise RecognitionError(f"a calibration's {name} is a number above 0, not {getattr(self, name)}")
@@ -52,6 +83,14 @@ class Calibration:
         """Whether the threshold comes from the categories' own views."""
         return min(self.known, self.unknown) >= MIN_HELD_OUT_ANSWERS
 
+    def mean(self, normalised: Sequence[NDArray[np.float64]]) -> NDArray[np.float64]:
+        """Return the weighted geometric mean (..., c) of the ND (..., c) by each descriptor.
+
+        >>> Calibration(1, 1, 1, 1, weights=(0.5, 0.5)).mean([np.array([1.0, 4.0]), np.array([4.0, np.inf])]).tolist()
+        [2.0, inf]
+        """
+        return np.exp(_mean_logs(_logs(normalised), np.array(self.weights)))
+
     def probabilities(self, normalised: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return probabilities (..., c + 1) of c categories and, last, of none of them, from their ND (..., c).
 
@@ -59,12 +98,17 @@ class Calibration:
         >>> even.probabilities(np.array([1.0, np.inf, 1.0])).tolist()
         [0.25, 0.0, 0.25, 0.5]
         """
-        result: NDArray[np.float64] = np.exp(_log_shares(normalised, np.log([self.even, self.doubt, self.choice])))
+        shares = np.exp(_log_shares(normalised, np.log([self.even, self.doubt, self.choice])))
+        result: NDArray[np.float64] = (1 - self.slips) * shares + self.slips * _blind(normalised)
         return result
 
 
-SHIPPED = Calibration(threshold=0.73, even=0.74, doubt=7.3, choice=10.5)
+SHIPPED = Calibration(threshold=0.756, even=0.745, doubt=6.6, choice=12.8, slips=0.1)
 """What holds until there are views to calibrate with (benchmarks/bench_recognition.py --constants)."""
+
+
+SHIPPED_JOINT = Calibration(threshold=0.76, even=0.736, doubt=6.9, choice=15.4, weights=(0.65, 0.35), slips=0.1)
+"""The same for the descriptors that views of a table are compared by."""
 
 
 def calibrate(held: HeldOut, prior_unknown: float = 0.5, start: Calibration = SHIPPED) -> Calibration:
@@ -81,9 +125,25 @@ def calibrate(held: HeldOut, prior_unknown: float = 0.5, start: Calibration = SH
     unknown = held.as_unknown
     if min(len(known), len(unknown)) < MIN_HELD_OUT_ANSWERS:
         return start
-    even, doubt, choice = _fitted(known, truth, unknown, prior_unknown, start)
     threshold = best_threshold(known.min(axis=1), unknown.min(axis=1), prior_unknown)
-    return Calibration(threshold, even, doubt, choice, len(known), len(unknown))
+    fitted = _fitted(known, truth, unknown, prior_unknown, start)
+    return replace(fitted, threshold=threshold, known=len(known), unknown=len(unknown))
+
+
+def calibrate_jointly(
+    held: Sequence[HeldOut], prior_unknown: float = 0.5, start: Calibration = SHIPPED_JOINT
+) -> Calibration:
+    """Return weights, threshold and probabilities from what the same views, held out, came to by each descriptor.
+
+    Logarithms of the weights' ratios have a normal prior of width ``WEIGHTS_WIDTH`` about those of ``start``. With few
+    answers everything stays as in ``start``, as in :func:`calibrate`.
+    """
+    known, truth = held[0].as_known
+    if min(len(known), len(held[0].as_unknown)) < MIN_HELD_OUT_ANSWERS:
+        return start
+    weights = _fitted_weights(_logs([each.as_known[0] for each in held]), truth, start)
+    started = replace(start, weights=weights)
+    return calibrate(HeldOut(started.mean([each.normalised for each in held]), held[0].truth), prior_unknown, started)
 
 
 def best_threshold(known: NDArray[np.float64], unknown: NDArray[np.float64], prior_unknown: float = 0.5) -> float:
@@ -150,24 +210,75 @@ def _log_shares(normalised: NDArray[np.float64], logs: NDArray[np.float64]) -> N
     return np.concatenate([shares, unknown], axis=-1)
 
 
+def _logs(normalised: Sequence[NDArray[np.float64]]) -> NDArray[np.float64]:
+    """Return the logarithms (b, ..., c) of ND by each descriptor, none below that of ``MIN_NORMALISED``."""
+    return np.log(np.maximum(np.stack(normalised), MIN_NORMALISED))
+
+
+def _mean_logs(logs: NDArray[np.float64], weights: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the weighted mean (..., c) of logarithms (b, ..., c); infinite where one is."""
+    finite = np.isfinite(logs)
+    mean = np.tensordot(weights, np.where(finite, logs, 0.0), axes=1)
+    result: NDArray[np.float64] = np.where(finite.all(axis=0), mean, np.inf)
+    return result
+
+
+def _fitted_weights(logs: NDArray[np.float64], truth: NDArray[np.int64], start: Calibration) -> tuple[float, ...]:
+    """Return the most probable weights of b descriptors, from the logarithms (b, k, c) of ND of known views."""
+    from scipy.optimize import minimize
+
+    ratios = np.log(np.array(start.weights) / start.weights[0])[1:]
+    rows, widths = np.arange(len(truth)), np.array([PRIOR_WIDTH, *[WEIGHTS_WIDTH] * len(ratios)])
+
+    def weights_of(logits: NDArray[np.float64]) -> NDArray[np.float64]:
+        shares = np.exp(np.concatenate([[0.0], logits]))
+        return np.asarray(shares / shares.sum(), np.float64)
+
+    def loss(values: NDArray[np.float64]) -> float:
+        utilities = -np.exp(values[0]) * _mean_logs(logs, weights_of(values[1:]))
+        named = utilities[rows, truth] - np.logaddexp.reduce(utilities, axis=1)
+        apart = np.concatenate([[values[0] - np.log(start.choice)], values[1:] - ratios])
+        return float(-np.maximum(named, -50.0).sum() + 0.5 * np.square(apart / widths).sum())
+
+    found = minimize(loss, np.concatenate([[np.log(start.choice)], ratios]), method="Nelder-Mead").x
+    return tuple(weights_of(found[1:]).tolist())
+
+
+def _blind(normalised: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the probabilities (..., c + 1) of whoever has not looked: half for none, the rest even over categories."""
+    there = np.isfinite(normalised)
+    count = there.sum(axis=-1, keepdims=True)
+    none = np.where(count > 0, 0.5, 1.0)
+    return np.concatenate([there * 0.5 / np.maximum(count, 1), none], axis=-1)
+
+
 def _fitted(
     known: NDArray[np.float64],
     truth: NDArray[np.int64],
     unknown: NDArray[np.float64],
     prior_unknown: float,
     start: Calibration,
-) -> tuple[float, float, float]:
-    """Return the most probable even distance, doubt and choice."""
+) -> Calibration:
+    """Return ``start`` with the most probable even distance, doubt, choice and share of slips."""
     from scipy.optimize import minimize
 
-    first = np.log([start.even, start.doubt, start.choice])
-    count = len(known) + len(unknown)
+    first = np.log([start.even, start.doubt, start.choice, max(start.slips, MIN_SLIPS) / (1 - start.slips)])
+    widths = np.array([PRIOR_WIDTH, PRIOR_WIDTH, PRIOR_WIDTH, SLIPS_WIDTH])
+    count, rows = len(known) + len(unknown), np.arange(len(known))
+    blind_named, blind_none = _blind(known)[rows, truth], _blind(unknown)[:, -1]
 
-    def loss(logs: NDArray[np.float64]) -> float:
-        named = _log_shares(known, logs)[np.arange(len(known)), truth]
-        none = _log_shares(unknown, logs)[:, -1]
-        likelihood = (1 - prior_unknown) * np.maximum(named, -50.0).mean() + prior_unknown * none.mean()
-        return float(-count * likelihood + 0.5 * np.square((logs - first) / PRIOR_WIDTH).sum())
+    def slips_of(logit: float) -> float:
+        return float(1 / (1 + np.exp(-logit)))
 
-    even, doubt, choice = np.exp(minimize(loss, first, method="Nelder-Mead").x).tolist()
-    return even, doubt, choice
+    def loss(values: NDArray[np.float64]) -> float:
+        slips = slips_of(values[3])
+        named = np.logaddexp(
+            np.log1p(-slips) + _log_shares(known, values[:3])[rows, truth], np.log(slips * blind_named)
+        )
+        none = np.logaddexp(np.log1p(-slips) + _log_shares(unknown, values[:3])[:, -1], np.log(slips * blind_none))
+        likelihood = (1 - prior_unknown) * named.mean() + prior_unknown * none.mean()
+        return float(-count * likelihood + 0.5 * np.square((values - first) / widths).sum())
+
+    found = minimize(loss, first, method="Nelder-Mead", options={"maxiter": MAX_ROUNDS}).x
+    even, doubt, choice = np.exp(found[:3]).tolist()
+    return replace(start, even=even, doubt=doubt, choice=choice, slips=slips_of(found[3]))

@@ -18,6 +18,10 @@ MAX_HELD_OUT = 400
 """Views that are held out, at most; evenly over the categories."""
 
 
+USUAL_SHORTENING, MAX_SHORTENING = 0.2, 0.5
+"""The power of :func:`shortening` where nothing says what it is, and the largest one."""
+
+
 Progress = Callable[[int, int], None]
 """Is told how many views are done, and how many there are."""
 
@@ -27,7 +31,8 @@ class HeldOut:
     """Normalised distances of v held-out views to c categories.
 
     ``truth`` is each view's own category; its ND there is without the view itself, and without the other views of the
-    same thing: inf where nothing remains.
+    same thing: inf where nothing remains. It is brought to the number of things that the category has, as the other
+    categories have theirs: see :func:`shortening`.
     """
 
     normalised: NDArray[np.float64]  # (v, c)
@@ -63,7 +68,8 @@ def hold_out(
     chosen = [(number, place) for number, each in enumerate(categories) for place in _evenly(len(each), share)]
     widths = [category.width(settings.over_things) for category in categories]
     effort = settings.effort_among(sum(map(len, categories)))
-    rows = np.empty((len(chosen), len(categories)))
+    rows = np.full((len(chosen), len(categories)), np.inf)
+    fewer: list[tuple[int, float]] = []
     for done, (number, place) in enumerate(chosen):
         if progress is not None:
             progress(done, len(chosen))
@@ -72,17 +78,47 @@ def hold_out(
         left = list(widths)
         left[number] = own.width(settings.over_things, rest)
         target = Target.of(own.views[place])
-        distances = np.full(len(categories), np.inf)
+        divisors = [spread.value for spread in spreads(left, settings.prior_spread, settings.shrinkage)]
         reduced = None
         for other, index in enumerate(indexes):
             if index is None or other == number:
                 continue
             reduced = index.reduction(target.descriptors) if reduced is None else reduced
-            distances[other] = index.nearest(target, reduced, effort).distance
+            rows[done, other] = index.nearest(target, reduced, effort).distance / divisors[other]
         if len(rest):
-            distances[number] = own.distances[place, rest].min()
-        rows[done] = distances / [spread.value for spread in spreads(left, settings.prior_spread, settings.shrinkage)]
-    return HeldOut(rows, np.array([number for number, _ in chosen], np.int64))
+            rows[done, number] = own.distances[place, rest].min() / divisors[number]
+            fewer += _with_fewer(own, place, rest)
+    truth = np.array([number for number, _ in chosen], np.int64)
+    things = np.array([len(np.unique(category.shown)) for category in categories], np.float64)[truth]
+    rows[np.arange(len(rows)), truth] *= (things / np.maximum(things - 1, 1)) ** -shortening(fewer)
+    return HeldOut(rows, truth)
+
+
+def shortening(fewer: Sequence[tuple[int, float]]) -> float:
+    """Return the power a by which D_C falls with the number n of things in a category, D_C ~ n^-a.
+
+    A category that a thing was held out of has one thing less than when something new is seen, and is a little farther
+    for that reason alone. ``fewer`` are, of held-out views, the numbers n of things that remain and the logarithms of
+    D_C over D_C without one of these. The power is between 0 and ``MAX_SHORTENING``; of no such view it is
+    ``USUAL_SHORTENING``.
+
+    >>> round(shortening([(2, -0.1 * np.log(2)), (4, -0.1 * np.log(4 / 3))]), 3)
+    0.1
+    """
+    if not fewer:
+        return USUAL_SHORTENING
+    counts, falls = (np.array(column, np.float64) for column in zip(*fewer, strict=True))
+    return float(np.clip(-falls.sum() / np.log(counts / (counts - 1)).sum(), 0.0, MAX_SHORTENING))
+
+
+def _with_fewer(own: InstanceCategory, place: int, rest: NDArray[np.intp]) -> list[tuple[int, float]]:
+    """Return for each thing of the places ``rest`` how many there are, and the logarithm of D_C of a view over that
+    without the thing; none of one thing, or where a distance is 0."""
+    shown, distances = own.shown[rest], own.distances[place, rest]
+    things, least = np.unique(shown), float(distances.min())
+    if len(things) < 2 or least <= 0:
+        return []
+    return [(len(things), float(np.log(least / distances[shown != thing].min()))) for thing in things]
 
 
 def _evenly(count: int, most: int) -> list[int]:

@@ -55,7 +55,10 @@ class InstanceCategory:
         cls, name: str, views: PackedViews, empty: tuple[str, ...], things: Mapping[str, str]
     ) -> InstanceCategory:
         """Return the same of views that are packed already, but for the empty ones."""
-        distances = np.array([view_distances(views[i], views) for i in range(len(views))])
+        if len(views.descriptors) == len(views):  # one descriptor for each view
+            distances = _distances_of_rows(views.descriptors)
+        else:
+            distances = np.array([view_distances(views[i], views) for i in range(len(views))])
         return cls(name, views, distances.reshape(len(views), len(views)), empty, dict(things))
 
     def __len__(self) -> int:
@@ -107,3 +110,12 @@ class InstanceCategory:
         place = self.views.ids.index(key)
         distances = np.delete(np.delete(self.distances, place, axis=0), place, axis=1)
         return replace(self, views=self.views.without(place), distances=distances, things=things)
+
+
+def _distances_of_rows(rows: NDArray[np.float32]) -> NDArray[np.float64]:
+    """Return Euclidean distances (n, n) of the rows (n, d)."""
+    from scipy.spatial.distance import cdist
+
+    wide = rows.astype(np.float64)
+    result: NDArray[np.float64] = cdist(wide, wide)
+    return result

@@ -22,7 +22,7 @@ from deixis.perception.recognition.distances import Target
 from deixis.perception.recognition.held_out import Progress, hold_out
 from deixis.perception.recognition.index import Effort, Nearest, ViewIndex, indexes_of
 from deixis.perception.recognition.instances import InstanceCategory
-from deixis.perception.recognition.settings import DEFAULT, RecognitionSettings
+from deixis.perception.recognition.settings import DEFAULT, MIN_LABEL_PROBABILITY, RecognitionSettings
 from deixis.perception.recognition.spread import Spread, SpreadSource, spreads
 
 
@@ -46,7 +46,7 @@ class Candidate:
 
 @dataclass(frozen=True)
 class Recognition:
-    """Candidates from the least ND up; ``label`` is the first one's, or None if its ND is above the threshold: unknown.
+    """Candidates from the least ND up; ``label`` is the first one's, or None where it is not probable enough.
 
     ``unknown`` is the probability that no category is right. ``exact`` says whether every D_C is the least there is.
     ``reasons`` say in words what decided, and what was not as it should be.
@@ -70,11 +70,14 @@ def no_answer(calibration: Calibration, reason: str) -> Recognition:
     return Recognition(None, (), 1.0, calibration, True, (reason,))
 
 
-def decided(ranked: Sequence[Candidate], unknown: float, calibration: Calibration, exact: bool) -> Recognition:
+def decided(
+    ranked: Sequence[Candidate], unknown: float, calibration: Calibration, exact: bool, by_threshold: bool
+) -> Recognition:
     """Return the decision between the nearest category and none, with its reasons."""
     first = ranked[0]
-    label = first.category if first.normalised <= calibration.threshold else None
-    reasons = [_comparison(first, calibration)]
+    known = first.normalised <= calibration.threshold if by_threshold else first.probability >= MIN_LABEL_PROBABILITY
+    label = first.category if known and first.nearest is not None else None
+    reasons = [_comparison(first, calibration, by_threshold)]
     if first.spread.source in (SpreadSource.POOLED, SpreadSource.PRIOR) and first.nearest is not None:
         width = first.spread.width
         unit = "thing" if width.over_things else "view"
@@ -86,15 +89,20 @@ def decided(ranked: Sequence[Candidate], unknown: float, calibration: Calibratio
     return Recognition(label, tuple(ranked), unknown, calibration, exact, tuple(reasons))
 
 
-def _comparison(first: Candidate, calibration: Calibration) -> str:
+def _comparison(first: Candidate, calibration: Calibration, by_threshold: bool) -> str:
+    """Return which category is nearest, by what numbers, and what its name is said by, or not."""
     if first.nearest is None:
         return "no remembered view has a descriptor"
     basis = f"from {calibration.known} held-out views" if calibration.calibrated else "a constant, not yet calibrated"
-    side = "within" if first.normalised <= calibration.threshold else "above"
-    return (
+    nearest = (
         f"'{first.category}' is nearest: ND {first.normalised:.3g} (D_C {first.distance:.3g} to view '{first.nearest}'"
-        f" / {_divisor(first)}), {side} the threshold {calibration.threshold:.3g} ({basis})"
+        f" / {_divisor(first)})"
     )
+    if by_threshold:
+        side = "within" if first.normalised <= calibration.threshold else "above"
+        return f"{nearest}, {side} the threshold {calibration.threshold:.3g} ({basis})"
+    side = "at least" if first.probability >= MIN_LABEL_PROBABILITY else "below"
+    return f"{nearest}; its probability is {side} {MIN_LABEL_PROBABILITY:g} ({basis})"
 
 
 def _divisor(first: Candidate) -> str:
@@ -152,7 +160,7 @@ class Recogniser:
         parts = zip(self.categories, found, widths, probabilities, strict=True)
         candidates = [_candidate(*each) for each in parts]
         candidates.sort(key=lambda candidate: (candidate.normalised, candidate.category))
-        return decided(candidates, unknown, self.calibration, effort is None)
+        return decided(candidates, unknown, self.calibration, effort is None, self.settings.by_threshold)
 
     @cached_property
     def spreads(self) -> list[Spread]:

@@ -10,8 +10,12 @@ from deixis.perception.errors import RecognitionError
 from deixis.perception.recognition.index import Effort
 from deixis.perception.recognition.spread import PRIOR_SPREADS
 
-SHRINKAGE = 5.0
-"""Things that the median ICD counts for; chosen on simulated tableware and half of the meshes (docs/open_ended.md)."""
+SHRINKAGE = 30.0
+"""Things that the median ICD counts for. From fewer things a category's own width says little, and a wide category that
+is divided by its width swallows views of all others (docs/open_ended.md)."""
+
+MIN_LABEL_PROBABILITY = 0.6
+"""Probability from which a name is said; below it there are candidates, and no label."""
 
 
 @dataclass(frozen=True)
@@ -23,7 +27,9 @@ class RecognitionSettings:
     that came from ``shrinkage`` things (0: it stays as it is). ``prior_spread`` stands in while no category has an ICD;
     the default is for spin images, and ``PRIOR_SPREADS`` has those of other descriptors.
 
-    ``prior_unknown`` is the share of things seen that are of no category.
+    ``prior_unknown`` is the share of things seen that are of no category. With ``by_threshold`` the nearest category is
+    the answer where its ND is not above the calibration's threshold, as in the paper; else where its probability is
+    ``MIN_LABEL_PROBABILITY`` or more.
     """
 
     exact_up_to: int = 20_000
@@ -32,6 +38,7 @@ class RecognitionSettings:
     shrinkage: float = SHRINKAGE
     prior_spread: float = PRIOR_SPREADS["spin_images"]
     prior_unknown: float = 0.5
+    by_threshold: bool = False
 
     def __post_init__(self) -> None:
         if not (np.isfinite(self.prior_spread) and self.prior_spread > 0):
@@ -46,5 +53,5 @@ class RecognitionSettings:
 
 DEFAULT = RecognitionSettings()
 
-PAPER = RecognitionSettings(over_things=False, shrinkage=0.0)
-"""Equations 3 and 4 as they stand, wherever they are defined."""
+PAPER = RecognitionSettings(over_things=False, shrinkage=0.0, by_threshold=True)
+"""Equations 3 and 4 as they stand, wherever they are defined, and the threshold of ND."""

@@ -25,8 +25,9 @@ MIN_ICD_SHARE = 0.05
 PRIOR_SPREADS: Mapping[str, float] = MappingProxyType(
     {
         "spin_images": 0.108,
-        "spin_image_roots": 0.36,
+        "spin_image_roots": 0.384,
         "upright": 0.465,
+        "form": 1.05,
         "fpfh": 49.5,
         "good": 0.249,
         "d2_extents": 0.0495,

@@ -103,11 +103,10 @@ class ViewStore(Closing):
         ``progress`` is told of reading what was taught, and of the calibration, which take seconds after many views;
         ``left_out``, in one line, of views that are damaged and teach nothing.
         """
-        from deixis.learning.views import UPRIGHT, Known, recogniser_of
-        from deixis.perception.recognition.recogniser import Recogniser
+        from deixis.learning.views import nothing_known, recogniser_of
 
         if not self.exists():
-            return Known(Recogniser.of([]), UPRIGHT)
+            return nothing_known(frame)
         return self._despite_damage(self.memory(), lambda memory: recogniser_of(memory, frame, progress), left_out)
 
     def _despite_damage(

@@ -26,6 +26,7 @@ from deixis.ontology.relation import Reading
 from deixis.ontology.sizes import Sizes
 from deixis.reasoning.geometry.rectangle import SceneRelations, scene_relations
 from deixis.reasoning.geometry.turning import turned
+from deixis.reasoning.grounding.evidence.candidates import Candidates, candidate_ratios
 from deixis.reasoning.grounding.evidence.colours import colour_evidence
 from deixis.reasoning.grounding.evidence.degrees import log_likelihood_ratio
 from deixis.reasoning.grounding.evidence.facts import fact_tables, hedged
@@ -269,12 +270,14 @@ def evidence_from(
     colours: Colours | None = None,
     label_error: float = LABEL_ERROR,
     deadline: Deadline = Deadline.never(),
+    candidates: Sequence[Candidates | None] = (),
 ) -> Evidence:
     """Return facts, labels, sizes and colours together, each by its weight; ``metric`` where the scene's boxes are in
     metres.
 
     ``seen`` are the things' colours in sRGB, shape (n2, 3), NaN where not known; ``colours`` are the known terms.
     ``label_error`` is the probability that a label of confidence 1 is wrong; 0 takes such labels as identities.
+    ``candidates`` are those of each thing, and weigh as labels do; none of any where they are left out.
     """
     weights, shape = meaning.weights, (len(description.nodes), len(scene.nodes))
     said, measured, allowed = np.zeros(shape), np.zeros(shape), np.ones(shape, dtype=bool)
@@ -282,10 +285,14 @@ def evidence_from(
     if weights.labels > 0:
         told = label_ratios(description, labels, kinds, label_error)
         said, allowed = weights.labels * told.ratios, told.allowed
+        ranked = np.zeros(shape)
+        if any(candidates):
+            ranked = weights.labels * np.where(allowed, candidate_ratios(description, candidates, kinds), 0.0)
+            said = said + ranked
         if label_error > 0 and any(label is not None for label in labels):
             unreliable = label_ratios(description, labels, kinds, UNRELIABLE_ERROR)
             doubted = DoubtedLabels(
-                weights.labels * unreliable.ratios, weights.labels * (unreliable.by_chance - told.by_chance)
+                weights.labels * unreliable.ratios + ranked, weights.labels * (unreliable.by_chance - told.by_chance)
             )
     if weights.sizes > 0 and scene.boxes is not None:
         measured = weights.sizes * size_evidence(classes(description), scene.boxes, sizes, meaning.sizes, metric)

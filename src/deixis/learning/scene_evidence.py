@@ -6,7 +6,7 @@ from deixis.deadline import Deadline
 from deixis.grammar.script import Script
 from deixis.ontology.graph import RelationGraph
 from deixis.ontology.tbox import Ontology
-from deixis.perception.scene import Scene
+from deixis.perception.scene import PerceivedObject, Scene
 from deixis.reasoning.entailment.conflict import Conflict
 from deixis.reasoning.grounding.evidence.evidence import Evidence, evidence_from
 from deixis.reasoning.grounding.evidence.labels import Label
@@ -29,11 +29,12 @@ def graph_evidence(
 ) -> Evidence:
     """The same of a description that is a graph already, to be worked out until the deadline; of labels said to be
     certain a share ``label_error`` is wrong."""
-    labels = list(scene_labels(scene).values())
+    labels = scene_labels(scene)
+    ranked = [named_by_candidates(thing) for thing in scene.objects]
     return evidence_from(
         description,
         scene.relations(ontology.relations, deadline=deadline),
-        labels,
+        [None if each else labels[thing.id] for thing, each in zip(scene.objects, ranked, strict=True)],
         ontology.kinds,
         ontology.sizes,
         metric=scene.unit == "m",
@@ -42,12 +43,20 @@ def graph_evidence(
         colours=ontology.colours,
         label_error=label_error,
         deadline=deadline,
+        candidates=[
+            dict(thing.candidates) if each else None for thing, each in zip(scene.objects, ranked, strict=True)
+        ],
     )
 
 
 def scene_labels(scene: Scene) -> dict[str, Label | None]:
     """What perception calls each thing of a scene."""
     return {thing.id: Label(thing.label, thing.confidence) if thing.label else None for thing in scene.objects}
+
+
+def named_by_candidates(thing: PerceivedObject) -> bool:
+    """Return whether the candidates of a thing weigh in a grounding, and not its label: where that is not certain."""
+    return bool(thing.candidates) and (thing.label is None or thing.confidence < 1)
 
 
 def viewpoint_notes(viewpoint: str | None, scene: Scene) -> tuple[str, ...]:

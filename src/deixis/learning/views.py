@@ -9,6 +9,7 @@ from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from datetime import datetime
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -22,12 +23,15 @@ from deixis.memory.perceptual.records import Batch, CategoryRecord, View
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.errors import CloudError
 from deixis.perception.features.describer import Describer
+from deixis.perception.features.form import FormDescriber
 from deixis.perception.features.spin_images import SpinImageDescriber
 from deixis.perception.features.upright import UprightDescriber
+from deixis.perception.recognition.calibration import SHIPPED, SHIPPED_JOINT
 from deixis.perception.recognition.instances import InstanceCategory
+from deixis.perception.recognition.joint import JointRecogniser
 from deixis.perception.recognition.learners.view_features import roots
 from deixis.perception.recognition.recogniser import Recogniser, Recognition
-from deixis.perception.recognition.settings import RecognitionSettings
+from deixis.perception.recognition.settings import DEFAULT, RecognitionSettings
 from deixis.perception.recognition.spread import PRIOR_SPREADS
 from deixis.perception.recognition.views import PackedViews, mapped
 from deixis.perception.scene import Scene
@@ -41,22 +45,20 @@ class ViewDescriptor:
     describer: Describer
     root: bool = False
 
-    @property
-    def settings(self) -> RecognitionSettings:
-        """The settings of recognition, with the shipped width of a category for these descriptors."""
-        return RecognitionSettings(prior_spread=PRIOR_SPREADS[self.name])
-
     def describe(self, cloud: PointCloud) -> NDArray[np.float32]:
         """What a thing's points are compared by, (k, d); none of too few points."""
         found = self.describer.describe(cloud)
         return roots(found) if self.root else found
 
     def __str__(self) -> str:
-        return f"{self.name} {self.describer} {self.settings}"
+        return f"{self.name} {self.describer} {PRIOR_SPREADS[self.name]}"
 
 
 UPRIGHT = ViewDescriptor("upright", UprightDescriber())
 """The descriptor of views in a table's frame, where all of them have it."""
+
+FORM = ViewDescriptor("form", FormDescriber())
+"""What such views are compared by beside it."""
 
 SPIN_IMAGE_ROOTS = ViewDescriptor("spin_image_roots", SpinImageDescriber(support=0.2), root=True)
 """The descriptor of all other views, whatever their frame, and of views that were kept before there was another one.
@@ -66,9 +68,9 @@ With square roots the distance of equation 1 is Hellinger's; a support of 20 cm 
 TABLE = "table"
 """The frame in which z is up, and 0 on the table."""
 
-DISTANCES, IDS, COMPARED = "distances", "views", "compared"
-"""The names of a category's state: D_V between its views, the ids of the views, in the same order, and the descriptor
-in which they were compared."""
+DISTANCES, IDS, COMPARED, DESCRIBED = "distances", "views", "compared", "described"
+"""The names of a category's state: D_V between its views, the ids of the views, in the same order, the descriptor
+in which they were compared, and all descriptors that every one of them has."""
 
 GROUNDING = "grounding"
 """Who teaches what a grounding has found."""
@@ -120,9 +122,16 @@ class Recognised:
     answers: Mapping[str, Recognition]
 
 
-def descriptors_in(frame: str) -> tuple[ViewDescriptor, ...]:
-    """The descriptors to compare what is seen in a frame, the best first."""
-    return (UPRIGHT, SPIN_IMAGE_ROOTS) if frame == TABLE else (SPIN_IMAGE_ROOTS,)
+Comparison = tuple[ViewDescriptor, ...]
+"""The descriptors that views are compared by together. A category keeps distances by the first one."""
+
+COMPARISONS: tuple[Comparison, ...] = ((UPRIGHT, FORM), (UPRIGHT,), (SPIN_IMAGE_ROOTS,))
+"""All of them, the best first."""
+
+
+def comparisons_in(frame: str) -> tuple[Comparison, ...]:
+    """The ways to compare what is seen in a frame, the best first."""
+    return COMPARISONS if frame == TABLE else COMPARISONS[-1:]
 
 
 def view_of(cloud: PointCloud, frame: str, category: str, time: datetime, metadata: Mapping[str, Any]) -> View:
@@ -130,7 +139,8 @@ def view_of(cloud: PointCloud, frame: str, category: str, time: datetime, metada
 
     It is kept with what every descriptor needs in which it can be compared.
     """
-    descriptors = {descriptor.name: descriptor.describe(cloud) for descriptor in descriptors_in(frame)}
+    needed = dict.fromkeys(chain.from_iterable(comparisons_in(frame)))
+    descriptors = {descriptor.name: descriptor.describe(cloud) for descriptor in needed}
     if not all(map(len, descriptors.values())):
         raise CloudError("the thing has too few points to say what it looks like; perceive it from nearer")
     points = np.ascontiguousarray(cloud.points[cloud.finite], dtype=np.float32)
@@ -159,8 +169,8 @@ def batch_of(
         place = {id: view.category for id, view in _kept(memory, views).items()}
         kept = {name: list(memory.views(name)) for name in _involved(memory, views, place)}
         grown = {name: [*kept.get(name, ()), *_of(views, name)] for name in (*kept, *(view.category for view in views))}
-        chosen = {name: descriptor_of(together, (UPRIGHT, SPIN_IMAGE_ROOTS)) for name, together in grown.items()}
-        known = {name: instances_of(memory.category(name), own, chosen[name]) for name, own in kept.items()}
+        chosen = {name: comparison_of(together)[0] for name, together in grown.items()}
+        known = {name: instances_of(memory.category(name), own, (chosen[name],))[0] for name, own in kept.items()}
         taught = []
         for view in views:
             before = place.get(view.id)
@@ -173,7 +183,11 @@ def batch_of(
             corrected = before if before != view.category else None
             again = before == view.category
             taught.append(Taught(view.id, view.category, len(known[view.category]), corrected, again))
-        records = [record_of(category, chosen[name]) for name, category in known.items() if len(category)]
+        records = [
+            record_of(category, chosen[name], described_by_all(grown[name]))
+            for name, category in known.items()
+            if len(category)
+        ]
         empty = [name for name, category in known.items() if not len(category)]  # nothing is left of these
         coming = list({view.id: view for view in views}.values())
     return Batch(coming, records, dropped=empty, lessons=dict(lessons or {})), tuple(taught)
@@ -203,39 +217,52 @@ def _of(views: Iterable[View], category: str) -> list[View]:
     return [view for view in views if view.category == category]
 
 
-def descriptor_of(views: Sequence[View], descriptors: Sequence[ViewDescriptor]) -> ViewDescriptor:
-    """The first of some descriptors in which these views can all be compared."""
-    shared = (descriptor for descriptor in descriptors if all(descriptor.name in view.descriptors for view in views))
-    return next(shared, SPIN_IMAGE_ROOTS)
+def described_by_all(views: Iterable[View]) -> set[str]:
+    """The names of the descriptors that all of some views have."""
+    named = [set(view.descriptors) for view in views]
+    return set.intersection(*named) if named else set()
+
+
+def comparison_of(views: Iterable[View]) -> Comparison:
+    """The best way to compare these views, by what all of them have."""
+    shared = described_by_all(views)
+    return next((way for way in COMPARISONS if {each.name for each in way} <= shared), COMPARISONS[-1])
 
 
 def instances_of(
-    record: CategoryRecord, views: Iterable[View], descriptor: ViewDescriptor, pack: Pack = PackedViews.of
-) -> InstanceCategory:
-    """A category with its views' descriptors; distances that its record has are not worked out again.
+    record: CategoryRecord, views: Iterable[View], comparison: Comparison, pack: Pack = PackedViews.of
+) -> tuple[InstanceCategory, ...]:
+    """A category by each descriptor of a comparison; distances that its record has are not worked out again.
 
-    Of each view only what is compared is held, by ``pack``.
+    Of each view only what is compared is held, that of the first descriptor by ``pack``.
     """
+    descriptor, *others = comparison
     things: dict[str, str] = {}
     empty: list[str] = []
+    beside: dict[str, list[tuple[str, NDArray[np.float32]]]] = {other.name: [] for other in others}
 
     def described() -> Iterator[tuple[str, NDArray[np.float32]]]:
         for view in views:
-            if descriptor.name not in view.descriptors:
+            if not all(each.name in view.descriptors for each in comparison):
                 continue
             if (thing := thing_of(view)) is not None:
                 things[view.id] = thing
-            if len(view.descriptors[descriptor.name]):
-                yield view.id, view.descriptors[descriptor.name]
-            else:
+            if not all(len(view.descriptors[each.name]) for each in comparison):
                 empty.append(view.id)
+                continue
+            for other in others:
+                beside[other.name].append((view.id, view.descriptors[other.name]))
+            yield view.id, view.descriptors[descriptor.name]
 
     packed = pack(described())
-    if not _compared(record, packed.ids, descriptor):
-        return InstanceCategory.among(record.name, packed, tuple(empty), things)
-    order = np.argsort(np.argsort(np.array(packed.ids, dtype=str)))
-    distances = np.asarray(record.state[DISTANCES])[np.ix_(order, order)]
-    return InstanceCategory(record.name, packed, distances, tuple(empty), things)
+    if _compared(record, packed.ids, descriptor):
+        order = np.argsort(np.argsort(np.array(packed.ids, dtype=str)))
+        distances = np.asarray(record.state[DISTANCES])[np.ix_(order, order)]
+        first = InstanceCategory(record.name, packed, distances, tuple(empty), things)
+    else:
+        first = InstanceCategory.among(record.name, packed, tuple(empty), things)
+    rest = (PackedViews.of(beside[other.name]) for other in others)
+    return first, *(InstanceCategory.among(record.name, each, tuple(empty), things) for each in rest)
 
 
 def _compared(record: CategoryRecord, ids: Iterable[str], descriptor: ViewDescriptor) -> bool:
@@ -244,22 +271,45 @@ def _compared(record: CategoryRecord, ids: Iterable[str], descriptor: ViewDescri
     return compared == descriptor.name and DISTANCES in record.state and record.metadata.get(IDS) == sorted(ids)
 
 
-def record_of(category: InstanceCategory, descriptor: ViewDescriptor) -> CategoryRecord:
-    """What a category has learned, its views in the order of their ids."""
+def record_of(category: InstanceCategory, descriptor: ViewDescriptor, described: Iterable[str]) -> CategoryRecord:
+    """What a category has learned, its views in the order of their ids; ``described`` are what all of these have."""
     order = np.argsort(np.array(category.views.ids, dtype=str))
     return CategoryRecord(
         category.name,
         {DISTANCES: category.distances[np.ix_(order, order)]},
-        {IDS: sorted(category.views.ids), COMPARED: descriptor.name},
+        {IDS: sorted(category.views.ids), COMPARED: descriptor.name, DESCRIBED: sorted(described)},
     )
 
 
 @dataclass(frozen=True)
 class Known:
-    """A recogniser, and the descriptor in which it compares."""
+    """A recogniser, and the descriptors by which it compares."""
 
-    recogniser: Recogniser
-    descriptor: ViewDescriptor
+    recogniser: JointRecogniser
+    comparison: Comparison
+
+    def recognise(self, cloud: PointCloud) -> Recognition:
+        """Name what a cloud shows, or say that it is unknown, and why."""
+        return self.recogniser.recognise([descriptor.describe(cloud) for descriptor in self.comparison])
+
+
+def nothing_known(frame: str) -> Known:
+    """What recognises nothing, as nothing was taught."""
+    return known_by(comparisons_in(frame)[0], [])
+
+
+def known_by(
+    comparison: Comparison,
+    categories: Iterable[tuple[InstanceCategory, ...]],
+    settings: RecognitionSettings = DEFAULT,
+) -> Known:
+    """The recogniser of categories, each given by every descriptor of a comparison, as it is shipped."""
+    by_descriptor = list(zip(*categories, strict=True)) or [()] * len(comparison)
+    parts = tuple(
+        Recogniser.of(own, replace(settings, prior_spread=PRIOR_SPREADS[descriptor.name]))
+        for own, descriptor in zip(by_descriptor, comparison, strict=True)
+    )
+    return Known(JointRecogniser(parts, SHIPPED_JOINT if len(parts) > 1 else SHIPPED), comparison)
 
 
 def recogniser_of(memory: LevelMemory, frame: str, progress: Progress | None = None) -> Known:
@@ -270,40 +320,44 @@ def recogniser_of(memory: LevelMemory, frame: str, progress: Progress | None = N
     """
     with memory.exclusive():
         names, listed = memory.categories(), list(memory.listing())
-        descriptor = _descriptor_in(frame, memory, listed)
+        comparison = _comparison_in(frame, memory, listed)
         views = {(key.category, key.id) for key in listed}
         pack = PackedViews.of if len(views) < MAPPED else mapped
         categories = []
         for name in names:
-            categories.append(instances_of(memory.category(name), memory.views(name), descriptor, pack))
+            categories.append(instances_of(memory.category(name), memory.views(name), comparison, pack))
             if progress is not None:  # what was imported may have no distances yet, and then this takes longest
                 progress(len(categories), len(names))
-        known = Recogniser.of(categories, descriptor.settings)
-        calibration = read_calibration(memory.path, views, str(descriptor))
-        if calibration is not None:
-            return Known(replace(known, calibration=calibration), descriptor)
-        known = known.calibrated(progress)
-        write_calibration(memory.path, known.calibration, views, str(descriptor))
-    return Known(known, descriptor)
+        known, compared = known_by(comparison, categories), " ".join(map(str, (*comparison, DEFAULT)))
+        calibration = read_calibration(memory.path, views, compared)
+        if calibration is not None and len(calibration.weights) == len(comparison):
+            return replace(known, recogniser=replace(known.recogniser, calibration=calibration))
+        known = replace(known, recogniser=known.recogniser.calibrated(progress))
+        write_calibration(memory.path, known.recogniser.calibration, views, compared)
+    return known
 
 
-def _descriptor_in(frame: str, memory: PerceptualReading, listed: Iterable[ViewKey]) -> ViewDescriptor:
-    """The first descriptor in a frame in which all that was taught can be compared: by the categories' records, and
+def _comparison_in(frame: str, memory: PerceptualReading, listed: Iterable[ViewKey]) -> Comparison:
+    """The best comparison in a frame by which all that was taught can be compared: by the categories' records, and
     where they do not say so, by their views, until one cannot."""
     ids = defaultdict(list)
     for key in listed:
         ids[key.category].append(key.id)
 
-    def can(name: str, descriptor: ViewDescriptor) -> bool:
-        said = _compared(memory.category(name), ids[name], descriptor)
-        return said or all(descriptor.name in view.descriptors for view in memory.views(name))
+    def can(name: str, comparison: Comparison) -> bool:
+        wanted = {descriptor.name for descriptor in comparison}
+        record = memory.category(name)
+        if record.metadata.get(IDS) == sorted(ids[name]) and wanted <= set(record.metadata.get(DESCRIBED, ())):
+            return True
+        return all(wanted <= set(view.descriptors) for view in memory.views(name))
 
-    usable = (
-        descriptor
-        for descriptor in descriptors_in(frame)
-        if descriptor is SPIN_IMAGE_ROOTS or all(can(name, descriptor) for name in ids)
-    )
-    return next(usable, SPIN_IMAGE_ROOTS)
+    *better, last = comparisons_in(frame)
+    return next((way for way in better if all(can(name, way) for name in ids)), last)
+
+
+def candidates_of(answer: Recognition) -> tuple[tuple[str, float], ...]:
+    """The names that a thing may bear, with their probabilities, the likeliest first."""
+    return tuple((one.category, round(one.probability, 4)) for one in answer.candidates)
 
 
 def recognise(known: Known, scene: Scene, clouds: Sequence[PointCloud | None]) -> Recognised:
@@ -311,10 +365,12 @@ def recognise(known: Known, scene: Scene, clouds: Sequence[PointCloud | None]) -
     answers, things = {}, []
     for thing, cloud in zip(scene.objects, clouds, strict=True):
         if cloud is not None:
-            answer = known.recogniser.recognise(known.descriptor.describe(cloud))
+            answer = known.recognise(cloud)
             answers[thing.id] = answer
-            if answer.label is not None and thing.label is None:
-                sure = float(np.clip(answer.probability, LEAST_CONFIDENCE, MOST_CONFIDENCE))
-                thing = replace(thing, label=answer.label, confidence=round(sure, 4))
+            if thing.label is None:
+                thing = replace(thing, candidates=candidates_of(answer))
+                if answer.label is not None:
+                    sure = float(np.clip(answer.probability, LEAST_CONFIDENCE, MOST_CONFIDENCE))
+                    thing = replace(thing, label=answer.label, confidence=round(sure, 4))
         things.append(thing)
     return Recognised(replace(scene, objects=tuple(things)), answers)

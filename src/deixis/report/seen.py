@@ -48,13 +48,32 @@ def meant_lines(said: str, known: str) -> list[str]:
     return [] if said == known else [f"'{said}' is taken for '{known}', from which only its case differs."]
 
 
+MAX_NAMES = 3
+"""Number of candidates that a line lists, at most."""
+
+MIN_LISTED = 0.05
+"""Probability from which a candidate is listed."""
+
+
 def answer_line(name: str, answer: Recognition) -> str:
-    """Return the line of one object: its label, its probability and the reasons."""
-    return f"{name:<5} {answer.label or 'unknown':<20} {answer.probability:.2f}   {'; '.join(answer.reasons)}"
+    """Return the line of one object: its label, its probability, and the reasons.
+
+    Without a label the likeliest candidates stand in its place, after ``unknown``, which means none of them.
+    """
+    listed = [one for one in answer.candidates[:MAX_NAMES] if one.probability >= MIN_LISTED]
+    perhaps = "".join(f", {one.category} {one.probability:.2f}" for one in listed) if answer.label is None else ""
+    said = f"{answer.label or 'unknown':<20} {answer.probability:.2f}{perhaps}"
+    return f"{name:<5} {said}   {'; '.join(answer.reasons)}"
 
 
 def recognised_to_dict(found: Recognised) -> dict[str, Any]:
-    """Return each thing's name, its probability, and the distances behind it."""
+    """Return each thing's name, its probability, and the distances behind it.
+
+    The probabilities of the candidates and ``unknown``, that of none of them, sum to 1. A label is given from
+    ``min_probability`` on.
+    """
+    from deixis.perception.recognition.settings import MIN_LABEL_PROBABILITY
+
     return {
         "objects": [
             {
@@ -62,7 +81,7 @@ def recognised_to_dict(found: Recognised) -> dict[str, Any]:
                 "label": answer.label,
                 "probability": round(answer.probability, 6),
                 "unknown": round(answer.unknown, 6),
-                "threshold": round(answer.calibration.threshold, 6),
+                "min_probability": MIN_LABEL_PROBABILITY,
                 "reasons": list(answer.reasons),
                 "candidates": [_candidate(candidate) for candidate in answer.candidates],
             }

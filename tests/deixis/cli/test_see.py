@@ -81,7 +81,9 @@ def test_what_was_learned_is_recognised_on_another_table(tables: Path, tmp_path:
         assert entry["candidates"][0].keys() == (
             {"category", "D_C", "ICD", "divisor", "divisor_from", "ND", "nearest", "views", "probability"}
         )
-        assert (entry["label"] is None) == (entry["candidates"][0]["ND"] > entry["threshold"])
+        likeliest = entry["candidates"][0]["probability"]
+        assert (entry["label"] is None) == (likeliest < entry["min_probability"])
+        assert abs(sum(one["probability"] for one in entry["candidates"]) + entry["unknown"] - 1) < 1e-5
     written = read_scene(named)
     assert {thing.id: thing.label for thing in written.objects} == {id: e["label"] for id, e in answers.items()}
     assert all(thing.confidence < 1 for thing in written.objects if thing.label)
@@ -143,7 +145,7 @@ def test_what_a_category_has_learned_is_kept_and_is_what_its_views_give(tables: 
         for object in ("o1", "o5", "o8"):
             session.teach(tables / "7.scene.json", object, "flat thing")
         record, taught = session.views().category("flat_thing"), list(session.views().views("flat_thing"))
-        kept = instances_of(record, taught, UPRIGHT)
+        kept = instances_of(record, taught, (UPRIGHT,))[0]
         views = [(view.id, view.descriptors[UPRIGHT.name]) for view in taught]
         assert DISTANCES in record.state
     fresh = InstanceCategory.of("flat_thing", views)
@@ -253,17 +255,17 @@ def test_a_calibration_is_kept_while_a_tenth_of_the_views_stays(
     tables: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     from deixis.learning.views import recogniser_of
-    from deixis.perception.recognition.recogniser import Recogniser
+    from deixis.perception.recognition.joint import JointRecogniser
 
     scene, file = tables / "7.scene.json", tmp_path / "memory" / "perceptual" / "calibration.json"
     calls: list[dict[str, str]] = []  # the thing that each view shows
-    work = Recogniser.calibrated
+    work = JointRecogniser.calibrated
 
-    def calibrated(self: Recogniser, progress: None) -> Recogniser:
+    def calibrated(self: JointRecogniser, progress: None) -> JointRecogniser:
         calls.append({key: thing for known in self.categories for key, thing in known.things.items()})
         return work(self, progress)
 
-    monkeypatch.setattr(Recogniser, "calibrated", calibrated)
+    monkeypatch.setattr(JointRecogniser, "calibrated", calibrated)
     with Session(tmp_path / "memory") as session:
         for object, word in (("o1", "plate"), ("o5", "plate"), ("o3", "fork"), ("o4", "fork")):
             session.teach(scene, object, word)

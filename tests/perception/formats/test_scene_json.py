@@ -45,6 +45,7 @@ def objects(draw: st.DrawFn, id: str, axes: int) -> PerceivedObject:
         cloud=draw(st.none() | texts),
         colour=draw(st.none() | st.tuples(*[st.integers(0, 255)] * 3)),
         oriented=draw(st.none() | oriented_boxes) if axes == 3 else None,
+        candidates=tuple(draw(st.dictionaries(texts, st.floats(0, 0.3), max_size=3)).items()),
     )
 
 
@@ -174,7 +175,7 @@ def test_a_flat_box_has_no_oriented_one() -> None:
         read_scene(one(oriented=oriented))
 
 
-KEYS = "cloud, colour, confidence, id, label, max, min, oriented"
+KEYS = "candidates, cloud, colour, confidence, id, label, max, min, oriented"
 
 CATALOGUE: list[tuple[Any, str]] = [
     ([], "an object {…} is expected here, not a list"),
@@ -223,6 +224,15 @@ CATALOGUE: list[tuple[Any, str]] = [
     ),
     (one(label="fork", confidence=1.5), "object 'o1': a confidence lies between 0 and 1, not at 1.5"),
     (one(label="fork", confidence=-0.1), "object 'o1': a confidence lies between 0 and 1, not at -0.1"),
+    (
+        one(candidates={"fork": 0.7, "cup": 0.5}),
+        "object 'o1': the probabilities of 'candidates' are 0 or more, and 1 together at most",
+    ),
+    (
+        one(candidates={"fork": -0.1}),
+        "object 'o1': the probabilities of 'candidates' are 0 or more, and 1 together at most",
+    ),
+    (one(candidates={"fork": "sure"}), "objects[0]: 'candidates': 'fork': a number is expected, not a text"),
     (one(label="fork", confidence="sure"), "objects[0]: 'confidence': a number is expected, not a text"),
     (one(colour="rde"), "objects[0]: 'colour': there is no colour 'rde'; did you mean 'red'?"),
     (

@@ -18,10 +18,17 @@ from deixis.perception.recognition.calibration import (
     auroc,
     best_threshold,
     calibrate,
+    calibrate_jointly,
     expected_calibration_error,
 )
 from deixis.perception.recognition.distances import category_distance
-from deixis.perception.recognition.held_out import HeldOut, hold_out
+from deixis.perception.recognition.held_out import (
+    MAX_SHORTENING,
+    USUAL_SHORTENING,
+    HeldOut,
+    hold_out,
+    shortening,
+)
 from deixis.perception.recognition.index import Effort
 from deixis.perception.recognition.instances import InstanceCategory
 from deixis.perception.recognition.recogniser import Recogniser
@@ -71,6 +78,27 @@ def test_probabilities_sum_to_one_and_are_in_the_order_of_distances(normalised: 
     assert np.isfinite(named).all()
     ordered = np.array(named)[np.argsort(normalised)]
     assert (np.diff(ordered) <= 1e-12).all()
+
+
+def test_slips_spread_a_share_of_the_answers_evenly() -> None:
+    sure = Calibration(threshold=1, even=1, doubt=2, choice=1, slips=0.1)
+    np.testing.assert_allclose(sure.probabilities(np.array([0.5, 2.0])), [0.601, 0.169, 0.23])
+    assert sure.probabilities(np.array([0.5, np.inf]))[1] == 0.0
+    assert sure.probabilities(np.array([np.inf])).tolist() == [0.0, 1.0]
+
+
+def test_several_descriptors_weigh_by_how_well_they_told_held_out_views_apart() -> None:
+    rng = np.random.default_rng(0)
+    told, even = drawn(0, 300), replace(SHIPPED, weights=(0.5, 0.5))
+    noise = HeldOut(np.exp(rng.normal(0, 0.3, told.normalised.shape)), told.truth)
+    first, second = (calibrate_jointly(each, start=even).weights for each in ((told, noise), (noise, told)))
+    assert first == pytest.approx(second[::-1], abs=0.01) and first[0] > 0.6
+    assert sum(first) == pytest.approx(1.0)
+
+
+def test_one_descriptor_by_itself_is_calibrated_as_ever() -> None:
+    held = drawn(3, 200)
+    assert calibrate_jointly([held], start=SHIPPED) == calibrate(held)
 
 
 def test_expected_calibration_error_by_hand() -> None:
@@ -134,7 +162,19 @@ def test_holding_out_equals_recognising_without_the_view(seed: int) -> None:
     key = own.views.ids[row % 6]
     without = Recogniser.of([known.without_view(key) if known is own else known for known in categories])
     wanted = {known.category: known.normalised for known in without.recognise(own.views[row % 6]).candidates}
-    np.testing.assert_allclose(held.normalised[row], [wanted[known.name] for known in categories], rtol=1e-12)
+    shorter = held.normalised[row] / [wanted[known.name] for known in categories]
+    others = np.arange(3) != held.truth[row]
+    np.testing.assert_allclose(shorter[others], 1.0, rtol=1e-12)
+    assert (5 / 6) ** MAX_SHORTENING - 1e-12 <= shorter[held.truth[row]] <= 1.0 + 1e-12
+
+
+def test_a_category_is_nearer_by_the_power_of_its_number_of_things() -> None:
+    rng = np.random.default_rng(0)
+    counts = rng.integers(2, 9, 200)
+    falls = -0.15 * np.log(counts / (counts - 1))
+    assert shortening(list(zip(counts.tolist(), falls.tolist(), strict=True))) == pytest.approx(0.15)
+    assert shortening([(2, -9.0)]) == MAX_SHORTENING and shortening([(2, 0.0)]) == 0.0
+    assert shortening([]) == USUAL_SHORTENING
 
 
 def test_views_of_one_thing_are_held_out_together() -> None:
@@ -147,7 +187,7 @@ def test_views_of_one_thing_are_held_out_together() -> None:
     far = [first.views[i] for i in (3, 4, 5)]
     rest = InstanceCategory.of("rest", [(str(i), view) for i, view in enumerate(far)])
     wanted = category_distance(first.views[0], rest.views)[0] / (rest.intra_category_distance or np.nan)
-    assert held.normalised[0, 0] == pytest.approx(wanted)
+    assert held.normalised[0, 0] == pytest.approx(wanted * 2**-USUAL_SHORTENING)  # no category has three things
 
 
 def test_among_very_many_views_others_are_searched_as_recognition_searches_them() -> None:

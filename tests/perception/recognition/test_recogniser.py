@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -15,7 +16,7 @@ from deixis.perception.recognition.calibration import Calibration
 from deixis.perception.recognition.distances import view_distance
 from deixis.perception.recognition.instances import InstanceCategory
 from deixis.perception.recognition.recogniser import Recogniser, recognise
-from deixis.perception.recognition.settings import PAPER, RecognitionSettings
+from deixis.perception.recognition.settings import MIN_LABEL_PROBABILITY, PAPER, RecognitionSettings
 from deixis.perception.recognition.spread import SpreadSource
 
 STRICT = Calibration(threshold=1.5, even=1.5, doubt=3.0, choice=4.0)
@@ -51,7 +52,7 @@ def test_above_the_threshold_for_all_categories_is_unknown() -> None:
 
 
 def test_at_the_threshold_is_known() -> None:
-    assert recognise(seen(25), [NARROW], calibration=STRICT).label == "narrow"
+    assert recognise(seen(25), [NARROW], replace(PAPER, prior_spread=2.0), STRICT).label == "narrow"
 
 
 def test_one_view_is_measured_by_the_median_of_the_others_and_says_so() -> None:
@@ -89,7 +90,7 @@ def test_the_reason_says_what_d_c_was_divided_by() -> None:
         for settings in (PAPER, RecognitionSettings(shrinkage=2.0))
     )
     assert "ND 0.5 (D_C 1 to view 'narrow1' / 2: its ICD over 2 views), within" in plain
-    assert "(D_C 1 to view 'narrow1' / 3.5: its ICD over 2 things, 2, drawn to the median one), within" in drawn
+    assert "(D_C 1 to view 'narrow1' / 3.5: its ICD over 2 things, 2, drawn to the median one); its" in drawn
 
 
 def test_identical_views_are_measured_likewise() -> None:
@@ -151,7 +152,7 @@ def test_equations_as_written_give_the_same_answer(seed: int) -> None:
         assert candidate.normalised == candidate.distance / candidate.spread.value
     normalised = [candidate.normalised for candidate in found.candidates]
     assert normalised == sorted(normalised)
-    assert (found.label is not None) == (normalised[0] <= found.calibration.threshold)
+    assert (found.label is not None) == (found.candidates[0].probability >= MIN_LABEL_PROBABILITY)
     assert sum(candidate.probability for candidate in found.candidates) + found.unknown == pytest.approx(1)
 
 

@@ -22,6 +22,7 @@ from deixis.experiments.open_ended.comparison import (
 )
 from deixis.experiments.open_ended.contestants import (
     D2,
+    DRAWN,
     EQUATIONS,
     NEAREST,
     SPIN,
@@ -38,7 +39,7 @@ from deixis.perception.recognition.learners.learner import Learner
 from deixis.perception.recognition.learners.naive_bayes import Codebook
 from deixis.perception.recognition.learners.teaching import Course, Teaching, teach
 from deixis.perception.recognition.learners.view_features import ViewFeatures
-from deixis.perception.recognition.settings import DEFAULT, PAPER
+from deixis.perception.recognition.settings import PAPER
 from deixis.perception.simulator.tableware import FORMS
 
 Tick = Callable[[str], None]
@@ -48,8 +49,8 @@ Stage = Callable[[int], AbstractContextManager[Tick]]
 NAMING_METHODS = (
     NamingMethod(NEAREST, SPIN, None),
     NamingMethod(EQUATIONS, SPIN, PAPER),
-    NamingMethod(THINGS, SPIN, DEFAULT),
-    NamingMethod(UPRIGHT, UPRIGHT, DEFAULT),
+    NamingMethod(THINGS, SPIN, DRAWN),
+    NamingMethod(UPRIGHT, UPRIGHT, DRAWN),
     NamingMethod("D2 and extents", D2, None),
 )
 SPLITS = {"new things": by_things, "new views of things taught": by_views}

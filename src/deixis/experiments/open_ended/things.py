@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from deixis.errors import DeixisError
+from deixis.experiments.open_ended.mesh_list import EXCLUDED, MENDED
 from deixis.experiments.open_ended.shown import ThingViews
 from deixis.perception.clouds.mesh import Mesh
 from deixis.perception.clouds.mesh_file import read_mesh
@@ -71,6 +72,19 @@ def from_meshes(folder: Path, views: int, seed: int) -> Iterator[ThingViews]:
             each = -(-views // counts[category])
             mesh = upright(in_metres(read_mesh(file)), y_up)
             yield ThingViews(category, file.name, views_of(mesh, each, seed=10_000 * seed + number, upright=True))
+
+
+def listed_meshes(folder: Path) -> Iterator[tuple[str, str, Mesh]]:
+    """Yield category, file and mesh (metres, z up) of every thing that :mod:`.mesh_list` leaves in, mended by it."""
+    for category, file, y_up in rows_of(folder):
+        name = file.relative_to(folder).as_posix()
+        if name in EXCLUDED:
+            continue
+        mend = MENDED.get(name)
+        mesh = upright(in_metres(read_mesh(file)), y_up if mend is None or mend.y_up is None else mend.y_up)
+        if mend is not None and mend.longest is not None:
+            mesh = Mesh(mesh.vertices * (mend.longest / np.ptp(mesh.vertices, axis=0).max()), mesh.faces)
+        yield category, name, mesh
 
 
 def in_metres(mesh: Mesh) -> Mesh:

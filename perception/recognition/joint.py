@@ -1,0 +1,75 @@
+"""Recognition by several descriptors together: the same views, described in several ways, and one answer.
+
+Each descriptor has its own :class:`.Recogniser` of the same categories, and so its own nearest view and its own ND of
+every category. The answer goes by the weighted geometric mean of these ND (:mod:`.calibration`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.perception.errors import RecognitionError
+from deixis.perception.recognition.calibration import SHIPPED_JOINT, Calibration, calibrate_jointly
+from deixis.perception.recognition.held_out import HeldOut, Progress, hold_out
+from deixis.perception.recognition.instances import InstanceCategory
+from deixis.perception.recognition.recogniser import Recogniser, Recognition, decided, no_answer
+
+
+@dataclass(frozen=True, eq=False)
+class JointRecogniser:
+    """Recognisers of the same categories with the same views, one for each descriptor.
+
+    Candidates have D_C, the nearest view and the divisor of the first descriptor, and ND of all together.
+    """
+
+    parts: tuple[Recogniser, ...]
+    calibration: Calibration = SHIPPED_JOINT
+
+    def __post_init__(self) -> None:
+        listed = [[(each.name, each.views.ids) for each in part.categories] for part in self.parts]
+        if not listed or any(each != listed[0] for each in listed):
+            raise RecognitionError("the parts of a joint recogniser must have the same views in the same categories")
+        if len(self.calibration.weights) != len(self.parts):
+            counted = f"{len(self.calibration.weights)} weights for {len(self.parts)} descriptors"
+            raise RecognitionError(f"a calibration must have a weight for each descriptor, got {counted}")
+
+    @property
+    def categories(self) -> tuple[InstanceCategory, ...]:
+        """The categories, by the first descriptor."""
+        return self.parts[0].categories
+
+    def recognise(self, described: Sequence[NDArray[np.float32]]) -> Recognition:
+        """Name a view by its descriptors (q, d), those of each part in turn, or say that it is unknown, and why.
+
+        A view that has no descriptor of some kind is unknown with that reason. Raises RecognitionError where
+        descriptors are not finite or not of the categories' length.
+        """
+        found = [part.recognise(each) for part, each in zip(self.parts, described, strict=True)]
+        nothing = next((each for each in found if not each.candidates), None)
+        if nothing is not None:
+            return no_answer(self.calibration, nothing.reasons[0])
+        by_name = [{one.category: one.normalised for one in each.candidates} for each in found]
+        first = found[0].candidates
+        together = self.calibration.mean([np.array([named[one.category] for one in first]) for named in by_name])
+        *probabilities, unknown = self.calibration.probabilities(together).tolist()
+        ranked = [
+            replace(one, normalised=float(normalised), probability=probability)
+            for one, normalised, probability in zip(first, together, probabilities, strict=True)
+        ]
+        ranked.sort(key=lambda candidate: (candidate.normalised, candidate.category))
+        by_threshold = self.parts[0].settings.by_threshold
+        return decided(ranked, unknown, self.calibration, all(each.exact for each in found), by_threshold)
+
+    def held_out(self, progress: Progress | None = None) -> list[HeldOut]:
+        """Return the same views, held out, by each descriptor."""
+        return [hold_out(part.categories, part.indexes, part.settings, progress=progress) for part in self.parts]
+
+    def calibrated(self, progress: Progress | None = None) -> JointRecogniser:
+        """Return the same with weights, threshold and probabilities from its own views, each held out with all views
+        of its thing."""
+        prior = self.parts[0].settings.prior_unknown
+        return replace(self, calibration=calibrate_jointly(self.held_out(progress), prior, self.calibration))
