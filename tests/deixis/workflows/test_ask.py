@@ -150,7 +150,7 @@ def test_without_an_answer_nothing_becomes_certain_where_not_all_groundings_were
     code, out, err = deixis("ground", script, scene, "--ask", "--time-limit", 1, "--json")
     assert code in (0, 1, 3)  # 1: thirty things at one place are another scene than thirty in a row
     assert "Not all groundings could be considered" in err
-    assert len(matches(out)) == 30
+    assert len(matches(out)) == (0 if code == 1 else 30)
     assert all(chance is None or chance < 0.2 for chance in probabilities(out))
 
 

@@ -172,6 +172,7 @@ def test_graph_closure_and_relations_are_computed_once(monkeypatch: pytest.Monke
     monkeypatch.setattr("deixis.reasoning.grounding.similarity.Implications", Counted)
     monkeypatch.setattr("deixis.reasoning.grounding.questions.situation.Implications", Counted)
     monkeypatch.setattr(rectangle, "scene_relations", counted)
+    monkeypatch.setattr("deixis.reasoning.grounding.evidence.evidence.scene_relations", counted)
     script, scene = package.read_script(SCRIPT1), read_scene(SCENE)
     answer(GroundingRequest(script, scene, ask=TRUTH))
     of_the_whole = [arguments for arguments in closures if arguments[0].nodes == script.objects]
