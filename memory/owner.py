@@ -148,9 +148,26 @@ class ReaderLock:
             self._descriptor = None
 
 
+_has_opened = False  # whether this process has opened a store on disk, which starts threads of the library
+_threads_left_behind = False  # whether it was forked from one that had
+
+
+def begin_opening(folder: Path) -> None:
+    """Note that a store on disk is about to be opened. Raises MemoryBusyError in a process that was forked from one
+    that had opened any: the libraries' threads stayed there, and opening would wait for them for ever."""
+    global _has_opened
+    if _threads_left_behind:
+        raise MemoryBusyError(
+            f"the memory at {folder} cannot be opened by a process that was forked from one which had opened a memory; "
+            "start a new process instead (multiprocessing: 'spawn'), or fork before the first memory is opened"
+        )
+    _has_opened = True
+
+
 def leave_to_parent() -> None:
     """Let a forked child go of all locks: they are its parent's, which must not lose them by what the child does."""
-    global _guard
+    global _guard, _threads_left_behind
+    _threads_left_behind = _has_opened
     _guard = threading.Lock()
     for lock in _held.values():
         os.close(lock._descriptor)

@@ -460,6 +460,7 @@ def _opened_for_reading(real: Path, reason: str) -> Handle:
 
 def _opened_in(real: Path, where: Path, lock: OwnerLock | ReaderLock, undo: contextlib.ExitStack) -> Handle:
     """Open the database of ``real`` that lies in ``where``; what ``undo`` has is let be where that succeeds."""
+    disk.begin_opening(real)
     layout.prepare(where)
     tally = layout.AcknowledgedCounts(where)
     undo.callback(tally.close)

@@ -17,7 +17,7 @@ import pyoxigraph as ox
 from deixis.memory import folder as files
 from deixis.memory.errors import MemoryBusyError, MemoryFormatError, MemoryWriteError, ReadOnlyMemoryError
 from deixis.memory.folder import FolderState, committed
-from deixis.memory.owner import OwnerLock, ReaderLock
+from deixis.memory.owner import OwnerLock, ReaderLock, begin_opening
 from deixis.memory.semantic.migrations import MIGRATIONS
 from deixis.memory.semantic.rdf import ledger
 from deixis.memory.semantic.rdf.package import package_digest, packaged, packaged_quads
@@ -111,6 +111,7 @@ def _fill(store: ox.Store) -> None:
 
 def open_memory(folder: Path, create: bool, fill: Callable[[ox.Store], None] = _fill) -> Opened:
     """Open a memory, or make one whose store ``fill`` fills; raise as ``SemanticMemory.open`` does."""
+    begin_opening(folder)
     remove_stale()
     state = files.inspect(folder)
     if state in (FolderState.ABSENT, FolderState.EMPTY) and not create:
