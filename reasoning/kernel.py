@@ -64,7 +64,7 @@ def kernel(function: Callable[..., Any]) -> Kernel:
     ...     for number in numbers:
     ...         found += number
     ...     return found
-    >>> int(total(np.arange(5)))
+    >>> int(total.function(np.arange(5)))  # as interpreted
     10
     """
     return Kernel(function, interpretable=True, cache=True)

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import math
+from typing import TYPE_CHECKING
 
-from deixis.ontology.graph import RelationGraph
 from deixis.reasoning.errors import OutOfMemoryError, SettingError
+
+if TYPE_CHECKING:
+    from deixis.ontology.graph import RelationGraph
 
 DEFAULT_MEMORY_LIMIT = 2.0
 """Gigabytes (of 10^9 bytes) that a grounding may take, beyond the program itself."""

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from deixis.deadline import Deadline
 from deixis.errors import DeixisError
 from deixis.reasoning.qualitative.calculi.bridges import Link, links_between
+from deixis.reasoning.qualitative.networks.boxes import unrelated
 from deixis.reasoning.qualitative.networks.closure import close
 from deixis.reasoning.qualitative.networks.combination import joint_conflict, solve_jointly
 from deixis.reasoning.qualitative.networks.conflict import minimal_conflict
@@ -122,7 +123,12 @@ def _solve_single(text: NetworkText, wish: Wish, progress: Progress | None, told
     closure = close(small, deadline, progress)
     found = solve(small, deadline, progress, wish.scenario)
     verdict, reason, boxes = found.verdict, found.reason, None
-    if verdict is Verdict.UNDECIDED and not small.calculus.decided_by_closure and not deadline.passed:
+    if (
+        verdict is Verdict.UNDECIDED
+        and not small.calculus.decided_by_closure
+        and not unrelated((small,))
+        and not deadline.passed
+    ):
         witness = solve_jointly((small,), (), deadline, progress)
         verdict, reason, boxes = witness.verdict, witness.reason, witness.boxes
     seconds = time.perf_counter() - started
