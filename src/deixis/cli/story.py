@@ -22,6 +22,7 @@ from deixis.reasoning.grounding.evidence.meaning import Meaning
 from deixis.reasoning.grounding.evidence.unary import UnaryWeights
 from deixis.report.ground import grounding_lines
 from deixis.report.script import check_lines, inference_lines, learned_lines, script_lines
+from deixis.report.seen import answer_words
 from deixis.session import Session
 from deixis.workflows.ground import ground
 from deixis.workflows.infer import infer
@@ -29,8 +30,6 @@ from deixis.workflows.read import read_script
 
 if TYPE_CHECKING:
     from rich.console import Console
-
-    from deixis.perception.recognition.recogniser import Recognition
 
 
 QUERY = """SELECT ?object ?kind ?lesson WHERE {
@@ -127,16 +126,9 @@ def _seen(console: Console, session: Session, full: Script, out: Path) -> None:
 
     _chapter(console, 11, "Another table of points, and nobody says a word. What looks familiar?")
     found = session.recognise(look(20, "another"))
-    _listing(console, [f"{id:<5} {_name(answer)}" for id, answer in found.answers.items()])
+    _listing(console, [f"{id:<5} {answer_words(answer)}" for id, answer in found.answers.items()])
     plot_recognised(found, out / "another.png")
     _say(console, f"Picture: {out / 'another.png'}")
-
-
-def _name(answer: Recognition) -> str:
-    nearest = answer.candidates[0]
-    if answer.label is not None:
-        return f"{answer.label:<16} {answer.probability:.2f}"
-    return f"unknown; most like {nearest.category} (ND {nearest.normalised:.2f})"
 
 
 def full_text(name: str) -> list[str]:

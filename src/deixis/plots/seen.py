@@ -44,7 +44,7 @@ HEIGHT, MAX_WIDTH = 5.4, 12.5
 MAX_NAME_LENGTH = 32
 """Characters of a name that are drawn."""
 
-LEGEND = "Number: the probability that the name is right; beside 'unknown', that no name known is."
+LEGEND = "Number: the probability of the name ('?': too small to say it); of 'unknown', that no name known is right."
 
 Window = tuple[NDArray[np.float64], NDArray[np.float64]]
 """The least and the greatest x and y that are drawn, in metres."""
@@ -107,11 +107,19 @@ def plot_recognised(found: Recognised, path: str | Path) -> None:
 
 
 def _answered(thing: PerceivedObject, found: Recognised) -> str:
-    """Return the id of a thing, its name, and the probability of that where it was recognised."""
+    """Return the id of a thing, its name, and the probability of that where it was recognised.
+
+    In place of a name that is not sure enough stands the likeliest, where it is likelier than that none is right.
+    """
     answer: Recognition | None = found.answers.get(thing.id)
     name = (thing.label if answer is None else answer.label) or "unknown"
+    probability = None if answer is None else answer.probability
+    if answer is not None and answer.label is None and answer.candidates:
+        likeliest = max(answer.candidates, key=lambda one: one.probability)
+        if likeliest.probability > answer.unknown:
+            name, probability = f"{likeliest.category}?", likeliest.probability
     name = name if len(name) <= MAX_NAME_LENGTH else f"{name[: MAX_NAME_LENGTH - 1]}…"
-    return f"{thing.id} {name}" if answer is None else f"{thing.id} {name} {answer.probability:.2f}"
+    return f"{thing.id} {name}" if probability is None else f"{thing.id} {name} {probability:.2f}"
 
 
 def window_of(points: NDArray[np.float32], scene: Scene, found: Detected) -> Window:

@@ -56,14 +56,18 @@ MIN_LISTED = 0.05
 
 
 def answer_line(name: str, answer: Recognition) -> str:
-    """Return the line of one object: its label, its probability, and the reasons.
+    """Return the line of one object: its label, its probability, and the reasons."""
+    return f"{name:<5} {answer_words(answer)}   {'; '.join(answer.reasons)}"
+
+
+def answer_words(answer: Recognition) -> str:
+    """Return a label and its probability.
 
     Without a label the likeliest candidates stand in its place, after ``unknown``, which means none of them.
     """
     listed = [one for one in answer.candidates[:MAX_NAMES] if one.probability >= MIN_LISTED]
     perhaps = "".join(f", {one.category} {one.probability:.2f}" for one in listed) if answer.label is None else ""
-    said = f"{answer.label or 'unknown':<20} {answer.probability:.2f}{perhaps}"
-    return f"{name:<5} {said}   {'; '.join(answer.reasons)}"
+    return f"{answer.label or 'unknown':<20} {answer.probability:.2f}{perhaps}"
 
 
 def recognised_to_dict(found: Recognised) -> dict[str, Any]:

@@ -129,4 +129,4 @@ def test_a_picture_of_recognised_things_says_what_its_numbers_are(
     things = (PerceivedObject("o1", (0, 0, 0), (1, 1, 1)),)
     plot_seen.plot_recognised(Recognised(Scene(things), {"o1": answer}), tmp_path / "seen.png")
     assert [text.get_text() for text in drawn[0].axes[0].texts] == ["o1 unknown 0.39"]
-    assert "beside 'unknown', that no name known is" in drawn[0].axes[0].get_xlabel()
+    assert "of 'unknown', that no name known is" in drawn[0].axes[0].get_xlabel()
