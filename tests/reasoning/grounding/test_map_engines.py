@@ -208,7 +208,9 @@ def test_the_likeliest_of_all_maps_is_proved_and_the_probabilities_are_those_of_
 @given(evidences())
 def test_without_a_pivotal_fact_the_answer_is_the_one_foretold(evidence: Evidence) -> None:
     found = ground(evidence, EXACT)
-    assert found.pivotal is not None
+    if found.pivotal is None:  # not looked for where the description is probably of another scene
+        assert found.fits is not None and found.fits < 0.5
+        return
     facts = [evidence.description.fact(int(edge)) for edge in evidence.facts]
     names, whole = evidence.description.nodes, evidence.problem
     for pivotal in found.pivotal:
