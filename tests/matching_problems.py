@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from itertools import product
+from collections.abc import Iterator
+from itertools import combinations, permutations, product
 
 import numpy as np
 from hypothesis import strategies as st
@@ -56,3 +57,15 @@ def reordered(problem: Problem, rows: NDArray[np.int64], columns: NDArray[np.int
         problem.absent[rows],
         problem.allowed[rows][:, columns],
     )
+
+
+def maps(allowed: NDArray[np.bool_]) -> Iterator[NDArray[np.int64]]:
+    """Every map of objects to things that a mask allows, shape (n1,) each."""
+    n1, n2 = allowed.shape
+    for count in range(min(n1, n2) + 1):
+        for rows in combinations(range(n1), count):
+            for columns in permutations(range(n2), count):
+                assignment = np.full(n1, UNMATCHED, dtype=np.int64)
+                assignment[list(rows)] = columns
+                if allowed[list(rows), list(columns)].all():
+                    yield assignment

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
-from itertools import combinations, permutations
+from collections.abc import Callable
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from matching_problems import maps
 from numpy.typing import NDArray
 
 from deixis.deadline import Deadline
@@ -54,17 +54,6 @@ def weighed(evidence: Evidence) -> Verdict:
     found = engine_named("exact").align(evidence, Deadline.never()).verdict
     assert isinstance(found, Verdict)
     return found
-
-
-def maps(allowed: NDArray[np.bool_]) -> Iterator[NDArray[np.int64]]:
-    n1, n2 = allowed.shape
-    for count in range(min(n1, n2) + 1):
-        for rows in combinations(range(n1), count):
-            for columns in permutations(range(n2), count):
-                assignment = np.full(n1, UNMATCHED, dtype=np.int64)
-                assignment[list(rows)] = columns
-                if allowed[list(rows), list(columns)].all():
-                    yield assignment
 
 
 def summed(problem: Problem) -> tuple[float, NDArray[np.float64]]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import replace
 from itertools import combinations, permutations
 
@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from matching_problems import maps
 from numpy.typing import NDArray
 
 from deixis.deadline import Deadline
@@ -171,17 +172,6 @@ def evidences(draw: st.DrawFn) -> Evidence:
         allowed=allowed,
         identified=np.any(~allowed, axis=0),
     )
-
-
-def maps(allowed: NDArray[np.bool_]) -> Iterator[NDArray[np.int64]]:
-    n1, n2 = allowed.shape
-    for count in range(min(n1, n2) + 1):
-        for rows in combinations(range(n1), count):
-            for columns in permutations(range(n2), count):
-                assignment = np.full(n1, UNMATCHED, dtype=np.int64)
-                assignment[list(rows)] = columns
-                if allowed[list(rows), list(columns)].all():
-                    yield assignment
 
 
 @settings(max_examples=60, deadline=None)
