@@ -1,0 +1,60 @@
+"""Test the check of plain English in docstrings, comments, strings and pages."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from check_style import python_findings, text_findings
+
+HERE = Path("module.py")
+
+
+def messages(source: str) -> list[str]:
+    return [str(found) for found in python_findings(HERE, source)]
+
+
+@pytest.mark.parametrize("opening", ["What", "How", "Whether", "Which", "The same"])
+def test_docstrings_that_open_with_a_question_are_found(opening: str) -> None:
+    (found,) = messages(f'class Scene:\n    """{opening} of it."""\n')
+    assert found == f"module.py:2: docstring opens with '{opening}': say what it is or does"
+
+
+def test_function_docstrings_start_with_a_verb() -> None:
+    assert messages('def area():\n    """Return the area."""\n') == []
+    (found,) = messages('def area():\n    """The area."""\n')
+    assert found.startswith("module.py:2: docstring of a function opens with 'The'")
+
+
+def test_nouns_may_open_docstrings_of_properties_and_classes() -> None:
+    assert (
+        messages('class Box:\n    """A box."""\n\n    @property\n    def area(self):\n        """The area."""\n') == []
+    )
+
+
+def test_attribute_docstrings_are_checked() -> None:
+    assert messages('LIMIT = 3\n"""How many there may be."""\n') == [
+        "module.py:2: docstring opens with 'How': say what it is or does"
+    ]
+
+
+@pytest.mark.parametrize("wording", ["but for", "is none", "anew", "is told", "bears", "nobody"])
+def test_wordings_are_found_in_comments_strings_and_pages(wording: str) -> None:
+    assert len(messages(f"x = 1  # this {wording} that\n")) == 1
+    assert len(messages(f'x = f"{{1}} this {wording} that"\n')) == 1
+    (found,) = text_findings(Path("page.md"), f"First line.\nThis {wording} that.\n")
+    assert found.line == 2
+
+
+@pytest.mark.parametrize("text", ["the value is None", "there is no fact", "it is no longer there", "a teddy bear"])
+def test_similar_wordings_are_accepted(text: str) -> None:
+    assert messages(f"x = 1  # {text}\n") == []
+
+
+def test_code_in_pages_is_not_checked() -> None:
+    assert list(text_findings(Path("page.md"), "```\nit bears anew\n```\n`bears`\n")) == []
+
+
+def test_names_of_tests_have_a_longest_length() -> None:
+    assert len(messages(f"def test_{'x' * 60}():\n    pass\n")) == 1
+    assert messages(f"def test_{'x' * 55}():\n    pass\n") == []
