@@ -8,6 +8,7 @@ from functools import cached_property
 from itertools import chain, pairwise, product
 from typing import TYPE_CHECKING
 
+from deixis.answers import Answer, count
 from deixis.ontology.colours import Colour
 from deixis.ontology.facts import Fact, Source
 from deixis.ontology.kinds import Kind
@@ -123,8 +124,8 @@ def _fact(subject: str, relations: tuple[Relation, ...], thing: str, statement: 
     return Fact(subject, relations, thing, how.positive, how.optional, how.weight, statement.source)
 
 
-@dataclass(frozen=True)
-class Script:
+@dataclass(frozen=True, repr=False)
+class Script(Answer):
     """A layout script that was read: its statements, and what follows from them without any inference.
 
     >>> from deixis.grammar.parser import parse_script
@@ -142,6 +143,11 @@ class Script:
     statements: tuple[Statement, ...]
     comments: tuple[Comment, ...]
     ontology: Ontology = field(repr=False, compare=False)
+
+    def summary(self) -> str:
+        """Return the file, and how many objects and facts there are."""
+        title = f" {self.title or self.name!r}" if self.title or self.name else ""
+        return f"{self.file}{title}: {count(len(self.objects), 'object')}, {count(len(self.facts), 'fact')}"
 
     def all_statements(self) -> Iterator[Statement]:
         """Return the statements in order, those of included files in the place of their include."""

@@ -27,7 +27,7 @@ class Reading(StrEnum):
     EXACT = "exact"  # between two boxes: one of ten names, of which every pair bears just one
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Relation:
     """A relation word in one reading, as the TBox states it.
 
@@ -49,6 +49,9 @@ class Relation:
     broader: frozenset[str] = field(compare=False)
     phrase: str = field(compare=False)
     words: tuple[str, ...] = field(compare=False)
+
+    def __repr__(self) -> str:
+        return f"<Relation {self.name} ({self.reading.value})>"
 
     def __str__(self) -> str:
         return self.name

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import unicodedata
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
+from deixis.answers import Answer, count
 from deixis.deadline import Deadline
 from deixis.ontology.colours import Rgb
 from deixis.ontology.graph import RelationGraph
@@ -114,8 +116,8 @@ class Detected(Protocol):
     def shows(self) -> str: ...
 
 
-@dataclass(frozen=True)
-class Scene:
+@dataclass(frozen=True, repr=False)
+class Scene(Answer):
     """Perceived objects in one frame, seen from one viewpoint.
 
     ``unit`` is ``m``, or ``px`` for what was measured in an image; relations do not depend on it. ``detection`` says
@@ -143,6 +145,130 @@ class Scene:
             _require_box(thing, self.file)
         if len({len(thing.minimum) for thing in self.objects}) > 1:
             raise SceneError(f"{self.file}: some boxes have heights and some have none; give all of them 2 or 3 axes")
+
+    @classmethod
+    def from_boxes(
+        cls,
+        min: ArrayLike | None = None,
+        max: ArrayLike | None = None,
+        *,
+        centre: ArrayLike | None = None,
+        size: ArrayLike | None = None,
+        yaw: ArrayLike | float | None = None,
+        ids: Sequence[str | int] | None = None,
+        labels: Sequence[str | None] | None = None,
+        confidences: Sequence[float] | None = None,
+        frame: str = "table",
+        viewpoint: str = "chair",
+        unit: str = "m",
+    ) -> Scene:
+        """Return a scene of boxes in arrays.
+
+        Parameters
+        ----------
+        min, max
+            Least and greatest corners, arrays of shape (n, 2) or (n, 3): x to the viewer's right, y away, z up.
+        centre, size, yaw
+            Instead of corners: centres and side lengths, arrays of shape (n, 2) or (n, 3), and optionally an angle for
+            each box (or one for all), in radians, counter-clockwise from the x axis to its first side. With ``yaw`` the
+            scene has the axis-aligned boxes around the turned ones, and keeps the turned ones if there are heights.
+        ids
+            Names of the objects, strings or integers; ``o1``, ``o2``, … without them.
+        labels, confidences
+            A name for each object or None, and the probability that it is right.
+        unit
+            ``m``, or ``px`` for boxes in an image.
+
+        Raises
+        ------
+        SceneError
+            If shapes do not agree, a corner is not finite, or two objects share an id.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> scene = Scene.from_boxes(min=np.zeros((2, 3)), max=np.full((2, 3), 0.1), ids=[4, 7])
+        >>> scene.ids
+        ('4', '7')
+        >>> turned = Scene.from_boxes(centre=[[0, 0, 0.05]], size=[[0.2, 0.1, 0.1]], yaw=np.pi / 2)
+        >>> turned.boxes[0].round(6).tolist()
+        [[-0.05, -0.1, 0.0], [0.05, 0.1, 0.1]]
+        """
+        low, high, oriented = _corners(min, max, centre, size, yaw)
+        n = len(low)
+        names = [f"o{i + 1}" for i in range(n)] if ids is None else [str(name) for name in ids]
+        given = {"ids": names, "labels": labels, "confidences": confidences}
+        for what, values in given.items():
+            if values is not None and len(values) != n:
+                raise SceneError(f"`{what}` must have one entry for each of the {n} boxes, got {len(values)}")
+        things = [
+            PerceivedObject(
+                id=names[i],
+                minimum=tuple(low[i].tolist()),
+                maximum=tuple(high[i].tolist()),
+                label=None if labels is None else labels[i],
+                confidence=1.0 if confidences is None else float(confidences[i]),
+                oriented=oriented[i] if oriented else None,
+            )
+            for i in range(n)
+        ]
+        return cls(tuple(things), frame=frame, viewpoint=viewpoint, unit=unit)
+
+    @classmethod
+    def from_open3d(
+        cls,
+        boxes: Iterable[Any],
+        *,
+        ids: Sequence[str | int] | None = None,
+        labels: Sequence[str | None] | None = None,
+        viewpoint: str = "chair",
+    ) -> Scene:
+        """Return a scene of Open3D's axis-aligned or oriented bounding boxes, or of what has one (clouds, meshes).
+
+        The axis-aligned box around each is taken, and its cloud if it is a point cloud. ``ids`` and ``labels`` are as
+        in :meth:`from_boxes`.
+        """
+        from deixis.perception.open3d import open3d
+
+        shapes, clouds = list(boxes), open3d().geometry.PointCloud
+        low = np.array([np.asarray(shape.get_min_bound()) for shape in shapes]).reshape(-1, 3)
+        high = np.array([np.asarray(shape.get_max_bound()) for shape in shapes]).reshape(-1, 3)
+        scene = cls.from_boxes(low, high, ids=ids, labels=labels, viewpoint=viewpoint)
+        things = (
+            replace(thing, cloud=PointCloud.from_open3d(shape)) if isinstance(shape, clouds) else thing
+            for thing, shape in zip(scene.objects, shapes, strict=True)
+        )
+        return replace(scene, objects=tuple(things))
+
+    @classmethod
+    def from_coco(cls, source: str | Path | Mapping[str, Any], image: str | int | None = None) -> Scene:
+        """Return the scene of one image in a file (or parsed JSON) of COCO instance annotations.
+
+        ``image`` chooses it by file name or id where there are several. Raises SceneError for bad input.
+        """
+        read: Callable[..., Scene] = _format("scene_json").read_scene
+        return read(source, image)
+
+    @classmethod
+    def from_detections3d(cls, message: Any, *, viewpoint: str = "chair") -> Scene:
+        """Return the scene that a ``vision_msgs/Detection3DArray`` describes, as a message or as dictionaries.
+
+        :func:`deixis.perception.formats.detections3d.scene_from_detections3d` names the fields.
+        """
+        read: Callable[..., Scene] = _format("detections3d").scene_from_detections3d
+        return read(message, viewpoint=viewpoint)
+
+    def to_detections3d(self) -> dict[str, Any]:
+        """Return the fields of a ``vision_msgs/Detection3DArray``, as dictionaries and lists."""
+        write: Callable[[Scene], dict[str, Any]] = _format("detections3d").scene_to_detections3d
+        return write(self)
+
+    def summary(self) -> str:
+        """Return the file, and how many objects there are and from where they are seen."""
+        labelled = sum(thing.label is not None for thing in self.objects)
+        axes = f", {len(self.objects[0].minimum)}-D boxes in {self.unit}" if self.objects else ""
+        labels = f", {labelled} labelled" if labelled else ""
+        return f"{self.file}: {count(len(self.objects), 'object')}{labels}{axes}, seen from the {self.viewpoint}"
 
     @property
     def ids(self) -> tuple[str, ...]:
@@ -232,6 +358,59 @@ class Scene:
     def reordered(self, order: Sequence[int]) -> Scene:
         """Return the same scene with its objects listed in another order."""
         return replace(self, objects=tuple(self.objects[i] for i in order), detection=None)
+
+
+def _format(name: str) -> Any:
+    """Return a module of ``perception.formats``, by name: each of them imports this one."""
+    return import_module(f"deixis.perception.formats.{name}")
+
+
+def _corners(
+    min: ArrayLike | None,
+    max: ArrayLike | None,
+    centre: ArrayLike | None,
+    size: ArrayLike | None,
+    yaw: ArrayLike | float | None,
+) -> tuple[NDArray[np.float64], NDArray[np.float64], list[OrientedBox]]:
+    """Return least and greatest corners (n, 2 or 3), and the oriented boxes where an angle was given for 3-D boxes."""
+    if min is not None and max is not None and centre is None and size is None and yaw is None:
+        low, high = _rows(min, "min"), _rows(max, "max")
+        if low.shape != high.shape:
+            raise SceneError(f"`min` and `max` must have one shape, got {low.shape} and {high.shape}")
+        return low, high, []
+    if centre is None or size is None or min is not None or max is not None:
+        raise SceneError("give boxes by `min` and `max`, or by `centre` and `size`, and `yaw` with these only")
+    middle, sides = _rows(centre, "centre"), _rows(size, "size")
+    if middle.shape != sides.shape:
+        raise SceneError(f"`centre` and `size` must have one shape, got {middle.shape} and {sides.shape}")
+    if (sides < 0).any():
+        raise SceneError("`size` must be 0 or more on each axis")
+    if yaw is None:
+        return middle - sides / 2, middle + sides / 2, []
+    try:
+        angles = np.broadcast_to(np.asarray(yaw, dtype=np.float64), len(middle))
+    except (ValueError, TypeError) as error:
+        raise SceneError(f"`yaw` must be one angle, or one for each of the {len(middle)} boxes, in radians") from error
+    cosine, sine = np.abs(np.cos(angles)), np.abs(np.sin(angles))
+    half = sides / 2
+    half[:, 0], half[:, 1] = cosine * half[:, 0] + sine * half[:, 1], sine * half[:, 0] + cosine * half[:, 1]
+    oriented = []
+    if middle.shape[1] == 3:
+        rows = zip(middle.tolist(), angles.tolist(), sides.tolist(), strict=True)
+        oriented = [OrientedBox(tuple(c), angle, tuple(extents)) for c, angle, extents in rows]
+    return middle - half, middle + half, oriented
+
+
+def _rows(values: ArrayLike, what: str) -> NDArray[np.float64]:
+    try:
+        rows = np.array(values, dtype=np.float64)
+    except (ValueError, TypeError) as error:
+        raise SceneError(f"`{what}` must be an array of numbers of shape (n, 2) or (n, 3)") from error
+    if rows.size == 0:
+        return rows.reshape(0, 2)
+    if rows.ndim != 2 or rows.shape[1] not in (2, 3):
+        raise SceneError(f"`{what}` must have shape (n, 2) or (n, 3), got {rows.shape}")
+    return rows
 
 
 def _require_box(thing: PerceivedObject, file: str) -> None:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from datetime import datetime
 from typing import TYPE_CHECKING, Protocol
 
+from deixis.answers import Answer
 from deixis.ontology.colours import Rgb
 from deixis.ontology.facts import Fact
 from deixis.ontology.relation import Relation, Relations
@@ -62,8 +63,8 @@ class Alternative:
     probability: float | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Match:
+@dataclass(frozen=True, slots=True, repr=False)
+class Match(Answer):
     """An object of the description and the perceived thing that it is.
 
     ``score`` is the share of what is said of the object and can be compared that holds (by degree and weight; 1 where
@@ -79,6 +80,11 @@ class Match:
     decided: bool
     alternatives: tuple[Alternative, ...]
     probability: float | None = None
+
+    def summary(self) -> str:
+        """Return the object, its thing, and how probable that is."""
+        probability = "" if self.probability is None else f", probability {self.probability:.3g}"
+        return f"{self.object} is {self.perceived}{probability}{'' if self.decided else ', undecided'}"
 
     @property
     def could_be(self) -> tuple[str, ...]:

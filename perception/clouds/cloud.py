@@ -61,6 +61,20 @@ class PointCloud:
             origin=self.origin,
         )
 
+    @classmethod
+    def from_open3d(cls, cloud: Any) -> PointCloud:
+        """Return the points of an ``open3d.geometry.PointCloud``, with their colours and normals.
+
+        >>> PointCloud.from_open3d(PointCloud(np.array([[0, 0, 1]], np.float32)).to_open3d()).points.tolist()
+        [[0.0, 0.0, 1.0]]
+        """
+        colours = np.asarray(cloud.colors) if cloud.has_colors() else None
+        return cls(
+            np.asarray(cloud.points, dtype=np.float32),
+            None if colours is None else np.clip(np.round(255 * colours), 0, 255).astype(np.uint8),
+            normals=np.asarray(cloud.normals, dtype=np.float32) if cloud.has_normals() else None,
+        )
+
     def to_open3d(self) -> Any:
         """Return the points that have a depth as an ``open3d.geometry.PointCloud``, with their colours and normals.
 

@@ -8,8 +8,11 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Mapping, Sequence
+from numbers import Integral
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from deixis.ontology.colours import Rgb, hex_of_rgb, rgb_of_hex
 from deixis.ontology.relation import nearest
@@ -123,7 +126,7 @@ def _object(data: Any, where: str, scale: float) -> PerceivedObject:
     label, confidence, cloud = entry.get("label"), entry.get("confidence", 1.0), entry.get("cloud")
     colour, oriented = entry.get("colour"), entry.get("oriented")
     return PerceivedObject(
-        id=text(entry["id"], f"{where}: 'id'"),
+        id=_id(entry["id"], f"{where}: 'id'"),
         minimum=_numbers(entry["min"], f"{where}: 'min'", scale, (2, 3)),
         maximum=_numbers(entry["max"], f"{where}: 'max'", scale, (2, 3)),
         label=None if label is None else text(label, f"{where}: 'label'"),
@@ -133,6 +136,13 @@ def _object(data: Any, where: str, scale: float) -> PerceivedObject:
         oriented=None if oriented is None else _oriented(oriented, f"{where}: 'oriented'", scale),
         candidates=_candidates(entry.get("candidates"), f"{where}: 'candidates'"),
     )
+
+
+def _id(data: Any, where: str) -> str:
+    """Return an id as text; detectors and trackers count, so that an integer will do."""
+    if isinstance(data, Integral) and not isinstance(data, bool):
+        return str(int(data))
+    return text(data, where)
 
 
 def _candidates(data: Any, where: str) -> tuple[tuple[str, float], ...]:
@@ -188,6 +198,8 @@ def _require_keys(entry: Mapping[str, Any], keys: Sequence[str], where: str) -> 
 
 
 def _numbers(data: Any, where: str, scale: float, counts: Sequence[int]) -> tuple[float, ...]:
+    if isinstance(data, np.ndarray):
+        data = data.tolist()
     if not isinstance(data, list | tuple) or len(data) not in counts:
         raise SceneError(f"{where} must be a list of {' or '.join(map(str, counts))} numbers")
     return tuple(number(value, where) * scale for value in data)

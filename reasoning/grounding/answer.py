@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from typing import TYPE_CHECKING, Any
 
+from deixis.answers import Answer, count
 from deixis.ontology.graph import Fact
 from deixis.ontology.lessons.types import Alternative, Match
 from deixis.ontology.relation import Relation
@@ -72,8 +73,8 @@ class Pivotal:
     settled: tuple[str, ...]
 
 
-@dataclass(frozen=True)
-class Grounding:
+@dataclass(frozen=True, repr=False)
+class Grounding(Answer):
     """The answer of an engine, with all that qualifies it.
 
     ``probabilities`` says what those of the matches are worth, and ``probability_error`` by how much they may be off.
@@ -83,7 +84,8 @@ class Grounding:
     to be of another scene. ``finished`` says whether the engine came to its end within the time limit. By ``gap``
     (nats) another answer may be likelier at most: 0 where this one is proved the best, infinite where the engine has no
     bound. ``exchanges`` are the questions that were asked, with their answers, and ``viewpoints`` those from which the
-    script may speak, most probable first, where they were to be recovered; None where that was not wanted.
+    script may speak, most probable first, where they were to be recovered; None where that was not wanted. ``scene`` is
+    the scene that was grounded in, for pictures; None where an engine was called directly.
     """
 
     engine: str
@@ -106,6 +108,17 @@ class Grounding:
     gap: float = math.inf
     exchanges: tuple[Exchange, ...] | None = None
     viewpoints: tuple[Viewpoint, ...] | None = None
+    scene: object | None = field(default=None, compare=False)
+
+    def summary(self) -> str:
+        """Return how many objects were found and decided, and whether the description fits."""
+        objects = len(self.matches) + len(self.unmatched_objects)
+        decided = sum(match.decided for match in self.matches.values())
+        parts = [f"{len(self.matches)} of {count(objects, 'object')} matched", f"{decided} decided"]
+        parts.append(f"{len(self.satisfied)} of {count(len(self.outcomes), 'fact')} satisfied")
+        if self.fits is not None:
+            parts.append(f"fits {self.fits:.2f}")
+        return ", ".join(parts)
 
     def of(self, outcome: Outcome) -> tuple[FactOutcome, ...]:
         return tuple(entry for entry in self.outcomes if entry.outcome is outcome)

@@ -24,21 +24,46 @@ from deixis.version import VERSION
 if TYPE_CHECKING:
     from deixis.errors import DeixisError
     from deixis.grammar.format import format_script
+    from deixis.grammar.script import Script
+    from deixis.learning.views import Recognised
+    from deixis.memory.semantic.queries.results import QueryResult
+    from deixis.ontology.facts import Fact
+    from deixis.ontology.lessons.types import LayoutConcept, Match
+    from deixis.ontology.relation import Relation
+    from deixis.perception.clouds.cloud import PointCloud
     from deixis.perception.formats.scene_json import read_scene
+    from deixis.perception.scene import OrientedBox, PerceivedObject, Scene
+    from deixis.reasoning.grounding.answer import Grounding
     from deixis.session import Session
     from deixis.workflows.ask import ask
-    from deixis.workflows.check import check
+    from deixis.workflows.check import Check, check
     from deixis.workflows.ground import ground
-    from deixis.workflows.imagine import imagine
-    from deixis.workflows.infer import infer
+    from deixis.workflows.imagine import Imagination, imagine
+    from deixis.workflows.infer import Inference, infer
     from deixis.workflows.perceive import perceive, write_scene
     from deixis.workflows.read import read_script
-    from deixis.workflows.retrieve import retrieve
+    from deixis.workflows.retrieve import Retrieval, retrieve
     from deixis.workflows.simulate import simulate
 
 __version__ = VERSION
 __all__ = [
+    "Check",
     "DeixisError",
+    "Fact",
+    "Grounding",
+    "Imagination",
+    "Inference",
+    "LayoutConcept",
+    "Match",
+    "OrientedBox",
+    "PerceivedObject",
+    "PointCloud",
+    "QueryResult",
+    "Recognised",
+    "Relation",
+    "Retrieval",
+    "Scene",
+    "Script",
     "Session",
     "ask",
     "check",
@@ -55,7 +80,23 @@ __all__ = [
 ]
 
 _HOMES = {
+    "Check": "deixis.workflows.check",
     "DeixisError": "deixis.errors",
+    "Fact": "deixis.ontology.facts",
+    "Grounding": "deixis.reasoning.grounding.answer",
+    "Imagination": "deixis.workflows.imagine",
+    "Inference": "deixis.workflows.infer",
+    "LayoutConcept": "deixis.ontology.lessons.types",
+    "Match": "deixis.ontology.lessons.types",
+    "OrientedBox": "deixis.perception.scene",
+    "PerceivedObject": "deixis.perception.scene",
+    "PointCloud": "deixis.perception.clouds.cloud",
+    "QueryResult": "deixis.memory.semantic.queries.results",
+    "Recognised": "deixis.learning.views",
+    "Relation": "deixis.ontology.relation",
+    "Retrieval": "deixis.workflows.retrieve",
+    "Scene": "deixis.perception.scene",
+    "Script": "deixis.grammar.script",
     "Session": "deixis.session",
     "ask": "deixis.workflows.ask",
     "check": "deixis.workflows.check",

@@ -13,16 +13,20 @@ from deixis.errors import DeixisError
 
 @dataclass(frozen=True, slots=True)
 class OptionalPackage:
-    """An optional package: the distribution that holds it, and the extra in ``pyproject.toml`` that names it."""
+    """An optional package: the distribution that holds it, and the extra in ``pyproject.toml`` that names it.
+
+    ``extra`` is None for a package that only users choose to install.
+    """
 
     distribution: str
-    extra: str
+    extra: str | None
 
 
 OPTIONAL = {
     "matplotlib": OptionalPackage("matplotlib", "plots"),
     "open3d": OptionalPackage("open3d", "perception"),
     "PIL": OptionalPackage("pillow", "perception"),
+    "pandas": OptionalPackage("pandas", None),
     "sklearn": OptionalPackage("scikit-learn", "experiments"),
 }
 """The optional packages by the names under which they are imported."""
@@ -45,6 +49,5 @@ def require(package: str, purpose: str) -> None:
     """
     if find_spec(package) is None:
         missing = OPTIONAL[package]
-        raise MissingExtraError(
-            f"{purpose} needs {missing.distribution}; install it: pip install 'deixis[{missing.extra}]'"
-        )
+        wanted = missing.distribution if missing.extra is None else f"'deixis[{missing.extra}]'"
+        raise MissingExtraError(f"{purpose} needs {missing.distribution}; install it: pip install {wanted}")

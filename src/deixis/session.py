@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from deixis.reasoning.description_logic.object_view import ObjectView
     from deixis.reasoning.grounding.answer import Grounding
     from deixis.reasoning.grounding.evidence.meaning import Meaning
-    from deixis.workflows.check import Checked
+    from deixis.workflows.check import Check
     from deixis.workflows.dialogue import Ask
     from deixis.workflows.learn import Learned
 
@@ -163,7 +163,7 @@ class Session(Closing):
         layout: str | Path | Script,
         scene: Scene | str | Path | Mapping[str, Any],
         time_limit: float = DEFAULT_TIME_LIMIT,
-    ) -> Checked:
+    ) -> Check:
         """What is wrong with a table: ``layout`` is a learned layout's name, or a script or its file."""
         from deixis.workflows.check import check
 

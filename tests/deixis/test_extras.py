@@ -139,9 +139,10 @@ def test_a_command_names_the_extra_that_it_lacks(said: Said, command: str, extra
     assert f"pip install 'deixis[{extra}]'" in err
 
 
-@pytest.mark.parametrize("package", OPTIONAL)
+@pytest.mark.parametrize("package", [name for name, optional in OPTIONAL.items() if optional.extra is not None])
 def test_the_extra_that_an_error_names_brings_the_package(package: str, monkeypatch: pytest.MonkeyPatch) -> None:
     optional = OPTIONAL[package]
+    assert optional.extra is not None
     listed = [Requirement(line).name for line in PROJECT["optional-dependencies"][optional.extra]]
     assert any(name.startswith(optional.distribution) for name in listed)
     assert not any(Requirement(line).name.startswith(optional.distribution) for line in PROJECT["dependencies"])

@@ -6,20 +6,21 @@ import csv
 import io
 import json
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import Any
 
 import pyoxigraph as ox
 
+from deixis.answers import Answer, count
 from deixis.memory.errors import QueryError
 from deixis.memory.semantic.rdf.files import PREFIXES, short
 from deixis.ontology.triples import with_blank_nodes
 from deixis.printable import visible_line
 
 Term = ox.NamedNode | ox.BlankNode | ox.Literal | ox.Triple
-Answer = ox.QuerySolutions | ox.QueryBoolean | Sequence[ox.Triple]
+StoreAnswer = ox.QuerySolutions | ox.QueryBoolean | Sequence[ox.Triple]
 _STRING = PREFIXES["xsd"] + "string"
 
 _FORMULA = re.compile(r"[=+\-@\t\r\n\uff1d\uff0b\uff0d\uff20]")
@@ -37,8 +38,45 @@ class QueryKind(StrEnum):
     DESCRIBE = "describe"
 
 
-@dataclass(frozen=True)
-class QueryResult:
+class Row(tuple[Term | None, ...]):
+    """One solution of a SELECT query: a tuple of terms that are also read by the names of their variables.
+
+    None stands for a variable without a value.
+
+    Examples
+    --------
+    >>> row = Row((ox.Literal("fork"), None), ("name", "size"))
+    >>> row["name"].value, row["size"], len(row)
+    ('fork', None, 2)
+    >>> row.asdict()["name"].value
+    'fork'
+    """
+
+    variables: tuple[str, ...]
+
+    def __new__(cls, terms: Iterable[Term | None], variables: tuple[str, ...]) -> Row:
+        """Return a row of terms in the order of ``variables``."""
+        row = super().__new__(cls, terms)
+        row.variables = variables
+        return row
+
+    def __getitem__(self, key: Any) -> Any:
+        """Return the term of a variable's name (with or without ``?``), or of a position."""
+        if not isinstance(key, str):
+            return super().__getitem__(key)
+        try:
+            return super().__getitem__(self.variables.index(key.removeprefix("?")))
+        except ValueError:
+            known = ", ".join(self.variables)
+            raise KeyError(f"the query selects no variable '{key}'; it selects {known}") from None
+
+    def asdict(self) -> dict[str, Term | None]:
+        """Return the terms by the names of their variables."""
+        return dict(zip(self.variables, self, strict=True))
+
+
+@dataclass(frozen=True, repr=False)
+class QueryResult(Answer):
     """What a query found: rows of terms, a boolean, or triples, by its kind.
 
     Rows come as the store gives them; what is printed is sorted where the query states no order, so that the same
@@ -47,19 +85,27 @@ class QueryResult:
 
     kind: QueryKind
     variables: tuple[str, ...] = ()
-    rows: tuple[tuple[Term | None, ...], ...] = ()
+    rows: tuple[Row, ...] = ()
     boolean: bool | None = None
     triples: tuple[ox.Triple, ...] = ()
     ordered: bool = False  # whether the query states an order
 
+    def summary(self) -> str:
+        """Return what kind of answer it is, and how many rows or triples it has."""
+        if self.kind is QueryKind.ASK:
+            return f"ASK: {'yes' if self.boolean else 'no'}"
+        if self.kind is QueryKind.SELECT:
+            return f"SELECT {' '.join('?' + name for name in self.variables)}: {count(len(self.rows), 'row')}"
+        return f"{self.kind.upper()}: {count(len(self.triples), 'triple')}"
+
     @classmethod
-    def of(cls, kind: QueryKind, answer: Answer, ordered: bool) -> QueryResult:
+    def of(cls, kind: QueryKind, answer: StoreAnswer, ordered: bool) -> QueryResult:
         """Return what Oxigraph answers, read to its end."""
         if isinstance(answer, ox.QueryBoolean):
             return cls(kind, boolean=bool(answer))
         if isinstance(answer, ox.QuerySolutions):
             variables = tuple(variable.value for variable in answer.variables)
-            return cls(kind, variables, tuple(map(tuple, answer)), ordered=ordered)
+            return cls(kind, variables, tuple(Row(row, variables) for row in answer), ordered=ordered)
         return cls(kind, triples=tuple(sorted(set(answer), key=str)))
 
     def printed(self) -> Sequence[Sequence[Term | None]]:
@@ -79,7 +125,7 @@ class QueryResult:
             "  ".join(cell.ljust(width) for cell, width in zip(line, widths, strict=True)).rstrip() for line in lines
         ]
 
-    def to_json(self) -> str:
+    def to_json(self, indent: int | None = 2) -> str:
         """Return SPARQL 1.1 results as JSON; of a graph, its triples in N-Triples."""
         if self.kind is QueryKind.ASK:
             answer: dict[str, Any] = {"head": {}, "boolean": self.boolean}
@@ -87,7 +133,7 @@ class QueryResult:
             answer = solutions(self.variables, self.printed())
         else:
             answer = {"triples": [f"{triple} ." for triple in self.triples]}
-        return json.dumps(answer, indent=2, ensure_ascii=False)
+        return json.dumps(answer, indent=indent, ensure_ascii=False)
 
     def to_csv(self) -> str:
         """Return SPARQL 1.1 results as CSV. Raises QueryError for what has no rows.

@@ -14,7 +14,7 @@ import pyoxigraph as ox
 from deixis.memory.errors import QueryError
 from deixis.memory.semantic.queries import worker
 from deixis.memory.semantic.queries.limits import MAX_DEPTH, MAX_LENGTH, MAX_TOKENS, QueryLimits
-from deixis.memory.semantic.queries.results import Answer, QueryKind, QueryResult, Term, solutions
+from deixis.memory.semantic.queries.results import QueryKind, QueryResult, StoreAnswer, Term, solutions
 from deixis.memory.semantic.queries.tokens import (
     Token,
     TokenKind,
@@ -95,7 +95,7 @@ def answer(
     named_graphs: Sequence[str] | None,
     bindings: Mapping[str, Term] | None,
     limits: QueryLimits,
-) -> Answer:
+) -> StoreAnswer:
     """Return what Oxigraph answers to a checked query; raises as :func:`run_query`.
 
     ``default_graph`` and ``named_graphs`` are IRIs, or None for what the query itself says; ``bindings`` are values of

@@ -58,7 +58,7 @@ def check(
     if plot is not None:
         from deixis.plots.check import plot_check
 
-        plot_check(checked, seen, plot)
+        plot_check(checked, plot)
     if turtle:
         sys.stdout.write(checked.report)
     elif as_json:

@@ -94,15 +94,8 @@ def ground(
         print(file=out)
     if plot is not None:
         from deixis.plots.grounding import plot_grounding
-        from deixis.reasoning.grounding.hypotheses import side_text
-        from deixis.workflows.viewpoint import scene_from
 
-        view, shown = found.viewpoints[0] if found.viewpoints else None, request.scene
-        about = [request.script.title or request.script.name]
-        if view is not None:
-            shown = scene_from(shown, view)
-            about += [f"scene {side_text(view.angle, view.mirrored)}"] if view.angle or view.mirrored else []
-        plot_grounding(found, shown, plot, title=", ".join(filter(None, about)))
+        plot_grounding(found, plot, title=described.title or described.name)
     if as_json:
         print_json(grounding_to_dict(found))
     else:

@@ -14,7 +14,6 @@ from deixis.cli.common import (
     PerceivedScene,
     Picture,
     print_json,
-    print_line,
     print_lines,
     print_note,
     print_written,
@@ -37,7 +36,7 @@ def recognise(
     as_json: AsJson = False,
 ) -> None:
     """Name the things of a scene that look like what was taught; exit 1 where none is known."""
-    from deixis.report.seen import answer_line, recognised_to_dict
+    from deixis.report.seen import recognised_lines, recognised_to_dict
     from deixis.session import Session
     from deixis.workflows.read import load_scene
 
@@ -59,9 +58,7 @@ def recognise(
     if as_json:
         print_json(recognised_to_dict(found))
     else:
-        print_lines(answer_line(id, answer) for id, answer in found.answers.items())
-        if not found.answers:
-            print_line("Nothing in this scene has a cloud: only what perceive -o wrote can be recognised.")
+        print_lines(recognised_lines(found))
         print_written(out, plot)
     if not any(answer.label for answer in found.answers.values()):
         raise typer.Exit(NO)

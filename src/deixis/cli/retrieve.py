@@ -48,7 +48,7 @@ def retrieve(
     as_json: AsJson = False,
 ) -> None:
     """Rank all known layouts that a scene is like, or all scenes that a script is like (exit 1 where none is)."""
-    from deixis.report.retrieve import retrieved_lines, retrieved_to_dict
+    from deixis.report.retrieve import retrieval_lines, retrieval_to_dict
     from deixis.workflows.retrieve import retrieve as run
 
     ready_to_ground()
@@ -64,9 +64,9 @@ def retrieve(
             left_out=lambda why: print_note(f"left out: {why}"),
         )
     if as_json:
-        print_json(retrieved_to_dict(retrieved.found, query, retrieved.among))
+        print_json(retrieval_to_dict(retrieved))
     else:
-        print_lines(retrieved_lines(retrieved.found, query, retrieved.among, least))
+        print_lines(retrieval_lines(retrieved))
     if not retrieved.found:
         raise typer.Exit(NO)
     if not all(one.proved for one in retrieved.found):

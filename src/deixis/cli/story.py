@@ -60,7 +60,7 @@ def tell(out: Path) -> None:
     found = ground(script1, scene, meaning=Meaning(weights=UnaryWeights(sizes=0.0)))
     _listing(console, grounding_lines(found))
     _say(console, *_ambiguity(found, ground(script1, scene)))
-    plot_grounding(found, scene, out / "script1.png", script1.title)
+    plot_grounding(found, out / "script1.png", script1.title)
     _say(console, f"Picture: {out / 'script1.png'}")
 
     _chapter(console, 4, "A fuller script settles it")
@@ -94,7 +94,7 @@ def _remembered(console: Console, session: Session, full: Script, scene: Scene, 
     second = read_scene(example("second_table.scene.json"))
     checked = session.check("formal_dinner", second)
     _listing(console, check_lines(checked))
-    plot_check(checked, second, out / "second_table.png")
+    plot_check(checked, out / "second_table.png")
     _say(console, f"Picture: {out / 'second_table.png'}")
     _seen(console, session, full, out)
 

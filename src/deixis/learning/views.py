@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.answers import Answer, count
 from deixis.memory.errors import DamagedMemoryError, UnknownViewError
 from deixis.memory.perceptual.calibrated import read_calibration, write_calibration
 from deixis.memory.perceptual.level import LevelMemory
@@ -114,12 +115,17 @@ class StandingWord:
         return f"{self.thing} stays a view of '{self.taught}', as {self.teacher} taught, and not of '{self.grounded}'"
 
 
-@dataclass(frozen=True)
-class Recognised:
+@dataclass(frozen=True, repr=False)
+class Recognised(Answer):
     """A scene with the names that were recognised, and what speaks for each, by the thing's id."""
 
     scene: Scene
     answers: Mapping[str, Recognition]
+
+    def summary(self) -> str:
+        """Return how many objects have a name."""
+        named = sum(answer.label is not None for answer in self.answers.values())
+        return f"{named} of {count(len(self.answers), 'object')} recognised"
 
 
 Comparison = tuple[ViewDescriptor, ...]

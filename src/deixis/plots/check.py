@@ -4,19 +4,28 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from deixis.perception.scene import Scene
 from deixis.plots.figure import save
 from deixis.plots.grounding import Marks, grounding_figure
 from deixis.reasoning.comparison.checking import RoleVerdict
-from deixis.workflows.check import Checked
+from deixis.workflows.check import Check
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 
-def plot_check(checked: Checked, scene: Scene, path: str | Path) -> None:
+def plot_check(checked: Check, path: str | Path) -> None:
     """Draw the table from above: what is misplaced or extra in red, what is undetermined dotted, and the verdict.
 
     What is of another colour is hatched.
     """
+    save(check_figure(checked), path)
+
+
+def check_figure(checked: Check, axes: Axes | None = None) -> Figure:
+    """Draw what is wrong with a table, into axes or into a new figure, which is returned."""
     table = checked.table
     found = [
         _listed("missing", [entry.role for entry in table.of(RoleVerdict.MISSING)]),
@@ -26,10 +35,10 @@ def plot_check(checked: Checked, scene: Scene, path: str | Path) -> None:
     ]
     summary = "; ".join(part for part in found if part) or "nothing wrong"
     title = f"{checked.layout.title or checked.layout.name}: {summary}"
-    save(grounding_figure(checked.table.grounding, scene, title, marks_of(checked)), path)
+    return grounding_figure(checked.table.grounding, checked.scene, title, marks_of(checked), axes)
 
 
-def marks_of(checked: Checked) -> Marks:
+def marks_of(checked: Check) -> Marks:
     """Return the things that the picture marks; what is both misplaced and of another colour bears both marks."""
     table = checked.table
     wrong = {entry.perceived for entry in table.of(RoleVerdict.MISPLACED) if entry.perceived is not None}

@@ -60,6 +60,13 @@ def new_figure(width: float, height: float, **subplots: Any) -> tuple[Figure, An
     return figure, figure.subplots(**subplots)
 
 
+def canvas(axes: Axes | None, width: float, height: float) -> tuple[Figure, Any]:
+    """Return the axes to draw into, with their figure: those given, or new ones of a size in inches."""
+    if axes is None:
+        return new_figure(width, height)
+    return axes.figure.figure, axes
+
+
 def dress_table(axes: Axes, scene: Scene, title: str | None) -> None:
     """Labels, colours and title of a table seen from above, once its aspect and margins are set."""
     axes.autoscale_view()

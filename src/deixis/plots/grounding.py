@@ -8,9 +8,10 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from deixis.errors import DeixisError
 from deixis.perception.scene import PerceivedObject, Scene
 from deixis.plots.arrows import Arrow, Ends, draw_arrows, drawing_order, points_along
-from deixis.plots.figure import INK, PAPER, QUIET, WRONG, dress_table, new_figure, save
+from deixis.plots.figure import INK, PAPER, QUIET, WRONG, canvas, dress_table, save
 from deixis.plots.names import write_names
 from deixis.reasoning.grounding.answer import FactOutcome, Grounding
 from deixis.report.ground import MAX_LISTED, at_most_many
@@ -53,46 +54,89 @@ class Marks:
 NO_MARKS = Marks()
 
 
-def plot_grounding(found: Grounding, scene: Scene, path: str | Path, title: str | None = None) -> None:
+def plot_grounding(found: Grounding, path: str | Path, title: str | None = None) -> None:
     """Draw the scene from above with the names found, as PNG, SVG or PDF by the file's ending.
 
     Satisfied facts are quiet arrows, violated ones red; objects that the description cannot tell apart share a
     colour; what has no name is grey. Raises DeixisError where the file cannot be written or its ending is no picture.
     """
-    save(grounding_figure(found, scene, title), path)
+    save(answer_figure(found, title=title), path)
 
 
-def grounding_figure(found: Grounding, scene: Scene, title: str | None = None, marks: Marks = NO_MARKS) -> Figure:
-    """Return the picture as a matplotlib figure, with what is marked in it."""
+def answer_figure(found: Grounding, axes: Axes | None = None, title: str | None = None) -> Figure:
+    """Draw a grounding in its own scene, from the side that was recovered where one was.
+
+    Raises DeixisError where an engine was called without a scene.
+    """
+    from deixis.reasoning.grounding.hypotheses import side_text
+    from deixis.workflows.viewpoint import scene_from
+
+    if not isinstance(found.scene, Scene):
+        raise DeixisError("this grounding has no scene to draw: an engine was called directly; use deixis.ground")
+    side = found.viewpoints[0] if found.viewpoints else None
+    if side is None:
+        return grounding_figure(found, found.scene, title, axes=axes)
+    if side.angle or side.mirrored:
+        title = ", ".join(filter(None, (title, f"scene {side_text(side.angle, side.mirrored)}")))
+    return grounding_figure(found, scene_from(found.scene, side), title, axes=axes)
+
+
+def scene_figure(scene: Scene, axes: Axes | None = None) -> Figure:
+    """Draw the boxes of a scene from above, each with its label or id."""
+    figure, axes = canvas(axes, WIDTH, _table_height(scene) + 0.9)
+    named = {thing.id: thing.label for thing in scene.objects if thing.label}
+    _draw_boxes(axes, scene, named, {}, NO_MARKS)
+    _finish(figure, axes, scene, named, (), None)
+    return figure
+
+
+def grounding_figure(
+    found: Grounding, scene: Scene, title: str | None = None, marks: Marks = NO_MARKS, axes: Axes | None = None
+) -> Figure:
+    """Draw a grounding, with what is marked in it, into axes or into a new figure, which is returned."""
     groups = [group for group in found.interchangeable if any(name in found.matches for name in group)]
     colours = {name: GROUP_COLOURS[i % len(GROUP_COLOURS)] for i, group in enumerate(groups) for name in group}
     keys = _keys(found, groups, marks)
-    if not scene.objects:
-        table_height = WIDTH
-    else:
-        low, high = scene.boxes[:, 0, :2].min(axis=0), scene.boxes[:, 1, :2].max(axis=0)
-        width, height = map(float, high - low)
-        table_height = min(max(WIDTH * height / max(width, height / 4, 1e-9), MIN_HEIGHT), MAX_HEIGHT)
-    figure, axes = new_figure(
-        WIDTH, table_height + 0.9 + LEGEND_LINE * sum(1 + str(key.get_label()).count("\n") for key in keys)
-    )
+    legend_height = LEGEND_LINE * sum(1 + str(key.get_label()).count("\n") for key in keys)
+    own_figure = axes is None
+    figure, axes = canvas(axes, WIDTH, _table_height(scene) + 0.9 + legend_height)
     names = {match.perceived: match.object for match in found.matches.values()}
     _draw_boxes(axes, scene, names, colours, marks)
     ends = Ends(scene.objects)
     satisfied, violated = _arrows(found.satisfied, ends), _arrows(found.violated, ends)
     draw_arrows(axes, satisfied, QUIET, 0.8, 3)
     draw_arrows(axes, violated, WRONG, 1.8, 7)
+    if keys:
+        columns = 2 if all(len(key.get_label()) <= HALF_LINE for key in keys) else 1
+        legend: dict[str, Any] = {"handles": keys, "fontsize": 8, "frameon": False, "ncols": columns}
+        if own_figure:
+            figure.legend(loc="outside lower center", **legend)
+        else:
+            axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.12), **legend)
+    ends_of_arrows = [end for arrow in satisfied + violated for end in arrow]
+    clear = [*ends_of_arrows, *points_along(violated[:MAX_CLEAR_ARROWS])]
+    _finish(figure, axes, scene, names, clear, title)
+    return figure
+
+
+def _table_height(scene: Scene) -> float:
+    if not scene.objects:
+        return WIDTH
+    low, high = scene.boxes[:, 0, :2].min(axis=0), scene.boxes[:, 1, :2].max(axis=0)
+    width, height = map(float, high - low)
+    return min(max(WIDTH * height / max(width, height / 4, 1e-9), MIN_HEIGHT), MAX_HEIGHT)
+
+
+def _finish(
+    figure: Figure, axes: Axes, scene: Scene, names: Mapping[str, str], clear: Sequence[Any], title: str | None
+) -> None:
+    """Set the frame of a table from above, and write the names of the things where they cover least."""
     axes.set_aspect("equal", adjustable="datalim")  # a long row has room for its names above and below
     axes.margins(0.06)
     dress_table(axes, scene, title and textwrap.fill(title, TITLE_LINE))
-    if keys:
-        short = all(len(key.get_label()) <= HALF_LINE for key in keys)
-        figure.legend(handles=keys, fontsize=8, frameon=False, loc="outside lower center", ncols=2 if short else 1)
     named = [replace(thing, label=names.get(thing.id) or thing.label or thing.id) for thing in scene.objects]
     quiet = {thing.id for thing in scene.objects if thing.id not in names}
-    ends_of_arrows = [end for arrow in satisfied + violated for end in arrow]
-    write_names(figure, axes, named, quiet, [*ends_of_arrows, *points_along(violated[:MAX_CLEAR_ARROWS])])
-    return figure
+    write_names(figure, axes, named, quiet, clear)
 
 
 def _arrows(entries: Sequence[FactOutcome], ends: Ends) -> list[Arrow]:

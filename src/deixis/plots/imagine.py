@@ -5,14 +5,16 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from deixis.errors import DeixisError
 from deixis.ontology.kinds import Kind, Kinds
 from deixis.ontology.sizes import Outline
 from deixis.perception.scene import PerceivedObject
-from deixis.plots.figure import INK, dress_table, new_figure, save
+from deixis.plots.figure import INK, canvas, dress_table, save
 from deixis.plots.names import write_names
-from deixis.workflows.imagine import ImaginedTable, Sized
+from deixis.workflows.imagine import Imagination, ImaginedTable, Sized
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     from matplotlib.patches import Patch
 
@@ -36,8 +38,16 @@ def plot_table(table: ImaginedTable, kinds: Kinds, path: str | Path, title: str 
     save(table_figure(table, kinds, title), path)
 
 
-def table_figure(table: ImaginedTable, kinds: Kinds, title: str | None = None) -> Figure:
-    """Return the picture as a matplotlib figure; the viewer sits at its lower edge."""
+def imagination_figure(found: Imagination, axes: Axes | None = None) -> Figure:
+    """Draw the first example table; raises DeixisError where there is none."""
+    if not found.tables:
+        raise DeixisError(f"{found.script.file}: there is no example table to draw; to_text() says why")
+    title = found.script.title or found.script.name
+    return table_figure(found.tables[0], found.script.ontology.kinds, title, axes)
+
+
+def table_figure(table: ImaginedTable, kinds: Kinds, title: str | None = None, axes: Axes | None = None) -> Figure:
+    """Draw an example table into axes or into a new figure, which is returned; the viewer sits at its lower edge."""
     boxes = table.scene.boxes
     if not len(boxes):
         width, height = 0.6, 0.4
@@ -45,7 +55,7 @@ def table_figure(table: ImaginedTable, kinds: Kinds, title: str | None = None) -
         width, height = (boxes[:, 1, :2].max(axis=0) - boxes[:, 0, :2].min(axis=0)).tolist()
         width, height = max(width, height / 4), max(height, width / 4)
     scale = min(max(9.0, 11.0 * width) / width, max(9.0, 11.0 * height) / height, 20.0 / max(width, height))
-    figure, axes = new_figure(max(width * scale, 4.0) + 1.6, max(height * scale, 2.5) + 1.4)
+    figure, axes = canvas(axes, max(width * scale, 4.0) + 1.6, max(height * scale, 2.5) + 1.4)
     areas = (table.scene.boxes[:, 1, :2] - table.scene.boxes[:, 0, :2]).prod(axis=1)
     drawn = sorted(
         zip(table.scene.objects, table.objects, areas.tolist(), strict=True), key=lambda entry: entry[2], reverse=True

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from deixis.perception.detection.settings import PlaneSettings
 from deixis.plots.camera import MARGIN, CameraPicture, camera_of, colours_of, draw_camera
-from deixis.plots.figure import INK, dress_table, new_figure, save
+from deixis.plots.figure import INK, canvas, dress_table, new_figure, save
 from deixis.plots.names import write_names
 
 if TYPE_CHECKING:
@@ -85,7 +85,12 @@ def plot_perceived(scene: Scene, path: str | Path) -> None:
 
 
 def plot_recognised(found: Recognised, path: str | Path) -> None:
-    """The things from above, each with its name and how probable that is; what is unknown says so."""
+    """Draw recognised things from above, each with its name and its probability, or `unknown`."""
+    save(recognised_figure(found), path)
+
+
+def recognised_figure(found: Recognised, axes: Axes | None = None) -> Figure:
+    """Draw recognised things into axes or into a new figure, which is returned."""
     clouds = [
         (number, found.scene.cloud_of(thing.id).points)
         for number, thing in enumerate(found.scene.objects)
@@ -94,16 +99,20 @@ def plot_recognised(found: Recognised, path: str | Path) -> None:
     points = np.concatenate([np.empty((0, 3), np.float32), *(cloud for _, cloud in clouds)])
     labels = np.concatenate([np.empty(0, np.int32), *(np.full(len(cloud), number) for number, cloud in clouds)])
     window = _around_boxes(found.scene)
-    figure, axes, scale = _panels(window, None)
-    _points(axes[0], points, labels.astype(np.int32), window, scale)
-    _dress(axes[0], found.scene, window, "What was recognised")
+    if axes is None:
+        figure, (axes,), scale = _panels(window, None)
+    else:
+        figure, axes = canvas(axes, 0.0, 0.0)
+        scale = axes.get_window_extent().height / figure.dpi / float(window[1][1] - window[0][1])
+    _points(axes, points, labels.astype(np.int32), window, scale)
+    _dress(axes, found.scene, window, "What was recognised")
     if not found.scene.objects:
-        _say(axes[0], "there is nothing in this scene")
+        _say(axes, "there is nothing in this scene")
     if found.answers:
-        axes[0].set_xlabel(f"{axes[0].get_xlabel()}\n\n{LEGEND}", fontsize=8, color=INK)
+        axes.set_xlabel(f"{axes.get_xlabel()}\n\n{LEGEND}", fontsize=8, color=INK)
     named = [replace(thing, label=_answered(thing, found)) for thing in found.scene.objects]
-    write_names(figure, axes[0], named)
-    save(figure, path)
+    write_names(figure, axes, named)
+    return figure
 
 
 def _answered(thing: PerceivedObject, found: Recognised) -> str:

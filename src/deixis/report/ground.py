@@ -70,6 +70,11 @@ def at_most_many(told: list[str]) -> list[str]:
     return [*told[:MAX_LISTED], f"{len(told) - MAX_LISTED} more"] if len(told) > MAX_LISTED else told
 
 
+def match_lines(match: Match) -> list[str]:
+    """Return the line of one match."""
+    return [_match_line(match)]
+
+
 def _match_line(match: Match) -> str:
     """Return an object, its thing, how probable that is, and what else it may be."""
     line = f"{match.object:<24} {match.perceived:<10}"

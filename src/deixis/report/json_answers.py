@@ -11,11 +11,11 @@ from deixis.ontology.export import fact_to_dict, graph_to_dict
 
 if TYPE_CHECKING:
     from deixis.grammar.script import Script
-    from deixis.ontology.lessons.types import Alternative
+    from deixis.ontology.lessons.types import Alternative, Match
     from deixis.reasoning.entailment.derivations import Derivation
     from deixis.reasoning.entailment.why_not import WhyNot
     from deixis.reasoning.grounding.answer import FactOutcome, Grounding
-    from deixis.workflows.check import Checked
+    from deixis.workflows.check import Check
     from deixis.workflows.infer import Inference
     from deixis.workflows.learn import Learned
 
@@ -83,8 +83,21 @@ def _rounded(value: float | None) -> float | None:
 def _alternative_to_dict(other: Alternative) -> dict[str, Any]:
     return {
         "perceived": other.perceived,
-        "cost": round(other.cost, 6),
+        "cost": _rounded(other.cost),
         "probability": _rounded(other.probability),
+    }
+
+
+def match_to_dict(match: Match) -> dict[str, Any]:
+    """Return an object, its thing, and what else it may be."""
+    return {
+        "object": match.object,
+        "perceived": match.perceived,
+        "score": _rounded(match.score),
+        "similarity": _rounded(match.similarity),
+        "decided": match.decided,
+        "probability": _rounded(match.probability),
+        "alternatives": [_alternative_to_dict(other) for other in match.alternatives],
     }
 
 
@@ -103,18 +116,7 @@ def grounding_to_dict(found: Grounding) -> dict[str, Any]:
     ]
     return {
         "engine": found.engine,
-        "matches": [
-            {
-                "object": match.object,
-                "perceived": match.perceived,
-                "score": round(match.score, 6),
-                "similarity": round(match.similarity, 6),
-                "decided": match.decided,
-                "probability": _rounded(match.probability),
-                "alternatives": [_alternative_to_dict(other) for other in match.alternatives],
-            }
-            for match in found.matches.values()
-        ],
+        "matches": [match_to_dict(match) for match in found.matches.values()],
         "unmatched_objects": [left.name for left in found.unmatched_objects],
         "unmatched_perceived": [left.name for left in found.unmatched_perceived],
         "might_be": {
@@ -200,7 +202,7 @@ def learned_to_dict(learned: Learned) -> dict[str, Any]:
     }
 
 
-def check_to_dict(checked: Checked) -> dict[str, Any]:
+def check_to_dict(checked: Check) -> dict[str, Any]:
     """Return the verdicts on a table; broken facts with their lines and what was seen instead."""
     from deixis.reasoning.comparison.checking import RoleVerdict
 

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any
 
-from deixis.workflows.retrieve import Retrieved
+from deixis.workflows.retrieve import Retrieval
 
 
-def retrieved_lines(found: Sequence[Retrieved], query: str, among: int, least: float) -> list[str]:
-    """Return a line for each, best first."""
+def retrieval_lines(retrieval: Retrieval) -> list[str]:
+    """Return a line for each result, best first."""
+    found = retrieval.found
     if not found:
-        return [f"Nothing among {among} has a similarity of {least:g} or more to {query}."]
+        return [
+            f"Nothing among {retrieval.among} has a similarity of {retrieval.least:g} or more to {retrieval.query}."
+        ]
     wide = max(len(one.name) for one in found)
     lines = [f"{'':{wide}}  similarity  objects  relations"]
     for one in found:
@@ -21,7 +23,7 @@ def retrieved_lines(found: Sequence[Retrieved], query: str, among: int, least: f
     return lines
 
 
-def retrieved_to_dict(found: Sequence[Retrieved], query: str, among: int) -> dict[str, Any]:
+def retrieval_to_dict(retrieval: Retrieval) -> dict[str, Any]:
     """Return the query, how many it was compared with, and the results, best first."""
     results = [
         {
@@ -32,6 +34,6 @@ def retrieved_to_dict(found: Sequence[Retrieved], query: str, among: int) -> dic
             "matches": one.matches,
             "proved_best": one.proved,
         }
-        for one in found
+        for one in retrieval.found
     ]
-    return {"query": query, "among": among, "results": results}
+    return {"query": retrieval.query, "among": retrieval.among, "results": results}

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from deixis.ontology.facts import Fact
     from deixis.reasoning.comparison.checking import RoleCheck
     from deixis.reasoning.entailment.why_not import WhyNot
-    from deixis.workflows.check import Checked
+    from deixis.workflows.check import Check
     from deixis.workflows.infer import Inference
     from deixis.workflows.learn import Learned
 
@@ -135,7 +135,7 @@ def learned_lines(learned: Learned, memory: str) -> list[str]:
     return lines
 
 
-def check_lines(checked: Checked) -> list[str]:
+def check_lines(checked: Check) -> list[str]:
     """Return the verdict on a table, what is wrong with it by line, and what cannot be told."""
     from deixis.reasoning.comparison.checking import RoleVerdict
 

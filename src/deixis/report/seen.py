@@ -60,6 +60,12 @@ def answer_line(name: str, answer: Recognition) -> str:
     return f"{name:<5} {answer_words(answer)}   {'; '.join(answer.reasons)}"
 
 
+def recognised_lines(found: Recognised) -> list[str]:
+    """Return a line for each object that has a cloud."""
+    lines = [answer_line(name, answer) for name, answer in found.answers.items()]
+    return lines or ["Nothing in this scene has a cloud: only what perceive -o wrote can be recognised."]
+
+
 def answer_words(answer: Recognition) -> str:
     """Return a label and its probability.
 

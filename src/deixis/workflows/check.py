@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from deixis.answers import Answer
 from deixis.grammar.script import Script
 from deixis.knowledge_store import KnowledgeStore
 from deixis.learning.scene_evidence import conflict_notes, graph_evidence, scene_labels, viewpoint_notes
@@ -29,14 +31,22 @@ if TYPE_CHECKING:
     from deixis.reasoning.comparison.checking import TableCheck
 
 
-@dataclass(frozen=True)
-class Checked:
+@dataclass(frozen=True, repr=False)
+class Check(Answer):
     """A table against a layout: the verdicts, and the same as a SHACL validation report, made when it is asked for."""
 
     layout: LayoutConcept
     table: TableCheck
     scene: Scene
     relations: Relations
+
+    def summary(self) -> str:
+        """Return the layout's name, and how many objects have each verdict."""
+        verdicts = Counter(role.verdict.value for role in self.table.roles)
+        verdicts["extra"] = len(self.table.extra)
+        verdicts["violated facts"] = len(self.table.broken)
+        counts = ", ".join(f"{number} {verdict}" for verdict, number in verdicts.items() if number)
+        return f"of {self.layout.name!r}: {'nothing wrong' if self.table.well else 'not as described'}, {counts}"
 
     @property
     def conforms(self) -> bool:
@@ -60,7 +70,7 @@ def check(
     scene: Scene | str | Path | Mapping[str, Any],
     time_limit: float = DEFAULT_TIME_LIMIT,
     knowledge: KnowledgeStore | None = None,
-) -> Checked:
+) -> Check:
     """Return what is wrong with a table: ``layout`` is a script or its file, or the name of a layout in ``knowledge``.
 
     Words and sizes are taken as ``knowledge`` has learned them; without it, and where it has no memory, as they are
@@ -92,4 +102,4 @@ def check(
     found = table.grounding
     kept = tuple(note for note in found.notes if "similarity" not in note)  # a check shows no similarity
     table = replace(table, grounding=replace(found, notes=notes + kept))
-    return Checked(concept, table, scene, relations)
+    return Check(concept, table, scene, relations)

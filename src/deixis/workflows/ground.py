@@ -258,7 +258,7 @@ def answer(request: GroundingRequest, stage: Stage = lambda _: nullcontext()) ->
                 found = ground_from_sides(request.evidence, side, request.engine, select, deadline, contradiction)
                 before = side.notes
     viewpoints = None if side is None else side.viewpoints.viewpoints if side.viewpoints else ()
-    return replace(found.noting(before), viewpoints=viewpoints)
+    return replace(found.noting(before), viewpoints=viewpoints, scene=request.scene)
 
 
 def _contradiction(request: GroundingRequest) -> tuple[str, ...]:

@@ -8,6 +8,7 @@ from functools import cache
 
 import numpy as np
 
+from deixis.answers import Answer, count
 from deixis.deadline import Deadline
 from deixis.grammar.script import Script
 from deixis.ontology.facts import Fact
@@ -73,13 +74,19 @@ class NoTable:
     reason: str | None = None
 
 
-@dataclass(frozen=True)
-class Imagination:
+@dataclass(frozen=True, repr=False)
+class Imagination(Answer):
     """The tables of a script, or why there is none; neither where the time was up before it was known."""
 
     script: Script
     tables: tuple[ImaginedTable, ...] = ()
     none: NoTable | None = None
+
+    def summary(self) -> str:
+        """Return how many tables there are, or that there is none."""
+        if self.tables:
+            return f"of {self.script.file}: {count(len(self.tables), 'example table')}"
+        return f"of {self.script.file}: {'no table satisfies it' if self.none else 'undecided within the time limit'}"
 
     @property
     def decided(self) -> bool:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
+from deixis.answers import Answer, count
 from deixis.deadline import Deadline
 from deixis.grammar.script import Script
 from deixis.ontology.facts import Fact
@@ -35,8 +36,8 @@ class Inferred:
     lines: tuple[int, ...]
 
 
-@dataclass(frozen=True)
-class Inference:
+@dataclass(frozen=True, repr=False)
+class Inference(Answer):
     """What a script implies: every fact that follows without being stated, or the conflict that spoils it.
 
     Where the time limit struck, ``decided`` is False if it is not known whether there is a conflict, and ``complete``
@@ -48,6 +49,13 @@ class Inference:
     conflict: Conflict | None
     decided: bool
     deadline: Deadline  # searches for what facts rest on end then
+
+    def summary(self) -> str:
+        """Return the verdict, without searching for what follows."""
+        if not self.decided:
+            return f"{count(len(self.stated), 'stated fact')}: undecided within the time limit"
+        verdict = "consistent" if self.consistent else "contradictory"
+        return f"{count(len(self.stated), 'stated fact')}: {verdict}"
 
     @property
     def consistent(self) -> bool:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from deixis.deadline import Deadline
 from deixis.errors import DeixisError
+from deixis.grammar.errors import ScriptFileError
 from deixis.grammar.parser import parse_script
 from deixis.grammar.parser import read_script as read_script_file
 from deixis.grammar.script import Script
@@ -36,7 +37,17 @@ def read_script(
         raise TypeError("read_script takes a path or text=, and one of them only")
     if text is not None:
         return parse_script(text, ontology=ontology, deadline=deadline)
-    return read_script_file(str(path), ontology, deadline)
+    try:
+        return read_script_file(str(path), ontology, deadline)
+    except ScriptFileError as error:
+        if isinstance(path, str) and _looks_like_text(path):
+            raise ScriptFileError(f"{error}; if {path[:60]!r} is the script itself, pass it as text=") from error
+        raise
+
+
+def _looks_like_text(name: str) -> bool:
+    """Return True for what is a script rather than the name of a file: several words without an ending."""
+    return "\n" in name or ";" in name or (len(name.split()) > 1 and not name.endswith(SCRIPT_ENDING))
 
 
 def load_scene(file: str | Path, hide_labels: bool = False, image: str | None = None) -> Scene:

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
+from deixis.answers import Answer, count
 from deixis.deadline import Deadline
 from deixis.errors import DeixisError
 from deixis.grammar.parser import read_script
@@ -54,12 +55,22 @@ class Retrieved:
     proved: bool
 
 
-@dataclass(frozen=True)
-class Retrieval:
-    """What was retrieved, the most similar first, and how many it was among."""
+@dataclass(frozen=True, repr=False)
+class Retrieval(Answer):
+    """Layouts or scenes that are similar to a query, the most similar first.
+
+    ``among`` is the number of those that were compared, ``least`` the similarity from which one counts.
+    """
 
     found: tuple[Retrieved, ...]
     among: int
+    query: str
+    least: float
+
+    def summary(self) -> str:
+        """Return the best result, and how many there are."""
+        best = f", best {self.found[0].name} ({self.found[0].similarity:.2f})" if self.found else ""
+        return f"{count(len(self.found), 'result')} among {self.among}{best}"
 
 
 def retrieve(
@@ -90,13 +101,13 @@ def retrieve(
         layout, scenes = Described(query.file, query.graph()), _known_scenes(memory, folder, hide_labels, left_out)
         ranked = rank_scenes(layout, scenes.values(), comparison, top, deadline)
         found = [_retrieved(one.scene, one, layout, scenes[one.scene]) for one in ranked if one.similarity >= least]
-        return Retrieval(tuple(found), len(scenes))
+        return Retrieval(tuple(found), len(scenes), query.file, least)
     scene = query if isinstance(query, Scene) else read_scene(query)
     asked = _seen(scene.file, scene.without_labels() if hide_labels else scene)
     layouts = _known_layouts(memory, folder)
     ranked = rank_layouts(asked, layouts.values(), comparison, top, deadline)
     found = [_retrieved(one.layout, one, layouts[one.layout], asked) for one in ranked if one.similarity >= least]
-    return Retrieval(tuple(found), len(layouts))
+    return Retrieval(tuple(found), len(layouts), scene.file, least)
 
 
 def _is_script_file(name: str) -> bool:

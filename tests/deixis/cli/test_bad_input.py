@@ -18,7 +18,7 @@ BAD_SCENES = {
     "no objects": "{}",
     "unknown key": '{"objects": [], "colour": "red"}',
     "unknown unit": '{"objects": [], "unit": "furlong"}',
-    "number as id": '{"objects": [{"id": 1, "min": [0, 0], "max": [1, 1]}]}',
+    "fraction as id": '{"objects": [{"id": 1.5, "min": [0, 0], "max": [1, 1]}]}',
     "inside out": '{"objects": [{"id": "o", "min": [1, 0], "max": [0, 1]}]}',
     "nan": '{"objects": [{"id": "o", "min": [NaN, 0], "max": [1, 1]}]}',
     "infinite": '{"objects": [{"id": "o", "min": [0, 0], "max": [1e999, 1]}]}',

@@ -22,7 +22,7 @@ from hypothesis import strategies as st
 import deixis as package
 from deixis.cli.output import VisibleStream
 from deixis.examples_data import example
-from deixis.memory.semantic.queries.results import QueryKind, QueryResult
+from deixis.memory.semantic.queries.results import QueryKind, QueryResult, Row
 from deixis.memory.semantic.rdf.graphs import GraphName
 from deixis.memory.semantic.store import SemanticMemory
 from deixis.printable import MAX_MESSAGE, shortened, visible, visible_line
@@ -264,14 +264,14 @@ NUMBERS = ["-5", "+5", "-5.25", "-1e-7", "+.5", "-INF", "5", "1=2", "a-b", "x@y"
 
 @pytest.mark.parametrize("text", FORMULAS)
 def test_a_cell_of_csv_begins_no_formula(text: str) -> None:
-    result = QueryResult(QueryKind.SELECT, ("x",), ((ox.Literal(text),),))
+    result = QueryResult(QueryKind.SELECT, ("x",), (Row([ox.Literal(text)], ("x",)),))
     (cell,) = re.findall(r"\r\n\"?(.*?)\"?\r\n$", result.to_csv(), re.DOTALL)
     assert cell == f"'{text}"
 
 
 @pytest.mark.parametrize("text", NUMBERS)
 def test_numbers_and_plain_texts_stay_in_csv(text: str) -> None:
-    result = QueryResult(QueryKind.SELECT, ("x",), ((ox.Literal(text),),))
+    result = QueryResult(QueryKind.SELECT, ("x",), (Row([ox.Literal(text)], ("x",)),))
     assert result.to_csv() in (f"x\r\n{text}\r\n", f'x\r\n"{text}"\r\n')
 
 

@@ -19,14 +19,14 @@ from deixis.reasoning.comparison.checking import RoleVerdict
 from deixis.report.json_answers import check_to_dict
 from deixis.report.script import check_lines
 from deixis.session import Session
-from deixis.workflows.check import Checked
+from deixis.workflows.check import Check
 from deixis.workflows.read import read_script
 
 SH = rdflib.Namespace("http://www.w3.org/ns/shacl#")
 FULL = read_script(example("formal_dinner.layout"))
 
 
-def check(scene: Scene, text: str | None = None) -> Checked:
+def check(scene: Scene, text: str | None = None) -> Check:
     return Session(Path("unused")).check(FULL if text is None else read_script(text=text), scene)
 
 
@@ -39,7 +39,7 @@ def swapped(scene: Scene, a: str, b: str) -> Scene:
     return replace(scene, objects=tuple(replace(o, label=label.get(o.label or "", o.label)) for o in scene.objects))
 
 
-def roles(checked: Checked, verdict: RoleVerdict) -> set[str]:
+def roles(checked: Check, verdict: RoleVerdict) -> set[str]:
     return {entry.role for entry in checked.table.of(verdict)}
 
 

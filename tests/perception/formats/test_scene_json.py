@@ -102,6 +102,11 @@ def test_null_stands_for_what_is_not_given() -> None:
     )
 
 
+def test_integer_ids_and_arrays_are_taken() -> None:
+    scene = read_scene({"objects": [{"id": np.int64(4), "min": np.zeros(2), "max": np.ones(2)}, {**BOX, "id": 12}]})
+    assert scene.ids == ("4", "12")
+
+
 def test_a_scene_may_be_empty() -> None:
     assert read_scene({"objects": []}).ids == ()
 
@@ -200,7 +205,7 @@ CATALOGUE: list[tuple[Any, str]] = [
     (without("min"), "objects[0]: 'min' is missing"),
     (without("max"), "objects[0]: 'max' is missing"),
     (one(lable="fork"), f"objects[0]: 'lable' is no key here; the keys are {KEYS}"),
-    (one(id=5), "objects[0]: 'id': a text is expected, not a number"),
+    (one(id=5.5), "objects[0]: 'id': a text is expected, not a number"),
     (one(id=""), "objects[0]: 'id': a text is expected, and this one is blank"),
     (one(id="\ud800"), "objects[0]: 'id': the text has half a character in it, and cannot be written"),
     (one(label=False), "objects[0]: 'label': a text is expected, not false"),

@@ -1,0 +1,188 @@
+"""Scenes from 3-D detections with the fields of ROS's `vision_msgs/Detection3DArray`, and back.
+
+The fields: https://docs.ros.org/en/api/vision_msgs/html/msg/Detection3DArray.html (ROS 2's names). Messages are read by
+attribute or by key, so that a ROS message, its JSON and a dictionary all do; no ROS is needed. A turned box becomes the
+axis-aligned one around it, with the turned one beside it where it is turned about the vertical only.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.perception.errors import SceneError
+from deixis.perception.scene import OrientedBox, PerceivedObject, Scene
+
+UPRIGHT_TOLERANCE = 1e-3
+"""Maximum difference from 1 of the cosine between a box's third axis and the vertical, for it to count as upright."""
+
+
+def scene_from_detections3d(message: Any, *, viewpoint: str = "chair", file: str = "<detections>") -> Scene:
+    """Return the scene that a ``Detection3DArray`` describes.
+
+    Parameters
+    ----------
+    message
+        A message, or the same as dictionaries and lists: ``header.frame_id`` and ``detections``, each with ``id``,
+        ``bbox.center.position``, ``bbox.center.orientation`` (a quaternion), ``bbox.size`` in metres, and ``results``
+        of ``hypothesis.class_id`` and ``hypothesis.score``. Without an id a detection is called by its place: ``d1``.
+    viewpoint
+        The side from which left and right are seen: x to its right, y away from it.
+
+    Returns
+    -------
+    Scene
+        An object for each detection. Its label is the hypothesis with the highest score; all of them are candidates
+        where there are several.
+
+    Raises
+    ------
+    SceneError
+        If a field is missing or is not a number; the message names the detection.
+
+    Examples
+    --------
+    >>> message = {"header": {"frame_id": "table"}, "detections": [{"id": "7", "bbox": {
+    ...     "center": {"position": {"x": 0.5, "y": 0.2, "z": 0.05}, "orientation": {"x": 0, "y": 0, "z": 0, "w": 1}},
+    ...     "size": {"x": 0.1, "y": 0.1, "z": 0.1}}, "results": [{"hypothesis": {"class_id": "mug", "score": 0.9}}]}]}
+    >>> scene = scene_from_detections3d(message)
+    >>> scene["7"].label, scene["7"].confidence, scene["7"].maximum
+    ('mug', 0.9, (0.55, 0.25, 0.1))
+    """
+    detections = _field(message, "detections", file)
+    if isinstance(detections, str | Mapping) or not hasattr(detections, "__iter__"):
+        raise SceneError(f"{file}: 'detections' must be a list, got {type(detections).__name__}")
+    objects = [
+        _object(detection, f"d{number}", f"{file}: detections[{number - 1}]")
+        for number, detection in enumerate(detections, start=1)
+    ]
+    header = _get(message, "header")
+    frame = _get(header, "frame_id") if header is not None else None
+    return Scene(tuple(objects), frame=str(frame or "table"), viewpoint=viewpoint, file=file)
+
+
+def _object(detection: Any, default_id: str, where: str) -> PerceivedObject:
+    box = _field(detection, "bbox", where)
+    center = _field(box, "center", f"{where}.bbox")
+    centre = _vector(_field(center, "position", f"{where}.bbox.center"), "xyz", f"{where}.bbox.center.position")
+    size = _vector(_field(box, "size", f"{where}.bbox"), "xyz", f"{where}.bbox.size")
+    if (size < 0).any():
+        raise SceneError(f"{where}.bbox.size must be 0 or more on each axis, got {size.tolist()}")
+    rotation = _rotation(_get(center, "orientation"), f"{where}.bbox.center.orientation")
+    half = np.abs(rotation) @ size / 2
+    oriented = None
+    if abs(rotation[2, 2] - 1.0) < UPRIGHT_TOLERANCE:
+        yaw = float(np.arctan2(rotation[1, 0], rotation[0, 0]))
+        oriented = OrientedBox(_triple(centre), yaw, _triple(size))
+    scores = _hypotheses(_get(detection, "results") or (), where)
+    label = max(scores, key=lambda name: scores[name]) if scores else None
+    total = sum(scores.values())
+    return PerceivedObject(
+        id=str(_get(detection, "id") or default_id),
+        minimum=_triple(centre - half),
+        maximum=_triple(centre + half),
+        label=label,
+        confidence=1.0 if label is None else scores[label],
+        oriented=oriented,
+        candidates=tuple(scores.items()) if len(scores) > 1 and total <= 1.0 else (),
+    )
+
+
+def _hypotheses(results: Any, where: str) -> dict[str, float]:
+    scores: dict[str, float] = {}
+    for number, result in enumerate(results):
+        place = f"{where}.results[{number}]"
+        hypothesis = _get(result, "hypothesis") or result
+        name = str(_field(hypothesis, "class_id", place))
+        score = _number(_field(hypothesis, "score", place), f"{place}.score")
+        if not 0.0 <= score <= 1.0:
+            raise SceneError(f"{place}.score must be from 0 to 1, got {score:g}")
+        scores[name] = max(score, scores.get(name, 0.0))
+    return scores
+
+
+def _rotation(quaternion: Any, where: str) -> NDArray[np.float64]:
+    """Return the rotation matrix (3, 3) of a quaternion; the identity where there is none or it is all zeros."""
+    if quaternion is None:
+        return np.eye(3)
+    values = _vector(quaternion, "xyzw", where)
+    norm = float(np.linalg.norm(values))
+    if norm == 0.0:  # a message whose orientation was never set
+        return np.eye(3)
+    x, y, z, w = values / norm
+    return np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+            [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+            [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
+        ]
+    )
+
+
+def _get(message: Any, name: str) -> Any:
+    return message.get(name) if isinstance(message, Mapping) else getattr(message, name, None)
+
+
+def _field(message: Any, name: str, where: str) -> Any:
+    found = _get(message, name)
+    if found is None:
+        raise SceneError(f"{where}: the field '{name}' is missing")
+    return found
+
+
+def _vector(message: Any, axes: str, where: str) -> NDArray[np.float64]:
+    return np.array([_number(_field(message, axis, where), f"{where}.{axis}") for axis in axes])
+
+
+def _number(value: Any, where: str) -> float:
+    if isinstance(value, str | bool) or not np.isscalar(value):
+        raise SceneError(f"{where} must be a number, got {value!r:.40}")
+    number = float(value)  # type: ignore[arg-type]
+    if not np.isfinite(number):
+        raise SceneError(f"{where} must be finite, got {number}")
+    return number
+
+
+def _triple(values: NDArray[np.float64]) -> tuple[float, float, float]:
+    x, y, z = (round(float(value), 9) for value in values)
+    return x, y, z
+
+
+def scene_to_detections3d(scene: Scene) -> dict[str, Any]:
+    """Return a scene as the fields of a ``Detection3DArray``, as dictionaries and lists.
+
+    A scene without heights gives boxes of no height at z = 0. The header has no time stamp: a scene has none.
+
+    Raises
+    ------
+    SceneError
+        If the scene is measured in pixels.
+    """
+    if scene.unit == "px":
+        raise SceneError(f"{scene.file}: 3-D detections are in metres, and this scene is in pixels")
+    return {"header": {"frame_id": scene.frame}, "detections": [_detection(thing) for thing in scene.objects]}
+
+
+def _detection(thing: PerceivedObject) -> dict[str, Any]:
+    low, high = (np.array([*corner, 0.0][:3]) for corner in (thing.minimum, thing.maximum))
+    centre, size, yaw = (low + high) / 2, high - low, 0.0
+    if thing.oriented is not None:
+        centre, size = np.array(thing.oriented.centre), np.array(thing.oriented.extents)
+        yaw = thing.oriented.yaw
+    names: Sequence[tuple[str, float]] = thing.candidates
+    if not names and thing.label is not None:
+        names = ((thing.label, thing.confidence),)
+    return {
+        "id": thing.id,
+        "bbox": {
+            "center": {
+                "position": dict(zip("xyz", _triple(centre), strict=True)),
+                "orientation": {"x": 0.0, "y": 0.0, "z": float(np.sin(yaw / 2)), "w": float(np.cos(yaw / 2))},
+            },
+            "size": dict(zip("xyz", _triple(size), strict=True)),
+        },
+        "results": [{"hypothesis": {"class_id": name, "score": share}} for name, share in names],
+    }

@@ -1,0 +1,117 @@
+"""Answers that show themselves: as JSON, text, a data frame, a picture, and in a notebook.
+
+Each type of answer derives from :class:`Answer`. How it is rendered is registered by the name of its class in
+:mod:`deixis.report.renderers`, which is looked up when a method is called: so no folder of the reasoning depends on the
+shell, and no answer imports matplotlib before it is drawn.
+"""
+
+from __future__ import annotations
+
+import json
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+
+class Answer:
+    """Base class of the results that users hold.
+
+    ``repr`` and ``str`` give one line; :meth:`to_text` gives what the command of the same name prints.
+
+    Examples
+    --------
+    >>> import deixis
+    >>> script = deixis.read_script(text="fork left of plate")
+    >>> script
+    <Script <text>: 2 objects, 1 fact>
+    >>> script.to_dict()["facts"][0]["subject"]
+    'fork'
+    """
+
+    __slots__ = ()
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the answer as plain data: dictionaries, lists, strings, numbers, booleans and None.
+
+        Returns
+        -------
+        dict
+            The object that the command of the same name prints with ``--json``; ``docs/schema`` holds its JSON Schema.
+        """
+        return _renderers().to_dict(self)  # type: ignore[no-any-return]
+
+    def to_json(self, indent: int | None = 2) -> str:
+        """Return :meth:`to_dict` as JSON text, ``indent`` spaces to a level; None gives one line."""
+        return json.dumps(self.to_dict(), indent=indent, ensure_ascii=False, allow_nan=False)
+
+    def to_text(self) -> str:
+        """Return the lines that the command of the same name prints."""
+        return "\n".join(_renderers().to_lines(self))
+
+    def to_dataframe(self) -> Any:
+        """Return the table in the answer as a ``pandas.DataFrame``.
+
+        Raises
+        ------
+        deixis.extras.MissingExtraError
+            If pandas is not installed. Deixis does not require it.
+        deixis.DeixisError
+            If this type of answer has no table.
+        """
+        return _renderers().to_dataframe(self)
+
+    def plot(self, axes: Axes | None = None) -> Figure:
+        """Draw the answer, seen from above.
+
+        Parameters
+        ----------
+        axes
+            Axes to draw into. Without them a new figure is made, of a size that fits.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            The figure that was drawn into; ``savefig`` writes it to a file.
+
+        Raises
+        ------
+        deixis.extras.MissingExtraError
+            If matplotlib is not installed.
+        deixis.DeixisError
+            If there is nothing to draw, as for a scene without objects, or this type of answer has no picture.
+        """
+        return _renderers().plot(self, axes)  # type: ignore[no-any-return]
+
+    def _repr_html_(self) -> str:
+        return _renderers().to_html(self)  # type: ignore[no-any-return]
+
+    def _repr_png_(self) -> bytes | None:
+        return _renderers().to_png(self)  # type: ignore[no-any-return]
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__} {self.summary()}>"
+
+    def __str__(self) -> str:
+        return f"{type(self).__name__} {self.summary()}"
+
+    def summary(self) -> str:
+        """Return the answer in a few words, for ``repr``."""
+        raise NotImplementedError
+
+
+def _renderers() -> Any:
+    return import_module("deixis.report.renderers")
+
+
+def count(number: int, noun: str) -> str:
+    """Return a number with its noun, in the singular for 1.
+
+    >>> count(1, "fact"), count(3, "fact"), count(2, "category")
+    ('1 fact', '3 facts', '2 categories')
+    """
+    if number == 1:
+        return f"1 {noun}"
+    return f"{number} {noun[:-1]}ies" if noun.endswith("y") else f"{number} {noun}s"

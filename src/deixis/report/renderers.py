@@ -1,0 +1,173 @@
+"""Renderers of answers by type: plain data, lines of text, rows of a table, and pictures.
+
+:class:`deixis.answers.Answer` calls the functions of this module. A new type of answer is a line in RENDERERS.
+"""
+
+from __future__ import annotations
+
+import html
+import io
+from collections.abc import Sequence
+from dataclasses import dataclass
+from importlib import import_module
+from importlib.util import find_spec
+from typing import TYPE_CHECKING, Any
+
+from deixis.answers import Answer
+from deixis.errors import DeixisError
+from deixis.extras import require
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+Row = dict[str, Any]
+
+
+@dataclass(frozen=True, slots=True)
+class Renderer:
+    """Functions that render one type of answer, each as ``module:function`` under ``deixis``, imported when called.
+
+    ``figure`` takes the answer and axes or None, and returns a figure.
+    """
+
+    data: str
+    lines: str
+    rows: str | None = None
+    figure: str | None = None
+
+
+RENDERERS = {
+    "Script": Renderer("report.json_answers:script_to_dict", "report.script:script_lines", "report.rows:script_rows"),
+    "Scene": Renderer(
+        "perception.formats.scene_json:scene_to_dict",
+        "report.seen:scene_lines",
+        "report.rows:scene_rows",
+        "plots.grounding:scene_figure",
+    ),
+    "Match": Renderer("report.json_answers:match_to_dict", "report.ground:match_lines"),
+    "Grounding": Renderer(
+        "report.json_answers:grounding_to_dict",
+        "report.ground:grounding_lines",
+        "report.rows:grounding_rows",
+        "plots.grounding:answer_figure",
+    ),
+    "Check": Renderer(
+        "report.json_answers:check_to_dict",
+        "report.script:check_lines",
+        "report.rows:check_rows",
+        "plots.check:check_figure",
+    ),
+    "Inference": Renderer(
+        "report.json_answers:inference_to_dict", "report.script:inference_lines", "report.rows:inference_rows"
+    ),
+    "Imagination": Renderer(
+        "report.imagine:imagination_to_dict",
+        "report.imagine:imagination_lines",
+        "report.rows:imagination_rows",
+        "plots.imagine:imagination_figure",
+    ),
+    "Recognised": Renderer(
+        "report.seen:recognised_to_dict",
+        "report.seen:recognised_lines",
+        "report.rows:recognised_rows",
+        "plots.seen:recognised_figure",
+    ),
+    "Retrieval": Renderer(
+        "report.retrieve:retrieval_to_dict", "report.retrieve:retrieval_lines", "report.rows:retrieval_rows"
+    ),
+    "QueryResult": Renderer("report.rows:query_to_dict", "report.rows:query_lines", "report.rows:query_rows"),
+}
+"""Renderers by the name of the answer's class."""
+
+
+def to_dict(answer: Answer) -> dict[str, Any]:
+    """Return an answer as plain data."""
+    return _function(_renderer(answer).data)(answer)  # type: ignore[no-any-return]
+
+
+def to_lines(answer: Answer) -> list[str]:
+    """Return the lines of an answer, as its command prints them."""
+    return list(_function(_renderer(answer).lines)(answer))
+
+
+def to_rows(answer: Answer) -> list[Row]:
+    """Return the table in an answer, a row a dictionary; raise DeixisError where it has none."""
+    rows = _renderer(answer).rows
+    if rows is None:
+        raise DeixisError(f"a {type(answer).__name__} is not a table; use to_dict() or to_text()")
+    return list(_function(rows)(answer))
+
+
+def to_dataframe(answer: Answer) -> Any:
+    """Return the table in an answer as a pandas data frame."""
+    rows = to_rows(answer)
+    require("pandas", f"{type(answer).__name__}.to_dataframe()")
+    import pandas
+
+    return pandas.DataFrame(rows)
+
+
+def plot(answer: Answer, axes: Axes | None) -> Figure:
+    """Draw an answer into axes, or into a new figure."""
+    figure = _renderer(answer).figure
+    if figure is None:
+        raise DeixisError(f"a {type(answer).__name__} has no picture; use to_text(), or draw an answer made from it")
+    require("matplotlib", f"{type(answer).__name__}.plot()")
+    return _function(figure)(answer, axes)  # type: ignore[no-any-return]
+
+
+def to_png(answer: Answer) -> bytes | None:
+    """Return the picture of an answer as PNG, or None where it has none or matplotlib is not installed."""
+    if _renderer(answer).figure is None or find_spec("matplotlib") is None:
+        return None
+    try:
+        figure = plot(answer, None)
+    except DeixisError:
+        return None
+    target = io.BytesIO()
+    figure.savefig(target, format="png", dpi=110)
+    return target.getvalue()
+
+
+def to_html(answer: Answer) -> str:
+    """Return an answer for a notebook: its summary and its table, or its text."""
+    head = f"<p><b>{type(answer).__name__}</b> {html.escape(answer.summary())}</p>"
+    if _renderer(answer).rows is None:
+        return f"{head}<pre>{html.escape(answer.to_text())}</pre>"
+    rows = to_rows(answer)
+    return head + (html_table(rows[:MAX_HTML_ROWS], len(rows)) if rows else "")
+
+
+MAX_HTML_ROWS = 100
+"""Maximum number of rows that a notebook shows."""
+
+
+def html_table(rows: Sequence[Row], total: int) -> str:
+    """Return rows as an HTML table; ``total`` counts those that are not shown too."""
+    columns = list(dict.fromkeys(key for row in rows for key in row))
+    head = "".join(f"<th style='text-align:left'>{html.escape(name)}</th>" for name in columns)
+    body = "".join(
+        "<tr>" + "".join(f"<td style='text-align:left'>{_cell(row.get(name))}</td>" for name in columns) + "</tr>"
+        for row in rows
+    )
+    more = f"<p>… and {total - len(rows)} more rows</p>" if total > len(rows) else ""
+    return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>{more}"
+
+
+def _cell(value: Any) -> str:
+    if value is None:
+        return ""
+    return f"{value:.3g}" if isinstance(value, float) else html.escape(str(value))
+
+
+def _renderer(answer: Answer) -> Renderer:
+    for kind in type(answer).__mro__:
+        if kind.__name__ in RENDERERS:
+            return RENDERERS[kind.__name__]
+    raise NotImplementedError(f"{type(answer).__name__} has no line in RENDERERS")
+
+
+def _function(name: str) -> Any:
+    module, _, function = name.partition(":")
+    return getattr(import_module(f"deixis.{module}"), function)

@@ -1,0 +1,125 @@
+"""Test how answers show themselves: short texts, plain data, tables, notebooks and pictures."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import get_type_hints
+
+import pytest
+
+import deixis
+from deixis.answers import Answer
+from deixis.errors import DeixisError
+from deixis.extras import MissingExtraError
+from deixis.report.renderers import RENDERERS, to_rows
+
+SCRIPT = deixis.read_script("examples/formal_dinner.layout")
+SCENE = deixis.read_scene("examples/place_setting.scene.json")
+PNG = b"\x89PNG"
+
+
+@pytest.fixture(scope="module")
+def answers() -> dict[str, Answer]:
+    """One answer of each type that needs no memory of views."""
+    found = deixis.ground(SCRIPT, SCENE)
+    with deixis.Session(memory=Path("/nonexistent/deixis")):
+        pass
+    return {
+        "Script": SCRIPT,
+        "Scene": SCENE,
+        "Grounding": found,
+        "Match": found.matches["napkin"],
+        "Check": deixis.check(SCRIPT, "examples/second_table.scene.json"),
+        "Inference": deixis.infer(SCRIPT),
+        "Imagination": deixis.imagine(SCRIPT),
+        "Retrieval": deixis.retrieve(SCENE, "examples"),
+    }
+
+
+def test_public_types_are_importable_and_have_renderers() -> None:
+    for name in RENDERERS:
+        assert issubclass(getattr(deixis, name), Answer)
+    assert get_type_hints(Answer.to_text) == {"return": str}
+
+
+def test_repr_and_str_are_one_short_line(answers: dict[str, Answer]) -> None:
+    for name, answer in answers.items():
+        assert len(repr(answer)) < 160
+        assert repr(answer).startswith(f"<{name} ")
+        assert str(answer).startswith(f"{name} ")
+        assert "\n" not in repr(answer)
+
+
+def test_plain_data_is_json(answers: dict[str, Answer]) -> None:
+    for answer in answers.values():
+        assert json.loads(answer.to_json()) == json.loads(json.dumps(answer.to_dict()))
+        assert "\n" not in answer.to_json(indent=None)
+
+
+def test_text_is_what_the_command_prints(answers: dict[str, Answer]) -> None:
+    assert answers["Grounding"].to_text().splitlines()[0].split()[:2] == ["napkin", "o2"]
+    assert answers["Check"].to_text().startswith("This table is not laid as 'formal_dinner' says.")
+
+
+def test_tables_have_a_row_for_each_thing(answers: dict[str, Answer]) -> None:
+    rows = {name: to_rows(answer) for name, answer in answers.items() if name != "Match"}
+    assert [row["perceived"] for row in rows["Grounding"]] == [
+        match.perceived for match in deixis.ground(SCRIPT, SCENE).matches.values()
+    ]
+    assert len(rows["Script"]) == len(SCRIPT.facts)
+    assert len(rows["Scene"]) == len(rows["Imagination"]) == 12
+    assert {row["verdict"] for row in rows["Check"]} == {"correct", "missing", "misplaced", "extra"}
+    assert all(len(set(map(tuple, table))) >= 1 for table in rows.values())
+
+
+def test_data_frames_have_the_same_rows(answers: dict[str, Answer]) -> None:
+    pandas = pytest.importorskip("pandas")
+    frame = answers["Grounding"].to_dataframe()
+    assert isinstance(frame, pandas.DataFrame)
+    assert list(frame["object"]) == [row["object"] for row in to_rows(answers["Grounding"])]
+
+
+def test_pandas_is_named_where_it_is_missing(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(__import__("sys").modules, "pandas", None)
+    with pytest.raises(MissingExtraError, match="pip install pandas"):
+        SCENE.to_dataframe()
+
+
+def test_notebooks_show_tables_and_escape_names() -> None:
+    script = deixis.read_script(text='"<b>" left of plate')
+    shown = script._repr_html_()
+    assert "<table>" in shown
+    assert "<b>Script</b>" in shown
+    assert "<td style='text-align:left'><b>" not in shown
+
+
+def test_pictures_go_into_given_axes(answers: dict[str, Answer]) -> None:
+    pytest.importorskip("matplotlib")
+    from matplotlib.figure import Figure
+
+    figure = Figure()
+    left, right = figure.subplots(1, 2)
+    assert answers["Grounding"].plot(left) is figure
+    assert answers["Check"].plot(right) is figure
+    assert left.collections and right.collections
+    assert not answers["Scene"].plot().axes[0].get_title()
+
+
+def test_pictures_are_png_in_notebooks(answers: dict[str, Answer]) -> None:
+    pytest.importorskip("matplotlib")
+    for name in ("Grounding", "Scene", "Check", "Imagination"):
+        shown = answers[name]._repr_png_()
+        assert shown is not None
+        assert shown.startswith(PNG)
+    assert answers["Script"]._repr_png_() is None
+
+
+def test_an_answer_without_a_picture_says_so() -> None:
+    with pytest.raises(DeixisError, match="a Script has no picture"):
+        SCRIPT.plot()
+
+
+def test_a_script_given_as_a_file_name_is_explained() -> None:
+    with pytest.raises(DeixisError, match="if 'fork left of plate' is the script itself, pass it as text="):
+        deixis.read_script("fork left of plate")
