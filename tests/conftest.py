@@ -7,3 +7,5 @@ from hypothesis import settings
 # How long one example takes depends on the load of the machine, and on kernels that are compiled at their first call.
 settings.register_profile("deixis", deadline=None)
 settings.load_profile("deixis")
+
+pytest_plugins = ["pytester"]

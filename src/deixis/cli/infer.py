@@ -31,6 +31,7 @@ def infer(
     from deixis.errors import DeixisError
     from deixis.report.script import inference_lines
     from deixis.workflows.infer import infer as run
+    from deixis.workflows.infer import plain_fact
 
     if explain is not None and why_not is not None:
         raise DeixisError("infer: --explain and --why-not exclude each other")
@@ -40,7 +41,8 @@ def infer(
         if ntriples or explain is not None or why_not is not None:
             raise DeixisError("infer: --verdict goes with none of --explain, --why-not and --ntriples")
         raise typer.Exit(_verdict(script, time_limit, as_json))
-    fact = _one_fact(explain, "--explain") or _one_fact(why_not, "--why-not")
+    text, option = (explain, "--explain") if explain is not None else (why_not, "--why-not")
+    fact = None if text is None else plain_fact(text, option)
     inference = run(script, time_limit)
     if fact is not None and inference.consistent and inference.decided:
         (_explain if explain is not None else _why_not)(inference, fact, as_json)
@@ -71,35 +73,11 @@ def _verdict(script: str, time_limit: float, as_json: bool) -> int:
     return {True: 0, False: NO, None: UNDECIDED}[found]
 
 
-def _one_fact(text: str | None, option: str) -> Fact | None:
-    from deixis.errors import DeixisError
-    from deixis.grammar.parser import parse_script
-
-    if text is None:
-        return None
-    facts = parse_script(text, option).facts
-    if len(facts) != 1 or not facts[0].plain or facts[0].optional or facts[0].weight < 1:
-        raise DeixisError(f"{option}: '{text}' is not one plain, firm fact; write it like 'left(fork, plate)'")
-    return facts[0]
-
-
-def _require_names(inference: Inference, fact: Fact, option: str) -> None:
-    from deixis.errors import UnknownTermError
-    from deixis.ontology.relation import nearest
-
-    nodes = inference.implications.graph.nodes
-    for name in (fact.subject, fact.object):
-        if name not in nodes:
-            hint = nearest(name, nodes)
-            raise UnknownTermError(
-                f"{option}: the script names no '{name}'" + (f"; did you mean '{hint}'?" if hint else "")
-            )
-
-
 def _explain(inference: Inference, fact: Fact, as_json: bool) -> None:
     from deixis.report.json_answers import derivation_to_dict
+    from deixis.workflows.infer import require_names
 
-    _require_names(inference, fact, "--explain")
+    require_names(inference, fact, "--explain")
     derivation = inference.implications.derive(fact.relations[0], fact.subject, fact.object)
     if as_json:
         print_json({"fact": str(fact), "derivation": derivation and derivation_to_dict(derivation)})
@@ -116,8 +94,9 @@ def _why_not(inference: Inference, fact: Fact, as_json: bool) -> None:
     from deixis.reasoning.entailment.why_not import why_not
     from deixis.report.json_answers import why_not_to_dict
     from deixis.report.script import why_not_lines
+    from deixis.workflows.infer import require_names
 
-    _require_names(inference, fact, "--why-not")
+    require_names(inference, fact, "--why-not")
     found = why_not(inference.implications, fact)
     if as_json:
         print_json(why_not_to_dict(found))

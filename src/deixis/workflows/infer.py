@@ -9,8 +9,11 @@ from pathlib import Path
 
 from deixis.answers import Answer, count
 from deixis.deadline import Deadline
+from deixis.errors import DeixisError, UnknownTermError
+from deixis.grammar.parser import parse_script
 from deixis.grammar.script import Script
 from deixis.ontology.facts import Fact
+from deixis.ontology.relation import nearest
 from deixis.reasoning.constraints.proof import Rule
 from deixis.reasoning.entailment.closing import consistent
 from deixis.reasoning.entailment.conflict import Conflict, find_conflict
@@ -114,7 +117,6 @@ def verdict_of(script: Script | str | Path, time_limit: float = TIME_LIMIT) -> b
 @cache
 def ready_to_infer() -> None:
     """Compile, or load compiled, the search over facts that leave a choice."""
-    from deixis.grammar.parser import parse_script
     from deixis.reasoning.constraints.difference import ORDERS, ZERO, Difference, DifferenceNetwork
     from deixis.reasoning.entailment.why_not import why_not
     from deixis.reasoning.kernel import load_compiled
@@ -142,3 +144,21 @@ def infer(script: Script | str | Path, time_limit: float = TIME_LIMIT) -> Infere
     if not all(fact.plain for fact in script.facts):
         ready_to_infer()
     return inference_of(script, time_limit)
+
+
+def plain_fact(text: str, name: str) -> Fact:
+    """Return the one plain, firm fact in a text; ``name`` is what an error calls the text. Raises DeixisError."""
+    facts = parse_script(text, name).facts
+    if len(facts) != 1 or not facts[0].plain or facts[0].optional or facts[0].weight < 1:
+        raise DeixisError(f"{name}: '{text}' is not one plain, firm fact; write it like 'left(fork, plate)'")
+    return facts[0]
+
+
+def require_names(inference: Inference, fact: Fact, name: str) -> None:
+    """Raise UnknownTermError, with the nearest name, unless the script names both objects of a fact."""
+    nodes = inference.implications.graph.nodes
+    for thing in (fact.subject, fact.object):
+        if thing not in nodes:
+            hint = nearest(thing, nodes)
+            suggestion = f"; did you mean '{hint}'?" if hint else ""
+            raise UnknownTermError(f"{name}: the script names no '{thing}'{suggestion}")

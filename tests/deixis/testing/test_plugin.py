@@ -1,0 +1,87 @@
+"""Test the pytest plugin in suites of its own: fixtures, and layout files that are tests."""
+
+from __future__ import annotations
+
+import shutil
+
+import pytest
+
+from deixis.errors import DeixisError
+from deixis.examples_data import EXAMPLES
+from deixis.testing.expectations import Expectation, expectations_in
+
+BLOCK = """
+# expect:
+#   consistent
+#   follows left(fork, knife)
+#
+#   not follows above(fork, knife)
+#   grounds table.scene.json: fork = 1, knife = 3, candle = absent
+"""
+LAYOUT = "fork left of plate\nplate left of knife\noptional candle above plate\n"
+SCENE = (
+    '{"unit": "cm", "objects": [{"id": 1, "min": [0, 2], "max": [2.5, 21]},'
+    ' {"id": 2, "min": [5, 0], "max": [30, 25]}, {"id": 3, "min": [33, 2], "max": [35, 23]}]}'
+)
+
+
+OPTIONS = ("-p", "no:dash", "-p", "deixis.testing.plugin")
+
+
+def test_each_expectation_is_a_test(pytester: pytest.Pytester) -> None:
+    (pytester.path / "dinner.layout").write_text(LAYOUT + BLOCK)
+    (pytester.path / "table.scene.json").write_text(SCENE)
+    pytester.runpytest_inprocess(*OPTIONS).assert_outcomes(passed=4)
+
+
+def test_a_failed_expectation_names_its_line_and_says_why(pytester: pytest.Pytester) -> None:
+    (pytester.path / "dinner.layout").write_text(LAYOUT + "# expect:\n#   follows left(knife, fork)\n")
+    result = pytester.runpytest_inprocess(*OPTIONS)
+    result.assert_outcomes(failed=1)
+    result.stdout.fnmatch_lines(["*dinner.layout:5: expected: follows left(knife, fork)", "*cannot hold*"])
+
+
+def test_a_broken_script_fails_with_its_place(pytester: pytest.Pytester) -> None:
+    (pytester.path / "dinner.layout").write_text("fork beside plate\n# expect:\n#   consistent\n")
+    result = pytester.runpytest_inprocess(*OPTIONS)
+    result.assert_outcomes(failed=1)
+    result.stdout.fnmatch_lines(["*dinner.layout:1:*"])
+
+
+def test_layouts_without_expectations_are_no_tests(pytester: pytest.Pytester) -> None:
+    (pytester.path / "dinner.layout").write_text(LAYOUT)
+    pytester.runpytest_inprocess(*OPTIONS).assert_outcomes()
+
+
+def test_fixtures_read_files_beside_the_test(pytester: pytest.Pytester) -> None:
+    for name in ("formal_dinner.layout", "place_setting.scene.json"):
+        shutil.copy(EXAMPLES / name, pytester.path / name)
+    pytester.makepyfile(
+        """
+        def test_all(deixis_script, deixis_scene, deixis_session):
+            script = deixis_script("formal_dinner.layout")
+            assert len(deixis_scene("place_setting.scene.json").objects) == len(script.objects) == 12
+            assert deixis_script("fork left of plate").objects == ("fork", "plate")
+            assert not deixis_session.remembers()
+        """
+    )
+    pytester.runpytest_inprocess(*OPTIONS).assert_outcomes(passed=1)
+
+
+def test_expectations_have_the_lines_of_the_file() -> None:
+    found = list(expectations_in(LAYOUT + BLOCK, "dinner.layout"))
+    lines = (LAYOUT + BLOCK).splitlines()
+    assert [one.text for one in found] == [lines[one.line - 1].lstrip("# ") for one in found]
+    assert found[0] == Expectation(6, "consistent")
+
+
+@pytest.mark.parametrize(
+    ("block", "message"),
+    [
+        ("# expect:\n# is nice\n", "dinner.layout:2:1: 'is nice' is not an expectation"),
+        ("# expect:\nfork left of plate\n", "dinner.layout:2:1: an expectation block is comments up to the end"),
+    ],
+)
+def test_lines_that_are_no_expectation_are_refused(block: str, message: str) -> None:
+    with pytest.raises(DeixisError, match=message):
+        list(expectations_in(block, "dinner.layout"))
