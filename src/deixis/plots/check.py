@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from deixis.plots.figure import save
 from deixis.plots.grounding import Marks, grounding_figure
 from deixis.reasoning.comparison.checking import RoleVerdict
+from deixis.workflows.belonging import places_of
 from deixis.workflows.check import Check
 
 if TYPE_CHECKING:
@@ -39,12 +40,13 @@ def check_figure(checked: Check, axes: Axes | None = None) -> Figure:
 
 
 def marks_of(checked: Check) -> Marks:
-    """Return the things that the picture marks; what is both misplaced and of another colour bears both marks."""
+    """Return what the picture marks; a thing that is both misplaced and of another colour has both marks."""
     table = checked.table
     wrong = {entry.perceived for entry in table.of(RoleVerdict.MISPLACED) if entry.perceived is not None}
     return Marks(
         wrong=wrong | {entry.perceived for entry in table.extra},
         miscoloured={entry.perceived for entry, _ in table.miscoloured if entry.perceived is not None},
+        belongs=places_of(checked),
         unsure={entry.perceived for entry in table.of(RoleVerdict.UNDETERMINED) if entry.perceived is not None},
     )
 

@@ -13,8 +13,14 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-INK, QUIET, WRONG, PAPER = "#22313f", "#9aa5ae", "#c0392b", "#fbfaf7"
+INK, QUIET, WRONG, PAPER = "#22313f", "#9aa5ae", "#d55e00", "#fbfaf7"
 FADED_INK = "#77808a"
+BELONGS = "#0072b2"
+"""Colour of the places where things belong.
+
+Like WRONG and the colours of groups it is of Okabe and Ito's palette, which people with the common forms of colour
+blindness can tell apart (https://jfly.uni-koeln.de/color/)."""
+
 MARGIN = 0.12
 """Inches between what is drawn and the edge of the picture."""
 

@@ -4,16 +4,20 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from deixis.errors import DeixisError
 from deixis.perception.scene import PerceivedObject, Scene
 from deixis.plots.arrows import Arrow, Ends, draw_arrows, drawing_order, points_along
-from deixis.plots.figure import INK, PAPER, QUIET, WRONG, canvas, dress_table, save
+from deixis.plots.figure import BELONGS, INK, PAPER, QUIET, WRONG, canvas, dress_table, save
 from deixis.plots.names import write_names
 from deixis.reasoning.grounding.answer import FactOutcome, Grounding
+from deixis.reasoning.grounding.options import DECIDED
 from deixis.report.ground import MAX_LISTED, at_most_many
 
 if TYPE_CHECKING:
@@ -21,7 +25,11 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from matplotlib.patches import Rectangle
 
-GROUP_COLOURS = ("#4c78a8", "#e0a02c", "#5a9a5a", "#8e6bbf", "#2a9d9d", "#b5703c")
+    from deixis.ontology.lessons.types import Match
+
+GROUP_COLOURS = ("#56b4e9", "#e69f00", "#009e73", "#cc79a7", "#0072b2", "#f0e442")
+"""Colours of groups of objects that cannot be told apart, of Okabe and Ito's palette."""
+
 PLAIN_FILL, UNNAMED_FILL = "#ffffff", "#eceae4"
 
 HATCH = "////"
@@ -36,6 +44,9 @@ LEGEND_LINE = 0.17
 LINE, HALF_LINE, TITLE_LINE = 115, 50, 75
 """Characters that fit into a line of the legend, into half of one, and into one of the title."""
 
+LEAST_ALPHA = 0.2
+"""Opacity of the edge of a thing whose name is as good as certainly wrong."""
+
 MAX_CLEAR_ARROWS = 30
 """Arrows of violated facts of which names keep clear, at most."""
 
@@ -44,11 +55,16 @@ NO_BREAK = "\u00a0"
 
 @dataclass(frozen=True, slots=True)
 class Marks:
-    """The ids of things that a picture marks: ``wrong`` red, ``miscoloured`` hatched, ``unsure`` with a dotted edge."""
+    """Ids of the things that a picture marks, and boxes (2, 2) where objects belong, by name.
+
+    ``wrong`` things have an edge of their own colour, ``miscoloured`` ones are hatched, ``unsure`` ones have a dotted
+    edge. ``belongs`` are drawn as ghosts, with an arrow from the thing of a misplaced object to its ghost.
+    """
 
     wrong: Collection[str] = ()
     miscoloured: Collection[str] = ()
     unsure: Collection[str] = ()
+    belongs: Mapping[str, NDArray[np.float64]] = field(default_factory=dict)
 
 
 NO_MARKS = Marks()
@@ -85,7 +101,7 @@ def scene_figure(scene: Scene, axes: Axes | None = None) -> Figure:
     """Draw the boxes of a scene from above, each with its label or id."""
     figure, axes = canvas(axes, WIDTH, _table_height(scene) + 0.9)
     named = {thing.id: thing.label for thing in scene.objects if thing.label}
-    _draw_boxes(axes, scene, named, {}, NO_MARKS)
+    _draw_boxes(axes, scene, named, {}, NO_MARKS, {})
     _finish(figure, axes, scene, named, (), None)
     return figure
 
@@ -101,7 +117,9 @@ def grounding_figure(
     own_figure = axes is None
     figure, axes = canvas(axes, WIDTH, _table_height(scene) + 0.9 + legend_height)
     names = {match.perceived: match.object for match in found.matches.values()}
-    _draw_boxes(axes, scene, names, colours, marks)
+    sureness = {match.perceived: match.sureness for match in found.matches.values()}
+    _draw_boxes(axes, scene, names, colours, marks, sureness)
+    ghosts = _draw_ghosts(axes, scene, found, marks.belongs)
     ends = Ends(scene.objects)
     satisfied, violated = _arrows(found.satisfied, ends), _arrows(found.violated, ends)
     draw_arrows(axes, satisfied, QUIET, 0.8, 3)
@@ -115,8 +133,74 @@ def grounding_figure(
             axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.12), **legend)
     ends_of_arrows = [end for arrow in satisfied + violated for end in arrow]
     clear = [*ends_of_arrows, *points_along(violated[:MAX_CLEAR_ARROWS])]
-    _finish(figure, axes, scene, names, clear, title)
+    labels = {match.perceived: _doubtful_label(match, names, colours) for match in found.matches.values()}
+    _finish(figure, axes, scene, labels, clear, title, ghosts, _words(found.violated, ends))
     return figure
+
+
+MAX_ALTERNATIVES = 2
+"""Number of alternatives that the label of an undecided match names, at most."""
+
+
+def _doubtful_label(match: Match, names: Mapping[str, str], colours: Mapping[str, str]) -> str:
+    """Return a name, with its probability if that is below 0.99, and what else an undecided match may be.
+
+    The objects of a group that cannot be told apart have one colour, and the legend lists them; in a large group the
+    probability is left out.
+    """
+    if match.decided:
+        return match.object
+    if match.object in colours and len(match.alternatives) >= MAX_LISTED:
+        return match.object
+    label = match.object if match.probability is None else f"{match.object} {match.probability:.2f}"
+    if match.object in colours or not match.alternatives:
+        return label
+    others = [
+        "absent" if other.perceived is None else names.get(other.perceived, other.perceived)
+        for other in match.alternatives[:MAX_ALTERNATIVES]
+    ]
+    places = [other for other in others if other != "absent"]
+    where = [f"at {', '.join(places)}"] if places else []
+    where += ["absent"] if len(places) < len(others) else []
+    return f"{label}\nor {' or '.join(where)}{', …' if len(match.alternatives) > len(others) else ''}"
+
+
+def _words(entries: Sequence[FactOutcome], ends: Ends) -> list[tuple[str, Arrow]]:
+    """Return the words of violated facts with their arrows, as far as there is room to write them."""
+    drawn = [entry for entry in entries if entry.perceived is not None][:MAX_CLEAR_ARROWS]
+    return [(entry.fact.relations[0].phrase, ends.arrow(*entry.perceived)) for entry in drawn if entry.perceived]
+
+
+def _draw_ghosts(
+    axes: Axes, scene: Scene, found: Grounding, belongs: Mapping[str, NDArray[np.float64]]
+) -> list[PerceivedObject]:
+    """Draw where objects belong, and the way there; return the ghosts, to be named."""
+    from matplotlib.patches import FancyArrowPatch, Rectangle
+
+    boxes = {thing.id: box for thing, box in zip(scene.objects, scene.boxes[:, :, :2], strict=True)}
+    ghosts = []
+    for name, (low, high) in belongs.items():
+        look: dict[str, Any] = {"edgecolor": BELONGS, "facecolor": BELONGS, "linestyle": (0, (2, 2)), "linewidth": 1.4}
+        axes.add_patch(Rectangle(tuple(low), *(high - low), fill=False, zorder=6, **look))
+        axes.add_patch(Rectangle(tuple(low), *(high - low), alpha=0.08, linewidth=0, color=BELONGS, zorder=1.5))
+        match = found.matches.get(name)
+        if match is None:
+            ghosts.append(PerceivedObject(f"ghost of {name}", tuple(low), tuple(high), label=f"{name} belongs here"))
+            continue
+        way = FancyArrowPatch(
+            tuple(boxes[match.perceived].mean(axis=0)),
+            tuple((low + high) / 2),
+            arrowstyle="-|>",
+            mutation_scale=12,
+            connectionstyle="arc3,rad=0.25",
+            color=BELONGS,
+            linewidth=1.8,
+            linestyle=(0, (4, 2)),
+            zorder=8,
+        )
+        way.set_in_layout(False)
+        axes.add_patch(way)
+    return ghosts
 
 
 def _table_height(scene: Scene) -> float:
@@ -128,7 +212,14 @@ def _table_height(scene: Scene) -> float:
 
 
 def _finish(
-    figure: Figure, axes: Axes, scene: Scene, names: Mapping[str, str], clear: Sequence[Any], title: str | None
+    figure: Figure,
+    axes: Axes,
+    scene: Scene,
+    names: Mapping[str, str],
+    clear: Sequence[Any],
+    title: str | None,
+    ghosts: Sequence[PerceivedObject] = (),
+    words: Sequence[tuple[str, Arrow]] = (),
 ) -> None:
     """Set the frame of a table from above, and write the names of the things where they cover least."""
     axes.set_aspect("equal", adjustable="datalim")  # a long row has room for its names above and below
@@ -136,20 +227,30 @@ def _finish(
     dress_table(axes, scene, title and textwrap.fill(title, TITLE_LINE))
     named = [replace(thing, label=names.get(thing.id) or thing.label or thing.id) for thing in scene.objects]
     quiet = {thing.id for thing in scene.objects if thing.id not in names}
-    write_names(figure, axes, named, quiet, clear)
+    write_names(figure, axes, [*named, *ghosts], quiet, clear, words)
 
 
 def _arrows(entries: Sequence[FactOutcome], ends: Ends) -> list[Arrow]:
     return [ends.arrow(*entry.perceived) for entry in entries if entry.perceived is not None]
 
 
-def _draw_boxes(axes: Axes, scene: Scene, names: Mapping[str, str], colours: Mapping[str, str], marks: Marks) -> None:
-    """Fills, over them what is hatched, and over all the edges."""
+def _draw_boxes(
+    axes: Axes,
+    scene: Scene,
+    names: Mapping[str, str],
+    colours: Mapping[str, str],
+    marks: Marks,
+    sureness: Mapping[str, float],
+) -> None:
+    """Draw the fills, over them the hatching, and over both the edges, which fade with doubt."""
     from matplotlib.collections import PatchCollection
 
     things = drawing_order(scene.objects)
     fills = [_rectangle(thing, **_fill(names.get(thing.id), colours)) for thing in things]
-    edges = [_rectangle(thing, **_edge(thing.id, names.get(thing.id), colours, marks)) for thing in things]
+    edges = [
+        _rectangle(thing, **_edge(thing.id, names.get(thing.id), colours, marks, sureness.get(thing.id, 1.0)))
+        for thing in things
+    ]
     hatched = [_rectangle(thing) for thing in things if thing.id in marks.miscoloured]
     for boxes in (
         PatchCollection(fills, match_original=True, zorder=1),
@@ -172,10 +273,11 @@ def _fill(name: str | None, colours: Mapping[str, str]) -> dict[str, Any]:
     return {"facecolor": fill, "alpha": 0.85 if colour is None else 0.35, "edgecolor": "none"}
 
 
-def _edge(thing: str, name: str | None, colours: Mapping[str, str], marks: Marks) -> dict[str, Any]:
+def _edge(thing: str, name: str | None, colours: Mapping[str, str], marks: Marks, sureness: float) -> dict[str, Any]:
     edge = WRONG if thing in marks.wrong else colours.get(name or "") or (INK if name else QUIET)
     style = (0, (1, 2)) if thing in marks.unsure else "-" if name else (0, (4, 3))
-    return {"fill": False, "edgecolor": edge, "linewidth": 1.2, "linestyle": style}
+    alpha = 1.0 if sureness >= DECIDED else LEAST_ALPHA + (1.0 - LEAST_ALPHA) * sureness
+    return {"fill": False, "edgecolor": edge, "linewidth": 1.2, "linestyle": style, "alpha": alpha}
 
 
 def _keys(found: Grounding, groups: Sequence[Sequence[str]], marks: Marks) -> list[Any]:
@@ -191,6 +293,8 @@ def _keys(found: Grounding, groups: Sequence[Sequence[str]], marks: Marks) -> li
         keys.append(Line2D([], [], color=WRONG, label=f"{len(found.violated)} violated"))
     if marks.wrong:
         keys.append(Patch(facecolor=PAPER, edgecolor=WRONG, label="misplaced, or (dashed) extra"))
+    if marks.belongs:
+        keys.append(Patch(facecolor=PAPER, edgecolor=BELONGS, linestyle=(0, (2, 2)), label="where it belongs"))
     if marks.miscoloured:
         keys.append(Patch(facecolor=PAPER, edgecolor=WRONG, linewidth=0, hatch=HATCH, label="of another colour"))
     if marks.unsure:

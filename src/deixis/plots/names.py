@@ -12,13 +12,15 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Collection, Iterator, Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from itertools import product
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from deixis.perception.scene import PerceivedObject
-from deixis.plots.figure import FADED_INK, INK, PAPER
+from deixis.plots.arrows import Arrow, points_along
+from deixis.plots.figure import FADED_INK, INK, PAPER, WRONG
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -30,6 +32,13 @@ LONGEST = 48
 
 RINGS = 40
 """How many line heights away from its thing a name may stand."""
+
+AROUND = [
+    *((0, 1), (0, -1), (1, 0), (-1, 0), (1, 1), (-1, 1), (1, -1), (-1, -1)),
+    *((x, y) for y in (1, -1) for x in (0.3, -0.3, 0.6, -0.6)),
+]
+"""Directions from a thing in which its name may stand, in shares of the two's sizes."""
+
 COVERED = 600.0
 """What it costs, in pixels as it were, to cover other things with a whole name."""
 
@@ -41,6 +50,9 @@ NEAR = 120.0
 
 HIDING = 3.0
 """How many times worse it is to cover an area around a point than one of a thing."""
+
+IN_THE_WAY = 40.0
+"""Cost, in pixels, for each other thing whose own name would have to stand where this one does."""
 
 POINT = 8.0
 """The side of the square, in pixels, that is kept clear around a point."""
@@ -68,6 +80,13 @@ class Box(NamedTuple):
         common: NDArray[np.float64] = np.maximum(width, 0) * np.maximum(height, 0)
         return common
 
+    def in_the_way_of(self, boxes: NDArray[np.float64]) -> int:
+        """Return how many boxes (n, 4) have their middle column behind this one, close above or below."""
+        middle = (boxes[:, 0] + boxes[:, 2]) / 2
+        reach = 3 * min(self.high - self.low, self.right - self.left)
+        apart = np.maximum(self.low - boxes[:, 3], boxes[:, 1] - self.high)
+        return int(np.count_nonzero((self.left < middle) & (middle < self.right) & (apart >= 0) & (apart < reach)))
+
 
 class NamePlace(NamedTuple):
     """Where a name may stand, at what rotation and cost, and whether that is on its thing."""
@@ -84,13 +103,24 @@ def write_names(
     things: Sequence[PerceivedObject],
     quiet: Collection[str] = (),
     clear: Sequence[tuple[float, float]] = (),
+    words: Sequence[tuple[str, Arrow]] = (),
 ) -> None:
-    """Write every thing's label where it covers no other name, and as little else as can be.
+    """Write every thing's label where it covers no other name, and as little else as possible.
 
-    A name that does not fit on its thing stands beside it, with a line to it; where things are very many, or there is
-    no room, it is left out, and the axis says how many are. The names of the things with the ids ``quiet`` are grey;
-    the points ``clear``, in the units of the axes, are kept clear where that can be. The figure's layout is settled by
-    this.
+    A name that does not fit on its thing stands beside it. A line joins the two where they are apart; it crosses no
+    other thing and no name. Where things are very many, or there is no room, a name is left out, and the axis says how
+    many are. This fixes the layout of the figure.
+
+    Parameters
+    ----------
+    things
+        What to name: the label is written, or the id of a thing without one. A line break in it starts a new line.
+    quiet
+        Ids of the things whose names are grey.
+    clear
+        Points in the units of the axes that names should not cover.
+    words
+        Words with the arrows that they belong to; each is written at the middle of its arrow where there is room.
     """
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", message="Glyph", category=UserWarning)  # a letter that the font lacks
@@ -103,6 +133,7 @@ def write_names(
         outlines = [Box(*box) for box in boxes.tolist()]
         most = float("inf") if len(things) <= MANY else NEAR
         taken: list[Box] = []
+        leaders: list[Segment] = []
         for index in sorted(range(len(things)), key=lambda index: outlines[index].area):
             outline, name = outlines[index], _shown(things[index].label or things[index].id)
             others, names = np.delete(boxes, index, axis=0), np.array(taken).reshape(-1, 4)
@@ -112,24 +143,29 @@ def write_names(
                 for place in _places(outline, *_measured(figure, name), most)
                 if place.box.shared(frame)[0] >= 0.999 * place.box.area
             ]
-            place = _cheapest(places, outline, others, names, points, most)
+            place = _cheapest(places, outline, others, names, points, leaders, most)
             if place is not None:
                 taken.append(place.box)
-                _write(axes, name, place, outline, things[index].id in quiet)
+                leader = _leader(place, outline)
+                if leader is not None:
+                    leaders.append(leader)
+                _write(axes, name, place, leader, things[index].id in quiet)
         left_out = len(things) - len(taken)
+        for word, arrow in words:
+            _write_word(figure, axes, word, arrow, taken)
         if left_out:
             counted = f"{left_out} {'name' if left_out == 1 else 'names'}"
             axes.set_xlabel(f"{axes.get_xlabel()}; {counted} left out for lack of room")
 
 
 def _shown(name: str) -> str:
-    """Return a name as it is read, a very long one shortened; one of nothing but lines stays as it is written.
+    """Return a name as it is read, each line shortened if it is very long; one made of underscores stays as it is.
 
     >>> _shown("wine_glass_2"), _shown("_")
     ('wine glass 2', '_')
     """
     shown = name.replace("_", " ") if name.strip("_ ") else name
-    return shown if len(shown) <= LONGEST else f"{shown[: LONGEST - 1]}…"
+    return "\n".join(line if len(line) <= LONGEST else f"{line[: LONGEST - 1]}…" for line in shown.split("\n"))
 
 
 def _measured(figure: Figure, text: str) -> tuple[float, float]:
@@ -158,10 +194,12 @@ def _places(outline: Box, width: float, height: float, most: float) -> Iterator[
         if cost >= most:
             return
         away = 3 + ring * height / 2
-        for dx, dy in ((0, 1), (0, -1), (1, 0), (-1, 0), (1, 1), (-1, 1), (1, -1), (-1, -1)):
-            x = centre_x + dx * ((outline.right - outline.left + width) / 2 + away)
-            y = centre_y + dy * ((outline.high - outline.low + height) / 2 + away)
-            yield NamePlace(around(x, y, width, height), 0, cost + 10.0 * abs(dx * dy), False)
+        for rotation, w, h in ((0, width, height), (90, height, width)):
+            for dx, dy in AROUND if rotation == 0 else AROUND[:2]:
+                x = centre_x + dx * ((outline.right - outline.left + w) / 2 + away)
+                y = centre_y + dy * ((outline.high - outline.low + h) / 2 + away)
+                upright = 40.0 * rotation / 90
+                yield NamePlace(around(x, y, w, h), rotation, cost + upright + 10.0 * abs(dx * dy), False)
 
 
 def _cheapest(
@@ -170,13 +208,16 @@ def _cheapest(
     others: NDArray[np.float64],
     names: NDArray[np.float64],
     points: NDArray[np.float64],
+    leaders: Sequence[Segment],
     most: float,
 ) -> NamePlace | None:
-    """Return the cheapest place that covers no name; what it covers of other things and points costs too.
+    """Return the cheapest place that covers no name and no leader, and whose own leader crosses no thing and no name.
 
-    ``outline`` is that of the thing itself; other things, names and points are boxes in pixels of shape (n, 4).
+    What it covers of other things and points costs too. ``outline`` is that of the thing itself; other things, names
+    and points are boxes in pixels of shape (n, 4).
     """
     bears = outline.shared(others) >= 0.98 * outline.area
+    foreign = np.vstack([others[~bears], names])
     best, least = None, most
     for place in sorted(places, key=lambda place: place.cost):
         if place.cost >= least:
@@ -186,25 +227,83 @@ def _cheapest(
             beneath = others[~bears] if place.inside else others
             covered = place.box.shared(beneath).sum() + HIDING * place.box.shared(points).sum()
             total = place.cost + COVERED * float(covered) / place.box.area
-            if total < least:
+            if not place.inside:
+                total += IN_THE_WAY * place.box.in_the_way_of(others)
+            if total < least and not _crossing(place, outline, foreign, leaders):
                 best, least = place, total
     return best
 
 
-def _write(axes: Axes, name: str, place: NamePlace, outline: Box, quiet: bool) -> None:
+def _crossing(place: NamePlace, outline: Box, foreign: NDArray[np.float64], leaders: Sequence[Segment]) -> bool:
+    """Return True if a name's leader enters one of the boxes (n, 4), or if another leader enters the name."""
+    if any(crosses(leader, np.array([place.box]))[0] for leader in leaders):
+        return True
+    leader = _leader(place, outline)
+    return leader is not None and bool(crosses(leader, foreign).any())
+
+
+Segment = tuple[tuple[float, float], tuple[float, float]]
+"""A line between two points, in pixels."""
+
+
+def _leader(place: NamePlace, outline: Box) -> Segment | None:
+    """Return the line from a name's nearest point to one well inside its thing; None if they are close."""
+    box = place.box
+    across = max(outline.left - box.right, box.left - outline.right, 0.0)
+    along = max(outline.low - box.high, box.low - outline.high, 0.0)
+    if max(across, along) <= LEADER:
+        return None
+    inset_x, inset_y = 0.15 * (outline.right - outline.left), 0.15 * (outline.high - outline.low)
+    x0 = min(max((outline.left + outline.right) / 2, box.left), box.right)
+    y0 = min(max((outline.low + outline.high) / 2, box.low), box.high)
+    x1 = min(max(x0, outline.left + inset_x), outline.right - inset_x)
+    y1 = min(max(y0, outline.low + inset_y), outline.high - inset_y)
+    return (x0, y0), (x1, y1)
+
+
+def crosses(segment: Segment, boxes: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Return which boxes (n, 4) a segment enters, by clipping it to each (Liang and Barsky); touching is not entering.
+
+    >>> crosses(((0.0, 0.0), (4.0, 0.0)), np.array([[1.0, -1.0, 2.0, 1.0], [1.0, 1.0, 2.0, 2.0]]))
+    array([ True, False])
+    """
+    start, step = np.array(segment[0]), np.array(segment[1]) - np.array(segment[0])
+    low, high = boxes[:, :2], boxes[:, 2:]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        first, second = (low - start) / step, (high - start) / step
+    inside = (start > low) & (start < high)
+    flat = step == 0
+    enter = np.where(flat, np.where(inside, -np.inf, np.inf), np.minimum(first, second)).max(axis=1)
+    leave = np.where(flat, np.where(inside, np.inf, -np.inf), np.maximum(first, second)).min(axis=1)
+    entered: NDArray[np.bool_] = np.maximum(enter, 0.0) < np.minimum(leave, 1.0)
+    return entered
+
+
+def _write_word(figure: Figure, axes: Axes, word: str, arrow: Arrow, taken: list[Box]) -> None:
+    """Write a word beside the middle of its arrow, or a little before or after it, where it covers no name."""
+    from matplotlib import patheffects
+
+    width, height = _measured(figure, word)
+    points = axes.transData.transform(np.array(points_along([arrow])))
+    for share, side in product((0.5, 0.35, 0.65), (0.7, -0.7, 0.0)):
+        x, y = points[round(share * (len(points) - 1))].tolist()
+        y += side * height
+        box = Box(x - width / 2, y - height / 2, x + width / 2, y + height / 2)
+        if not box.shared(np.array(taken).reshape(-1, 4)).any():
+            taken.append(box)
+            at_x, at_y = axes.transData.inverted().transform((x, y)).tolist()
+            look: dict[str, Any] = {"ha": "center", "va": "center", "fontsize": FONT - 0.5, "color": WRONG}
+            stroke = [patheffects.withStroke(linewidth=2.2, foreground=PAPER)]
+            axes.text(at_x, at_y, word, zorder=950, path_effects=stroke, **look)
+            return
+
+
+def _write(axes: Axes, name: str, place: NamePlace, leader: Segment | None, quiet: bool) -> None:
     from matplotlib import patheffects
 
     box, inverse = place.box, axes.transData.inverted()
-    across = max(outline.left - box.right, box.left - outline.right, 0.0)
-    along = max(outline.low - box.high, box.low - outline.high, 0.0)
-    if max(across, along) > LEADER:
-        # From the name's nearest point to the nearest one that lies well inside the outline.
-        inset_x, inset_y = 0.15 * (outline.right - outline.left), 0.15 * (outline.high - outline.low)
-        x0 = min(max((outline.left + outline.right) / 2, box.left), box.right)
-        y0 = min(max((outline.low + outline.high) / 2, box.low), box.high)
-        x1 = min(max(x0, outline.left + inset_x), outline.right - inset_x)
-        y1 = min(max(y0, outline.low + inset_y), outline.high - inset_y)
-        (x0, y0), (x1, y1) = inverse.transform([(x0, y0), (x1, y1)]).tolist()
+    if leader is not None:
+        (x0, y0), (x1, y1) = inverse.transform(leader).tolist()
         axes.plot([x0, x1], [y0, y1], color=INK, linewidth=0.6, zorder=900, scalex=False, scaley=False)
     x, y = inverse.transform(((box.left + box.right) / 2, (box.low + box.high) / 2)).tolist()
     axes.text(

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from deixis.perception.detection.settings import PlaneSettings
 from deixis.plots.camera import MARGIN, CameraPicture, camera_of, colours_of, draw_camera
 from deixis.plots.figure import INK, canvas, dress_table, new_figure, save
+from deixis.plots.grounding import scene_figure
 from deixis.plots.names import write_names
 
 if TYPE_CHECKING:
@@ -55,6 +56,18 @@ def plot_perceived(scene: Scene, path: str | Path) -> None:
 
     Raises SceneError for a scene that was not found in a cloud, or is read from a file.
     """
+    save(perceived_figure(scene), path)
+
+
+def seen_figure(scene: Scene, axes: Axes | None = None) -> Figure:
+    """Draw a scene: with its points if it was just found in a cloud, else its boxes."""
+    if scene.detection is None or axes is not None:
+        return scene_figure(scene, axes)
+    return perceived_figure(scene)
+
+
+def perceived_figure(scene: Scene) -> Figure:
+    """Return the picture of :func:`plot_perceived` as a new figure."""
     from deixis.perception.detection.viewpoint import in_frame
     from deixis.perception.errors import SceneError
 
@@ -81,7 +94,7 @@ def plot_perceived(scene: Scene, path: str | Path) -> None:
     if camera is not None:
         draw_camera(axes[1], camera)
         write_names(figure, axes[1], camera.things)
-    save(figure, path)
+    return figure
 
 
 def plot_recognised(found: Recognised, path: str | Path) -> None:

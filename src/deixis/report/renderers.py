@@ -43,7 +43,7 @@ RENDERERS = {
         "perception.formats.scene_json:scene_to_dict",
         "report.seen:scene_lines",
         "report.rows:scene_rows",
-        "plots.grounding:scene_figure",
+        "plots.seen:seen_figure",
     ),
     "Match": Renderer("report.json_answers:match_to_dict", "report.ground:match_lines"),
     "Grounding": Renderer(

@@ -27,7 +27,7 @@ from deixis.workflows.read import as_scene, as_script, is_script_file
 
 if TYPE_CHECKING:
     from deixis.ontology.lessons.types import LayoutConcept
-    from deixis.ontology.relation import Relations
+    from deixis.ontology.tbox import Ontology
     from deixis.reasoning.comparison.checking import TableCheck
 
 
@@ -38,7 +38,7 @@ class Check(Answer):
     layout: LayoutConcept
     table: TableCheck
     scene: Scene
-    relations: Relations
+    ontology: Ontology
 
     def summary(self) -> str:
         """Return the layout's name, and how many objects have each verdict."""
@@ -62,7 +62,7 @@ class Check(Answer):
     def _validated(self) -> tuple[bool, str]:
         from deixis.workflows.shacl_report import shacl_report
 
-        return shacl_report(self.layout, self.scene, self.table, self.relations)
+        return shacl_report(self.layout, self.scene, self.table, self.ontology.relations)
 
 
 def check(
@@ -89,8 +89,7 @@ def check(
         raise SettingError(told)
     else:
         concept = knowledge.layout(str(layout))
-    scene, relations = as_scene(scene), known.relations
-    graph = concept.graph(relations)
+    scene, graph = as_scene(scene), concept.graph(known.relations)
     meaning = SHIPPED if knowledge is None else knowledge.meaning()
     implied = Implications(graph)
     evidence = graph_evidence(graph, scene, known, meaning, label_error=0.0)  # a check takes labels as identities
@@ -102,4 +101,4 @@ def check(
     found = table.grounding
     kept = tuple(note for note in found.notes if "similarity" not in note)  # a check shows no similarity
     table = replace(table, grounding=replace(found, notes=notes + kept))
-    return Check(concept, table, scene, relations)
+    return Check(concept, table, scene, known)

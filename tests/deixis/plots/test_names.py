@@ -6,7 +6,7 @@ from matplotlib.figure import Figure
 
 from deixis.perception.scene import PerceivedObject, Scene
 from deixis.plots.figure import dress_table, new_figure
-from deixis.plots.names import MANY, write_names
+from deixis.plots.names import MANY, crosses, write_names
 
 
 def written(things: list[PerceivedObject], quiet: tuple[str, ...] = ()) -> Figure:
@@ -52,3 +52,16 @@ def test_a_name_as_long_as_the_picture_is_shortened_and_not_left_out() -> None:
 def test_what_has_no_name_of_its_own_is_written_in_another_hand() -> None:
     (axes,) = written(grid(2, 2.0), quiet=("thing_1",)).axes
     assert [text.get_fontstyle() for text in axes.texts] == ["normal", "italic"]
+
+
+def test_leader_lines_cross_no_other_thing_and_no_name() -> None:
+    things = [PerceivedObject(f"a_rather_long_name_{n}", (4 + 0.2 * n, 4), (4.1 + 0.2 * n, 6)) for n in range(10)]
+    figure = written(things)
+    (axes,) = figure.axes
+    names = [text.get_window_extent() for text in axes.texts]
+    for line in axes.lines:
+        (x0, y0), (x1, y1) = axes.transData.transform(line.get_xydata()).tolist()
+        boxes = axes.transData.transform([[thing.minimum, thing.maximum] for thing in things]).reshape(-1, 4)
+        assert crosses(((x0, y0), (x1, y1)), boxes).sum() <= 1  # the thing itself
+    for index, name in enumerate(names):
+        assert not any(name.overlaps(other) for other in names[:index])
