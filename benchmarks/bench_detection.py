@@ -18,6 +18,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
+import hard_tables
 import numpy as np
 from common import data_folder
 from hard_tables import CASES, LAYOUT, LEAST
@@ -206,6 +207,19 @@ def hard_cases(count: int, compared: dict[str, Method]) -> None:
         print(line, flush=True)
 
 
+def odd_clouds(seed: int) -> None:
+    """Print how long clouds that no table looks like take, as they are and as bare points in random order."""
+    print("\nodd clouds of 307,200 points: seconds of processor, as they are and as bare points; what they show\n")
+    for name, cloud in hard_tables.odd_clouds(seed).items():
+        order = np.random.default_rng(0).permutation(np.flatnonzero(cloud.finite))
+        line = f"{name:44}"
+        for each in (cloud, cloud.take(order)):
+            started = time.process_time()
+            found = detect(each)
+            line += f"{time.process_time() - started:7.2f} s {found.shows:8}"
+        print(line, flush=True)
+
+
 def _truth(cloud: PointCloud) -> Labels:
     assert cloud.labels is not None
     return cloud.labels
@@ -241,6 +255,7 @@ def main() -> None:
             1 if given.quick else given.hard,
             {name: method for name, method in compared.items() if not name.startswith("cluster")},
         )
+        odd_clouds(given.first)
 
 
 if __name__ == "__main__":

@@ -134,6 +134,45 @@ def fused(seed: int) -> Case:
     return _case(PointCloud(points, colours, labels.astype(np.int32)))
 
 
+def odd_clouds(seed: int) -> dict[str, PointCloud]:
+    """Return clouds of 307,200 points that no table looks like: depth without sense, doubled, missing or one plane."""
+    seen = replace(formal(seed).cloud, labels=None)
+    rng = np.random.default_rng([seed, 4])
+    count = len(seen)
+    pixel = np.arange(count)
+
+    def moved(share: float, nearest: float, farthest: float) -> PointCloud:
+        along = np.where(rng.random(count) < share, rng.uniform(nearest, farthest, count), 1.0)
+        return replace(seen, points=(seen.points * along[:, None]).astype(np.float32))
+
+    def points(xyz: NDArray[np.float64]) -> PointCloud:
+        return PointCloud((xyz + np.array((0.0, 0.0, 1.5))).astype(np.float32))
+
+    even = (pixel + pixel // KINECT.width) % 2 == 0
+    sheet = np.column_stack([rng.uniform(-0.6, 0.6, (count, 2)), rng.normal(0.0, 0.003, count)])
+    stray = np.where(rng.random((count, 1)) < 0.001, np.float32(1e6), seen.points)
+    doubled = rng.choice(np.flatnonzero(seen.finite), count // 8).repeat(8)
+    return {
+        "half the pixels from 0.3 to 3 times as far": moved(0.5, 0.3, 3.0),
+        "half the pixels within 5 % of their depth": moved(0.5, 0.95, 1.05),
+        "three in ten within 10 %": moved(0.3, 0.9, 1.1),
+        "one in ten from 0.3 to 3 times as far": moved(0.1, 0.3, 3.0),
+        "all pixels from 0.3 to 3 times as far": moved(1.0, 0.3, 3.0),
+        "every second pixel 1.3 times as far": replace(
+            seen, points=(seen.points * np.where(even, 1.3, 1.0)[:, None]).astype(np.float32)
+        ),
+        "half the pixels without depth": replace(
+            seen, points=np.where(rng.random((count, 1)) < 0.5, np.float32(np.nan), seen.points)
+        ),
+        "a thousandth of the points 1,000 km away": replace(seen, points=stray.astype(np.float32)),
+        "depth in steps of a centimetre": replace(seen, points=(np.round(seen.points * 100) / 100).astype(np.float32)),
+        "each point eight times": seen.take(doubled),
+        "one plane with 3 mm of noise": points(sheet),
+        "a cube full of points": points(rng.uniform(-0.5, 0.5, (count, 3))),
+        "a normal density of points": points(rng.normal(0.0, 0.3, (count, 3))),
+    }
+
+
 CASES: dict[str, Callable[[int], Case]] = {
     "formal": formal,
     "pile across the table": pile,

@@ -47,7 +47,8 @@ class PointCloud:
     @property
     def finite(self) -> NDArray[np.bool_]:
         """Which points have a depth, shape (n,)."""
-        result: NDArray[np.bool_] = np.all(np.isfinite(self.points), axis=1)
+        x, y, z = (np.isfinite(self.points[:, axis]) for axis in range(3))
+        result: NDArray[np.bool_] = x & y & z
         return result
 
     def take(self, chosen: NDArray[np.bool_] | NDArray[np.integer]) -> PointCloud:

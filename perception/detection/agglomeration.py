@@ -5,6 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
+_ARITY = 4
+"""Children of a place in the heap: four keys share a line of the cache."""
+
 
 @njit(cache=True, nogil=True)
 def merge_regions(pairs, lengths, evidence, colours, weights, limit, colour_delay, full_difference):  # type: ignore[no-untyped-def]
@@ -19,33 +22,31 @@ def merge_regions(pairs, lengths, evidence, colours, weights, limit, colour_dela
     -----
     The edges of a region are a doubly linked list. An edge e has two places in such lists, 2 e in that of its first
     end and 2 e + 1 in that of its second. A merge visits the edges of both regions once, and each costs O(log m) in
-    the heap, which holds every edge at most once.
+    the heap, which holds the edges with evidence below the limit, each once, with their keys beside them.
     """
     count, m = len(weights), len(pairs)
     ends, length, total = pairs.copy(), lengths.copy(), lengths * evidence
-    weight = weights.copy()
-    colour = np.empty((count, 3))  # times the weight
-    for i in range(count):
-        for axis in range(3):
-            colour[i, axis] = colours[i, axis] * weights[i]
+    weight, tints = weights.copy(), colours * weights.reshape(-1, 1)
+    means = tints / weights.reshape(-1, 1)
     first = np.full(count, -1, np.int64)
     after, before = np.full(2 * m, -1, np.int64), np.full(2 * m, -1, np.int64)
-    keys, low, high = np.empty(m), np.empty(m, np.int64), np.empty(m, np.int64)
-    heap, place, size = np.empty(m, np.int64), np.full(m, -1, np.int64), 0
+    keys, heap, place, size = np.empty(m), np.empty(m, np.int64), np.full(m, -1, np.int64), 0
+    ties = np.empty(m, np.int64)
     for e in range(m):
         for side in range(2):
             _link(2 * e + side, ends[e, side], first, after, before)
-        _set_key(e, ends, length, total, colour, weight, colour_delay, full_difference, keys, low, high)
-        size = _insert(e, heap, place, size, keys, low, high)
+        if total[e] < limit * length[e]:
+            key = total[e] / length[e] + colour_delay * _unlike(means, ends[e, 0], ends[e, 1], full_difference)
+            heap[size], keys[size], ties[e] = e, key, _tie(e, ends, count)
+            size += 1
+            _rise(size - 1, heap, keys, place, ties)
     root = np.arange(count)
     edge_to, marked = np.empty(count, np.int64), np.full(count, -1, np.int64)
     merges = 0
-    while size and keys[heap[0]] < limit + colour_delay:
+    while size:
         e = heap[0]
-        size = _remove(e, heap, place, size, keys, low, high)
-        if total[e] / length[e] >= limit:
-            continue  # comes back when one of the two changes
-        a, b = low[e], high[e]
+        size = _remove(e, heap, keys, place, size, ties)
+        a, b = min(ends[e, 0], ends[e, 1]), max(ends[e, 0], ends[e, 1])
         root[b] = a
         merges += 1
         _unlink(2 * e, ends[e, 0], first, after, before)
@@ -63,7 +64,7 @@ def merge_regions(pairs, lengths, evidence, colours, weights, limit, colour_dela
                 total[edge_to[other]] += total[edge]
                 _unlink(4 * edge + 1 - at, other, first, after, before)
                 if place[edge] >= 0:
-                    size = _remove(edge, heap, place, size, keys, low, high)
+                    size = _remove(edge, heap, keys, place, size, ties)
             else:
                 ends[edge, at % 2] = a
                 _link(at, a, first, after, before)
@@ -71,16 +72,26 @@ def merge_regions(pairs, lengths, evidence, colours, weights, limit, colour_dela
         first[b] = -1
         weight[a] += weight[b]
         for axis in range(3):
-            colour[a, axis] += colour[b, axis]
+            tints[a, axis] += tints[b, axis]
+            means[a, axis] = tints[a, axis] / weight[a]
         at = first[a]
         while at >= 0:
             edge = at // 2
-            _set_key(edge, ends, length, total, colour, weight, colour_delay, full_difference, keys, low, high)
-            if place[edge] < 0:
-                size = _insert(edge, heap, place, size, keys, low, high)
-            else:
-                _rise(place[edge], heap, place, keys, low, high)
-                _sink(place[edge], heap, place, size, keys, low, high)
+            if total[edge] < limit * length[edge]:
+                shade = _unlike(means, ends[edge, 0], ends[edge, 1], full_difference)
+                key, i = total[edge] / length[edge] + colour_delay * shade, place[edge]
+                tie = _tie(edge, ends, count)
+                if i < 0:
+                    i = size
+                    size += 1
+                    heap[i], keys[i], ties[edge] = edge, key, tie
+                    _rise(i, heap, keys, place, ties)
+                elif key != keys[i] or tie != ties[edge]:
+                    keys[i], ties[edge] = key, tie
+                    _rise(i, heap, keys, place, ties)
+                    _sink(place[edge], heap, keys, place, size, ties)
+            elif place[edge] >= 0:
+                size = _remove(edge, heap, keys, place, size, ties)
             at = after[at]
     for i in range(count):  # a region was merged with a lesser one
         root[i] = root[root[i]]
@@ -108,65 +119,61 @@ def _unlink(at, region, first, after, before):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, nogil=True)
-def _set_key(e, ends, length, total, colour, weight, colour_delay, full_difference, keys, low, high):  # type: ignore[no-untyped-def]
-    """Compute the delay of an edge and the order of its ends."""
-    a, b = min(ends[e, 0], ends[e, 1]), max(ends[e, 0], ends[e, 1])
-    tint = 0.0
-    for axis in range(3):
-        apart = colour[a, axis] / weight[a] - colour[b, axis] / weight[b]
-        tint += apart * apart
-    share = min(np.sqrt(tint) / full_difference, 1.0)
-    keys[e], low[e], high[e] = total[e] / length[e] + colour_delay * share, a, b
+def _unlike(means, a, b, full_difference):  # type: ignore[no-untyped-def]
+    """Return by how much two regions differ in colour, as a share of a full difference, 1 at most."""
+    x, y, z = means[a, 0] - means[b, 0], means[a, 1] - means[b, 1], means[a, 2] - means[b, 2]
+    tint = x * x + y * y + z * z
+    return 1.0 if tint >= full_difference * full_difference else np.sqrt(tint) / full_difference
 
 
 @njit(cache=True, nogil=True)
-def _precedes(e, f, keys, low, high):  # type: ignore[no-untyped-def]
+def _tie(e, ends, count):  # type: ignore[no-untyped-def]
+    """Return a number that orders edges by their lesser, then by their greater end."""
+    return min(ends[e, 0], ends[e, 1]) * count + max(ends[e, 0], ends[e, 1])
+
+
+@njit(cache=True, nogil=True)
+def _precedes(key, e, other_key, f, ties):  # type: ignore[no-untyped-def]
     """Return whether an edge is merged before another."""
-    if keys[e] != keys[f]:
-        return keys[e] < keys[f]
-    return low[e] < low[f] or (low[e] == low[f] and high[e] < high[f])
+    return key < other_key or (key == other_key and ties[e] < ties[f])
 
 
 @njit(cache=True, nogil=True)
-def _rise(i, heap, place, keys, low, high):  # type: ignore[no-untyped-def]
-    e = heap[i]
-    while i and _precedes(e, heap[(i - 1) // 2], keys, low, high):
-        heap[i] = heap[(i - 1) // 2]
-        place[heap[i]] = i
-        i = (i - 1) // 2
-    heap[i], place[e] = e, i
-
-
-@njit(cache=True, nogil=True)
-def _sink(i, heap, place, size, keys, low, high):  # type: ignore[no-untyped-def]
-    e = heap[i]
-    while 2 * i + 1 < size:
-        child = 2 * i + 1
-        if child + 1 < size and _precedes(heap[child + 1], heap[child], keys, low, high):
-            child += 1
-        if not _precedes(heap[child], e, keys, low, high):
+def _rise(i, heap, keys, place, ties):  # type: ignore[no-untyped-def]
+    e, key = heap[i], keys[i]
+    while i:
+        above = (i - 1) // _ARITY
+        if not _precedes(key, e, keys[above], heap[above], ties):
             break
-        heap[i] = heap[child]
+        heap[i], keys[i] = heap[above], keys[above]
+        place[heap[i]] = i
+        i = above
+    heap[i], keys[i], place[e] = e, key, i
+
+
+@njit(cache=True, nogil=True)
+def _sink(i, heap, keys, place, size, ties):  # type: ignore[no-untyped-def]
+    e, key = heap[i], keys[i]
+    while _ARITY * i + 1 < size:
+        child = _ARITY * i + 1
+        for other in range(child + 1, min(child + _ARITY, size)):
+            if _precedes(keys[other], heap[other], keys[child], heap[child], ties):
+                child = other
+        if not _precedes(keys[child], heap[child], key, e, ties):
+            break
+        heap[i], keys[i] = heap[child], keys[child]
         place[heap[i]] = i
         i = child
-    heap[i], place[e] = e, i
+    heap[i], keys[i], place[e] = e, key, i
 
 
 @njit(cache=True, nogil=True)
-def _insert(e, heap, place, size, keys, low, high):  # type: ignore[no-untyped-def]
-    """Put an edge into the heap; return the new size."""
-    heap[size], place[e] = e, size
-    _rise(size, heap, place, keys, low, high)
-    return size + 1
-
-
-@njit(cache=True, nogil=True)
-def _remove(e, heap, place, size, keys, low, high):  # type: ignore[no-untyped-def]
+def _remove(e, heap, keys, place, size, ties):  # type: ignore[no-untyped-def]
     """Take an edge out of the heap; return the new size."""
-    i, last = place[e], heap[size - 1]
+    i, last, key = place[e], heap[size - 1], keys[size - 1]
     place[e] = -1
     if last != e:
-        heap[i], place[last] = last, i
-        _rise(i, heap, place, keys, low, high)
-        _sink(place[last], heap, place, size - 1, keys, low, high)
+        heap[i], keys[i], place[last] = last, key, i
+        _rise(i, heap, keys, place, ties)
+        _sink(place[last], heap, keys, place, size - 1, ties)
     return size - 1

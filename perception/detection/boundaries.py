@@ -32,20 +32,10 @@ class Boundaries:
 
 def boundaries(surface: Surface, patches: Supervoxels, settings: DetectionSettings) -> Boundaries:
     """Return where patches of a surface meet, and what speaks for two things there."""
+    from deixis.perception.detection.kernels import meetings
+
     limits = settings.boundaries
-    # pairs of patches (m, 2), the lesser first, and how many neighbours meet there, without and with a jump
-    p = np.repeat(np.arange(len(surface)), surface.neighbours.shape[1])
-    q = surface.neighbours.ravel()
-    there = q >= 0
-    p, q = p[there], q[there]
-    there = patches.of[p] != patches.of[q]
-    p, q = p[there], q[there]
-    a, b = patches.of[p].astype(np.int64), patches.of[q].astype(np.int64)
-    codes, place = np.unique(np.minimum(a, b) * len(patches) + np.maximum(a, b), return_inverse=True)
-    jumps = np.linalg.norm(surface.points[p] - surface.points[q], axis=1) > surface.jump[p]
-    total = sums(place)
-    jump = sums(place, jumps.astype(np.float64))
-    pairs, smooth, jumped = np.stack(np.divmod(codes, len(patches)), axis=1), total - jump, jump
+    pairs, lengths, jumped = meetings(patches.of, surface.neighbours, surface.points, surface.jump, len(patches))
     i, j = pairs.T
     sigma = sums(patches.of, surface.sigma) / patches.sizes
     apart = np.median(np.linalg.norm(patches.middles[i] - patches.middles[j], axis=1)) if len(pairs) else 0.0
@@ -53,8 +43,8 @@ def boundaries(surface: Surface, patches: Supervoxels, settings: DetectionSettin
         max(settings.step, limits.step_distance_ratio * apart), limits.step_noise_ratio * np.maximum(sigma[i], sigma[j])
     )
     shape = np.hypot(creases(patches, pairs) / settings.concavity, steps(patches, pairs, limits.off_edge_share) / step)
-    lengths = smooth + jumped
-    evidence = (smooth * np.minimum(shape, limits.max_evidence) + jumped * limits.jump_evidence) / lengths
+    smooth = (lengths - jumped) * np.minimum(shape, limits.max_evidence)
+    evidence = (smooth + jumped * limits.jump_evidence) / lengths
     return Boundaries(pairs, lengths, evidence, jumped / lengths)
 
 

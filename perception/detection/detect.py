@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cached_property
 from itertools import islice
 
 import numpy as np
@@ -15,7 +14,7 @@ from deixis.perception.detection.heights import Raised, raised
 from deixis.perception.detection.joining import whole_things
 from deixis.perception.detection.left_out import Fate, Pieces, holes, left_out, missing_lines, odd_sizes
 from deixis.perception.detection.neighbours import NEIGHBOURS, has_enough, neighbour_table
-from deixis.perception.detection.outline import occupied_cells, oriented_box, rim_of, upright_box
+from deixis.perception.detection.outline import hull_of, occupied_cells, oriented_box, rim_of, upright_box
 from deixis.perception.detection.parts import Parts
 from deixis.perception.detection.plane import Plane
 from deixis.perception.detection.settings import DetectionSettings
@@ -107,8 +106,8 @@ def detect(cloud: PointCloud, settings: DetectionSettings | None = None) -> Dete
         nothing = _nothing(cloud, view, settings, _no_table(settings, len(seen)))
         return replace(nothing, shows=Shows.TABLE) if len(seen) == 1 else nothing
     found = _on_table(cloud, seen[settings.table - 1], settings) if seen else None
-    alone = settings.table == 1 and len(seen) < 2 and len(points) >= settings.least_points
-    if alone and not _bears_a_thing(found, seen, settings) and is_one_object(points, settings):
+    alone = settings.table == 1 and len(points) >= settings.least_points
+    if alone and not _bears_a_thing(found, seen, settings) and is_one_object(points, settings, len(seen)):
         return _alone(cloud, view, settings)
     if found is None:
         return _nothing(cloud, view, settings, _no_table(settings, 0))
@@ -118,12 +117,23 @@ def detect(cloud: PointCloud, settings: DetectionSettings | None = None) -> Dete
 
 
 def _bears_a_thing(found: Detection | None, seen: list[FoundTable], settings: DetectionSettings) -> bool:
-    """Return whether something stands on a table: what only adjoins its outline may be a side of the same object."""
+    """Return whether something stands on a table. A face of an object is shorter than a table; what only adjoins its
+    outline may be another side of the object, and what is all around it, the object's rim."""
     if found is None:
         return False
-    for number in range(len(found.boxes)):
-        points = found.cloud.points[found.labels == number].astype(np.float64)
-        if (seen[0].top.beyond(points) < -settings.scale.min_inset).mean() > settings.scale.min_inset_share:
+    table = seen[0]
+    top = table.top.on[:: max(1, len(table.top.on) // 2000)]
+    plan = table.view.points @ table.plane.across.T
+    if not len(top) or np.ptp(plan[top], axis=0).max() < settings.scale.min_table_length:
+        return False
+    labels = found.labels[table.view.places]
+    inset = labels[table.top.outside < -settings.scale.min_inset]
+    counts = np.bincount(labels[labels >= 0], minlength=len(found.boxes))
+    within = np.bincount(inset[inset >= 0], minlength=len(found.boxes))
+    outline = hull_of(plan[top])
+    for number in np.flatnonzero(within > settings.scale.min_inset_share * counts).tolist():
+        hull = hull_of(plan[labels == number])
+        if hull is None or outline is None or hull.volume < settings.scale.min_rim_share * outline.volume:
             return True
     return False
 
@@ -142,25 +152,26 @@ def _more(number: int) -> str:
 
 def _on_table(cloud: PointCloud, table: FoundTable, settings: DetectionSettings) -> Detection | None:
     """Return the things on one table, among the points that are of no table before it; None if it is no table."""
+    from deixis.perception.detection.kernels import in_frame as in_table_frame
+
     table, neighbours = _neighbours(table, settings)
     points, kept, top = table.view.points, table.view.places, table.top.on
     outlook = table.view.outlook
     few = top[:: max(1, len(top) // settings.plane.refinement_size)]
     frame = table_frame(table.plane, points[few] if len(top) else points, outlook, settings.viewer)
     viewer = moved(outlook.eye[None], frame)[0]
-    at = np.ascontiguousarray(moved(points, frame))
-    view = _TableView(frame, at, np.linalg.norm(at - viewer, axis=1), viewer, top)
+    at, heights, distance = in_table_frame(points, frame, viewer)
+    view = _TableView(frame, at, heights, distance, viewer, top)
     rising = raised(view.heights, view.distance, neighbours, settings)
-    colours = None if cloud.colours is None else cloud.colours[kept]
-    pieces = _pieces(view, table, rising, neighbours, colours, settings)
+    pieces = _pieces(view, table, rising, neighbours, cloud.colours, settings)
     found = pieces.things
     large = _too_large(view, settings)
-    seen_so = missing_lines(cloud.organised, kept)
+    seen_so = missing_lines(table.view)
     if not seen_so:  # lines without depth are no holes
         on = pieces.of >= 0
         on[top] = True
-        seen_so = holes(cloud.organised, kept, on, settings.notes)
-    missed = (*left_out(points, table.top, view.heights, pieces, settings), *seen_so)
+        seen_so = holes(table.view, on, settings.notes)
+    missed = (*left_out(table.top, view.heights, pieces, settings), *seen_so)
     labels = np.full(len(cloud), BACKGROUND, np.int32)
     if not found.max(initial=BACKGROUND) >= 0:
         if not large and max(_sides(view)) < settings.scale.min_bare_table_length:
@@ -169,7 +180,9 @@ def _on_table(cloud: PointCloud, table: FoundTable, settings: DetectionSettings)
         why = ("nothing is on the table", *(large or _too_small(view, settings)), *(wall or missed))
         shows = Shows.ROOM if large or wall or _is_floor(view, settings) else Shows.TABLE
         return Detection(cloud, table.plane, view.frame, labels, np.zeros((0, 2, 3)), (), why, shows)
-    members = [view.points[found == k] for k in range(int(found.max()) + 1)]
+    there = np.flatnonzero(found >= 0)
+    there = there[np.argsort(found[there], kind="stable")]
+    members = np.split(view.points[there], np.cumsum(np.bincount(found[there]))[:-1])
     bare = view.top[found[view.top] == BACKGROUND]
     table_seen = occupied_cells(view.points[bare, :2], settings.outlines.bare_cell)
     rims = [rim_of(thing[:, :2], table_seen, settings.outlines) for thing in members]
@@ -179,8 +192,9 @@ def _on_table(cloud: PointCloud, table: FoundTable, settings: DetectionSettings)
     labels[kept] = np.append(np.argsort(order), BACKGROUND)[found]
     oriented = tuple(oriented_box(members[k], settings.outlines, rims[k]) for k in order)
     sizes = odd_sizes((boxes[:, 1] - boxes[:, 0]).max(axis=1), settings.notes)
-    notes = (*(large or _too_small(view, settings)), *sizes, *missed)
-    shows = Shows.ROOM if large or _is_floor(view, settings) else Shows.TABLE
+    little = _too_little(view, found, settings)
+    notes = (*(large or little or _too_small(view, settings)), *sizes, *missed)
+    shows = Shows.ROOM if large or little or _is_floor(view, settings) else Shows.TABLE
     return Detection(cloud, table.plane, view.frame, labels, boxes[order], oriented, notes, shows)
 
 
@@ -189,7 +203,7 @@ def _neighbours(table: FoundTable, settings: DetectionSettings) -> tuple[FoundTa
     view = table.view
     if view.organised is not None:
         return table, neighbour_table(view.points, view.places, view.organised, settings.surface)
-    around = np.flatnonzero(table.top.beyond(view.points) <= settings.top.margin)
+    around = np.flatnonzero(table.top.outside <= settings.top.margin)
     points, places = view.points[around], view.places[around]
     near = neighbour_table(points, places, None, settings.surface, view.outlook.eye if view.outlook.known else None)
     if view.outlook.known and not has_enough(near, settings.surface):
@@ -231,13 +245,10 @@ class _TableView:
 
     frame: NDArray[np.float64]  # (4, 4)
     points: NDArray[np.float64]  # (n, 3)
+    heights: NDArray[np.float64]  # (n,)
     distance: NDArray[np.float64]  # (n,)
     eye: NDArray[np.float64]  # (3,)
     top: NDArray[np.intp]  # (m,) the points of the connected piece that is the table
-
-    @cached_property
-    def heights(self) -> NDArray[np.float64]:
-        return np.ascontiguousarray(self.points[:, 2])
 
 
 def _too_small(view: _TableView, settings: DetectionSettings) -> tuple[str, ...]:
@@ -252,11 +263,11 @@ def _too_small(view: _TableView, settings: DetectionSettings) -> tuple[str, ...]
 def _too_large(view: _TableView, settings: DetectionSettings) -> tuple[str, ...]:
     """Return a note where no table is so large: what is level with it is looked at, as points far apart are no one
     piece."""
-    level = view.points[np.abs(view.heights) < settings.plane.table_band, :2]
+    level = np.flatnonzero(np.abs(view.heights) < settings.plane.table_band)
     level = level[:: max(1, len(level) // 10_000)]
     if not len(level):
         return ()
-    across, deep = np.subtract(*np.percentile(level, (95, 5), axis=0)).tolist()
+    across, deep = np.subtract(*np.percentile(view.points[level, :2], (95, 5), axis=0)).tolist()
     if max(across, deep) <= settings.scale.max_table_length:
         return ()
     return (
@@ -280,6 +291,17 @@ def _a_wall(view: _TableView, settings: DetectionSettings) -> tuple[str, ...]:
     return (f"most of what is seen is more than {rise} above what was taken for the table: it may be a wall",)
 
 
+def _too_little(view: _TableView, found: NDArray[np.int32], settings: DetectionSettings) -> tuple[str, ...]:
+    """Return a note where hardly anything of what is seen is on the table, or of a thing (n,) that stands there."""
+    share = (len(view.top) + (found >= 0).sum()) / len(found)
+    if share >= settings.scale.min_table_share:
+        return ()
+    return (
+        f"only {share:.0%} of what is seen is on what was taken for the table or stands there: it may be a part of a"
+        " wall, a floor or a person",
+    )
+
+
 def _is_floor(view: _TableView, settings: DetectionSettings) -> bool:
     """Return whether what was taken for the table lies so far below the sensor, and is so long, as floors are."""
     limits = settings.scale
@@ -294,19 +316,23 @@ def _pieces(
     colours: NDArray[np.uint8] | None,
     settings: DetectionSettings,
 ) -> Pieces:
-    """Return the pieces of surface above the table, and which of them are things."""
+    """Return the pieces of surface above the table, and which of them are things; ``colours`` are those of the whole
+    cloud."""
+    from deixis.perception.detection.kernels import renumbered
+
     of = np.full(len(view.points), BACKGROUND, np.int32)
     chosen = np.flatnonzero(rising.above)
     if not len(chosen):
         return Pieces(of, np.zeros(0, np.int8))
-    number = np.full(len(view.points) + 1, BACKGROUND, np.int32)
+    number = np.full(len(view.points), BACKGROUND, np.int32)
     number[chosen] = np.arange(len(chosen))
     sigma = rising.noise * view.distance[chosen] ** 2
-    painted = None if colours is None else colours[chosen]
-    surface = surface_of(view.points[chosen], painted, number[neighbours[chosen]], sigma, view.eye, settings.surface)
+    painted = None if colours is None else colours[table.view.places[chosen]]
+    near = renumbered(neighbours, chosen, number)
+    surface = surface_of(view.points[chosen], painted, near, sigma, view.eye, settings.surface)
     found = segments(surface, settings)
     counts = np.bincount(found)
-    within = np.bincount(found, table.top.is_below(table.view.points[chosen])) / counts
+    within = np.bincount(found, table.top.is_below[chosen]) / counts
     least = np.maximum(settings.height, settings.heights.object_noise_ratio * rising.upper(view.distance[chosen]))
     fates = np.full(len(counts), Fate.DISCARDED, np.int8)
     fates[(counts >= settings.least_points) & (within < settings.heights.min_share_above_table)] = Fate.BESIDE

@@ -33,6 +33,7 @@ def whole_things(parts: Parts) -> Parts:
     """Join parts until they are things, rule by rule; return them."""
     while len(pairs := fragments(parts)):
         parts.join_all(pairs.first, pairs.second)
+    parts.keep_largest(parts.settings.max_parts)
     _apply(of_one_colour, parts)
     _apply(enclosed, parts)
     for rule in (bridged, round_rims):

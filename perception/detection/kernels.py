@@ -1,28 +1,84 @@
-"""Compiled walks over a table of neighbours (n, k), in which -1 stands for none.
+"""Compiled loops over points, and walks over a table of neighbours (n, k), in which -1 stands for none.
 
-Heights are averaged over neighbours and grown from seeds, a plane is laid through what is around each point, and
-patches grow along the cheapest paths.
+Planes are compared and refined, heights are averaged over neighbours and grown from seeds, a plane is laid through what
+is around each point, and patches grow along the cheapest paths.
 """
 
 from __future__ import annotations
 
-import heapq
-
 import numpy as np
 from numba import njit
 
+_BLOCK = 1024
+"""Points that a loop over planes treats at once, so that they stay in the fastest cache."""
+
+_SETTLED = -2
+"""The place in the heap of a point whose path is known."""
+
+
+@njit(cache=True, nogil=True, fastmath=True)
+def support(x, y, z, tolerance, planes):  # type: ignore[no-untyped-def]
+    """Return the sum of ``tolerance`` (n,) over the points, ``x``, ``y`` and ``z`` (n,), that are within it of each
+    plane (t, 4), normal and offset, shape (t,)."""
+    result = np.zeros(len(planes), np.float32)
+    for t in range(len(planes)):
+        a, b, c, d = planes[t, 0], planes[t, 1], planes[t, 2], planes[t, 3]
+        total = np.float32(0.0)
+        for i in range(len(x)):
+            off = abs(a * x[i] + b * y[i] + c * z[i] - d)
+            total += tolerance[i] if off <= tolerance[i] else np.float32(0.0)
+        result[t] = total
+    return result
+
 
 @njit(cache=True, nogil=True)
-def support(points, tolerance, normals, offsets):  # type: ignore[no-untyped-def]
-    """Return the sum of ``tolerance`` (n,) over the points (n, 3) within it of each plane, ``normals`` (t, 3) and
-    ``offsets`` (t,), shape (t,)."""
-    result = np.zeros(len(normals))
-    for t in range(len(normals)):
-        a, b, c, d = normals[t, 0], normals[t, 1], normals[t, 2], offsets[t]
+def refine(points, tolerance, normal, offset, shares):  # type: ignore[no-untyped-def]
+    """Return the least-squares plane, normal (3,) and offset, of the points (n, 3) within a share of their tolerance
+    (n,) of the plane before it, for each of the ``shares`` (r,) in turn; points count by the inverse of its square."""
+    turned = normal.copy()
+    for share in shares:
+        total, x, y, z, count = 0.0, 0.0, 0.0, 0.0, 0
+        moments = np.zeros((6, 1))
         for i in range(len(points)):
-            if abs(a * points[i, 0] + b * points[i, 1] + c * points[i, 2] - d) <= tolerance[i]:
-                result[t] += tolerance[i]
-    return result
+            p, q, r = points[i, 0], points[i, 1], points[i, 2]
+            if abs(p * turned[0] + q * turned[1] + r * turned[2] - offset) <= share * tolerance[i]:
+                w = 1.0 / (tolerance[i] * tolerance[i])
+                total, x, y, z, count = total + w, x + w * p, y + w * q, z + w * r, count + 1
+        if count < 3:
+            break
+        x, y, z = x / total, y / total, z / total
+        for i in range(len(points)):
+            p, q, r = points[i, 0], points[i, 1], points[i, 2]
+            if abs(p * turned[0] + q * turned[1] + r * turned[2] - offset) <= share * tolerance[i]:
+                w = 1.0 / (tolerance[i] * tolerance[i]) / total
+                p, q, r = p - x, q - y, r - z
+                moments[0, 0] += w * p * p
+                moments[1, 0] += w * p * q
+                moments[2, 0] += w * p * r
+                moments[3, 0] += w * q * q
+                moments[4, 0] += w * q * r
+                moments[5, 0] += w * r * r
+        axis = least_axes(moments)[0]
+        side = axis[0] * turned[0] + axis[1] * turned[1] + axis[2] * turned[2]
+        turned = -axis if side < 0 else axis
+        offset = turned[0] * x + turned[1] * y + turned[2] * z
+    return turned, offset
+
+
+@njit(cache=True, nogil=True)
+def in_frame(points, frame, eye):  # type: ignore[no-untyped-def]
+    """Return points (n, 3) taken by a transform (4, 4), their heights (n,), which are their last coordinates, and
+    their distances (n,) from an ``eye`` (3,) in the new frame."""
+    n = len(points)
+    result, heights, distance = np.empty((n, 3)), np.empty(n), np.empty(n)
+    for i in range(n):
+        p, q, r = points[i, 0], points[i, 1], points[i, 2]
+        x = frame[0, 0] * p + frame[0, 1] * q + frame[0, 2] * r + frame[0, 3]
+        y = frame[1, 0] * p + frame[1, 1] * q + frame[1, 2] * r + frame[1, 3]
+        z = frame[2, 0] * p + frame[2, 1] * q + frame[2, 2] * r + frame[2, 3]
+        result[i, 0], result[i, 1], result[i, 2], heights[i] = x, y, z, z
+        distance[i] = np.sqrt((x - eye[0]) ** 2 + (y - eye[1]) ** 2 + (z - eye[2]) ** 2)
+    return result, heights, distance
 
 
 @njit(cache=True, nogil=True)
@@ -132,88 +188,104 @@ def planes(points, neighbours, radius, jump, eye, most):  # type: ignore[no-unty
     neighbour without a ``jump`` (n,), ``most`` of them at most: its unit normal (n, 3) towards the ``eye`` (3,), and
     the point moved onto it."""
     n = len(points)
-    normals, smooth = np.empty((n, 3)), np.empty((n, 3))
-    stamp, queue = np.full(n, -1, np.int64), np.empty(n, np.int64)
-    normal = np.empty(3)
+    middles, moments = np.empty((n, 3)), np.empty((6, n))
+    stamp, queue = np.full(n, -1, np.int32), np.empty(n, np.int32)
     for i in range(n):
         queue[0], stamp[i], head, tail = i, i, 0, 1
         x, y, z, xx, xy, xz, yy, yz, zz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-        reach, step = radius[i] ** 2, jump[i] ** 2
+        reach, step = radius[i] * radius[i], jump[i] * jump[i]
         while head < tail:
             p = queue[head]
             head += 1
             dx, dy, dz = points[p, 0] - points[i, 0], points[p, 1] - points[i, 1], points[p, 2] - points[i, 2]
             x, y, z = x + dx, y + dy, z + dz
             xx, xy, xz, yy, yz, zz = xx + dx * dx, xy + dx * dy, xz + dx * dz, yy + dy * dy, yz + dy * dz, zz + dz * dz
+            if tail >= most:
+                continue
             for q in neighbours[p]:
                 if q < 0 or stamp[q] == i:
                     continue
-                if tail < most and squared(points, i, q) <= reach and squared(points, p, q) <= step:
+                if squared(points, i, q) > reach:
+                    stamp[q] = i  # too far from whichever neighbour it is reached
+                elif tail < most and squared(points, p, q) <= step:
                     stamp[q] = i
                     queue[tail] = q
                     tail += 1
         x, y, z = x / tail, y / tail, z / tail
-        _least_axis(
-            xx / tail - x * x,
-            xy / tail - x * y,
-            xz / tail - x * z,
-            yy / tail - y * y,
-            yz / tail - y * z,
-            zz / tail - z * z,
-            normal,
-        )
-        towards = 0.0
+        middles[i, 0], middles[i, 1], middles[i, 2] = x, y, z
+        moments[0, i], moments[1, i], moments[2, i] = xx / tail - x * x, xy / tail - x * y, xz / tail - x * z
+        moments[3, i], moments[4, i], moments[5, i] = yy / tail - y * y, yz / tail - y * z, zz / tail - z * z
+    normals, smooth = least_axes(moments), np.empty((n, 3))
+    for i in range(n):
+        towards, off = 0.0, 0.0
         for axis in range(3):
-            towards += (eye[axis] - points[i, axis]) * normal[axis]
-        side = -1.0 if towards < 0 else 1.0
-        off = -(x * normal[0] + y * normal[1] + z * normal[2])  # of the point, from the plane
+            towards += (eye[axis] - points[i, axis]) * normals[i, axis]
+            off -= middles[i, axis] * normals[i, axis]  # of the point, from the plane
         for axis in range(3):
-            normals[i, axis] = side * normal[axis]
-            smooth[i, axis] = points[i, axis] - off * normal[axis]
+            smooth[i, axis] = points[i, axis] - off * normals[i, axis]
+            if towards < 0:
+                normals[i, axis] = -normals[i, axis]
     return normals, smooth
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _least_axis(xx, xy, xz, yy, yz, zz, axis):  # type: ignore[no-untyped-def]
-    """Put the unit eigenvector of the least eigenvalue of a symmetric matrix (3, 3) into ``axis`` (3,).
+def least_axes(moments):  # type: ignore[no-untyped-def]
+    """Return the unit eigenvectors (n, 3) of the least eigenvalues of symmetric matrices (6, n): xx, xy, xz, yy, yz,
+    zz.
 
-    The eigenvalue is the trigonometric root of the characteristic polynomial (O. K. Smith, Eigenvalues of a symmetric
-    3 x 3 matrix, 1961); the eigenvector is the longest cross product of two rows of the matrix less that value.
+    Notes
+    -----
+    Newton's method finds the least root of the characteristic polynomial: from 0, which is not above it, it rises to
+    the root without passing it, since the polynomial is concave below the mean of its roots. A fixed number of steps
+    lets the loop run on several matrices at once. The eigenvector is the longest cross product of two rows of the
+    matrix less the eigenvalue. Where the two least eigenvalues are alike, it is the one of theirs nearest to z.
     """
-    mean = (xx + yy + zz) / 3
-    a, b, c = xx - mean, yy - mean, zz - mean
-    off = xy * xy + xz * xz + yz * yz
-    scale = ((a * a + b * b + c * c + 2 * off) / 6) ** 0.5
-    axis[0], axis[1], axis[2] = 0.0, 0.0, 1.0
-    if not scale > 0:
-        return
-    half = (a * (b * c - yz * yz) - xy * (xy * c - yz * xz) + xz * (xy * yz - b * xz)) / (2 * scale**3)
-    least = mean + 2 * scale * np.cos((np.arccos(min(max(half, -1.0), 1.0)) + 2 * np.pi) / 3)
-    a, b, c = xx - least, yy - least, zz - least
-    longest = 0.0
-    for pair in range(3):
-        if pair == 0:
-            x, y, z = xy * yz - xz * b, xz * xy - a * yz, a * b - xy * xy
-        elif pair == 1:
-            x, y, z = xy * c - xz * yz, xz * xz - a * c, a * yz - xy * xz
-        else:
-            x, y, z = b * c - yz * yz, yz * xz - xy * c, xy * yz - b * xz
+    n = moments.shape[1]
+    least, result = np.empty(n), np.empty((n, 3))
+    for i in range(n):
+        xx, xy, xz = moments[0, i], moments[1, i], moments[2, i]
+        yy, yz, zz = moments[3, i], moments[4, i], moments[5, i]
+        trace = xx + yy + zz
+        minors = xx * yy - xy * xy + xx * zz - xz * xz + yy * zz - yz * yz
+        determinant = xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz)
+        root = 0.0
+        for _ in range(12):
+            value = ((root - trace) * root + minors) * root - determinant
+            slope = (3 * root - 2 * trace) * root + minors
+            root -= value / slope if slope > 0 else 0.0
+        least[i] = root
+    for i in range(n):
+        xx, xy, xz = moments[0, i], moments[1, i], moments[2, i]
+        yy, yz, zz = moments[3, i], moments[4, i], moments[5, i]
+        trace, a, b, c = xx + yy + zz, xx - least[i], yy - least[i], zz - least[i]
+        x, y, z = xy * yz - xz * b, xz * xy - a * yz, a * b - xy * xy
         length = x * x + y * y + z * z
-        if length > longest:
-            longest = length
-            size = length**0.5
-            axis[0], axis[1], axis[2] = x / size, y / size, z / size
-    if longest > 0:
-        return
-    # Two least values are alike: anything across the greatest will do.
-    x, y, z = a + xy + xz, xy + b + yz, xz + yz + c
-    if abs(z) >= abs(x) and abs(z) >= abs(y):
-        x, y, z = 0.0, z, -y
-    else:
-        x, y, z = y, -x, 0.0
-    size = (x * x + y * y + z * z) ** 0.5
-    if size > 0:
-        axis[0], axis[1], axis[2] = x / size, y / size, z / size
+        p, q, r = xy * c - xz * yz, xz * xz - a * c, a * yz - xy * xz
+        if p * p + q * q + r * r > length:
+            x, y, z, length = p, q, r, p * p + q * q + r * r
+        p, q, r = b * c - yz * yz, yz * xz - xy * c, xy * yz - b * xz
+        if p * p + q * q + r * r > length:
+            x, y, z, length = p, q, r, p * p + q * q + r * r
+        if (
+            not length > 1e-12 * trace**4
+        ):  # the two least are alike, as of a line: the axis across it that is most upright
+            p, q, r = a * a + xy * xy + xz * xz, xy * xy + b * b + yz * yz, xz * xz + yz * yz + c * c
+            if p >= q and p >= r:  # the longest row is along the line
+                x, y, z, length = a, xy, xz, p
+            elif q >= r:
+                x, y, z, length = xy, b, yz, q
+            else:
+                x, y, z, length = xz, yz, c, r
+            if z * z < 0.99 * length:
+                x, y, z = -x * z, -y * z, x * x + y * y
+            else:
+                x, y, z = z, 0.0, -x
+            length = x * x + y * y + z * z
+        if not length > 0:
+            x, y, z, length = 0.0, 0.0, 1.0, 1.0
+        size = np.sqrt(length)
+        result[i, 0], result[i, 1], result[i, 2] = x / size, y / size, z / size
+    return result
 
 
 @njit(cache=True, nogil=True)
@@ -236,14 +308,94 @@ def near_boxes(low, high, gap):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, nogil=True)
-def greatest_offset(plan, sides):  # type: ignore[no-untyped-def]
-    """Return how far places (n, 2) are beyond the farthest of half planes (h, 3), (n,); infinite without any."""
-    result = np.empty(len(plan))
+def outermost(plan):  # type: ignore[no-untyped-def]
+    """Return which of the places (n, 2), finite, may be corners of their convex hull, (n,): those outside the polygon
+    of the farthest ones in sixteen directions (Akl and Toussaint, A fast convex hull algorithm, 1978)."""
+    count = 16
+    way, farthest, most = np.empty((count, 2)), np.zeros(count, np.int64), np.full(count, -np.inf)
+    for k in range(count):
+        way[k, 0], way[k, 1] = np.cos(2 * np.pi * k / count), np.sin(2 * np.pi * k / count)
     for i in range(len(plan)):
-        most = -np.inf
+        x, y = plan[i, 0], plan[i, 1]
+        for k in range(count // 2):
+            along = way[k, 0] * x + way[k, 1] * y
+            if along > most[k]:
+                most[k], farthest[k] = along, i
+            if -along > most[k + count // 2]:
+                most[k + count // 2], farthest[k + count // 2] = -along, i
+    side, corners = np.empty((count, 3)), 0
+    for k in range(count):
+        a, b = farthest[k], farthest[(k + 1) % count]
+        across, down = plan[b, 1] - plan[a, 1], plan[a, 0] - plan[b, 0]
+        if across != 0 or down != 0:
+            side[corners, 0], side[corners, 1] = across, down
+            side[corners, 2] = across * plan[a, 0] + down * plan[a, 1]
+            corners += 1
+    result = np.ones(len(plan), np.bool_)
+    if corners < 3:
+        return result
+    for i in range(len(plan)):
+        inside = True
+        for k in range(corners):
+            if side[k, 0] * plan[i, 0] + side[k, 1] * plan[i, 1] >= side[k, 2]:
+                inside = False
+                break
+        result[i] = not inside
+    return result
+
+
+@njit(cache=True, nogil=True)
+def occupied(plan, cell, low, shape):  # type: ignore[no-untyped-def]
+    """Return the cells, of a grid of that ``shape`` from the numbers ``low`` (2,) on, in which there are places
+    (n, 2)."""
+    grid = np.zeros(shape, np.bool_)
+    for i in range(len(plan)):
+        grid[int(np.floor(plan[i, 0] / cell)) - low[0], int(np.floor(plan[i, 1] / cell)) - low[1]] = True
+    return grid
+
+
+@njit(cache=True, nogil=True)
+def corners_of_box(places):  # type: ignore[no-untyped-def]
+    """Return the least and the greatest coordinates (2, d) of places (n, d), one or more."""
+    box = np.empty((2, places.shape[1]))
+    for axis in range(places.shape[1]):
+        box[0, axis], box[1, axis] = places[0, axis], places[0, axis]
+    for i in range(len(places)):
+        for axis in range(places.shape[1]):
+            box[0, axis] = min(box[0, axis], places[i, axis])
+            box[1, axis] = max(box[1, axis], places[i, axis])
+    return box
+
+
+@njit(cache=True, nogil=True)
+def renumbered(neighbours, chosen, number):  # type: ignore[no-untyped-def]
+    """Return the neighbours (m, k) of the ``chosen`` points (m,) by their new ``number`` (n,), -1 for those that have
+    none."""
+    result = np.full((len(chosen), neighbours.shape[1]), -1, np.int32)
+    for i in range(len(chosen)):
+        for k in range(neighbours.shape[1]):
+            q = neighbours[chosen[i], k]
+            if q >= 0:
+                result[i, k] = number[q]
+    return result
+
+
+@njit(cache=True, nogil=True, fastmath=True)
+def greatest_offset(points, sides):  # type: ignore[no-untyped-def]
+    """Return how far points (n, 3) are beyond the farthest of half spaces (h, 4), normal and offset, (n,)."""
+    result = np.empty(len(points))
+    x, y, z = np.empty(_BLOCK), np.empty(_BLOCK), np.empty(_BLOCK)
+    for start in range(0, len(points), _BLOCK):
+        size = min(_BLOCK, len(points) - start)
+        most = result[start : start + size]
+        for i in range(size):
+            x[i], y[i], z[i] = points[start + i, 0], points[start + i, 1], points[start + i, 2]
+            most[i] = -1e300
         for k in range(len(sides)):
-            most = max(most, sides[k, 0] * plan[i, 0] + sides[k, 1] * plan[i, 1] + sides[k, 2])
-        result[i] = most if len(sides) else np.inf
+            a, b, c, d = sides[k, 0], sides[k, 1], sides[k, 2], sides[k, 3]
+            for i in range(size):
+                off = a * x[i] + b * y[i] + c * z[i] + d
+                most[i] = off if off > most[i] else most[i]
     return result
 
 
@@ -255,39 +407,118 @@ def squared(points, i, j):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, nogil=True)
+def meetings(of, neighbours, points, jump, count):  # type: ignore[no-untyped-def]
+    """Return the pairs (m, 2) of ``count`` patches that meet, in order, the lesser first, and how many neighbours do
+    so (m,), and how many of these with a jump (m,); ``of`` (n,) is the patch of each point (n, 3), and what is farther
+    away than ``jump`` (n,) is another surface.
+
+    Notes
+    -----
+    The pairs of a patch are a linked list in the order of the other one: a patch meets few others.
+    """
+    head, room, size = np.full(count, -1, np.int64), 4 * count + 16, 0
+    after, other = np.empty(room, np.int64), np.empty(room, np.int64)
+    total, jumped = np.zeros(room, np.int64), np.zeros(room, np.int64)
+    at, last_a, last_b = -1, -1, -1
+    for p in range(len(of)):
+        for q in neighbours[p]:
+            if q < 0 or of[p] == of[q]:
+                continue
+            a, b, before = min(of[p], of[q]), max(of[p], of[q]), -1
+            if a != last_a or b != last_b:  # mostly the same pair as before
+                last_a, last_b, at = a, b, head[a]
+                while at >= 0 and other[at] < b:
+                    before, at = at, after[at]
+            if at < 0 or other[at] != b:
+                if size == room:
+                    after, other = np.append(after, np.empty_like(after)), np.append(other, np.empty_like(other))
+                    total, jumped = np.append(total, np.zeros_like(total)), np.append(jumped, np.zeros_like(jumped))
+                    room *= 2
+                after[size], other[size] = at, b
+                if before < 0:
+                    head[a] = size
+                else:
+                    after[before] = size
+                at, size = size, size + 1
+            total[at] += 1
+            jumped[at] += squared(points, p, q) > jump[p] * jump[p]
+    pairs, meeting, jumping, k = np.empty((size, 2), np.int64), np.empty(size), np.empty(size), 0
+    for a in range(count):
+        at = head[a]
+        while at >= 0:
+            pairs[k, 0], pairs[k, 1], meeting[k], jumping[k] = a, other[at], total[at], jumped[at]
+            at, k = after[at], k + 1
+    return pairs, meeting, jumping
+
+
+@njit(cache=True, nogil=True)
 def grow(seeds, spacing, costs, points, smooth, normals, colours, neighbours, jump):  # type: ignore[no-untyped-def]
     """Return for each of n points the number of the seed (m,) with the cheapest path (Dijkstra, from all at once).
 
     ``costs`` are what a path pays: for a radian by which the normal turns, for a metre of height between the planes of
     neighbours, and for a difference in colour of 1 beyond the fourth. What no seed reaches grows by itself.
+
+    Notes
+    -----
+    The heap has four children at a place, and holds a point at most once, with its cost beside it.
     """
     n = len(smooth)
-    of = np.full(n, -1, np.int32)
-    cost = np.full(n, np.inf)
-    heap = [(0.0, np.int64(seeds[0]), np.int64(0))]
+    of, cost = np.full(n, -1, np.int32), np.full(n, np.inf)
+    heap, keys, place, size = np.empty(n, np.int32), np.empty(n), np.full(n, -1, np.int32), len(seeds)
     for number in range(len(seeds)):
-        cost[seeds[number]] = 0.0
-        if number:
-            heap.append((0.0, np.int64(seeds[number]), np.int64(number)))
+        p = seeds[number]
+        of[p], cost[p], heap[number], keys[number], place[p] = number, 0.0, p, 0.0, number
     following, start = len(seeds), 0
     while True:
-        while len(heap):
-            so_far, p, s = heapq.heappop(heap)
-            if of[p] >= 0:
-                continue
-            of[p] = s
+        while size:
+            p, so_far, size = heap[0], keys[0], size - 1
+            place[p] = _SETTLED
+            if size:
+                _sink(heap[size], keys[size], heap, keys, place, size)
+            reach = jump[p] * jump[p]
             for q in neighbours[p]:
-                if q >= 0 and of[q] < 0 and squared(points, p, q) <= jump[p] ** 2:
+                if q >= 0 and place[q] != _SETTLED and squared(points, p, q) <= reach:
                     total = so_far + _step_cost(smooth, normals, colours, p, q, spacing, costs)
                     if total < cost[q]:
-                        cost[q] = total
-                        heapq.heappush(heap, (total, np.int64(q), s))
+                        of[q], cost[q] = of[p], total
+                        if place[q] < 0:
+                            place[q], size = size, size + 1
+                        _rise(q, total, heap, keys, place)
         while start < n and of[start] >= 0:
             start += 1
         if start == n:
             return of
-        heap.append((0.0, np.int64(start), np.int64(following)))
+        of[start], cost[start], heap[0], keys[0], place[start], size = following, 0.0, start, 0.0, 0, 1
         following += 1
+
+
+@njit(cache=True, nogil=True)
+def _rise(p, key, heap, keys, place):  # type: ignore[no-untyped-def]
+    """Move a point with a lesser key up from its place."""
+    i = place[p]
+    while i and keys[(i - 1) // 4] > key:
+        above = (i - 1) // 4
+        heap[i], keys[i] = heap[above], keys[above]
+        place[heap[i]] = i
+        i = above
+    heap[i], keys[i], place[p] = p, key, i
+
+
+@njit(cache=True, nogil=True)
+def _sink(p, key, heap, keys, place, size):  # type: ignore[no-untyped-def]
+    """Put a point at the top of the heap, and move it down."""
+    i = 0
+    while 4 * i + 1 < size:
+        child = 4 * i + 1
+        for other in range(child + 1, min(child + 4, size)):
+            if keys[other] < keys[child]:
+                child = other
+        if keys[child] >= key:
+            break
+        heap[i], keys[i] = heap[child], keys[child]
+        place[heap[i]] = i
+        i = child
+    heap[i], keys[i], place[p] = p, key, i
 
 
 @njit(cache=True, nogil=True)

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from deixis.perception.detection.settings import DetectionSettings, NoteSettings
 from deixis.perception.detection.table_top import TableTop
+from deixis.perception.detection.viewpoint import View
 
 
 class Fate(IntEnum):
@@ -45,15 +46,12 @@ class Pieces:
 
 
 def left_out(
-    points: NDArray[np.float64],
-    top: TableTop,
-    heights: NDArray[np.float64],
-    pieces: Pieces,
-    settings: DetectionSettings,
+    top: TableTop, heights: NDArray[np.float64], pieces: Pieces, settings: DetectionSettings
 ) -> tuple[str, ...]:
-    """Return notes on what is above the table and not reported, among points (n, 3) at ``heights`` (n,) above it."""
+    """Return notes on what is above the table and not reported, among the points (n, 3) of the top's view, at
+    ``heights`` (n,) above it."""
     limits = settings.notes
-    beyond = top.beyond(points)
+    beyond = top.outside
     high = (heights > settings.reach) & (beyond < 0)
     notes = []
     if high.sum() > limits.min_high_share * max(len(top.on), 1):
@@ -72,7 +70,7 @@ def left_out(
             f"{discarded} of the {counts.sum()} points that rise above the table are in pieces too small or too low for"
             " things"
         )
-    if _reaches_over(points, beyond, heights, pieces, limits):
+    if _reaches_over(beyond, pieces, limits):
         notes.append("something reaches over the edge of the table: a hand or an arm, or a thing that hangs over it")
     return tuple(notes)
 
@@ -81,13 +79,7 @@ def _was(which: NDArray[np.bool_]) -> str:
     return "was" if which.sum() == 1 else "were"
 
 
-def _reaches_over(
-    points: NDArray[np.float64],
-    beyond: NDArray[np.float64],
-    heights: NDArray[np.float64],
-    pieces: Pieces,
-    settings: NoteSettings,
-) -> bool:
+def _reaches_over(beyond: NDArray[np.float64], pieces: Pieces, settings: NoteSettings) -> bool:
     """Return whether a piece above the table goes on far beyond its outline, at a height above it."""
     chosen = np.flatnonzero(pieces.of >= 0)
     of, count = pieces.of[chosen], len(pieces.fates)
@@ -98,30 +90,28 @@ def _reaches_over(
     return bool((both & (outside >= settings.min_piece_points)).any())
 
 
-def missing_lines(organised: tuple[int, int] | None, places: NDArray[np.intp]) -> tuple[str, ...]:
+def missing_lines(view: View) -> tuple[str, ...]:
     """Return a note where many rows or columns of an image have no depth between others that have it."""
-    if organised is None or not len(places):
+    if view.organised is None or not len(view.places):
         return ()
     notes = []
-    for name, lines in zip(("rows", "columns"), np.divmod(places, organised[1]), strict=True):
-        seen = np.zeros(int(lines.max() - lines.min()) + 1, dtype=np.bool_)
-        seen[lines - lines.min()] = True
+    for name, lines in zip(("rows", "columns"), view.pixels, strict=True):
+        seen = np.bincount(lines) > 0
+        seen = seen[seen.argmax() :]
         if (~seen).sum() > 0.1 * len(seen):
             notes.append(f"{(~seen).sum()} of {len(seen)} {name} of the image have no depth")
     return tuple(notes)
 
 
-def holes(
-    organised: tuple[int, int] | None, places: NDArray[np.intp], on: NDArray[np.bool_], settings: NoteSettings
-) -> tuple[str, ...]:
-    """Return a note where much of the table has no depth: which of the points at these ``places`` of an image are
-    ``on`` the table or what stands there, (n,)."""
-    if organised is None or not on.any():
+def holes(view: View, on: NDArray[np.bool_], settings: NoteSettings) -> tuple[str, ...]:
+    """Return a note where much of the table has no depth: which of the points of an image are ``on`` the table or what
+    stands there, (n,)."""
+    if view.organised is None or not on.any():
         return ()
     from scipy.ndimage import binary_closing, binary_fill_holes
 
-    rows, columns = np.divmod(places, organised[1])
-    shape = tuple(-(-side // settings.hole_cell) for side in organised)
+    rows, columns = view.pixels
+    shape = tuple(-(-side // settings.hole_cell) for side in view.organised)
     cell = rows // settings.hole_cell * shape[1] + columns // settings.hole_cell
     total = np.bincount(cell, minlength=shape[0] * shape[1]).reshape(shape)
     table = np.bincount(cell[on], minlength=shape[0] * shape[1]).reshape(shape) > 0

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,28 +41,35 @@ def occupied_cells(plan: NDArray[np.float64], cell: float) -> NDArray[np.float64
     """Return the middles (k, 2) of the squares of a grid in which there are places (n, 2)."""
     if not len(plan):
         return np.zeros((0, 2))
-    at = np.floor(plan / cell).astype(np.int64)
-    low = at.min(axis=0)
-    rows, columns = (at.max(axis=0) - low + 1).tolist()
+    from deixis.perception.detection.kernels import corners_of_box, occupied
+
+    low, high = np.floor(corners_of_box(plan) / cell).astype(np.int64)
+    rows, columns = (high - low + 1).tolist()
     if rows * columns > 50 * len(plan) + 1000:  # a few are far away
-        few: NDArray[np.float64] = np.unique(at, axis=0).astype(np.float64) + 0.5
+        few: NDArray[np.float64] = np.unique(np.floor(plan / cell).astype(np.int64), axis=0).astype(np.float64) + 0.5
         return few * cell
-    grid = np.zeros((rows, columns), dtype=np.bool_)
-    grid[at[:, 0] - low[0], at[:, 1] - low[1]] = True
-    middles: NDArray[np.float64] = (np.argwhere(grid) + low + 0.5) * cell
+    middles: NDArray[np.float64] = (np.argwhere(occupied(plan, cell, low, (rows, columns))) + low + 0.5) * cell
     return middles
 
 
 def corners_of(plan: NDArray[np.float64]) -> NDArray[np.float64] | None:
     """Return the corners (k, 2) of the convex outline of places (n, 2), in turn; None of too few, or of places in a
     line."""
+    hull = hull_of(plan)
+    return None if hull is None else np.asarray(hull.points[hull.vertices])
+
+
+def hull_of(plan: NDArray[np.float64]) -> Any:
+    """Return the convex outline of places (n, 2), ``scipy.spatial.ConvexHull``; None of too few, or of places in a
+    line."""
     from scipy.spatial import ConvexHull, QhullError
 
+    from deixis.perception.detection.kernels import outermost
+
     try:
-        corners: NDArray[np.float64] = plan[ConvexHull(plan).vertices]
+        return ConvexHull(plan[outermost(plan)])
     except (QhullError, ValueError):
         return None
-    return corners
 
 
 @dataclass(frozen=True, eq=False)

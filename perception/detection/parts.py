@@ -11,6 +11,7 @@ from __future__ import annotations
 import contextlib
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, fields
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -145,9 +146,11 @@ class Parts:
         self._trees: dict[int, tuple[int, Any]] = {}
         count = int(of.max()) + 1 if len(of) else 0
         order = np.argsort(of, kind="stable")
-        self.members = np.split(order, np.cumsum(np.bincount(of, minlength=count))[:-1]) if count else []
+        ends = np.cumsum(np.bincount(of, minlength=count)).tolist()
+        self.members = [order[start:end] for start, end in pairwise([0, *ends])]
         self.measures = Measures.of(of, self.patches, slice(None))
         self.there = np.ones(count, dtype=np.bool_)
+        self._set_aside = np.zeros(count, dtype=np.bool_)
         self.changes = [0] * count
         first, second, met = _between(of, self.patches, self._meeting)
         self._around: list[dict[int, NDArray[np.float64]]] = [{} for _ in range(count)]
@@ -164,6 +167,18 @@ class Parts:
         for number, part in enumerate(np.flatnonzero(self.there).tolist()):
             result[self.members[part]] = number
         return result
+
+    def keep_largest(self, count: int) -> None:
+        """Let no more than the ``count`` largest parts be joined from now on: the others meet nothing.
+
+        A part that meets thousands of others would be looked at again with each of them whenever one is joined to it.
+        """
+        least = np.argsort(-self.measures.sizes, kind="stable")[count:]
+        self._set_aside[least] = True
+        for part in least.tolist():
+            for other in self._around[part]:
+                del self._around[other][part]
+            self._around[part] = {}
 
     def join_all(self, first: NDArray[np.intp], second: NDArray[np.intp]) -> None:
         """Join the parts of each pair, and number all anew."""
@@ -208,7 +223,8 @@ class Parts:
     def near(self, gap: float, part: int | None = None) -> Pairs:
         """Return all pairs whose boxes are less than a ``gap`` (metres) apart as seen from above, each both ways round,
         or those with one ``part``: no patches of others are nearer. Parts of few points are left out."""
-        there = np.flatnonzero(self.there & (self.measures.sizes >= self.settings.min_near_points))
+        large = self.measures.sizes >= self.settings.min_near_points
+        there = np.flatnonzero(self.there & large & ~self._set_aside)
         low, high = self.measures.low[there], self.measures.high[there]
         if part is None:
             from deixis.perception.detection.kernels import near_boxes
@@ -219,7 +235,7 @@ class Parts:
             return self.pairs(ends[np.lexsort((ends[:, 1], ends[:, 0]))])
         apart = np.maximum(low - self.measures.high[part], self.measures.low[part] - high).clip(0.0)
         others = there[((apart**2).sum(axis=1) < gap**2) & (there != part)]
-        if self.measures.sizes[part] < self.settings.min_near_points:
+        if self._set_aside[part] or not large[part]:
             others = others[:0]
         ends = np.stack([np.full(len(others), part), others], axis=1)
         return self.pairs(np.concatenate([ends, ends[:, ::-1]]))

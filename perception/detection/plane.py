@@ -186,7 +186,9 @@ def _largest(
         return None
     normals = normals[good] / length[good, None]
     offsets = (normals * triples[good, 0]).sum(axis=1)
-    best = int(np.argmax(support(points, tolerance, normals, offsets)))
+    x, y, z = points.T.astype(np.float32)
+    tried = np.column_stack([normals, offsets]).astype(np.float32)
+    best = int(np.argmax(support(x, y, z, tolerance.astype(np.float32), tried)))
     return Plane(normals[best], float(offsets[best]))
 
 
@@ -195,18 +197,11 @@ def refined(plane: Plane, points: NDArray[np.float64], tolerance: NDArray[np.flo
 
     Points are weighted by the inverse of their noise's variance. ``tolerance`` (n,) is in metres.
     """
-    weight = 1 / tolerance**2
-    for turn in range(rounds):
-        on = np.abs(plane.heights(points)) <= tolerance * max(0.3, 0.75**turn)
-        if on.sum() < 3:
-            break
-        w = weight[on] / weight[on].sum()
-        middle = w @ points[on]
-        apart = points[on] - middle
-        vectors = np.linalg.eigh((apart * w[:, None]).T @ apart)[1]
-        normal = vectors[:, 0] * np.sign(vectors[:, 0] @ plane.normal or 1.0)
-        plane = Plane(normal, float(normal @ middle))
-    return plane
+    from deixis.perception.detection.kernels import refine
+
+    shares = np.maximum(0.3, 0.75 ** np.arange(rounds))
+    normal, offset = refine(points, tolerance, plane.normal, plane.offset, shares)
+    return Plane(normal, float(offset))
 
 
 def _standing(plane: Plane, on: NDArray[np.float64], free: NDArray[np.float64], settings: PlaneSettings) -> int:

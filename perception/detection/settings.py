@@ -68,13 +68,19 @@ class ScaleSettings(_Thresholds):
     """Metres: what is thinner and as wide as a table is a bare table. Shown by test_what_a_cloud_shows_is_told."""
     object_gap: float = 0.02
     """Metres of the grid on which one object is connected. Shown by test_what_a_cloud_shows_is_told."""
-    min_connected_share: float = 0.9
+    min_connected_share: float = 0.85
     """Share of the points of one object that are connected. Shown by test_what_a_cloud_shows_is_told."""
     min_inset: float = 0.03
     """Metres from the outline of a face of an object to what stands on it. Shown by test_what_a_cloud_shows_is_told."""
     min_inset_share: float = 0.3
     """Share of the points of what stands there that are so far inside: an adjoining face has hardly any. Shown by
     test_what_a_cloud_shows_is_told."""
+    min_rim_share: float = 0.7
+    """Area of what seems to stand on a face by that of the face, from which it is its rim, or that of the face upside
+    down, as of a tray. Shown by test_the_rim_of_a_tray_is_no_thing_on_a_table."""
+    min_table_share: float = 0.12
+    """Share of what is seen that is on the table or stands there, else it is a room. No scene or test tried shows
+    it."""
     min_room_width: float = 1.5
     """Metres: what is as large along two axes, and shows no table, is a room. Shown by
     test_what_a_cloud_shows_is_told."""
@@ -249,7 +255,7 @@ class SurfaceSettings(_Thresholds):
     setting 0 loses three things at half resolution."""
     max_plane_points: int = 250
     """Points that a plane is laid through at most: it bounds the time where points are scattered. Shown by
-    test_an_image_of_noise_takes_no_more_time_than_a_table."""
+    test_scattered_depth_takes_no_minutes."""
     min_jump: float = 0.006
     """Metres: neighbours that are less far apart are on one surface. Doubled, mosd 16 has two things fewer at half
     resolution."""
@@ -334,6 +340,9 @@ class JoiningSettings(_Thresholds):
     fragment_area: float = 7e-4
     """Square metres: a smaller piece of surface is no thing of its own where it meets another (2.6 cm square). Halved,
     mosd 44 has 5 parts more; doubled, it has 3 fewer."""
+    max_parts: int = 250
+    """Parts that are joined by more than their size, the largest ones: tables show less than a hundred, depth without
+    sense tens of thousands. Shown by test_scattered_depth_takes_no_minutes."""
     min_near_points: int = 10
     """Points of a part that is joined with one that it does not meet: what has fewer is noise. No scene or test tried
     shows it."""

@@ -32,14 +32,16 @@ def is_small(points: NDArray[np.float64], settings: DetectionSettings) -> bool:
     return bool(settings.least_length <= longest < limits.max_small_length and middle < limits.min_table_length)
 
 
-def is_one_object(points: NDArray[np.float64], settings: DetectionSettings) -> bool:
+def is_one_object(points: NDArray[np.float64], settings: DetectionSettings, levels: int = 0) -> bool:
     """Return whether points (n, 3) on which no table with things was found are one connected object, and not a sheet.
 
-    A sheet as wide as a table is a bare table.
+    A sheet as wide as a table is a bare table; two ``levels`` and more are tables where there is room for as many.
     """
     limits = settings.scale
     thin, middle, longest = _extents(points, settings)
     if not settings.least_length <= longest < limits.max_object_length:
+        return False
+    if levels > 1 and longest >= levels * limits.min_table_length:
         return False
     if middle >= limits.min_table_length and thin < limits.max_sheet_thickness:
         return False

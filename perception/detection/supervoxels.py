@@ -84,8 +84,15 @@ def _seeds(points: NDArray[np.float64], spacing: float) -> NDArray[np.int64]:
     cells = np.floor(points / spacing).astype(np.int64)
     cells -= cells.min(axis=0)
     across, deep, high = (cells.max(axis=0) + 1).tolist()
-    if across * deep * high < 2**62:
-        codes = (cells[:, 0] * deep + cells[:, 1]) * high + cells[:, 2]
+    codes = (cells[:, 0] * deep + cells[:, 1]) * high + cells[:, 2]
+    if across * deep * high < 50 * len(points) + 1_000_000:
+        there = np.zeros(across * deep * high, dtype=np.bool_)
+        there[codes] = True
+        found = np.flatnonzero(there)
+        number = np.empty(len(there), np.int32)
+        number[found] = np.arange(len(found))
+        of = number[codes]
+    elif across * deep * high < 2**62:
         found, of = np.unique(codes, return_inverse=True)
     else:
         found, of = np.unique(cells, axis=0, return_inverse=True)

@@ -58,5 +58,5 @@ def surface_of(
     normals, smooth = planes(points, neighbours, radius, jump, eye, settings.max_plane_points)
     lab = np.zeros((len(points), 3))
     if colours is not None:
-        lab = mixed(lab_of_srgb(colours.astype(np.float64)), neighbours)
+        lab = mixed(lab_of_srgb(colours), neighbours)
     return Surface(points, smooth, normals, lab, neighbours, sigma, jump, spacing)

@@ -13,7 +13,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.perception.detection.outline import in_largest_piece
+from deixis.perception.detection.outline import hull_of, in_largest_piece
 from deixis.perception.detection.plane import Plane
 from deixis.perception.detection.settings import DetectionSettings, TableTopSettings
 from deixis.perception.detection.viewpoint import View, directions
@@ -34,14 +34,9 @@ class TableTop:
     @cached_property
     def outline(self) -> NDArray[np.float64]:
         """The convex hull of the top in the plan of ``plane.across``, as half planes (h, 3); none of too few points."""
-        from scipy.spatial import ConvexHull, QhullError
-
         step = max(1, len(self.on) // self.settings.top.outline_sample_size)
-        try:
-            sides: NDArray[np.float64] = ConvexHull(self.points[self.on[::step]] @ self.plane.across.T).equations
-        except (QhullError, ValueError):
-            return np.zeros((0, 3))
-        return sides
+        hull = hull_of(self.points[self.on[::step]] @ self.plane.across.T)
+        return np.zeros((0, 3)) if hull is None else np.asarray(hull.equations)
 
     def beyond(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return how far points (n, 3) are outside the outline as seen from above, in metres, (n,); within it below 0.
@@ -50,28 +45,35 @@ class TableTop:
         """
         from deixis.perception.detection.kernels import greatest_offset
 
-        offsets: NDArray[np.float64] = greatest_offset(points @ self.plane.across.T, self.outline)
+        if not len(self.outline):
+            return np.full(len(points), np.inf)
+        sides = np.column_stack([self.outline[:, :2] @ self.plane.across, self.outline[:, 2]])
+        offsets: NDArray[np.float64] = greatest_offset(points, sides)
         return offsets
 
-    def is_below(self, points: NDArray[np.float64]) -> NDArray[np.bool_]:
-        """Return over which of the points (n, 3), or below them, the top is, (n,)."""
-        result: NDArray[np.bool_] = self.beyond(points) <= self.settings.top.slack
+    @cached_property
+    def outside(self) -> NDArray[np.float64]:
+        """How far each point of the view is outside the outline, (n,), as :meth:`beyond` has it."""
+        return self.beyond(self.points)
+
+    @property
+    def is_below(self) -> NDArray[np.bool_]:
+        """Over which points of the view, or below them, the top is, (n,)."""
+        result: NDArray[np.bool_] = self.outside <= self.settings.top.slack
         return result
 
 
 def table_top(view: View, plane: Plane, settings: DetectionSettings) -> TableTop:
     """Return the top of the table of a ``plane``: its largest connected part, and all parts that things cut off."""
     limits = settings.top
-    cells = _cells(view, plane, limits)
+    flat, shape = _cells(view, plane, limits)
     heights = plane.heights(view.points)
     level = np.abs(heights) < settings.plane.table_band
-    shape = tuple((cells.max(axis=0) + 1).tolist()) if len(cells) else (0, 0)
-    flat = cells[:, 0] * (shape[1] if len(cells) else 1) + cells[:, 1]
     shown = _shown(flat, heights, level, shape, limits)
     from scipy.ndimage import label
 
     parts, count = label(shown == _LEVEL, np.ones((3, 3)))
-    of = np.where(level, parts.ravel()[flat], 0) if len(cells) else np.zeros(0, np.int64)
+    of = np.where(level, parts.ravel()[flat], 0) if len(flat) else np.zeros(0, np.int64)
     sizes = np.bincount(of, minlength=count + 1)
     sizes[0] = 0
     if not sizes.any():
@@ -86,19 +88,21 @@ def table_top(view: View, plane: Plane, settings: DetectionSettings) -> TableTop
     return TableTop(plane, view.points, np.flatnonzero(chosen[of]), settings)
 
 
-def _cells(view: View, plane: Plane, settings: TableTopSettings) -> NDArray[np.int64]:
-    """Return the cell of the image (row, column) that each point is in, (n, 2), from 0.
+def _cells(view: View, plane: Plane, settings: TableTopSettings) -> tuple[NDArray[np.int64], tuple[int, int]]:
+    """Return the cell of the image that each point is in, (n,), numbered row by row, and how many rows and columns of
+    cells there are.
 
     Points of an image are in blocks of pixels, others in blocks of directions from the sensor; where that is not known,
     in squares of the plan.
     """
     if not len(view.points):
-        return np.zeros((0, 2), np.int64)
+        return np.zeros(0, np.int64), (0, 0)
     count = min(float(settings.max_cells), np.sqrt(len(view.points)) / settings.min_cell_side)
     if view.organised is not None:
         size = max(1, round(max(view.organised) / max(count, 1.0)))
-        blocks: NDArray[np.int64] = np.stack(np.divmod(view.places, view.organised[1]), axis=1) // size
-        return blocks
+        rows, columns = view.pixels
+        shape = (-(-view.organised[0] // size), -(-view.organised[1] // size))
+        return rows // size * shape[1] + columns // size, shape
     if view.outlook.known:
         rays = directions(view.points, view.outlook.eye)
         ahead = rays.mean(axis=0)
@@ -111,8 +115,9 @@ def _cells(view: View, plane: Plane, settings: TableTopSettings) -> NDArray[np.i
         side = settings.plan_cell
     low, high = np.percentile(at, (0.1, 99.9), axis=0)
     side = max(side, float((high - low).max()) / 1000, 1e-9)
-    cells: NDArray[np.int64] = np.floor((np.clip(at, low, high) - low) / side).astype(np.int64)
-    return cells
+    cells = np.floor((np.clip(at, low, high) - low) / side).astype(np.int64)
+    shape = (int(cells[:, 0].max()) + 1, int(cells[:, 1].max()) + 1)
+    return cells[:, 0] * shape[1] + cells[:, 1], shape
 
 
 def _shown(

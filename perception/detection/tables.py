@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from deixis.perception.detection.plane import Outlook, Plane, level_of, table_plane, tolerance_at
 from deixis.perception.detection.settings import DetectionSettings
 from deixis.perception.detection.table_top import TableTop, largest_part_length, table_top
-from deixis.perception.detection.viewpoint import View, believed, likely
+from deixis.perception.detection.viewpoint import View, believed, likely, sampled
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,12 +36,12 @@ def tables(view: View, settings: DetectionSettings) -> Iterator[FoundTable]:
     plane, left = base, replace(view, outlook=outlook)
     while plane is not None:
         top = table_top(left, plane, settings)
-        around = left.points[top.beyond(left.points) <= settings.top.margin]
-        around = around if len(around) else left.points
+        near = np.flatnonzero(top.outside <= settings.top.margin)
+        around = left.points[sampled(near if len(near) else np.arange(len(left.points)), settings)]
         own = believed(outlook if outlook.known else view.outlook, around, settings)
         own = likely(own, around, plane, settings)
         yield FoundTable(plane, top, replace(left, outlook=own))
-        left = left.take(np.flatnonzero(~top.is_below(left.points)))
+        left = left.take(np.flatnonzero(~top.is_below))
         enough = len(left.points) >= settings.plane.min_inlier_share * len(points)
         plane = _another(left.points, plane, own, settings) if enough else None
 

@@ -8,6 +8,8 @@ from elsewhere they are not.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +17,8 @@ from numpy.typing import NDArray
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.detection.plane import Outlook, Plane
 from deixis.perception.detection.settings import DetectionSettings, ViewpointSettings
+
+_Kind = TypeVar("_Kind", bound=np.generic)
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,6 +33,13 @@ class View:
     places: NDArray[np.intp]
     organised: tuple[int, int] | None
     outlook: Outlook
+
+    @cached_property
+    def pixels(self) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
+        """The rows and the columns (n,) of the points of an image."""
+        assert self.organised is not None, "a cloud that is no image has no pixels"
+        rows, columns = np.divmod(self.places.astype(np.int32), np.int32(self.organised[1]))
+        return rows, columns
 
     def take(self, chosen: NDArray[np.intp]) -> View:
         """Return the chosen points alone."""
@@ -133,7 +144,7 @@ def believed(outlook: Outlook, points: NDArray[np.float64], settings: DetectionS
     if outlook.up is not None:  # of an image, that has been looked at
         return outlook
     limits = settings.viewpoint
-    few = _sample(points, settings)
+    few = sampled(points, settings)
     if outlook.known and apart(few, outlook.eye, limits) < limits.max_far_share:
         return outlook
     above = np.median(few, axis=0) + np.array([0.0, 0.0, limits.assumed_distance])
@@ -144,8 +155,7 @@ def likely(outlook: Outlook, points: NDArray[np.float64], plane: Plane, settings
     """Return the outlook, if it is known and above the table; else from where the points (n, 3) look most as if
     seen. One that is doubtful gives way to another that is twice as likely."""
     limits = settings.viewpoint
-    few = _sample(points, settings)
-    told: float = np.inf
+    few, told = sampled(points, settings), float(np.inf)
     if outlook.known and plane.heights(outlook.eye[None])[0] > limits.min_eye_height:
         told = 0.0 if outlook.up is not None else apart(few, outlook.eye, limits)
         if told < limits.doubtful_far_share:
@@ -163,7 +173,8 @@ def likely(outlook: Outlook, points: NDArray[np.float64], plane: Plane, settings
     return replace(outlook, eye=eye, up=None, right=None, known=False)
 
 
-def _sample(points: NDArray[np.float64], settings: DetectionSettings) -> NDArray[np.float64]:
+def sampled(points: NDArray[_Kind], settings: DetectionSettings) -> NDArray[_Kind]:
+    """Return points, or their numbers, (n, …), or as many of them at random as a viewpoint is judged by."""
     size = settings.viewpoint.sample_size
     if len(points) <= size:
         return points

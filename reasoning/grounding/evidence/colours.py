@@ -25,7 +25,7 @@ TO_XYZ = np.array([[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 
 """From linear sRGB to CIE XYZ, white point D65 (IEC 61966-2-1)."""
 
 
-def lab_of_srgb(rgb: NDArray[np.float64]) -> Array:
+def lab_of_srgb(rgb: NDArray[np.float64] | NDArray[np.uint8]) -> Array:
     """Return CIELAB of colours in sRGB, 0 to 255, shape (…, 3): L 0 to 100, a towards red, b towards yellow; NaN stays
     NaN.
 
@@ -34,13 +34,22 @@ def lab_of_srgb(rgb: NDArray[np.float64]) -> Array:
     >>> lab_of_srgb(np.array([[255.0, 255.0, 255.0], [255.0, 0.0, 0.0]])).round(1).tolist()
     [[100.0, 0.0, 0.0], [53.2, 80.1, 67.2]]
     """
-    share = np.asarray(rgb, dtype=np.float64) / 255
-    linear = np.where(share <= 0.04045, share / 12.92, ((share + 0.055) / 1.055) ** 2.4)
+    if np.asarray(rgb).dtype == np.uint8:
+        linear = _linear(np.arange(256.0))[rgb]
+    else:
+        linear = _linear(np.asarray(rgb, dtype=np.float64))
     xyz = linear @ TO_XYZ.T / TO_XYZ.sum(axis=1)
     limit = 6 / 29
     f = np.where(xyz > limit**3, np.cbrt(xyz), xyz / (3 * limit**2) + 4 / 29)
     lab: Array = np.stack([116 * f[..., 1] - 16, 500 * (f[..., 0] - f[..., 1]), 200 * (f[..., 1] - f[..., 2])], axis=-1)
     return lab + 0.0  # no minus zero
+
+
+def _linear(rgb: NDArray[np.float64]) -> Array:
+    """Return linear sRGB, 0 to 1, of values 0 to 255."""
+    share = rgb / 255
+    linear: Array = np.where(share <= 0.04045, share / 12.92, ((share + 0.055) / 1.055) ** 2.4)
+    return linear
 
 
 def colour_evidence(described: Sequence[str | None], seen: NDArray[np.float64], colours: Colours) -> Array:

@@ -55,6 +55,14 @@ def test_what_a_cloud_shows_is_told(boxes_seen: Look) -> None:
     assert detect(PointCloud(sheet.astype(np.float32))).shows == Shows.TABLE
 
 
+def test_the_rim_of_a_tray_is_no_thing_on_a_table() -> None:
+    x, y = (axis.ravel() for axis in np.mgrid[-0.25:0.25:0.003, -0.16:0.16:0.003])
+    edge = np.maximum(abs(x) - 0.2, abs(y) - 0.11)
+    rim = np.where(edge > 0, edge, 0.0)  # rises at 45 degrees, all around
+    tray = np.column_stack([x, y, rim]) + np.array((0.0, 0.0, -0.8))
+    assert detect(PointCloud(tray.astype(np.float32))).shows == Shows.OBJECT
+
+
 def test_two_pieces_apart_are_no_single_object() -> None:
     one = shell((0.3, 0.1, 0.1))
     assert share_connected(one, 0.02) == 1.0
