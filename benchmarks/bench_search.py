@@ -6,6 +6,9 @@ to GQR's own instances of 320 things. GQR takes part, as a process that reads fi
 the figures stated are those measured once on another machine with GQR built from source, for eight other networks of
 60 things of the same model, and for its own instances, of which it solved four.
 
+OPRA (Moratz 2006) is a calculus as users bring them, whose relations take two words: no tractable subclass is known,
+and a closed network of atoms, which *undecided* means here, may be inconsistent.
+
 Every consistent network is proved: a scenario, one atom for each pair, that closure leaves as it is and that has only
 stated atoms. Start-up (imports, compiled loops and tables) is timed apart, in a process of its own.
 """
@@ -25,6 +28,7 @@ import numpy as np
 from common import data_folder
 
 from deixis.deadline import Deadline
+from deixis.grammar.formats.calculi import read_calculus
 from deixis.grammar.formats.networks import read_networks, write_networks
 from deixis.reasoning.qualitative.calculi.calculus import Calculus
 from deixis.reasoning.qualitative.calculi.registry import calculus
@@ -125,9 +129,16 @@ def main() -> None:
         networks = [random_network(allen, things, degree, 6.5, rng) for _ in range(many)]
         report(f"{many} Allen networks, {things} things, degree {degree}", networks, known, runs=3 if known else 1)
     report("8 RCC-8 networks, 80 things, degree 15", [hard_regions(80, 15.0, rng) for _ in range(8)])
-    folder = data_folder("gqr")
-    if folder is not None:
-        own = [text.network for text in read_networks(folder / "example-5x320.csp", [allen])]
+    with tempfile.TemporaryDirectory() as folder:
+        tool = Path(__file__).parents[1] / "tools" / "make_opra.py"
+        subprocess.run([sys.executable, str(tool), "2", folder], check=True, capture_output=True)
+        opra = read_calculus(folder).calculus
+    points = [random_network(opra, 40, degree, 24.0, rng) for degree in (4.0, 6.0, 8.0, 10.0)]
+    solve(points[0], Deadline.after(TIME_LIMIT))  # loads
+    report("4 OPRA networks of 72 atoms, 40 points, degree 4-10", points, runs=1)
+    data = data_folder("gqr")
+    if data is not None:
+        own = [text.network for text in read_networks(data / "example-5x320.csp", [allen])]
         report("GQR's own five Allen networks, 320 things", own, "19 s for four of the five")
 
 

@@ -31,11 +31,11 @@ from deixis.grammar.files import read_text
 from deixis.ontology.graph import Source
 from deixis.ontology.relation import nearest
 from deixis.reasoning.errors import CalculusError
-from deixis.reasoning.qualitative.calculi.calculus import Calculus, Subclass, TableCalculus
+from deixis.reasoning.qualitative.calculi.calculus import MAX_TABLE_ATOMS, Calculus, Subclass, TableCalculus
 from deixis.reasoning.qualitative.calculi.laws import Violation, lawful
 from deixis.reasoning.qualitative.calculi.registry import with_same_tables
+from deixis.reasoning.qualitative.calculi.words import words_with
 
-MAX_ATOMS = 64
 MAX_SUBCLASS_ATOMS = 16  # of a calculus whose tractable relations are listed
 KEYS = ("comp_table_file", "converse_file", "identity", "calculus_size")
 DECIDES = "closure_decides"
@@ -172,8 +172,8 @@ def _specification(path: Path, lines: list[_Line]) -> dict[str, tuple[_Line, str
     line, size = entries["calculus_size"]
     if not size.isdecimal() or not size.isascii() or not 1 <= len(size) <= 6 or int(size) < 1:
         raise line.refuse(f"calculus_size must be a number of atoms, got '{shortened(size)}'", size)
-    if int(size) > MAX_ATOMS:
-        raise line.refuse(f"calculus_size is {int(size)}; calculi of up to {MAX_ATOMS} atoms can be closed", size)
+    if int(size) > MAX_TABLE_ATOMS:
+        raise line.refuse(f"calculus_size is {int(size)}; calculi of up to {MAX_TABLE_ATOMS} atoms can be closed", size)
     return entries
 
 
@@ -202,9 +202,9 @@ def _converses(path: Path, size: tuple[_Line, str]) -> tuple[dict[str, int], NDA
 
 
 def _compositions(path: Path, atoms: dict[str, int]) -> NDArray[np.uint64]:
-    lines, problems = _lines(path), []
-    table = np.zeros((len(atoms), len(atoms)), dtype=np.uint64)
-    stated = np.zeros(table.shape, dtype=np.bool_)
+    lines, problems, size = _lines(path), [], len(atoms)
+    table = np.zeros((size, size, size), dtype=np.bool_)
+    stated = np.zeros((size, size), dtype=np.bool_)
     for line in lines:
         match = COMPOSITION.match(line.text)
         if match is None:
@@ -220,7 +220,7 @@ def _compositions(path: Path, atoms: dict[str, int]) -> NDArray[np.uint64]:
             else:
                 place = atoms[match[1]], atoms[match[2]]
                 stated[place] = True
-                table[place] = sum(1 << code for code in {atoms[name] for name in names[2:]})
+                table[*place, [atoms[name] for name in names[2:]]] = True
         _stop(problems)
     if not problems and not stated.all():
         first, second = np.argwhere(~stated)[0]
@@ -230,7 +230,8 @@ def _compositions(path: Path, atoms: dict[str, int]) -> NDArray[np.uint64]:
         problems.append((lines[-1] if lines else _Line(str(path), 1, "")).problem(missing))
     if problems:
         raise CalculusFileError(tuple(problems))
-    return table
+    words = words_with(table)
+    return words[:, :, 0] if size <= 64 else words
 
 
 def _unknown(line: _Line, name: str, atoms: dict[str, int]) -> Diagnostic:

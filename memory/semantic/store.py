@@ -329,7 +329,7 @@ class SemanticMemory(Closing):
         time_limit
             Seconds in which it must be answered.
         memory_limit
-            Bytes that evaluating it may take. The answer, as text, may take a sixteenth of them.
+            Bytes that evaluating it may take. The answer may take a sixteenth of them.
 
         Raises
         ------

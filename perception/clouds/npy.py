@@ -12,6 +12,7 @@ floats from 0 to 1, and may be called colors. Other arrays are passed over.
 from __future__ import annotations
 
 import io
+import warnings
 import zipfile
 import zlib
 from collections.abc import Iterable
@@ -41,7 +42,9 @@ def read_npy(data: bytes, where: str) -> NDArray[np.generic]:
     try:
         version = npy_format.read_magic(file)
         read_header = npy_format.read_array_header_1_0 if version == (1, 0) else npy_format.read_array_header_2_0
-        shape, in_columns, dtype = read_header(file)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # numpy warns of headers that Python 2 wrote, and reads them
+            shape, in_columns, dtype = read_header(file)
         if dtype.kind not in "biuf" or dtype.itemsize > 8 or min(shape, default=0) < 0:
             raise ValueError(f"an array of {dtype} of shape {shape}")
         return np.frombuffer(data, dtype, offset=file.tell()).reshape(shape, order="F" if in_columns else "C")

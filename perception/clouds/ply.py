@@ -88,6 +88,11 @@ def read_header(content: Content) -> PlyHeader:
         elif keyword == "end_header":
             if all(element.name != "vertex" for element in elements):
                 raise CloudError(f"{where}: the header has no element 'vertex', so there are no points; add it")
+            for element in elements:
+                if element.rows and not element.properties:
+                    raise CloudError(
+                        f"{where}: the element '{shown(element.name)}' has no property; state one, or drop it"
+                    )
             return PlyHeader(encoding, tuple(elements), end)
         elif number > 1 and keyword not in ("comment", "obj_info"):
             raise CloudError(f"{where}: '{shown(keyword)}' is no entry of a PLY header; take the line out")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from deixis.memory.errors import QueryError
+from deixis.memory.errors import QueryError, QueryMemoryError
 
 QUERY_TIME_LIMIT = 30.0
 """Seconds."""
@@ -14,6 +14,9 @@ QUERY_MEMORY_LIMIT = 2**30
 
 ANSWER_SHARE = 16
 """An answer may take this part of the memory limit as text; read in and printed it takes several times as much."""
+
+ROW_BYTES, CELL_BYTES = 64, 8
+"""Bytes that a row of an answer takes without values, and each of its cells; text may say so much of them in three."""
 
 MAX_LENGTH = 1_000_000
 """Maximum number of characters of a query."""
@@ -35,7 +38,8 @@ class QueryLimits:
     time
         Seconds, from the call to the answer.
     memory
-        Bytes for evaluating it, beyond those of the open store. The answer, as text, may take a sixteenth of them.
+        Bytes for evaluating it, beyond those of the open store. The answer may take a sixteenth of them: as text, and
+        as rows without their values.
     """
 
     time: float = QUERY_TIME_LIMIT
@@ -51,3 +55,15 @@ class QueryLimits:
     def answer(self) -> int:
         """Bytes that the answer may take as text."""
         return self.memory // ANSWER_SHARE
+
+    def too_large(self) -> QueryMemoryError:
+        """Return the error for an answer that takes more than it may."""
+        return QueryMemoryError(
+            f"query: the answer is larger than {in_words(self.answer)}, the share of the memory limit that an answer "
+            "may take; ask for less with LIMIT, or raise the limit"
+        )
+
+
+def in_words(size: int) -> str:
+    """Return a number of bytes as it is said in a message."""
+    return f"{size / 2**20:,.0f} MiB" if size >= 2**20 else f"{size:,} bytes"

@@ -22,7 +22,7 @@ from typing import Any
 from deixis.deadline import Deadline
 from deixis.memory.errors import MemoryWriteError, QueryError, QueryMemoryError, QueryTimeoutError
 from deixis.memory.semantic.queries import worker
-from deixis.memory.semantic.queries.limits import QueryLimits
+from deixis.memory.semantic.queries.limits import QueryLimits, in_words
 
 
 class QueryProcess:
@@ -68,10 +68,7 @@ class QueryProcess:
         if kind == worker.MEMORY:
             raise _memory_error(limits)
         if kind == worker.SIZE:
-            raise QueryMemoryError(
-                f"query: the answer is larger than {_bytes(limits.answer)}, the share of the memory limit that an "
-                "answer may take; ask for less with LIMIT, or raise the limit"
-            )
+            raise limits.too_large()
         return kind, content
 
     def _answer(self, request: Mapping[str, Any], deadline: Deadline, limits: QueryLimits) -> tuple[bytes, bytes]:
@@ -159,9 +156,5 @@ def time_error(limits: QueryLimits) -> QueryTimeoutError:
 
 def _memory_error(limits: QueryLimits) -> QueryMemoryError:
     return QueryMemoryError(
-        f"query: it needs more than the memory limit of {_bytes(limits.memory)}; narrow it down, or raise the limit"
+        f"query: it needs more than the memory limit of {in_words(limits.memory)}; narrow it down, or raise the limit"
     )
-
-
-def _bytes(size: int) -> str:
-    return f"{size / 2**20:,.0f} MiB" if size >= 2**20 else f"{size:,} bytes"

@@ -9,7 +9,7 @@ import pyoxigraph as ox
 
 from deixis.memory.errors import MemoryFormatError, QueryError
 from deixis.memory.semantic.queries.limits import QueryLimits
-from deixis.memory.semantic.queries.results import Term
+from deixis.memory.semantic.queries.results import Term, rows_within
 from deixis.memory.semantic.queries.sparql import Answering, answer, check_query
 from deixis.memory.semantic.queries.union import default_graph
 from deixis.memory.semantic.rdf.graphs import CANONICAL, UNION
@@ -80,7 +80,7 @@ def dataset_view(store: ox.Store, answering: Answering) -> rdflib.Dataset:
                 result.askAnswer = bool(found)
             elif isinstance(found, ox.QuerySolutions):
                 result.vars = [Variable(variable.value) for variable in found.variables]
-                rows = [zip(result.vars, row, strict=True) for row in found]
+                rows = [zip(result.vars, row, strict=True) for row in rows_within(found, QueryLimits())]
                 result.bindings = [
                     {name: cast(Any, from_ox(term)) for name, term in row if term is not None} for row in rows
                 ]

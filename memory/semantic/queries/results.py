@@ -6,7 +6,7 @@ import csv
 import io
 import json
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import Any
@@ -15,6 +15,7 @@ import pyoxigraph as ox
 
 from deixis.answers import Answer, count
 from deixis.memory.errors import QueryError
+from deixis.memory.semantic.queries.limits import CELL_BYTES, ROW_BYTES, QueryLimits
 from deixis.memory.semantic.rdf.files import PREFIXES, short
 from deixis.ontology.triples import with_blank_nodes
 from deixis.printable import visible_line
@@ -27,6 +28,10 @@ _FORMULA = re.compile(r"[=+\-@\t\r\n\uff1d\uff0b\uff0d\uff20]")
 """How a cell begins that a spreadsheet may take for a formula: see OWASP, CSV injection."""
 
 _NUMBER = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?|[+-]?INF")
+
+
+MAX_PADDED = 80
+"""Characters of a column of plain text to which shorter cells are filled up."""
 
 
 class QueryKind(StrEnum):
@@ -99,13 +104,14 @@ class QueryResult(Answer):
         return f"{self.kind.upper()}: {count(len(self.triples), 'triple')}"
 
     @classmethod
-    def of(cls, kind: QueryKind, answer: StoreAnswer, ordered: bool) -> QueryResult:
-        """Return what Oxigraph answers, read to its end."""
+    def of(cls, kind: QueryKind, answer: StoreAnswer, ordered: bool, limits: QueryLimits) -> QueryResult:
+        """Return what Oxigraph answers, read to its end; raises QueryMemoryError where that takes too much."""
         if isinstance(answer, ox.QueryBoolean):
             return cls(kind, boolean=bool(answer))
         if isinstance(answer, ox.QuerySolutions):
             variables = tuple(variable.value for variable in answer.variables)
-            return cls(kind, variables, tuple(Row(row, variables) for row in answer), ordered=ordered)
+            rows = tuple(Row(row, variables) for row in rows_within(answer, limits))
+            return cls(kind, variables, rows, ordered=ordered)
         return cls(kind, triples=tuple(sorted(set(answer), key=str)))
 
     def printed(self) -> Sequence[Sequence[Term | None]]:
@@ -119,7 +125,7 @@ class QueryResult(Answer):
         if self.kind is not QueryKind.SELECT:
             return [" ".join(_readable(term, quoted=True) for term in triple) + " ." for triple in self.triples]
         cells = [[_readable(term) for term in row] for row in self.printed()]
-        widths = [max(map(len, column)) for column in zip(self.variables, *cells, strict=True)]
+        widths = [min(MAX_PADDED, max(map(len, column))) for column in zip(self.variables, *cells, strict=True)]
         lines = [self.variables, ["-" * width for width in widths], *cells]
         return [
             "  ".join(cell.ljust(width) for cell, width in zip(line, widths, strict=True)).rstrip() for line in lines
@@ -127,13 +133,22 @@ class QueryResult(Answer):
 
     def to_json(self, indent: int | None = 2) -> str:
         """Return SPARQL 1.1 results as JSON; of a graph, its triples in N-Triples."""
+        text = "".join(self.json_parts())
+        return text if indent == 2 else json.dumps(json.loads(text), indent=indent, ensure_ascii=False)
+
+    def json_parts(self) -> Iterator[str]:
+        """Yield the text of :meth:`to_json` in parts, a row each, so that a large answer need not be held twice."""
         if self.kind is QueryKind.ASK:
-            answer: dict[str, Any] = {"head": {}, "boolean": self.boolean}
+            yield json.dumps({"head": {}, "boolean": self.boolean}, indent=2)
         elif self.kind is QueryKind.SELECT:
-            answer = solutions(self.variables, self.printed())
+            head = _indented({"vars": list(self.variables)}, 2)
+            yield f'{{\n  "head": {head},\n  "results": {{\n    "bindings": '
+            yield from _json_list((_binding(self.variables, row) for row in self.printed()), 6)
+            yield "\n  }\n}"
         else:
-            answer = {"triples": [f"{triple} ." for triple in self.triples]}
-        return json.dumps(answer, indent=indent, ensure_ascii=False)
+            yield '{\n  "triples": '
+            yield from _json_list((f"{triple} ." for triple in self.triples), 4)
+            yield "\n}"
 
     def to_csv(self) -> str:
         """Return SPARQL 1.1 results as CSV. Raises QueryError for what has no rows.
@@ -158,9 +173,39 @@ class QueryResult(Answer):
 
 def solutions(variables: Sequence[str], rows: Sequence[Sequence[Term | None]]) -> dict[str, Any]:
     """Return rows as SPARQL 1.1 results in JSON; None is a variable without a value."""
-    bound = [zip(variables, row, strict=True) for row in rows]
-    bindings = [{name: _json_term(term) for name, term in row if term is not None} for row in bound]
+    bindings = [_binding(variables, row) for row in rows]
     return {"head": {"vars": list(variables)}, "results": {"bindings": bindings}}
+
+
+def rows_within(answer: ox.QuerySolutions, limits: QueryLimits) -> Iterator[tuple[Term | None, ...]]:
+    """Yield rows, as long as they take no more than an answer may; raise QueryMemoryError where they do.
+
+    The text of an answer is bounded where it is written. But of a row without values it says next to nothing.
+    """
+    left, row_bytes = limits.answer, ROW_BYTES + CELL_BYTES * len(answer.variables)
+    for row in answer:
+        left -= row_bytes
+        if left < 0:
+            raise limits.too_large()
+        yield tuple(row)
+
+
+def _binding(variables: Sequence[str], row: Sequence[Term | None]) -> dict[str, Any]:
+    return {name: _json_term(term) for name, term in zip(variables, row, strict=True) if term is not None}
+
+
+def _json_list(items: Iterator[Any], indent: int) -> Iterator[str]:
+    """Yield the text of a list in parts, as ``json.dumps`` with an indent of 2 writes it so far to the right."""
+    space = "\n" + " " * indent
+    before = "["
+    for item in items:
+        yield f"{before}{space}{_indented(item, indent)}"
+        before = ","
+    yield "[]" if before == "[" else space[:-2] + "]"
+
+
+def _indented(item: Any, indent: int) -> str:
+    return json.dumps(item, indent=2, ensure_ascii=False).replace("\n", "\n" + " " * indent)
 
 
 def _row_key(row: Sequence[Term | None]) -> tuple[str, ...]:

@@ -83,7 +83,7 @@ def run_query(answering: Answering, sparql: str, union: Sequence[ox.NamedNode], 
     default = None if checked.names_graphs else [graph.value for graph in union]
     named = [graph.value for graph in CANONICAL] if checked.asks_graphs and default else None
     found = answer(answering, sparql, checked, checked.prefixes, default, named, None, limits)
-    return QueryResult.of(checked.kind, found, checked.ordered)
+    return QueryResult.of(checked.kind, found, checked.ordered, limits)
 
 
 def answer(

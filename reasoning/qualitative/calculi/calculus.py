@@ -22,6 +22,9 @@ from numpy.typing import NDArray
 
 from deixis.ontology.relation import nearest
 from deixis.reasoning.errors import UnknownAtomError
+from deixis.reasoning.qualitative.calculi.words import atoms_within, relation_of
+
+MAX_TABLE_ATOMS = 320  # of a table calculus; OPRA of granularity 4 has 272
 
 
 def bits(relation: int) -> Iterator[int]:
@@ -160,12 +163,13 @@ def _split(subclass: Subclass, relation: int) -> tuple[int, ...]:
 
 @dataclass(frozen=True, eq=False)
 class TableCalculus(Calculus):
-    """A calculus of k atoms, at most 64, by its tables."""
+    """A calculus of k atoms, at most 320, by its tables."""
 
     name: str
     atoms: tuple[str, ...]
     converses: NDArray[np.int64]  # (k,): the code of each atom's converse
-    composition: NDArray[np.uint64]  # (k, k): bit masks of atoms; row: a to b, column: b to c
+    composition: NDArray[np.uint64]
+    """Shape (k, k): bit masks of atoms; row: a to b, column: b to c. Of more than 64 atoms (k, k, words)."""
     identity: int
     aliases: Mapping[str, str] = field(default_factory=dict)
     any_case: bool = False
@@ -179,8 +183,15 @@ class TableCalculus(Calculus):
 
     @cached_property
     def _table(self) -> list[list[int]]:
+        if self.composition.ndim > 2:
+            return [[relation_of(words) for words in row] for row in self.composition]
         table: list[list[int]] = self.composition.tolist()
         return table
+
+    def possible(self) -> NDArray[np.bool_]:
+        """Return the composition as truth values, shape (k, k, k): a to b, b to c, a to c."""
+        k = len(self.atoms)
+        return atoms_within(self.composition.reshape(k, k, -1), k)
 
     def converse(self, relation: int) -> int:
         mask = 0

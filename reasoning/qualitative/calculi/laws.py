@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.reasoning.errors import CalculusError
+from deixis.reasoning.qualitative.calculi.words import atoms_within, words_with
 
 
 @dataclass(frozen=True)
@@ -34,15 +35,15 @@ def lawful(
     ----------
     converses : ndarray, (k,)
         The code of each atom's converse.
-    composition : ndarray, (k, k)
-        Bit masks of atoms; row: a to b, column: b to c.
+    composition : ndarray, (k, k) or (k, k, words)
+        Bit masks of atoms, or words of 64 atoms; row: a to b, column: b to c.
     identity : int
         The code of the atom that everything bears to itself.
 
     Returns
     -------
-    composition : ndarray, (k, k)
-        What all six readings of a triangle allow.
+    composition : ndarray
+        In the shape given: what all six readings of a triangle allow.
     violations : tuple of Violation
         What was found wrong with the table as it was given. That the identity is not neutral is said and not mended.
 
@@ -63,13 +64,12 @@ def lawful(
     if (turned != np.arange(size)).any():
         wrong = int(np.flatnonzero(turned != np.arange(size))[0])
         raise CalculusError("the converse of a converse must be the atom itself", wrong)
-    codes = np.arange(size, dtype=np.uint64)
-    possible = (composition[:, :, None] >> codes & np.uint64(1)).astype(np.bool_)  # (a to b, b to c, a to c)
+    possible = atoms_within(composition.reshape(size, size, -1), size)  # (a to b, b to c, a to c)
     violations = []
-    neutral = np.uint64(1) << codes
+    neutral = np.eye(size, dtype=np.bool_)
     unlike = np.zeros((size, size), dtype=np.bool_)
-    unlike[identity] = composition[identity] != neutral
-    unlike[:, identity] |= composition[:, identity] != neutral
+    unlike[identity] = (possible[identity] != neutral).any(axis=1)
+    unlike[:, identity] |= (possible[:, identity] != neutral).any(axis=1)
     laws = (
         ("identity", unlike),
         ("converse of composition", (possible != _from_the_other_end(possible, converses)).any(axis=2)),
@@ -84,7 +84,7 @@ def lawful(
         before = int(possible.sum())
         possible = possible & _from_the_other_end(possible, converses)
         possible = possible & _by_another_side(possible, converses)
-    return (possible.astype(np.uint64) << codes).sum(axis=2, dtype=np.uint64), tuple(violations)
+    return words_with(possible).reshape(composition.shape), tuple(violations)
 
 
 def _from_the_other_end(possible: NDArray[np.bool_], converses: NDArray[np.int64]) -> NDArray[np.bool_]:

@@ -100,7 +100,7 @@ def _agree(brought: TableCalculus, known: Calculus, codes: list[int]) -> bool:
         if known.converse(1 << code) != 1 << codes[brought.converses[i]]:
             return False
         for j, other in enumerate(codes):
-            composed = sum(1 << codes[k] for k in bits(int(brought.composition[i, j])))
+            composed = sum(1 << codes[k] for k in bits(brought.compose(1 << i, 1 << j)))
             if known.compose(1 << code, 1 << other) != composed:
                 return False
     return True

@@ -17,9 +17,9 @@ from numpy.typing import NDArray
 
 from deixis.deadline import Deadline
 from deixis.reasoning.qualitative.calculi.calculus import Calculus, ProductCalculus
+from deixis.reasoning.qualitative.calculi.words import relation_of, words_of
 from deixis.reasoning.qualitative.networks.network import Network, on_axes
 from deixis.reasoning.qualitative.networks.state import NetworkState, Progress
-from deixis.reasoning.qualitative.networks.tables import relation_of, words_of
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,11 +6,12 @@ atom a to thing 64 w + b. The composition of one relation with a whole row of re
 
 Throughout: ``sizes`` (3,) the number of atoms on each axis, padded by ones in front, an atom's code counting the last
 axis fastest; ``needs`` (3, bytes, 256, atoms of an axis) tells, for each byte of the left relation and each atom of
-the result, the right atoms that give it; ``converses`` (atoms,); ``full`` (words,) one bit a thing;
-``dirty`` (n, words) the ordered pairs whose change is still to be passed on, ``waiting`` (n,) how many of them a row
-has; ``clock`` (5,) the row in turn, the passes done, the pair that was emptied and the thing by which (-1: none);
-``trail`` (room, 4) the atoms taken away, in order: row, column, atom, by which thing (-1: stated); ``count`` (1,) how
-many there are, -1 where none is kept.
+the result, the right atoms that give it; in a calculus of one axis and more than 64 atoms it is (words, fours, 16,
+atoms), for every four atoms of the left relation, with the right atoms in words; ``converses`` (atoms,);
+``full`` (words,) one bit a thing; ``dirty`` (n, words) the ordered pairs whose change is still to be passed on,
+``waiting`` (n,) how many of them a row has; ``clock`` (5,) the row in turn, the passes done, the pair that was emptied
+and the thing by which (-1: none); ``trail`` (room, 4) the atoms taken away, in order: row, column, atom, by which thing
+(-1: stated); ``count`` (1,) how many there are, -1 where none is kept.
 """
 
 from __future__ import annotations
@@ -120,7 +121,7 @@ def advance(  # type: ignore[no-untyped-def]
     removed = np.zeros((words, atoms), dtype=np.uint64)
     scratch = np.zeros((3, atoms), dtype=np.uint64)
     boxes = np.zeros((max(1, sizes[0] * sizes[1]), 3), dtype=np.uint64)
-    required = np.zeros((3, sizes.max()), dtype=np.uint64)
+    required = np.zeros((max(3, (sizes.max() + 63) >> 6), sizes.max()), dtype=np.uint64)
     idle = 0
     while idle <= n:
         i = clock[0]
@@ -140,7 +141,9 @@ def advance(  # type: ignore[no-untyped-def]
                 waiting[i] -= 1
                 budget -= 1
                 clock[1] += 1
-                if atoms == sizes[2]:
+                if atoms == sizes[2] and atoms > 64:
+                    some = _remove_wide(i, j, needs, planes, required, removed)
+                elif atoms == sizes[2]:
                     some = _remove_table(i, j, needs, planes, required, removed)
                 else:
                     some = _remove_product(i, j, sizes, needs, planes, required, boxes, scratch, removed)
@@ -183,6 +186,36 @@ def _remove_table(i, j, needs, planes, required, removed):  # type: ignore[no-un
             while gone and needed:
                 gone &= ~others[low_bit(needed)]
                 needed &= needed - ONE
+            removed[w, c] = gone
+            found |= gone
+    return found != NONE
+
+
+@njit(cache=True)
+def _remove_wide(i, j, needs, planes, required, removed):  # type: ignore[no-untyped-def]
+    """The same for more than 64 atoms: the right atoms that give an atom are several words of ``required``."""
+    _, words, atoms = planes.shape
+    parts = len(needs)
+    required[:parts] = NONE
+    for four in range(needs.shape[1]):
+        value = 0
+        for bit in range(min(4, atoms - 4 * four)):
+            value |= int(may(planes, i, 4 * four + bit, j)) << bit
+        if value:
+            for part in range(parts):
+                row = needs[part, four, value]
+                for c in range(atoms):
+                    required[part, c] |= row[c]
+    found = NONE
+    for w in range(words):
+        mine, others = planes[i, w], planes[j, w]
+        for c in range(atoms):
+            gone = mine[c]
+            for part in range(parts):
+                needed = required[part, c]
+                while gone and needed:
+                    gone &= ~others[(part << 6) + int(low_bit(needed))]
+                    needed &= needed - ONE
             removed[w, c] = gone
             found |= gone
     return found != NONE
@@ -294,6 +327,34 @@ def _apply(i, j, removed, converses, full, planes, dirty, waiting, clock, change
             mark(i, k, dirty, waiting)
             mark(k, i, dirty, waiting)
     return True
+
+
+@njit(cache=True)
+def undo(length, converses, planes, dirty, waiting, clock, trail, count):  # type: ignore[no-untyped-def]
+    """Give back what was taken since the trail had that length, when the network was closed."""
+    for m in range(count[0] - 1, length - 1, -1):
+        i, k, atom = trail[m, 0], trail[m, 1], trail[m, 2]
+        planes[i, k >> 6, atom] |= ONE << np.uint64(k & 63)
+        planes[k, i >> 6, converses[atom]] |= ONE << np.uint64(i & 63)
+    count[0] = length
+    dirty[:] = NONE
+    waiting[:] = 0
+    clock[2:] = -1
+
+
+@njit(cache=True)
+def lightest(planes, weights):  # type: ignore[no-untyped-def]
+    """The pair i < k of more than one atom with the fewest for its weight, as i * n + k; -1 where there is none."""
+    n, _, atoms = planes.shape
+    best, best_score = -1, np.inf
+    for i in range(n):
+        for k in range(i + 1, n):
+            left = 0
+            for atom in range(atoms):
+                left += int(may(planes, i, atom, k))
+            if left > 1 and left / weights[i, k] < best_score:
+                best, best_score = i * n + k, left / weights[i, k]
+    return best
 
 
 @njit(cache=True)

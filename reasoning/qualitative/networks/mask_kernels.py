@@ -74,7 +74,7 @@ def advance(budget, half, compositions, converses, masks, dirty, waiting, clock,
                 budget -= 1
                 clock[1] += 1
                 _compose(masks[i, j], half, compositions, rows)
-                for c in range(_narrower(masks[i], masks[j], half, rows[0], rows[1], changed, lefts)):
+                for c in range(narrower(masks[i], masks[j], half, rows[0], rows[1], changed, lefts)):
                     if not _narrow(
                         i, changed[c], lefts[c], j, half, masks, converses, dirty, waiting, clock, trail, count
                     ):
@@ -92,7 +92,7 @@ def _compose(relation, half, compositions, rows):  # type: ignore[no-untyped-def
 
 
 @njit(cache=True)
-def _narrower(mine, others, half, low, high, changed, lefts):  # type: ignore[no-untyped-def]
+def narrower(mine, others, half, low, high, changed, lefts):  # type: ignore[no-untyped-def]
     """List the pairs of a row that are narrowed, and to what; without a branch, since there is no telling which."""
     found, shift = np.uint64(0), np.uint64(half)
     lower = (ONE << shift) - ONE

@@ -21,10 +21,13 @@ from numpy.typing import NDArray
 from deixis.deadline import Deadline
 from deixis.reasoning.qualitative.calculi.bridges import Link
 from deixis.reasoning.qualitative.calculi.calculus import Calculus, ProductCalculus, TableCalculus
+from deixis.reasoning.qualitative.calculi.words import atoms_within
 from deixis.reasoning.qualitative.networks.closure import close_states, opened_states
 from deixis.reasoning.qualitative.networks.conflict_search import ConflictSearch, Premise, require_room
 from deixis.reasoning.qualitative.networks.network import Constraint, Network, on_axes
 from deixis.reasoning.qualitative.networks.state import Progress
+from deixis.reasoning.qualitative.networks.tables import is_wide
+from deixis.reasoning.qualitative.networks.wide_search import WideSearch
 
 Masks = NDArray[np.unsignedinteger[Any]]
 
@@ -170,6 +173,8 @@ class _Part:
 
 def _decided(network: Network, deadline: Deadline, progress: Progress | None, wanted: bool) -> Solution:
     """Return the solution without its time."""
+    if is_wide(network.calculus):
+        return _wide(network, deadline, wanted)
     axes = on_axes(network)
     if axes is None:
         parts = [_joined(network)]
@@ -206,10 +211,28 @@ def _decided(network: Network, deadline: Deadline, progress: Progress | None, wa
             found = atomic_network(network, np.concatenate(known))
         else:
             reason = f"{OUT_OF_TIME} before a scenario was found"
-    if network.calculus.decided_by_closure:
+    return _unrefuted(network.calculus, effort, found, reason)
+
+
+def _unrefuted(calculus: Calculus, effort: tuple[int, int], found: Network | None, reason: str) -> Solution:
+    """The solution where closed tractable relations, or atoms, were found."""
+    if calculus.decided_by_closure:
         return Solution(Verdict.CONSISTENT, *effort, 0.0, found, reason=reason)
-    reason = f"a closed network of atoms was found, and in {network.calculus.name} that proves nothing"
+    reason = f"a closed network of atoms was found, and in {calculus.name} that proves nothing"
     return Solution(Verdict.UNDECIDED, *effort, 0.0, found, reason=reason)
+
+
+def _wide(network: Network, deadline: Deadline, wanted: bool) -> Solution:
+    """The solution in a calculus whose relations take several words, without its time."""
+    search = WideSearch(network)
+    answer = search.run(deadline)
+    effort = search.decisions, search.conflicts
+    if answer is None:
+        return Solution(Verdict.UNDECIDED, *effort, 0.0, reason=OUT_OF_TIME)
+    if not answer:
+        return Solution(Verdict.INCONSISTENT, *effort, 0.0, refuted=not search.decisions)
+    codes = atoms_within(search.relations(), len(network.calculus.atoms)).argmax(axis=2)
+    return _unrefuted(network.calculus, effort, _with_atoms(network, codes) if wanted else None, "")
 
 
 def _joined(network: Network) -> _Part:
@@ -254,5 +277,10 @@ def atomic_network(network: Network, atoms: Masks) -> Network:
     codes = np.zeros(atoms.shape[1:], dtype=np.int64)
     for axis, mask in zip(calculus.factors, atoms, strict=True):
         codes = codes * len(axis.atoms) + np.bitwise_count(mask - np.ones((), dtype=mask.dtype))
+    return _with_atoms(network, codes)
+
+
+def _with_atoms(network: Network, codes: NDArray[np.int64]) -> Network:
+    """Return the network of one atom for every pair i < j, by their codes (n, n)."""
     pairs = zip(*np.triu_indices(network.size, 1), strict=True)
     return network.only(Constraint(int(i), int(j), 1 << int(codes[i, j])) for i, j in pairs)

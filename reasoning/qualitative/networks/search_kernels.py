@@ -18,6 +18,7 @@ import numpy as np
 from numba import njit
 
 from deixis.reasoning.qualitative.networks.kernels import low_bit
+from deixis.reasoning.qualitative.networks.mask_kernels import narrower
 
 Array = Any
 
@@ -237,9 +238,9 @@ def _pass_on(edge, changed, lefts, algebra, memory):  # type: ignore[no-untyped-
             return
         rows = algebra.rows[axis, _row_place(axis, relation, algebra)]
         if len(rows) == 2:
-            found = _narrower_two(masks[axis, i], masks[axis, k], algebra.width, rows, changed, lefts)
+            found = narrower(masks[axis, i], masks[axis, k], algebra.width, rows[0], rows[1], changed, lefts)
         else:
-            found = _narrower(masks[axis, i], masks[axis, k], algebra.width, rows, changed, lefts)
+            found = _narrower_in_parts(masks[axis, i], masks[axis, k], algebra.width, rows, changed, lefts)
         for c in range(found):
             j = changed[c]
             if j in (i, k):
@@ -278,22 +279,8 @@ def _fill_rows(axis, relation, rows, algebra):  # type: ignore[no-untyped-def]
 
 
 @loop
-def _narrower_two(mine, others, width, rows, changed, lefts):  # type: ignore[no-untyped-def]
-    """List what is narrowed of a row, and to what; without a branch, since there is no telling which."""
-    low, high = rows[0], rows[1]
-    found, shift = ZERO, np.uint64(width)
-    lower = (ONE << shift) - ONE
-    for k in range(len(mine)):
-        other = np.uint64(others[k])
-        left = mine[k] & (low[other & lower] | high[other >> shift])
-        changed[found], lefts[found] = k, left
-        found += np.uint64(left != mine[k])
-    return found
-
-
-@loop
-def _narrower(mine, others, width, rows, changed, lefts):  # type: ignore[no-untyped-def]
-    """The same for any number of parts."""
+def _narrower_in_parts(mine, others, width, rows, changed, lefts):  # type: ignore[no-untyped-def]
+    """List the pairs of a row that are narrowed, and to what, where relations are cut into more than two parts."""
     found, shift = ZERO, np.uint64(width)
     part = (ONE << shift) - ONE
     for k in range(len(mine)):

@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 from deixis.deadline import Deadline
 from deixis.reasoning.errors import LimitError
 from deixis.reasoning.qualitative.calculi.calculus import Calculus
+from deixis.reasoning.qualitative.calculi.words import relation_of, words_of
 from deixis.reasoning.qualitative.networks.cells import Cells, Masks, Planes
 from deixis.reasoning.qualitative.networks.network import Network
-from deixis.reasoning.qualitative.networks.tables import relation_of, tables, words_of
+from deixis.reasoning.qualitative.networks.tables import tables
 
 Progress = Callable[[int, int], None]
 """Called now and then with the pairs passed on so far, and those known to be due in all; the latter may yet grow."""
@@ -126,7 +127,11 @@ class NetworkState:
         return relations, ids.reshape(self.size, self.size)
 
     def masks(self) -> NDArray[np.uint64]:
-        """Return what all pairs may still be, (n, n), in a calculus of up to 64 atoms."""
+        """Return what all pairs may still be, (n, n); raises LimitError in a calculus of more than 64 atoms."""
+        if self._atoms > 64:
+            raise LimitError(
+                f"products are searched with up to 64 atoms an axis; {self.calculus.name} has {self._atoms}"
+            )
         return self.relations()[:, :, 0]
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
@@ -11,10 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.reasoning.errors import LimitError
-from deixis.reasoning.qualitative.calculi.calculus import Calculus, TableCalculus
+from deixis.reasoning.qualitative.calculi.calculus import MAX_TABLE_ATOMS, Calculus, TableCalculus
+from deixis.reasoning.qualitative.calculi.words import words_with
 
 MAX_AXES = 3
-MAX_AXIS_ATOMS = 64  # of one axis
+MAX_AXIS_ATOMS = 64  # of one axis of several
 MAX_SMALL_ATOMS = 16  # atoms
 
 
@@ -40,13 +40,18 @@ class Tables:
 
 @lru_cache(maxsize=64)
 def tables(calculus: Calculus) -> Tables:
-    """Return the arrays of a calculus; raises LimitError for more than three axes, or 64 atoms on one."""
+    """Return the arrays of a calculus; raises LimitError for too many axes, or atoms on one."""
     axes = calculus.factors
     largest = max(len(axis.atoms) for axis in axes)
-    if len(axes) > MAX_AXES or largest > MAX_AXIS_ATOMS:
+    if len(axes) > MAX_AXES or largest > (MAX_TABLE_ATOMS if len(axes) == 1 else MAX_AXIS_ATOMS):
         raise LimitError(
-            f"{calculus.name}: closure works for up to {MAX_AXES} axes of up to {MAX_AXIS_ATOMS} atoms, "
-            f"not {len(axes)} of up to {largest}"
+            f"{calculus.name}: closure works for one axis of up to {MAX_TABLE_ATOMS} atoms, or up to {MAX_AXES} axes "
+            f"of up to {MAX_AXIS_ATOMS}, not {len(axes)} of up to {largest}"
+        )
+    if is_wide(calculus):
+        nothing = np.zeros(0, dtype=np.uint16)
+        return Tables(
+            np.array([1, 1, largest], dtype=np.int64), _wide_needs(axes[0]), axes[0].converses, nothing, nothing
         )
     padding = MAX_AXES - len(axes)
     sizes = np.array([1] * padding + [len(axis.atoms) for axis in axes], dtype=np.int64)
@@ -64,15 +69,28 @@ def tables(calculus: Calculus) -> Tables:
     return Tables(sizes, needs, converses, nothing, nothing)
 
 
+def is_wide(calculus: Calculus) -> bool:
+    """Whether a relation of the calculus takes several words, on its only axis."""
+    return len(calculus.factors) == 1 and len(calculus.atoms) > MAX_AXIS_ATOMS
+
+
 def _needs(axis: TableCalculus) -> NDArray[np.uint64]:
     """Shape (bytes, 256, atoms): the right atoms that give an atom, for every byte of a left relation."""
     size = len(axis.atoms)
-    codes = np.arange(size, dtype=np.uint64)
-    gives = (axis.composition[:, :, None] >> codes) & np.uint64(1)  # (left, right, result)
-    single = (gives << codes[None, :, None]).sum(axis=1, dtype=np.uint64)  # (left, result)
+    single = words_with(axis.possible().swapaxes(1, 2))[:, :, 0]  # (left, result)
     table = np.zeros(((size + 7) // 8, 256, size), dtype=np.uint64)
     for left in range(size):
         table[left // 8, _holding(left % 8, 8)] |= single[left]
+    return table
+
+
+def _wide_needs(axis: TableCalculus) -> NDArray[np.uint64]:
+    """Shape (words, fours, 16, atoms): the right atoms that give an atom, for every four atoms of a left relation."""
+    size = len(axis.atoms)
+    single = words_with(axis.possible().swapaxes(1, 2))  # (left, result, words)
+    table = np.zeros((single.shape[2], (size + 3) // 4, 16, size), dtype=np.uint64)
+    for left in range(size):
+        table[:, left // 4, _holding(left % 4, 4)] |= single[left].T[:, None]
     return table
 
 
@@ -108,21 +126,3 @@ def half_of(atoms: int) -> int:
 def _holding(bit: int, width: int) -> NDArray[np.int64]:
     """Return the numbers of that many bits that hold one of them."""
     return np.flatnonzero(np.arange(1 << width) >> bit & 1)
-
-
-def words_of(relations: Sequence[int], atoms: int) -> NDArray[np.uint64]:
-    """Relations as words of 64 atoms each, shape (relations, words).
-
-    >>> words_of([1 << 64 | 3], 65).tolist()
-    [[3, 1]]
-    """
-    if atoms <= 64:
-        return np.array(relations, dtype=np.uint64).reshape(-1, 1)
-    width = (atoms + 63) // 64
-    data = b"".join(relation.to_bytes(width * 8, "little") for relation in relations)
-    return np.frombuffer(data, dtype="<u8").astype(np.uint64).reshape(len(relations), width)
-
-
-def relation_of(words: NDArray[np.uint64]) -> int:
-    """Return the relation in words of 64 atoms each, shape (words,)."""
-    return int.from_bytes(words.astype("<u8").tobytes(), "little")

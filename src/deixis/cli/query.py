@@ -48,7 +48,8 @@ def query(
     with Session(memory) as session:
         result = session.query(_text(file) if file is not None else sparql or "", time_limit, memory_limit * 2**20)
         if as_json or format is TableFormat.JSON:
-            sys.stdout.write(result.to_json() + "\n")
+            sys.stdout.writelines(result.json_parts())
+            sys.stdout.write("\n")
         elif format is TableFormat.CSV:
             sys.stdout.write(result.to_csv())
         elif format is TableFormat.TURTLE:

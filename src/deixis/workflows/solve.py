@@ -24,6 +24,7 @@ from deixis.reasoning.qualitative.networks.derivation import explain, require_pa
 from deixis.reasoning.qualitative.networks.network import Constraint, Network, compacted
 from deixis.reasoning.qualitative.networks.search import Verdict, solve
 from deixis.reasoning.qualitative.networks.state import Progress
+from deixis.reasoning.qualitative.networks.wide_search import WideSearch
 from deixis.reasoning.qualitative.relate import relate
 
 if TYPE_CHECKING:
@@ -239,6 +240,8 @@ def ready_to_solve(wide: bool = True) -> None:
     texts = [("allen", "1 #\n0 1 ( < > )\n.\n"), ("ra", "2 #\n0 1 ( <,m >,< )\n1 2 ( <,< )\n.\n"), ("allen", against)]
     if wide:
         texts.append(("direction-distance", "1 #\n0 1 ( N,near S,near )\n.\n"))
+        joint = calculus("direction-distance")
+        WideSearch(Network(joint, 2, (Constraint(0, 1, joint.universal),))).run()
     for name, text in texts:
         for parsed in parse_networks(text, [calculus(name)], "warm"):
             for wish in wishes:

@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 import os
-from itertools import combinations
+from itertools import combinations, permutations, product
 from pathlib import Path
 
 import numpy as np
 import pytest
 from commands import deixis
+from make_opra import write as write_opra
+from numpy.typing import NDArray
 
 from deixis.errors import DeixisError
 from deixis.grammar.formats.calculi import CalculusFileError, read_calculus
 from deixis.reasoning.qualitative.calculi.calculus import TableCalculus, bits
 from deixis.reasoning.qualitative.calculi.endpoints import composition_in
 from deixis.reasoning.qualitative.calculi.registry import calculus
+from deixis.reasoning.qualitative.networks.closure import close
+from deixis.reasoning.qualitative.networks.conflict import minimal_conflict
 from deixis.reasoning.qualitative.networks.network import Constraint, Network
 from deixis.reasoning.qualitative.networks.search import Verdict, solve
 
@@ -51,6 +55,98 @@ def branching_time() -> TableCalculus:
     return TableCalculus(
         "branching", ("<", "=", ">", "|"), converses, composition_in(codes, 4), 1, decided_by_closure=False
     )
+
+
+def occlusion() -> TableCalculus:
+    """What one sees of things at different depths (Köhler 2002): identical, disjoint, and in front of or behind.
+
+    Three regions of a picture are known by which of their seven common parts there are; things have an order of depth.
+    """
+    signs = ("I", "D", "O", "OT", "F", "FT", "B", "BT")
+    cells = np.arange(1, 8)
+    inside = [cells >> thing & 1 == 1 for thing in range(3)]
+    table = np.zeros((8, 8), dtype=np.uint64)
+
+    def atom(parts: NDArray[np.bool_], depth: tuple[int, ...], a: int, b: int) -> str | None:
+        both, only_a, only_b = (
+            bool((parts & where).any())
+            for where in (inside[a] & inside[b], inside[a] & ~inside[b], ~inside[a] & inside[b])
+        )
+        if not both:
+            return "D"
+        if not only_a and not only_b:
+            return None  # only a thing itself has its region
+        front = depth[a] < depth[b]
+        if only_a and only_b:
+            return "O" if front else "OT"
+        within, around = ("F", "BT") if front else ("B", "FT")
+        return around if only_a else within
+
+    for present, depth in product(product((False, True), repeat=7), permutations(range(3))):
+        parts = np.array(present)
+        if not all((parts & where).any() for where in inside):
+            continue
+        first, second, third = (atom(parts, depth, a, b) for a, b in ((0, 1), (1, 2), (0, 2)))
+        if first and second and third:
+            table[signs.index(first), signs.index(second)] |= np.uint64(1 << signs.index(third))
+        if first:  # the third thing is the first one, or the second
+            back = atom(parts, depth, 1, 0)
+            assert back
+            table[signs.index(first), signs.index(back)] |= np.uint64(1)
+            table[0, signs.index(first)] |= np.uint64(1 << signs.index(first))
+            table[signs.index(first), 0] |= np.uint64(1 << signs.index(first))
+    table[0, 0] = 1
+    return TableCalculus("occ", signs, np.array([0, 1, 3, 2, 5, 4, 7, 6]), table, 0, decided_by_closure=False)
+
+
+def test_the_occlusion_calculus_is_brought(tmp_path: Path) -> None:
+    text = read_calculus(write(tmp_path, "occ", occlusion()))
+    occ = text.calculus
+    assert not text.notes
+
+    def composed(first: str, second: str) -> set[str]:
+        return set(occ.members(occ.compose(occ.relation([first]), occ.relation([second]))))
+
+    assert composed("F", "F") == {"F"} and composed("B", "F") == {"F", "B"}
+    assert composed("O", "O") == {"D", "O", "F", "BT"}
+    assert composed("BT", "B") == {"I", "O", "OT", "F", "FT", "B", "BT"}
+    front, apart = occ.relation(["F"]), occ.relation(["D"])
+    stated = (Constraint(0, 1, front), Constraint(1, 2, apart), Constraint(0, 2, occ.relation(["O", "B"])))
+    assert solve(Network(occ, 3, stated)).verdict is Verdict.INCONSISTENT
+    assert solve(Network(occ, 3, stated[:2])).verdict is Verdict.UNDECIDED
+
+
+@pytest.mark.parametrize(("m", "atoms"), [(1, 20), (2, 72)])
+def test_opra_is_brought_and_refutes(m: int, atoms: int, tmp_path: Path) -> None:
+    text = read_calculus(write_opra(m, tmp_path))
+    opra = text.calculus
+    assert not text.notes and len(opra.atoms) == atoms
+    ahead, back, at = f"0_{2 * m}", f"{2 * m}_0", "s_0"
+    assert opra.members(opra.compose(opra.relation([ahead]), opra.relation([ahead]))) == (ahead,)
+    assert set(opra.members(opra.compose(opra.relation([ahead]), opra.relation([back])))) == {at, ahead, back}
+    assert opra.converse(opra.relation([ahead])) == opra.relation([back])
+    line = tuple(Constraint(k, k + 1, opra.relation([ahead])) for k in range(5))
+    closed = close(Network(opra, 6, line))
+    assert opra.members(closed.relation(0, 5)) == (ahead,) and opra.members(closed.relation(5, 0)) == (back,)
+    circle = Network(opra, 6, (*line, Constraint(5, 0, opra.relation([ahead, "1_1"]))))
+    assert solve(circle).verdict is Verdict.INCONSISTENT
+    conflict = minimal_conflict(circle)
+    assert conflict is not None and conflict.minimal and len(conflict.constraints) == 6
+    around = Network(
+        opra, 4, tuple(Constraint(a, b, opra.relation(["1_1", "s_1"])) for a, b in ((0, 1), (1, 2), (2, 3)))
+    )
+    solution = solve(around, scenario=True)
+    assert solution.verdict is Verdict.UNDECIDED and solution.scenario is not None
+    again = close(solution.scenario)
+    assert again.consistent and again.narrowed == 0 and len(solution.scenario.constraints) == 6
+
+
+def test_the_command_solves_in_opra(tmp_path: Path) -> None:
+    path = write_opra(2, tmp_path)
+    network = tmp_path / "n.csp"
+    network.write_text("2 #\n0 1 ( 0_4 )\n1 2 ( 0_4 1_5 )\n0 2 ( 4_0 s_1 )\n.\n", encoding="utf-8")
+    code, out, err = deixis("solve", network, "--calculus", path)
+    assert (code, err) == (1, "") and "inconsistent; 3 things, 3 constraints in opra2" in out
 
 
 def test_branching_time_is_brought_and_refutes(tmp_path: Path) -> None:
@@ -144,7 +240,7 @@ LINES = {
         ("spec", 2, "identity EQ", "a.spec:3:10", "is no atom"),
         ("spec", 3, "calculus_size two", "a.spec:4:15", "must be a number"),
         ("spec", 3, "calculus_size 3", "a.spec:4:15", "has 2 atoms"),
-        ("spec", 3, "calculus_size 272", "a.spec:4:15", "up to 64"),
+        ("spec", 3, "calculus_size 400", "a.spec:4:15", "up to 320"),
         ("spec", 3, "identity =", "a.spec:4:1", "said twice"),
         ("conv", 2, "! : !", "a.conv:3:1", "expected an atom"),
         ("conv", 2, "! :: ?", "a.conv:3:6", "no converse of its own"),

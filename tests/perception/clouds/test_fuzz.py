@@ -3,11 +3,18 @@
 from __future__ import annotations
 
 import io
+import struct
+import time
+import tracemalloc
+import warnings
+import zipfile
 from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
+from commands import deixis
+from damaged_files import damaged
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from PIL import Image
@@ -19,7 +26,6 @@ from deixis.perception.clouds.mesh_file import read_mesh
 from deixis.perception.errors import CloudError
 
 CAMERA = Intrinsics(4, 3, 1.0, 1.0, 1.0, 1.0)
-WORDS = [b"0", b"-1", b"1e999", b"nan", b"400000000", b"99999999999999999999", b"\n", b" ", b"\0", b"\xff" * 4, b"list"]
 MESH = """ply
 format {} 1.0
 element vertex 3
@@ -64,31 +70,12 @@ def files(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
     return good_files(tmp_path_factory.mktemp("good"))
 
 
-def damaged(good: bytes, data: st.DataObject) -> bytes:
-    """Bytes changed, cut out, repeated, put in, or the end cut off, some times over."""
-    bad = bytearray(good)
-    for _ in range(data.draw(st.integers(1, 4))):
-        at, end = sorted(data.draw(st.tuples(*[st.integers(0, len(bad))] * 2)))
-        how = data.draw(st.sampled_from(["change", "cut", "repeat", "put in", "replace word", "end"]))
-        if how == "change" and at < len(bad):
-            bad[at] ^= 1 << data.draw(st.integers(0, 7))
-        elif how == "cut":
-            del bad[at : min(end, at + 9)]
-        elif how == "repeat":
-            bad[at:at] = bad[at : min(end, at + 40)]
-        elif how == "put in":
-            bad[at:at] = data.draw(st.sampled_from(WORDS))
-        elif how == "replace word":
-            bad[at : at + 1 + bad[at : at + 20].find(b" ")] = data.draw(st.sampled_from(WORDS))
-        elif how == "end":
-            del bad[at:]
-    return bytes(bad)
-
-
 def read_damaged(file: Path, content: bytes, read: Callable[[Path], object]) -> object:
     file.write_bytes(content)
     try:
-        return read(file)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            return read(file)
     except CloudError as error:
         message = str(error)
     assert message.startswith(str(file)) and "\n" not in message
@@ -127,3 +114,70 @@ def test_the_files_to_be_damaged_are_good(files: dict[str, bytes], tmp_path: Pat
             assert len(read_mesh(file).faces) > 0
         else:
             assert len(read_cloud(file, CAMERA if name.endswith((".npy", ".png")) else None)) > 0
+
+
+PCD = (
+    "VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 {count}\nWIDTH {width}\nHEIGHT {height}\nDATA {data}\n"
+)
+PLY = "ply\nformat {} 1.0\nelement vertex {}\n{}end_header\n"
+XYZ = "property float x\nproperty float y\nproperty float z\n"
+
+
+def zipped(shape: tuple[int, ...], content: bytes) -> bytes:
+    """A .npz file whose array 'points' says that it has this shape."""
+    array, archive = io.BytesIO(), io.BytesIO()
+    header = {"descr": "<f4", "fortran_order": False, "shape": shape}
+    np.lib.format.write_array_header_1_0(array, header)
+    with zipfile.ZipFile(archive, "w", zipfile.ZIP_DEFLATED) as opened:
+        opened.writestr("points.npy", array.getvalue() + content)
+    return archive.getvalue()
+
+
+HOSTILE: dict[str, bytes] = {
+    **{
+        f"{data}.pcd": PCD.format(count=1, width=2_000_000_000, height=2, data=data).encode() + bytes(80)
+        for data in ("ascii", "binary")
+    },
+    "packed.pcd": PCD.format(count=1, width=10**8, height=1, data="binary_compressed").encode()
+    + struct.pack("<II", 40, 1_200_000_000)
+    + bytes(40),
+    "count.pcd": PCD.format(count=999_999_999, width=1, height=1, data="binary").encode() + bytes(80),
+    "fields.pcd": b"FIELDS " + b"f " * 200_000 + b"\n",
+    "empty.ply": PLY.format("ascii", 10**14, "").encode(),
+    "nothing.ply": PLY.format("binary_little_endian", 10**13, "").encode(),
+    "text.ply": PLY.format("ascii", 10**12, XYZ).encode() + b"0 0 0\n",
+    "bytes.ply": PLY.format("binary_big_endian", 10**12, XYZ).encode() + bytes(12),
+    "list.ply": PLY.format("binary_little_endian", 2, "property list uint float x\n").encode() + b"\xff" * 12,
+    "elements.ply": b"ply\nformat ascii 1.0\n" + b"".join(b"element a%d 0\n" % k for k in range(9_999)),
+    "comments.ply": b"ply\nformat ascii 1.0\n" + b"comment x\n" * 100_000,
+    "line.xyz": b"1 " * 500_000,
+    "digits.xyz": b"1" * 1_000_000 + b" 2 3\n",
+    "nan.xyz": b"nan nan nan\n" * 1_000,
+    "newlines.xyz": b"\n" * 1_000_000,
+    "zeros.xyz": bytes(1_000_000),
+    "declared.npz": zipped((10**12, 3), bytes(64)),
+    "bomb.npz": zipped((10**7, 3), bytes(120_000_000)),
+}
+
+
+@pytest.mark.parametrize("name", HOSTILE)
+def test_what_a_file_declares_is_not_believed(name: str, tmp_path: Path) -> None:
+    file = tmp_path / name
+    file.write_bytes(HOSTILE[name])
+    started = time.process_time()
+    tracemalloc.start()
+    try:
+        cloud = read_damaged(file, HOSTILE[name], read_cloud)
+        peak = tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+    assert cloud is None or name in ("nan.xyz", "bomb.npz")
+    assert peak < (300_000_000 if name == "bomb.npz" else 32_000_000)
+    assert time.process_time() - started < 10
+
+
+@pytest.mark.parametrize("name", ["binary.pcd", "bytes.ply", "fields.pcd", "declared.npz", "zeros.xyz"])
+def test_the_command_says_in_one_line_what_is_wrong_with_a_cloud(name: str, tmp_path: Path) -> None:
+    (tmp_path / name).write_bytes(HOSTILE[name])
+    code, out, err = deixis("perceive", tmp_path / name)
+    assert (code, out) == (2, "") and err.startswith(f"deixis: {tmp_path / name}") and err.count("\n") == 1

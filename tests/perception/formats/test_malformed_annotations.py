@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import copy
 import json
+import time
 from pathlib import Path
 from typing import Any
 
 import pytest
 from annotated_images import COCO, LABELME, Json, coco, shape
+from commands import deixis
+from damaged_files import damaged
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -234,3 +237,42 @@ def refused_or_read(data: Json, image: int | None) -> None:
         assert scene.unit == "px"
         assert scene.ids == tuple(f"o{i + 1}" for i in range(len(scene.objects)))
         assert (scene.boxes[:, 0] <= scene.boxes[:, 1]).all()
+
+
+@settings(max_examples=200, deadline=None)
+@given(data=st.data(), original=st.sampled_from([COCO, LABELME]))
+def test_a_damaged_file_gives_a_scene_or_a_scene_error(
+    data: st.DataObject, original: Json, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    file = tmp_path_factory.getbasetemp() / "damaged.json"
+    file.write_bytes(damaged(json.dumps(original).encode(), data))
+    message = str(file)
+    try:
+        read_scene(file, 1 if original is COCO else None)
+    except SceneError as error:
+        message = str(error)
+    assert message.startswith(str(file)) and "\n" not in message and len(message) < 1000
+
+
+HOSTILE = {
+    "deep": "[" * 1_000_000,
+    "deep object": '{"shapes":' * 100_000,
+    "deep shape": '{"version": "5", "shapes": ' + "[" * 5_000 + "]" * 5_000 + "}",
+    "repeated keys": '{"version": "5", "shapes": [], ' + ", ".join(f'"k{k}": 1' for k in (*range(50_000), 7)) + "}",
+    "digits": '{"images": [{"id": ' + "9" * 500_000 + '}], "annotations": [], "categories": []}',
+    "no number": '{"version": "5", "imageHeight": NaN, "shapes": []}',
+    "zeros": "\0" * 1_000_000,
+    "cut off": json.dumps(COCO)[:-20],
+    "nothing": "",
+    "escapes": '{"version": "5", "shapes": [{"label": "\\u001b[31m", "points": [[0, 0], [1, 1], [0, 2]]}]}',
+}
+
+
+@pytest.mark.parametrize("name", HOSTILE)
+def test_the_command_says_in_one_line_what_is_wrong_with_a_scene(name: str, tmp_path: Path) -> None:
+    file = tmp_path / "hostile.json"
+    file.write_text(HOSTILE[name], encoding="utf-8")
+    started = time.process_time()
+    code, out, err = deixis("relate", file, "--calculus", "ra")
+    assert (code, out) == (2, "") and err.startswith(f"deixis: {file}") and err.count("\n") == 1
+    assert len(err) < len(str(file)) + 500 and time.process_time() - started < 10

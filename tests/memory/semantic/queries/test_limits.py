@@ -82,6 +82,25 @@ def test_an_answer_that_is_too_large_is_refused_whole(filled: SemanticMemory) ->
     assert len(filled.query("SELECT * { ?a ?b ?c . ?d ?e ?f } LIMIT 5", memory_limit=16 * MIB).rows) == 5
 
 
+def test_rows_without_values_count_for_the_size_of_an_answer(filled: SemanticMemory) -> None:
+    """Each is ``{}`` as text, and a place for each of its variables when it is read."""
+    unbound = " ".join(f"?v{k}" for k in range(400))
+    query = f"SELECT {unbound} {{ ?a <urn:p> ?b }}"
+    assert len(filled.query(query + " LIMIT 300", memory_limit=16 * MIB).rows) == 300
+    with pytest.raises(QueryMemoryError, match="the answer is larger than 1 MiB"):
+        filled.query(query, memory_limit=16 * MIB)
+    with pytest.raises(QueryMemoryError, match="the answer is larger than"):
+        filled.dataset().query(f"SELECT {unbound} {{ ?a <urn:p> ?b . ?c <urn:p> ?d . FILTER(?b < 60) }}")
+
+
+def test_a_wide_cell_does_not_widen_every_line(filled: SemanticMemory) -> None:
+    tens = 'REPLACE(REPLACE("1111111111", "1", "1111111111"), "1", "1111111111")'
+    query = f'SELECT ?s (IF(?o = 7, {tens}, "short") AS ?text) ?o {{ ?s <urn:p> ?o }}'
+    lines = filled.query(query).to_table()
+    assert len(lines) == 1002 and max(map(len, lines)) > 1000
+    assert sum(map(len, lines)) < 120 * len(lines)
+
+
 @pytest.mark.parametrize(("time_limit", "memory_limit"), [(-1.0, 1), (float("nan"), 1), (1.0, 0)])
 def test_what_is_no_limit_is_refused(filled: SemanticMemory, time_limit: float, memory_limit: int) -> None:
     with pytest.raises(QueryError, match="limit of a query must be at least"):

@@ -92,6 +92,7 @@ def test_json_csv_and_turtle(memory: SemanticMemory, read: Read) -> None:
     memory.learn("one", {GraphName.ASSERTED: read('<urn:a> <urn:p> "x,\\"y", 1, "z"@en, <urn:b> .')}, [])
     answer = memory.query("SELECT ?o ?none { <urn:a> <urn:p> ?o }")
     told = json.loads(answer.to_json())
+    assert answer.to_json() == json.dumps(told, indent=2, ensure_ascii=False)
     assert told["head"] == {"vars": ["o", "none"]}
     assert {"o": {"type": "uri", "value": "urn:b"}} in told["results"]["bindings"]
     assert {"o": {"type": "literal", "value": "z", "xml:lang": "en"}} in told["results"]["bindings"]
@@ -103,7 +104,10 @@ def test_json_csv_and_turtle(memory: SemanticMemory, read: Read) -> None:
     assert ['x,"y', ""] in rows
     graph = memory.query("CONSTRUCT WHERE { ?s <urn:p> ?o }")
     assert len(rdflib.Graph().parse(data=graph.to_turtle(), format="turtle")) == 4
-    assert len(json.loads(graph.to_json())["triples"]) == 4
+    told = json.loads(graph.to_json())
+    assert len(told["triples"]) == 4 and graph.to_json() == json.dumps(told, indent=2, ensure_ascii=False)
+    nothing = memory.query("SELECT ?s { ?s <urn:nothing> ?o }")
+    assert nothing.to_json() == json.dumps(json.loads(nothing.to_json()), indent=2)
     assert json.loads(memory.query("ASK {}").to_json()) == {"head": {}, "boolean": True}
     with pytest.raises(QueryError, match="SELECT has no triples"):
         answer.to_turtle()

@@ -7,6 +7,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from bench_joint import COMBINATIONS
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
@@ -21,17 +22,7 @@ from deixis.reasoning.qualitative.networks.network import Constraint, Network
 from deixis.reasoning.qualitative.networks.search import Verdict, solve
 from deixis.reasoning.qualitative.relate import relate
 
-COMBINATIONS = (
-    "ra+rcc8",
-    "ra+cd",
-    "ten+ra",
-    "cd+distance",
-    "direction-distance+cd",
-    "direction-distance+distance",
-    "ra+cd+rcc8",
-    "ra+cd+distance",
-    "ten+ra+cd+distance+rcc8+direction-distance",
-)
+NAMES = (*COMBINATIONS, "ten+ra+cd+distance+rcc8+direction-distance")
 Boxes = NDArray[np.float64]
 
 
@@ -112,7 +103,7 @@ def holds_by_hand(boxes: Boxes, network: Network) -> bool:
     return True
 
 
-@pytest.mark.parametrize("names", COMBINATIONS)
+@pytest.mark.parametrize("names", NAMES)
 def test_what_boxes_bear_is_borne_by_boxes_again(names: str) -> None:
     for seed, (share, others) in enumerate([(1.0, 0.0), (0.6, 0.2), (0.3, 0.4), (0.2, 0.05)]):
         rng = np.random.default_rng([seed, len(names)])
@@ -123,7 +114,7 @@ def test_what_boxes_bear_is_borne_by_boxes_again(names: str) -> None:
 
 
 @settings(max_examples=60)
-@given(st.integers(0, 2**32 - 1), st.sampled_from(COMBINATIONS), st.integers(1, 4))
+@given(st.integers(0, 2**32 - 1), st.sampled_from(NAMES), st.integers(1, 4))
 def test_verdicts_on_random_networks_agree_with_boxes_at_hand(seed: int, names: str, n: int) -> None:
     """Random relations: what sampled boxes bear is never refuted, and what is called consistent has boxes."""
     rng = np.random.default_rng(seed)

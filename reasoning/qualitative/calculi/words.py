@@ -1,0 +1,52 @@
+"""Relations as arrays: 64-bit words of atoms, bit b of word w for atom 64 w + b, and truth values, one an atom."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+def words_of(relations: Sequence[int], atoms: int) -> NDArray[np.uint64]:
+    """Return relations as words of 64 atoms each, shape (relations, words).
+
+    >>> words_of([1 << 64 | 3], 65).tolist()
+    [[3, 1]]
+    """
+    if atoms <= 64:
+        return np.array(relations, dtype=np.uint64).reshape(-1, 1)
+    width = (atoms + 63) // 64
+    data = b"".join(relation.to_bytes(width * 8, "little") for relation in relations)
+    return np.frombuffer(data, dtype="<u8").astype(np.uint64).reshape(len(relations), width)
+
+
+def relation_of(words: NDArray[np.uint64]) -> int:
+    """Return the relation in words of 64 atoms each, shape (words,)."""
+    return int.from_bytes(words.astype("<u8").tobytes(), "little")
+
+
+def atoms_within(words: NDArray[np.uint64], atoms: int) -> NDArray[np.bool_]:
+    """Return which atoms the relations in words (..., words) hold, shape (..., atoms).
+
+    >>> atoms_within(words_of([1 << 64 | 3], 65), 65).nonzero()[1].tolist()
+    [0, 1, 64]
+    """
+    codes = np.arange(atoms)
+    found: NDArray[np.bool_] = (words[..., codes >> 6] >> (codes & 63).astype(np.uint64) & np.uint64(1)).astype(
+        np.bool_
+    )
+    return found
+
+
+def words_with(held: NDArray[np.bool_]) -> NDArray[np.uint64]:
+    """Return the relations that hold these atoms (..., atoms), as words (..., words).
+
+    >>> words_with(np.arange(65) > 62).tolist()
+    [9223372036854775808, 1]
+    """
+    atoms = held.shape[-1]
+    out = np.zeros((*held.shape[:-1], (atoms + 63) // 64), dtype=np.uint64)
+    for atom in range(atoms):
+        out[..., atom >> 6] |= held[..., atom].astype(np.uint64) << np.uint64(atom & 63)
+    return out

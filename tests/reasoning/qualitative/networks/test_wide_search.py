@@ -1,0 +1,108 @@
+"""Calculi whose relations take several words: closure and search agree with the same calculus in small."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import combinations
+
+import numpy as np
+import pytest
+
+from deixis.deadline import Deadline
+from deixis.reasoning.errors import LimitError
+from deixis.reasoning.qualitative.calculi.calculus import Calculus, ProductCalculus, TableCalculus, bits
+from deixis.reasoning.qualitative.calculi.registry import calculus
+from deixis.reasoning.qualitative.calculi.words import words_of
+from deixis.reasoning.qualitative.networks import wide_search
+from deixis.reasoning.qualitative.networks.closure import close
+from deixis.reasoning.qualitative.networks.conflict import minimal_conflict
+from deixis.reasoning.qualitative.networks.derivation import explain
+from deixis.reasoning.qualitative.networks.network import Constraint, Network
+from deixis.reasoning.qualitative.networks.search import Verdict, solve
+from deixis.reasoning.qualitative.networks.wide_search import WideSearch
+
+ALLEN, RCC8 = calculus("allen"), calculus("rcc8")
+
+
+@pytest.fixture(scope="module")
+def wide() -> TableCalculus:
+    """Intervals with a region beside, in one table of 104 atoms: 8 i + r is atom i of Allen with atom r of RCC-8."""
+    both = ProductCalculus("both", (*ALLEN.factors, *RCC8.factors))
+    size = len(both.atoms)
+    rows = [words_of([both.compose(1 << i, 1 << j) for j in range(size)], size) for i in range(size)]
+    converses = [both.converse(1 << i).bit_length() - 1 for i in range(size)]
+    return TableCalculus("wide", both.atoms, np.array(converses), np.array(rows), both.identity)
+
+
+def random_network(chosen: Calculus, things: int, degree: float, atoms: float, seed: int) -> Network:
+    rng, size = np.random.default_rng(seed), len(chosen.atoms)
+    constraints = []
+    for i, j in combinations(range(things), 2):
+        if rng.random() < degree / (things - 1):
+            codes = np.flatnonzero(rng.random(size) < atoms / size)
+            constraints.append(Constraint(i, j, sum(1 << int(code) for code in codes) or 1))
+    return Network(chosen, things, tuple(constraints))
+
+
+def widened(network: Network, wide: TableCalculus) -> Network:
+    """The same network of intervals, with any regions beside."""
+    stated = tuple(replace(c, relation=with_regions(c.relation)) for c in network.constraints)
+    return Network(wide, network.size, stated)
+
+
+def with_regions(relation: int) -> int:
+    """A relation of intervals with any of regions."""
+    return sum(0xFF << 8 * code for code in bits(relation))
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_closure_of_a_wide_calculus_is_that_of_its_part(wide: TableCalculus, seed: int) -> None:
+    network = random_network(ALLEN, 70, 6.0, 6.5, seed)  # more than 64 things: two words of these as well
+    small, large = close(network), close(widened(network, wide))
+    assert small.consistent == large.consistent
+    if small.consistent:
+        for i, j in combinations(range(0, 70, 3), 2):
+            assert large.relation(i, j) == with_regions(small.relation(i, j))
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_a_wide_search_gives_the_verdict_of_the_small_one(wide: TableCalculus, seed: int) -> None:
+    network = random_network(ALLEN, 14, 9.0, 5.5, seed)
+    large = widened(network, wide)
+    solution = solve(large, scenario=True)
+    assert solution.verdict is solve(network).verdict
+    if solution.scenario is not None:
+        again = close(solution.scenario)
+        assert again.consistent and again.narrowed == 0 and len(solution.scenario.constraints) == 91
+        assert all(solution.scenario.stated(c.first, c.second) & c.relation for c in large.constraints)
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_search_by_planes_agrees_with_the_search_by_nogoods(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(wide_search, "FIRST_RESTART", 2)
+    network = random_network(calculus("direction-distance"), 9, 6.5, 6.0, seed)
+    refuted = solve(network).verdict is Verdict.INCONSISTENT
+    assert WideSearch(network).run() is not refuted
+
+
+def test_a_wide_conflict_is_found_and_explained(wide: TableCalculus) -> None:
+    before = wide.relation(["<,DC", "m,DC"])
+    circle = Network(wide, 4, tuple(Constraint(k, (k + 1) % 4, before) for k in range(4)))
+    conflict = minimal_conflict(circle)
+    assert conflict is not None and conflict.minimal and len(conflict.constraints) == 4
+    step = explain(circle.only(circle.constraints[:3]), 0, 3)
+    assert step is not None and not step.claim.relation & ~with_regions(ALLEN.relation(["<"]))
+
+
+def test_a_wide_search_stops_at_the_deadline(wide: TableCalculus) -> None:
+    solution = solve(widened(random_network(ALLEN, 30, 9.5, 6.5, 1), wide), Deadline.after(0.0))
+    assert solution.verdict is Verdict.UNDECIDED and "time limit" in solution.reason
+
+
+def test_a_product_with_a_wide_axis_is_refused(wide: TableCalculus) -> None:
+    product = ProductCalculus("too wide", (wide, *calculus("point").factors))
+    network = Network(product, 2, (Constraint(0, 1, 1),))
+    with pytest.raises(LimitError, match="up to 3 axes of up to 64"):
+        close(network, joint=True)
+    with pytest.raises(LimitError, match="up to 64 atoms an axis"):
+        solve(network)

@@ -1,0 +1,143 @@
+"""Write OPRA of some granularity as a calculus that ``deixis solve`` reads: ``python tools/make_opra.py 2 FOLDER``.
+
+OPRA (Moratz 2006) relates oriented points: where each lies as seen from the other. With granularity m, a point sees 4 m
+directions around itself, numbered against the clock from straight ahead: the even ones are rays, the odd ones the open
+sectors between them. The atom ``i_j`` says that the second point is in direction i of the first, and the first in
+direction j of the second; ``s_i``, that both are at the same place, and the second looks in direction i of the first.
+
+The composition of two atoms follows from the angles of a triangle (Mossakowski and Moratz 2012). A full circle is 4 m
+here: direction i is just the angle i where it is a ray, else the open interval from i - 1 to i + 1.
+"""
+
+from __future__ import annotations
+
+import sys
+from functools import cache
+from itertools import product
+from pathlib import Path
+
+Atom = tuple[int | None, int]
+"""Directions i and j; None and a direction for two points at the same place."""
+
+Angles = tuple[int, int]
+"""An open interval of angles; a single angle where both ends are the same."""
+
+
+class Opra:
+    """OPRA with granularity ``m``."""
+
+    def __init__(self, m: int) -> None:
+        self.full = 4 * m
+        directions = range(self.full)
+        self.atoms: list[Atom] = [(None, i) for i in directions]
+        self.atoms += product(directions, directions)
+
+    def converse(self, atom: Atom) -> Atom:
+        """Return the atom of the second point to the first."""
+        i, j = atom
+        return (None, -j % self.full) if i is None else (j, i)
+
+    def possible(self, ab: Atom, bc: Atom, ac: Atom) -> bool:
+        """Return whether three points may bear these atoms: a to b, b to c, a to c."""
+        (i, j), (k, back), (s, t) = ab, bc, ac
+        if i is None and k is None:
+            return s is None and self._agree(self._sum(j, back), t)
+        if i is None or k is None or s is None:
+            if i is None:  # b is at a
+                return s is not None and k is not None and t == back and self._agree(self._sum(j, k), s)
+            if k is None:  # c is at b
+                return s == i and self._agree(self._difference(j, back), t)
+            return j == k and self._agree(self._difference(i, back), t)  # c is at a
+        return _triangle(self._difference(i, s), self._difference(k, j), self._difference(t, back), self.full)
+
+    def _agree(self, angles: Angles, direction: int) -> bool:
+        return _meet(angles, _angles(direction), self.full)
+
+    def _sum(self, first: int, second: int) -> Angles:
+        (low, high), (other_low, other_high) = _angles(first), _angles(second)
+        return _turned((low + other_low, high + other_high), self.full)
+
+    def _difference(self, first: int, second: int) -> Angles:
+        (low, high), (other_low, other_high) = _angles(first), _angles(second)
+        return _turned((low - other_high, high - other_low), self.full)
+
+
+def _angles(direction: int) -> Angles:
+    return direction - direction % 2, direction + direction % 2
+
+
+def _turned(angles: Angles, full: int) -> Angles:
+    """The same angles, beginning within the first full circle."""
+    return angles[0] % full, angles[0] % full + angles[1] - angles[0]
+
+
+@cache
+def _triangle(a: Angles, b: Angles, c: Angles, full: int) -> bool:
+    """Return whether three points at different places may have such angles, all counted in the same sense.
+
+    The angles of a triangle are between 0 and a half circle, and add up to one; counted against the clock or with it.
+    Of three points on a line, the middle one has a half circle, the others nothing.
+    """
+    half = full // 2
+    for middle in range(3):
+        wanted = [(half, half) if corner == middle else (0, 0) for corner in range(3)]
+        if all(_meet(angles, other, full) for angles, other in zip((a, b, c), wanted, strict=True)):
+            return True
+    for sense in (0, -half):
+        inner = [_parts(angles, (sense, sense + half), full) for angles in (a, b, c)]
+        total = 2 * sense + half
+        for parts in product(*inner):
+            if _overlap((sum(low for low, _ in parts), sum(high for _, high in parts)), (total, total)):
+                return True
+    return False
+
+
+@cache
+def _meet(some: Angles, others: Angles, full: int) -> bool:
+    """Return whether two sets of angles have one in common, full circles apart."""
+    return any(_overlap((some[0] + turn, some[1] + turn), others) for turn in range(-2 * full, 2 * full + 1, full))
+
+
+def _overlap(some: Angles, others: Angles) -> bool:
+    if some[0] == some[1]:
+        return others[0] < some[0] < others[1] or some == others
+    if others[0] == others[1]:
+        return some[0] < others[0] < some[1]
+    return max(some[0], others[0]) < min(some[1], others[1])
+
+
+def _parts(angles: Angles, between: Angles, full: int) -> list[Angles]:
+    """What there is of the angles, full circles apart, within an open interval."""
+    found = []
+    for turn in range(-2 * full, 2 * full + 1, full):
+        low, high = angles[0] + turn, angles[1] + turn
+        if low < high:
+            low, high = max(low, between[0]), min(high, between[1])
+            if low < high:
+                found.append((low, high))
+        elif between[0] < low < between[1]:
+            found.append((low, low))
+    return found
+
+
+def write(m: int, folder: Path) -> Path:
+    """Write the specification, the converses and the compositions; return the path of the specification."""
+    opra, name = Opra(m), f"opra{m}"
+    atoms = opra.atoms
+    sign = {atom: f"{'s' if atom[0] is None else atom[0]}_{atom[1]}" for atom in atoms}
+    folder.mkdir(parents=True, exist_ok=True)
+    entries = f"comp_table_file {name}.comp\nconverse_file {name}.conv\nidentity s_0\ncalculus_size {len(atoms)}\n"
+    (folder / f"{name}.spec").write_text(entries, encoding="utf-8")
+    lines = [f"{sign[atom]} :: {sign[opra.converse(atom)]}\n" for atom in atoms]
+    (folder / f"{name}.conv").write_text("".join(lines), encoding="utf-8")
+    with (folder / f"{name}.comp").open("w", encoding="utf-8") as out:
+        for first, second in product(atoms, atoms):
+            composed = " ".join(sign[third] for third in atoms if opra.possible(first, second, third))
+            out.write(f"{sign[first]} : {sign[second]} :: ( {composed} )\n")
+    return folder / f"{name}.spec"
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 3 or not sys.argv[1].isdecimal() or int(sys.argv[1]) < 1:
+        sys.exit("usage: python tools/make_opra.py GRANULARITY FOLDER")
+    print(write(int(sys.argv[1]), Path(sys.argv[2])))
