@@ -47,12 +47,12 @@ QUICK_LIMITS = [(1000, 2.0)]
 CHILD = """
 import pathlib, sys, time
 import deixis
-from deixis.workflows.ground import ready_to_ground
+from deixis.kernels import compile_grounding
 def peak():  # of this program alone, in megabytes; what resource.getrusage says is handed down
     status = pathlib.Path("/proc/self/status")
     lines = status.read_text().splitlines() if status.exists() else ["VmHWM: 0"]
     return int(next(line.split()[1] for line in lines if line.startswith("VmHWM"))) / 1024
-ready_to_ground("exact")
+compile_grounding("exact")
 before, worked = peak(), time.process_time()
 started = time.monotonic()
 try:

@@ -41,8 +41,8 @@ TIME_LIMIT = 60.0  # seconds for a network
 START = """
 import time
 started = time.perf_counter()
-from deixis.workflows.solve import ready_to_solve
-ready_to_solve(wide=False)
+from deixis.kernels import compile_solving
+compile_solving(wide=False)
 print(time.perf_counter() - started)
 """
 

@@ -1,64 +1,102 @@
 """Loops over arrays that numba compiles, loaded when they are first called and not when their modules are.
 
 Loading numba and compiled code takes about half a second of processor time; a script of a dozen objects needs some
-milliseconds of such loops in Python. So those of :func:`kernel` are interpreted while there is little to do. Both ways
-run the same function, so that both give the same answer.
+milliseconds of such loops in Python. So kernels whose work can be foreseen are interpreted while there is little to do.
+Both ways run the same function, so that both give the same answer. While code is loaded or compiled, the clock of all
+deadlines stands still: no time limit is spent on it.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from types import FunctionType
+from functools import cache, cached_property
+from types import FunctionType, ModuleType
 from typing import Any
 
-MAX_GIVEN = 20_000
-"""Array elements that an interpreted call may be given."""
+from deixis.deadline import CLOCK, clock_stopped
+
+MAX_GIVEN = 100_000
+"""Steps of one interpreted call, of which each takes half a microsecond or less."""
 
 MAX_INTERPRETED = 1_000_000
-"""Array elements that all interpreted calls of a process may be given: by then they have cost what loading costs."""
+"""Steps of all interpreted calls of a process: by then they have cost what loading costs."""
+
+Steps = Callable[..., int]
+"""Returns about how many steps a call takes, from its arguments; the elements of its arrays are the default."""
+
+
+def elements(*arguments: Any) -> int:
+    """Return how many elements the arrays among the arguments have."""
+    return sum(getattr(argument, "size", 0) for argument in arguments)
 
 
 class Kernel:
     """A function in the part of Python that numba compiles (nopython mode), over numbers and arrays.
 
-    An ``interpretable`` one is interpreted until a call is given more than ``MAX_GIVEN`` elements, or all calls
-    together ``MAX_INTERPRETED``. From then on, every kernel of the process runs compiled; numba keeps the compiled
-    code on disk. Kernels may call kernels. ``options`` are those of ``numba.njit``.
+    One with ``steps`` is interpreted until a call takes more than ``MAX_GIVEN`` of them, or all calls together
+    ``MAX_INTERPRETED``. From then on, every kernel of the process runs compiled; numba keeps the compiled code on disk.
+    Kernels may call kernels. ``options`` are those of ``numba.njit``.
     """
 
     interpreted = 0
-    """Elements given to interpreted calls so far; above MAX_INTERPRETED, kernels run compiled."""
+    """Steps of interpreted calls so far; above MAX_INTERPRETED, kernels run compiled."""
 
-    def __init__(self, function: Callable[..., Any], interpretable: bool, **options: Any) -> None:
-        self.function, self.interpretable, self.options = function, interpretable, options
+    def __init__(self, function: Callable[..., Any], steps: Steps | None, **options: Any) -> None:
+        self.function, self.steps, self.options = function, steps, options
         self.dispatcher: Callable[..., Any] | None = None  # numba's, once it is loaded
         self.__name__, self.__doc__, self.__module__ = function.__name__, function.__doc__, function.__module__
 
     def __call__(self, *arguments: Any) -> Any:
-        if self.interpretable and Kernel.interpreted <= MAX_INTERPRETED:
-            given = sum(getattr(argument, "size", 0) for argument in arguments)
-            Kernel.interpreted += given if given <= MAX_GIVEN else MAX_INTERPRETED + 1
-            if Kernel.interpreted <= MAX_INTERPRETED:
-                return self.function(*arguments)
+        if self.steps is not None and interprets():
+            steps = self.steps(*arguments)
+            Kernel.interpreted += steps if steps <= MAX_GIVEN else MAX_INTERPRETED + 1
+            if interprets():
+                return self.interpretation(*arguments)
         return (self.dispatcher or self.load())(*arguments)
+
+    @cached_property
+    def interpretation(self) -> Callable[..., Any]:
+        """The function, in which the kernels that it calls are functions too, whose steps are its own."""
+        return self._calling(lambda other: other.interpretation)
 
     def load(self) -> Callable[..., Any]:
         """Return numba's dispatcher of the function, in which the kernels that it calls are dispatchers too."""
-        from numba import njit
+        with clock_stopped():
+            self.dispatcher = self.compiled(self._calling(lambda other: other.dispatcher or other.load()))
+            return self.dispatcher
 
+    def _calling(self, chosen: Callable[[Kernel], Callable[..., Any]]) -> Callable[..., Any]:
+        """Return the function with what is chosen for each kernel that it calls."""
         scope = self.function.__globals__
-        called = {name: scope[name] for name in self.function.__code__.co_names if isinstance(scope.get(name), Kernel)}
-        loaded = {name: other.dispatcher or other.load() for name, other in called.items()}
-        function = FunctionType(self.function.__code__, {**scope, **loaded}) if loaded else self.function
-        self.dispatcher = njit(**self.options)(function)
-        return self.dispatcher
+        called = {name: scope.get(name) for name in self.function.__code__.co_names}
+        others = {name: chosen(other) for name, other in called.items() if isinstance(other, Kernel)}
+        return FunctionType(self.function.__code__, {**scope, **others}) if others else self.function
+
+    def compiled(self, function: Callable[..., Any]) -> Callable[..., Any]:
+        """Return what runs compiled in place of the function."""
+        dispatcher: Callable[..., Any] = _numba().njit(**self.options)(function)
+        return dispatcher
 
 
-def kernel(function: Callable[..., Any]) -> Kernel:
-    """Return a function as a kernel that is interpreted while there is little to do, for work that grows slowly.
+class Instruction(Kernel):
+    """An operation for which the processor has an instruction: ``intrinsic`` returns numba's, the function does it."""
+
+    def __init__(self, function: Callable[..., Any], intrinsic: Callable[[], Callable[..., Any]]) -> None:
+        super().__init__(function, steps=None)
+        self.intrinsic = intrinsic
+
+    def __call__(self, *arguments: Any) -> Any:
+        return self.function(*arguments)
+
+    def compiled(self, function: Callable[..., Any]) -> Callable[..., Any]:
+        return self.intrinsic()
+
+
+def kernel(steps: Steps = elements, **options: Any) -> Callable[[Callable[..., Any]], Kernel]:
+    """Return the decorator of functions that are interpreted while they take few steps.
 
     >>> import numpy as np
-    >>> @kernel
+    >>> @kernel()
     ... def total(numbers):
     ...     found = 0
     ...     for number in numbers:
@@ -67,14 +105,59 @@ def kernel(function: Callable[..., Any]) -> Kernel:
     >>> int(total.function(np.arange(5)))  # as interpreted
     10
     """
-    return Kernel(function, interpretable=True, cache=True)
+    return lambda function: Kernel(function, steps, cache=True, **options)
 
 
 def njit(**options: Any) -> Callable[[Callable[..., Any]], Kernel]:
     """Return what ``numba.njit`` does, but for importing numba, which waits until a kernel is called."""
-    return lambda function: Kernel(function, interpretable=False, **options)
+    return lambda function: Kernel(function, None, **options)
+
+
+def interprets() -> bool:
+    """Return whether kernels are still interpreted where they have little to do."""
+    return Kernel.interpreted <= MAX_INTERPRETED
 
 
 def load_compiled() -> None:
-    """Run every kernel compiled from now on, so that no time limit is spent on loading or interpreting."""
+    """Run every kernel compiled from now on."""
     Kernel.interpreted = MAX_INTERPRETED + 1
+
+
+def when_compiling(tell: Callable[[], object]) -> None:
+    """Call ``tell`` whenever a function is compiled that was not kept on disk, which takes seconds."""
+    _TOLD.append(tell)
+
+
+_TOLD: list[Callable[[], object]] = []
+
+
+@cache
+def _numba() -> ModuleType:
+    """Import numba, and have it stop the clock while it compiles or loads."""
+    import numba
+    from numba.core import event
+    from numba.np import linalg
+
+    class Stop(event.Listener):
+        def on_start(self, event: Any) -> None:
+            CLOCK.stop()
+
+        def on_end(self, event: Any) -> None:
+            CLOCK.go_on()
+
+    class Tell(event.Listener):
+        def on_start(self, event: Any) -> None:
+            for tell in _TOLD:
+                tell()
+
+        def on_end(self, event: Any) -> None:
+            pass
+
+    event.register("numba:compiler_lock", Stop())  # type: ignore[no-untyped-call]
+    event.register("numba:compile", Tell())  # type: ignore[no-untyped-call]
+    imported, linalg.ensure_blas = linalg.ensure_blas, lambda: None
+    try:  # this module looks whether scipy has a BLAS: a tenth of a second for what no kernel of ours calls
+        import numba.np.arraymath
+    finally:
+        linalg.ensure_blas = imported
+    return numba

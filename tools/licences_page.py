@@ -1,6 +1,6 @@
 """Write docs/licences.md, the licences of everything that Deixis needs: ``python tools/licences_page.py``.
 
-With ``--sizes`` it prints how large the core and each extra are instead.
+With ``--sizes`` it prints how large the core and each extra are instead, and which packages make that up.
 
 The names come from ``pyproject.toml`` and the metadata of installed packages, and so do the licences. What packages
 bring inside them under other licences is read from the licence files that they ship. Tools such as pip-licenses list
@@ -20,6 +20,9 @@ from pathlib import Path
 
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
+
+LEAST_SHOWN = 5
+"""Megabytes from which a package is shown with ``--sizes``."""
 
 ROOT = Path(__file__).parents[1]
 PAGE = ROOT / "docs" / "licences.md"
@@ -205,18 +208,23 @@ def page() -> str:
     return TEXT.format(strict=strict, groups="\n".join(blocks))
 
 
-def megabytes(group: str) -> float:
-    """Return the size on disk of everything that a group needs, beside what the core needs."""
+def megabytes(group: str) -> dict[str, float]:
+    """Return the size on disk of each package that a group needs and the core does not, the largest first."""
     beside = {} if group == "core" else _needed("core")
-    packages = [package for name, package in _needed(group).items() if name not in beside]
-    files = [Path(str(file.locate())) for package in packages for file in package.files or ()]
-    return sum(file.stat().st_size for file in files if file.is_file()) / 1e6
+    sizes = {}
+    for name, package in _needed(group).items():
+        if name not in beside:
+            files = [Path(str(file.locate())) for file in package.files or ()]
+            sizes[name] = sum(file.stat().st_size for file in files if file.is_file()) / 1e6
+    return dict(sorted(sizes.items(), key=lambda item: -item[1]))
 
 
 if __name__ == "__main__":
     if sys.argv[1:] == ["--sizes"]:
         for group in GROUPS:
-            print(f"{group:12} {megabytes(group):6.0f} MB{'' if group == 'core' else ' more'}")
+            sizes = megabytes(group)
+            print(f"{group:12} {sum(sizes.values()):6.0f} MB{'' if group == 'core' else ' more'}: ", end="")
+            print(", ".join(f"{name} {size:.0f}" for name, size in sizes.items() if size >= LEAST_SHOWN))
         raise SystemExit
     try:
         PAGE.write_text(page(), encoding="utf-8")

@@ -8,12 +8,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from deixis.reasoning.kernel import njit
+from deixis.reasoning.kernel import kernel
 
 # ---- distances
 
 
-@njit(cache=True)
+@kernel()
 def added(a, b, free):  # type: ignore[no-untyped-def]
     """Return the sum of two codes."""
     if a >= free or b >= free:
@@ -21,7 +21,7 @@ def added(a, b, free):  # type: ignore[no-untyped-def]
     return ((np.int64(a) & ~1) + (np.int64(b) & ~1)) | (np.int64(a) & np.int64(b) & 1)
 
 
-@njit(cache=True)
+@kernel(lambda distances, count, *rest: count**2)
 def tighten(distances, count, tail, head, code, free):  # type: ignore[no-untyped-def]
     """Take in one constraint that closes no negative cycle, in O(count ** 2), in place.
 
@@ -53,7 +53,7 @@ def tighten(distances, count, tail, head, code, free):  # type: ignore[no-untype
     return cells[:changed].copy(), before[:changed].copy()
 
 
-@njit(cache=True)
+@kernel()
 def insert(distances, count, tail, head, code, free):  # type: ignore[no-untyped-def]
     """Take in one constraint that closes no negative cycle for good: the same without what stood there before."""
     columns, onward = np.empty(count, np.int64), np.empty(count, np.int64)
@@ -72,7 +72,7 @@ def insert(distances, count, tail, head, code, free):  # type: ignore[no-untyped
                     distances[i, columns[c]] = through
 
 
-@njit(cache=True)
+@kernel(lambda matrices, count, constraints, free: len(constraints) * count**2 // 4)
 def tighten_all(matrices, count, constraints, free):  # type: ignore[no-untyped-def]
     """Take in constraints (rows of axis, tail, head, code); False where they close a negative cycle."""
     for k in range(len(constraints)):
@@ -87,7 +87,7 @@ def tighten_all(matrices, count, constraints, free):  # type: ignore[no-untyped-
 # ---- clauses
 
 
-@njit(cache=True)
+@kernel(lambda distances, bounds, begin, end, free: 4 * (end - begin) ** 2)
 def standing(distances, bounds, begin, end, free):  # type: ignore[no-untyped-def]
     """Return whether the constraints ``begin:end`` hold anyway (1), cannot all be added (-1), or neither (0).
 
@@ -146,7 +146,7 @@ def standing(distances, bounds, begin, end, free):  # type: ignore[no-untyped-de
     return 0
 
 
-@njit(cache=True)
+@kernel(lambda distances, first_piece, first_bound, bounds, *rest: 4 * len(bounds))
 def next_clause(distances, first_piece, first_bound, bounds, taken, free):  # type: ignore[no-untyped-def]
     """Return the clause with the fewest pieces that can be added, and how many; -1 where all hold.
 
@@ -172,7 +172,7 @@ def next_clause(distances, first_piece, first_bound, bounds, taken, free):  # ty
     return best, fewest_left
 
 
-@njit(cache=True)
+@kernel(lambda distances, first_piece, first_bound, bounds, last, free: 4 * len(last) * len(bounds))
 def dive(distances, first_piece, first_bound, bounds, last, free):  # type: ignore[no-untyped-def]
     """Decide all clauses without ever going back: each takes the piece that it took last, else the first one left.
 

@@ -13,7 +13,7 @@ from deixis.reasoning.kernel import kernel
 FAR = np.int64(1 << 40)
 
 
-@kernel
+@kernel()
 def rows_of(tails, n):  # type: ignore[no-untyped-def]
     """Return where each point's edges begin, shape (n + 1,), and the edges in the order of their tails."""
     first = np.zeros(n + 1, np.int64)
@@ -30,7 +30,7 @@ def rows_of(tails, n):  # type: ignore[no-untyped-def]
     return first, order
 
 
-@kernel
+@kernel()
 def strong_parts(first, heads):  # type: ignore[no-untyped-def]
     """Find the strongly connected parts (Tarjan 1972), numbered so that edges lead to lower numbers.
 
@@ -85,7 +85,7 @@ def strong_parts(first, heads):  # type: ignore[no-untyped-def]
     return part, members
 
 
-@kernel
+@kernel()
 def strict_within(first, heads, strict, part):  # type: ignore[no-untyped-def]
     """Return the tail of a strict edge whose ends are forced to be equal, or -1 where there is none."""
     for u in range(len(first) - 1):
@@ -95,7 +95,7 @@ def strict_within(first, heads, strict, part):  # type: ignore[no-untyped-def]
     return -1
 
 
-@kernel
+@kernel()
 def fewest(first, heads, strict, premise, root, goal, limit, cost, before, by, queue):  # type: ignore[no-untyped-def]
     """Find how few premises it takes from a point to all states within ``limit``, or until the state ``goal``.
 
@@ -141,7 +141,7 @@ def fewest(first, heads, strict, premise, root, goal, limit, cost, before, by, q
     return end
 
 
-@kernel
+@kernel()
 def shortest_circle(first, heads, strict, premise, part):  # type: ignore[no-untyped-def]
     """Return the edges of a circle with a strict edge that takes the fewest premises, in order."""
     points = len(first) - 1
@@ -173,7 +173,7 @@ def shortest_circle(first, heads, strict, premise, part):  # type: ignore[no-unt
     return circle[:length]
 
 
-@kernel
+@kernel()
 def tight_path(distances, count, constraints, axis, start, end):  # type: ignore[no-untyped-def]
     """Return the fewest constraints (rows of axis, tail, head, code) that add up to the distance between two points.
 

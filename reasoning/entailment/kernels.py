@@ -11,7 +11,7 @@ import numpy as np
 from deixis.reasoning.kernel import kernel
 
 
-@kernel
+@kernel()
 def connected(first_ends, second_ends, n):  # type: ignore[no-untyped-def]
     """Return the connected part of each of n nodes, numbered in the order of their least nodes."""
     parent = np.arange(n)
@@ -41,7 +41,7 @@ def connected(first_ends, second_ends, n):  # type: ignore[no-untyped-def]
     return label, count
 
 
-@kernel
+@kernel()
 def close(first, heads, strict, part, members, bit, start, width, weak, strong):  # type: ignore[no-untyped-def]
     """Fill the bit rows of what lies not before (``weak``) and after (``strong``) each point.
 
@@ -79,7 +79,7 @@ def close(first, heads, strict, part, members, bit, start, width, weak, strong):
         begin = end
 
 
-@kernel
+@kernel()
 def and_block(target, rows, sizes, target_start, rows_start, row_side, column_side, transposed):  # type: ignore[no-untyped-def]
     """Intersect each group's (objects, objects) bit matrix with a block of its (points, points) one.
 
@@ -116,7 +116,7 @@ def and_block(target, rows, sizes, target_start, rows_start, row_side, column_si
             target[begin + k] &= block[k]
 
 
-@kernel
+@kernel()
 def clear_diagonal(target, sizes, target_start):  # type: ignore[no-untyped-def]
     for group in range(len(sizes)):
         words = (sizes[group] + 63) >> 6
@@ -124,7 +124,7 @@ def clear_diagonal(target, sizes, target_start):  # type: ignore[no-untyped-def]
             target[target_start[group] + i * words + (i >> 6)] &= ~(np.uint64(1) << np.uint64(i & 63))
 
 
-@kernel
+@kernel()
 def count_bits(target):  # type: ignore[no-untyped-def]
     total = 0
     for bits in target:
@@ -134,7 +134,7 @@ def count_bits(target):  # type: ignore[no-untyped-def]
     return total
 
 
-@kernel
+@kernel()
 def list_pairs(target, sizes, target_start, objects_start, nodes, pairs):  # type: ignore[no-untyped-def]
     """Write the pairs of a flat bit matrix as node numbers into ``pairs``, by group and row."""
     found = 0

@@ -19,7 +19,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.ontology.allen import Allen
+from deixis.ontology.allen import ALL_ALLEN, Allen
 
 
 def allen_relations(
@@ -169,14 +169,19 @@ def admitted(orders: tuple[EndOrder, ...]) -> int:
     >>> admitted((EndOrder(HIGH_A, LOW_B, strict=True),)) == 1 << Allen.BEFORE
     True
     """
-    mask = 0
-    for relation in Allen:
-        points = (*_EXAMPLES[relation], 2, 5)
-        if all(_holds(points, order) for order in orders):
-            mask |= 1 << relation
+    mask = ALL_ALLEN
+    for order in orders:
+        mask &= _admitted(order)
     return mask
 
 
-def _holds(points: tuple[int, ...], order: EndOrder) -> bool:
-    lesser, greater = points[order.lesser], points[order.greater]
-    return lesser < greater if order.strict else lesser <= greater
+@cache
+def _admitted(order: EndOrder) -> int:
+    """The Allen relations in which one order holds, as a mask."""
+    mask = 0
+    for relation, example in enumerate(_EXAMPLES):
+        points = (*example, 2, 5)
+        lesser, greater = points[order.lesser], points[order.greater]
+        if lesser < greater or (lesser == greater and not order.strict):
+            mask |= 1 << relation
+    return mask

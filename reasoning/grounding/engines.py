@@ -35,9 +35,6 @@ def engine_named(
 
         return SimilarityEngine(select)
     if name == EngineName.EXACT:
-        from deixis.reasoning.grounding.matching.exact import warm
-
-        warm()  # so that a time limit is spent on searching, not on compiling
         return ExactEngine(sides, seen)
     if name == EngineName.SCALABLE:
         return ScalableEngine(sides, seen)

@@ -12,8 +12,9 @@ collapses to zero, which it does where the graphs share no label.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -154,6 +155,35 @@ def _normalised(matrices: NDArray[np.float64]) -> NDArray[np.float64]:
     return normalised
 
 
+MAX_LOOPED = 32
+"""Edges that are gone through in Python: loading sparse matrices takes longer."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Edges:
+    """Edges among n nodes, sorted pairs of row and column: a sparse matrix (n, n) of ones."""
+
+    size: int
+    pairs: Sequence[tuple[int, int]]
+
+    def sums(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return the product with a matrix of values (n, m)."""
+        if len(self.pairs) > MAX_LOOPED:
+            product: NDArray[np.float64] = self._sparse @ values
+            return product
+        total = np.zeros_like(values)
+        for row, column in self.pairs:
+            total[row] += values[column]
+        return total
+
+    @cached_property
+    def _sparse(self) -> csr_array:
+        from scipy.sparse import csr_array
+
+        rows, columns = np.array(self.pairs).T
+        return csr_array((np.ones(len(self.pairs)), (rows, columns)), shape=(self.size, self.size))
+
+
 class _Iteration:
     """Equations 5 to 7 on arrays of shape (n1, b, n2): b sub-graphs of the first graph, L shared labels.
 
@@ -185,16 +215,14 @@ class _Iteration:
         self._in_scale, self._out_scale = _inverse(self._in1), _inverse(self._out1)
         self._both_zero = self._zero_pairs(self._in1, self._in2) + self._zero_pairs(self._out1, self._out2)
 
-    def _by_label(self, labels: int) -> tuple[list[csr_array], list[csr_array]]:
-        """Return the first graph's edges of each label, from start to end and back: sparse, (n1, n1)."""
-        from scipy.sparse import csr_array
-
-        n1 = len(self._kept)
-        forward = []
+    def _by_label(self, labels: int) -> tuple[list[_Edges], list[_Edges]]:
+        """Return the first graph's edges of each label, from start to end and back."""
+        n1, forward, backward = len(self._kept), [], []
         for label in range(labels):
-            edges = np.array([edge[:2] for edge in self._edges if edge[2] == label], dtype=np.int64).reshape(-1, 2)
-            forward.append(csr_array((np.ones(len(edges)), (edges[:, 1], edges[:, 0])), shape=(n1, n1)))
-        return forward, [csr_array(edges.T) for edges in forward]
+            edges = [(start, end) for start, end, its_label in self._edges if its_label == label]
+            forward.append(_Edges(n1, sorted((end, start) for start, end in edges)))
+            backward.append(_Edges(n1, sorted(edges)))
+        return forward, backward
 
     def _zero_pairs(self, degrees1: NDArray[np.float64], degrees2: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return for how many of the labels that a sub-graph uses both degrees are zero, shape (n1, b, n2)."""
@@ -218,8 +246,8 @@ class _Iteration:
         n1, b, n2 = matrices.shape
         flat = matrices.reshape(n1, b * n2)
         for label, (forward, backward) in enumerate(zip(self._forward, self._backward, strict=True)):
-            incoming = (forward @ flat).reshape(n1 * b, n2) @ self._into[label]
-            outgoing = (backward @ flat).reshape(n1 * b, n2) @ self._out_of[label]
+            incoming = forward.sums(flat).reshape(n1 * b, n2) @ self._into[label]
+            outgoing = backward.sums(flat).reshape(n1 * b, n2) @ self._out_of[label]
             total += self._in_scale[label][:, :, None] * incoming.reshape(n1, b, n2)
             total += self._out_scale[label][:, :, None] * outgoing.reshape(n1, b, n2)
         total /= 2

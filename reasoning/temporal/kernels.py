@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from deixis.reasoning.constraints.kernels import added
-from deixis.reasoning.kernel import njit
+from deixis.reasoning.kernel import kernel
 
 _UNBOUNDED = 1 << 62
 
 
-@njit(cache=True)
+@kernel()
 def _realisable(four, constraints):  # type: ignore[no-untyped-def]
     """Return whether constraints (k, 3: tail, head, code) can be added to a closed network of four points; changes
     it."""
@@ -29,7 +29,7 @@ def _realisable(four, constraints):  # type: ignore[no-untyped-def]
     return True
 
 
-@njit(cache=True)
+@kernel(lambda distances, pairs, definitions: 800 * len(pairs))
 def admitted(distances, pairs, definitions):  # type: ignore[no-untyped-def]
     """Return the Allen relations that each pair of fluents may bear: masks, shape (p,) uint16.
 

@@ -3,9 +3,58 @@
 from __future__ import annotations
 
 import math
+import threading
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Self
+
+
+class Clock:
+    """The seconds of ``time.monotonic``, but for those in which the clock stood still."""
+
+    def __init__(self) -> None:
+        self._lock, self._holders = threading.Lock(), 0
+        self._state: tuple[float | None, float] = None, 0.0  # since when it stands still; how long it did before
+
+    def now(self) -> float:
+        since, before = self._state
+        return (time.monotonic() if since is None else since) - before
+
+    def stop(self) -> None:
+        with self._lock:
+            self._holders += 1
+            if self._holders == 1:
+                self._state = time.monotonic(), self._state[1]
+
+    def go_on(self) -> None:
+        with self._lock:
+            since, before = self._state
+            self._holders = max(0, self._holders - 1)
+            if self._holders == 0 and since is not None:
+                self._state = None, before + time.monotonic() - since
+
+
+CLOCK = Clock()
+"""The clock of all deadlines of a process."""
+
+
+@contextmanager
+def clock_stopped() -> Iterator[None]:
+    """Stop the clock of all deadlines: for what is done once, such as compiling, and is no part of the work.
+
+    >>> deadline = Deadline.after(0.05)
+    >>> with clock_stopped():
+    ...     time.sleep(0.1)
+    >>> deadline.passed
+    False
+    """
+    CLOCK.stop()
+    try:
+        yield
+    finally:
+        CLOCK.go_on()
 
 
 @dataclass(frozen=True, order=True)
@@ -13,12 +62,13 @@ class Deadline:
     """A moment at which work must stop.
 
     Work that is split into phases gives each a share of the time that is left, so that one time limit holds for all
-    of them. The clock is ``time.monotonic``, which does not jump when the system's clock is set.
+    of them. The clock is ``time.monotonic``, which does not jump when the system's clock is set; it stands still while
+    code is compiled or loaded (:func:`clock_stopped`).
 
     Parameters
     ----------
     at
-        The moment in seconds of ``time.monotonic``; infinity means that the work is not limited.
+        The moment in seconds of the clock; infinity means that the work is not limited.
 
     Examples
     --------
@@ -34,7 +84,7 @@ class Deadline:
     @classmethod
     def after(cls, seconds: float | None) -> Self:
         """Return the deadline that many seconds from now; None means no limit."""
-        return cls(math.inf if seconds is None else time.monotonic() + seconds)
+        return cls(math.inf if seconds is None else CLOCK.now() + seconds)
 
     @classmethod
     def never(cls) -> Self:
@@ -44,23 +94,19 @@ class Deadline:
     @property
     def left(self) -> float:
         """Seconds left, at least 0."""
-        return max(0.0, self.at - time.monotonic())
+        return max(0.0, self.at - CLOCK.now())
 
     @property
     def passed(self) -> bool:
         """Whether no time is left."""
-        return time.monotonic() >= self.at
+        return CLOCK.now() >= self.at
 
     def share(self, fraction: float) -> Self:
         """Return an earlier deadline, by which ``fraction`` (0 to 1) of the time left is used up."""
         if math.isinf(self.at):
             return self
-        return type(self)(min(self.at, time.monotonic() + fraction * self.left))
-
-    def delayed(self, seconds: float) -> Self:
-        """Return the deadline so many seconds later: those that something took which does not count."""
-        return type(self)(self.at + seconds)
+        return type(self)(min(self.at, CLOCK.now() + fraction * self.left))
 
     def within(self, seconds: float) -> Self:
         """Return the earlier of this deadline and the one ``seconds`` from now."""
-        return type(self)(min(self.at, time.monotonic() + seconds))
+        return type(self)(min(self.at, CLOCK.now() + seconds))

@@ -1,28 +1,124 @@
-"""Compiles every kernel once, so that no command waits for it: ``python -m deixis.kernels`` after an installation."""
+"""Compiles every kernel once, so that no command waits for it: ``python -m deixis.kernels`` after an installation.
+
+Python's own bytecode is written too: pip does that for what it installs, but not for a checkout.
+"""
 
 from __future__ import annotations
 
 
 def compile_kernels() -> None:
     """Runs one tiny job of each kind; the compiled code is kept on disk, and so are the reasoners' classes."""
-    from deixis.reasoning.kernel import load_compiled
-    from deixis.workflows.ground import ready_to_ground
-    from deixis.workflows.imagine import ready_to_imagine
-    from deixis.workflows.infer import ready_to_infer
-    from deixis.workflows.solve import ready_to_solve
-
-    load_compiled()
     for engine in ("exact", "scalable"):
-        ready_to_ground(engine)
-    ready_to_infer()
-    ready_to_solve()
+        compile_grounding(engine)
+    compile_inference()
+    compile_solving()
     _tell_time()
-    ready_to_imagine()
+    compile_imagining()
     _reason()
     _read_clouds()
     compile_detection()
     compile_features()
     compile_recognition()
+    _write_bytecode()
+
+
+def _write_bytecode() -> None:
+    """Write the bytecode of Deixis, in whose folder some packages may be links, where there is leave to."""
+    import compileall
+    import sys
+
+    packages = [
+        module for name, module in sys.modules.items() if name == "deixis" or name.rpartition(".")[0] == "deixis"
+    ]
+    for folder in {folder for package in packages for folder in getattr(package, "__path__", ())}:
+        compileall.compile_dir(folder, quiet=2)
+
+
+def compile_grounding(engine: str) -> None:
+    """Compile, or load compiled, what grounding with an engine needs, chains for many things included.
+
+    Raises UnknownTermError for a name that no engine has.
+    """
+    from deixis.deadline import Deadline
+    from deixis.grammar.parser import parse_script
+    from deixis.reasoning.entailment.conflict import find_conflict
+    from deixis.reasoning.entailment.implications import Implications
+    from deixis.reasoning.grounding.engines import engine_named
+    from deixis.reasoning.grounding.evidence.evidence import evidence_from
+    from deixis.reasoning.grounding.ground import ground
+    from deixis.reasoning.grounding.matching import exact, ladders
+    from deixis.reasoning.kernel import load_compiled
+    from deixis.workflows.read import as_scene
+
+    load_compiled()
+    chosen = engine_named(engine)
+    boxes = [{"id": f"o{i}", "min": [0.2 * i, 0], "max": [0.2 * i + 0.1, 0.1]} for i in range(3)]
+    script = parse_script("fork left of plate\nknife right of plate\n")
+    find_conflict(Implications(script.graph()))
+    scene = as_scene({"frame": "table", "viewpoint": "chair", "unit": "m", "objects": boxes})
+    known, seen = script.ontology, scene.relations(script.ontology.relations)
+    evidence = evidence_from(script.graph(), seen, [None] * len(boxes), known.kinds, known.sizes)
+    ground(evidence, chosen, Deadline.after(3600.0))
+    exact.warm()
+    ladders.warm()
+
+
+def compile_inference() -> None:
+    """Compile, or load compiled, the search over facts that leave a choice."""
+    from deixis.grammar.parser import parse_script
+    from deixis.reasoning.constraints.difference import ORDERS, ZERO, Difference, DifferenceNetwork
+    from deixis.reasoning.entailment.why_not import why_not
+    from deixis.reasoning.kernel import load_compiled
+    from deixis.workflows.infer import inference_of
+
+    load_compiled()
+    inference = inference_of(parse_script("a left of b\nb left or above c\nc is not right of d\n"))
+    inference.inferred()
+    inference.implications.unstated()
+    inference.implications.ntriples()
+    relations = inference.implications.vocabulary
+    why_not(inference.implications, parse_script("a left of c").facts[0])
+    inference.implications.derive(relations["left"], "a", "b")
+    orders = DifferenceNetwork(points=2, dtype=ORDERS)
+    orders.add(Difference(0, 0, 1, ZERO))
+    orders.path(0, 0, 1)  # what a search that goes back asks for
+    inference_of(parse_script("a left of b\nb left of a\n"))
+
+
+def compile_solving(wide: bool = True) -> None:
+    """Compile, or load compiled, closure and search, over plain calculi and over products.
+
+    ``wide`` includes the loops for calculi of more than 16 atoms.
+    """
+    from deixis.grammar.formats.networks import parse_networks
+    from deixis.reasoning.kernel import load_compiled
+    from deixis.reasoning.qualitative.calculi.registry import calculus
+    from deixis.reasoning.qualitative.networks.network import Constraint, Network
+    from deixis.reasoning.qualitative.networks.wide_search import WideSearch
+    from deixis.workflows.solve import Wish, solve_text
+
+    load_compiled()
+    wishes = (Wish(scenario=True), Wish(closure=True, explain=(0, 1)))
+    against = "2 #\n0 1 ( < )\n1 2 ( < )\n0 2 ( > )\n.\n"
+    texts = [("allen", "1 #\n0 1 ( < > )\n.\n"), ("ra", "2 #\n0 1 ( <,m >,< )\n1 2 ( <,< )\n.\n"), ("allen", against)]
+    if wide:
+        texts.append(("direction-distance", "1 #\n0 1 ( N,near S,near )\n.\n"))
+        joint = calculus("direction-distance")
+        WideSearch(Network(joint, 2, (Constraint(0, 1, joint.universal),))).run()
+    for name, text in texts:
+        for parsed in parse_networks(text, [calculus(name)], "warm"):
+            for wish in wishes:
+                solve_text(parsed, wish)
+
+
+def compile_imagining() -> None:
+    """Compile, or load compiled, what imagining a table needs."""
+    from deixis.grammar.parser import parse_script
+    from deixis.reasoning.kernel import load_compiled
+    from deixis.workflows.imagine import imagine
+
+    load_compiled()
+    imagine(parse_script("fork left of plate\nnapkin on plate\n"))
 
 
 def _tell_time() -> None:

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from deixis.deadline import Deadline
+from deixis.deadline import Clock, Deadline, clock_stopped
 
 NOW = 1000.0
 
@@ -19,6 +19,7 @@ def set_clock(monkeypatch: pytest.MonkeyPatch) -> Callable[[float], None]:
     def set_to(now: float) -> None:
         monkeypatch.setattr("deixis.deadline.time.monotonic", lambda: now)
 
+    monkeypatch.setattr("deixis.deadline.CLOCK", Clock())
     set_to(NOW)
     return set_to
 
@@ -54,3 +55,17 @@ def test_within_never_extends_a_deadline(set_clock: Callable[[float], None]) -> 
 def test_a_share_never_ends_after_the_whole(seconds: float, fraction: float) -> None:
     deadline = Deadline.after(seconds)
     assert deadline.share(fraction) <= deadline
+
+
+def test_deadlines_do_not_pass_while_the_clock_stands_still(set_clock: Callable[[float], None]) -> None:
+    deadline = Deadline.after(2.0)
+    set_clock(NOW + 1.0)
+    with clock_stopped():
+        set_clock(NOW + 50.0)
+        assert deadline.left == 1.0
+        with clock_stopped():
+            set_clock(NOW + 60.0)
+        assert deadline.left == 1.0
+    assert deadline.left == 1.0
+    set_clock(NOW + 61.0)
+    assert deadline.passed

@@ -8,11 +8,11 @@ arXiv:0908.1769; Vontobel 2013, IEEE Trans. Inf. Theory 59), corrected by its er
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import gammaln
 
 from deixis.reasoning.grounding.matching.problem import Problem
 
@@ -87,7 +87,8 @@ def _log_prior(absent: Array, n2: int) -> float:
     for one in absent.tolist():
         matched = np.logaddexp(np.append(matched + one, -np.inf), np.append(-np.inf, matched))
     k = np.arange(min(len(matched), n2 + 1))
-    return float(np.logaddexp.reduce(matched[k] + gammaln(n2 + 1) - gammaln(n2 - k + 1)))
+    ways = [math.lgamma(n2 + 1) - math.lgamma(n2 + 1 - matches) for matches in k.tolist()]
+    return float(np.logaddexp.reduce(matched[k] + ways))
 
 
 def _by_subsets(gains: Array) -> float:

@@ -52,7 +52,7 @@ class Masks(Cells):
         from deixis.reasoning.qualitative.networks.mask_kernels import restrict
 
         layout = self._half, self.masks, self._tables.mask_converses
-        return int(restrict(*ends, words, start, *layout, *bookkeeping))  # type: ignore[call-arg]
+        return int(restrict(*ends, words, start, *layout, *bookkeeping))
 
     def advance(self, budget: int, bookkeeping: tuple[Any, ...]) -> int:
         from deixis.reasoning.qualitative.networks.mask_kernels import advance
@@ -86,7 +86,7 @@ class Planes(Cells):
     def restrict(self, ends: tuple[Any, ...], words: Words, start: int, bookkeeping: tuple[Any, ...]) -> int:
         from deixis.reasoning.qualitative.networks.kernels import restrict
 
-        return int(restrict(*ends, words, start, self.planes, self._tables.converses, *bookkeeping))  # type: ignore[call-arg]
+        return int(restrict(*ends, words, start, self.planes, self._tables.converses, *bookkeeping))
 
     def advance(self, budget: int, bookkeeping: tuple[Any, ...]) -> int:
         from deixis.reasoning.qualitative.networks.kernels import advance

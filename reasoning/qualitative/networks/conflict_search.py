@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from deixis.deadline import Deadline
 from deixis.reasoning.errors import LimitError
+from deixis.reasoning.kernel import interprets
 from deixis.reasoning.qualitative.calculi.calculus import TableCalculus
 from deixis.reasoning.qualitative.networks.state import MAX_BYTES
 from deixis.reasoning.qualitative.networks.tables import in_parts
@@ -29,6 +30,7 @@ MAX_HULL_ATOMS = 16  # of an axis, for a table of all its relations
 MAX_TABLE_BYTES = 1 << 20  # of the look-up table of compositions
 BYTES_PER_EDGE = 48
 STEPS_PER_CHECK = 2_000_000  # look-ups between two looks at the clock: some milliseconds
+FIRST_STEPS = 5_000  # look-ups that may be interpreted, before loops are loaded
 FIRST_ROOM, FIRST_NOGOODS, FIRST_PREMISES = 1 << 12, 1 << 12, 1 << 17  # of the trail, for nogoods and their premises
 NOGOODS_KEPT = 2_000  # learned nogoods at the first restart; the number grows
 
@@ -99,8 +101,10 @@ class ConflictSearch:
         """Search on; True where all candidates are settled, False where they cannot be, None where time ran out."""
         from deixis.reasoning.qualitative.networks import search_kernels
 
+        budget = FIRST_STEPS if interprets() else STEPS_PER_CHECK
         while not deadline.passed:
-            status = search_kernels.search(STEPS_PER_CHECK, *self._scratch, self._algebra, self._memory)
+            status = search_kernels.search(budget, *self._scratch, self._algebra, self._memory)
+            budget = STEPS_PER_CHECK
             if status in (search_kernels.CONSISTENT, search_kernels.INCONSISTENT):
                 return bool(status == search_kernels.CONSISTENT)
             if status == search_kernels.TRAIL_FULL:

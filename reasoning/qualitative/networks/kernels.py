@@ -16,9 +16,11 @@ and the thing by which (-1: none); ``trail`` (room, 4) the atoms taken away, in 
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
-from numba import njit, types
-from numba.extending import intrinsic
+
+from deixis.reasoning.kernel import Instruction, kernel
 
 CLOSED, EMPTIED, PAUSED, FULL = 0, 1, 2, 3
 
@@ -26,21 +28,35 @@ ONE = np.uint64(1)
 NONE = np.uint64(0)
 
 
-@intrinsic
-def _trailing_zeros(typing, word):  # type: ignore[no-untyped-def]
-    def generate(context, builder, signature, arguments):  # type: ignore[no-untyped-def]
-        return builder.cttz(arguments[0], context.get_constant(types.boolean, True))
+def _trailing_zeros() -> Any:
+    """Return numba's intrinsic for the processor's instruction."""
+    from numba import types
+    from numba.extending import intrinsic
 
-    return types.uint64(types.uint64), generate
+    @intrinsic
+    def trailing_zeros(typing, word):  # type: ignore[no-untyped-def]
+        def generate(context, builder, signature, arguments):  # type: ignore[no-untyped-def]
+            return builder.cttz(arguments[0], context.get_constant(types.boolean, True))
+
+        return types.uint64(types.uint64), generate
+
+    return trailing_zeros
 
 
-@njit(cache=True)
-def low_bit(word):  # type: ignore[no-untyped-def]
+def _low_bit(word):  # type: ignore[no-untyped-def]
     """The position of the lowest bit of a word that is not 0; unsigned, so that indexing needs no look at its sign."""
-    return _trailing_zeros(word)  # type: ignore[call-arg]
+    return (int(word) & -int(word)).bit_length() - 1
 
 
-@njit(cache=True)
+low_bit = Instruction(_low_bit, _trailing_zeros)
+
+
+def _steps(budget, sizes, needs, converses, full, planes, *rest):  # type: ignore[no-untyped-def]
+    """About how many steps closure takes: every pair is passed on some times, to every word of every atom."""
+    return 8 * len(planes) * planes.size
+
+
+@kernel()
 def mark(i, k, dirty, waiting):  # type: ignore[no-untyped-def]
     bit = ONE << np.uint64(k & 63)
     if i != k and not dirty[i, k >> 6] & bit:
@@ -48,7 +64,7 @@ def mark(i, k, dirty, waiting):  # type: ignore[no-untyped-def]
         waiting[i] += 1
 
 
-@njit(cache=True)
+@kernel(lambda i, k, count, trail, needed: count)
 def support(i, k, count, trail, needed):  # type: ignore[no-untyped-def]
     """Mark in ``needed`` (n, n) the pairs on which the relation of i and k rests, going back through the trail."""
     needed[min(i, k), max(i, k)] = True
@@ -59,12 +75,12 @@ def support(i, k, count, trail, needed):  # type: ignore[no-untyped-def]
             needed[min(b, by), max(b, by)] = True
 
 
-@njit(cache=True)
+@kernel()
 def may(planes, i, atom, k):  # type: ignore[no-untyped-def]
     return planes[i, k >> 6, atom] >> np.uint64(k & 63) & ONE
 
 
-@njit(cache=True)
+@kernel()
 def empty(planes, i, k):  # type: ignore[no-untyped-def]
     left = NONE
     for atom in range(planes.shape[2]):
@@ -72,7 +88,7 @@ def empty(planes, i, k):  # type: ignore[no-untyped-def]
     return left == NONE
 
 
-@njit(cache=True)
+@kernel()
 def _take(i, k, atom, by, planes, converses, trail, count):  # type: ignore[no-untyped-def]
     """Take an atom from a pair, seen from both things."""
     planes[i, k >> 6, atom] &= ~(ONE << np.uint64(k & 63))
@@ -85,7 +101,7 @@ def _take(i, k, atom, by, planes, converses, trail, count):  # type: ignore[no-u
         count[0] += 1
 
 
-@njit(cache=True)
+@kernel(lambda firsts, *rest: len(firsts) * rest[4].shape[2])
 def restrict(firsts, seconds, ids, masks, start, planes, converses, dirty, waiting, clock, trail, count):  # type: ignore[no-untyped-def]
     """Intersect pairs with relations, from constraint ``start`` on; returns the first constraint not dealt with.
 
@@ -111,7 +127,7 @@ def restrict(firsts, seconds, ids, masks, start, planes, converses, dirty, waiti
     return len(firsts)
 
 
-@njit(cache=True)
+@kernel(_steps)
 def advance(  # type: ignore[no-untyped-def]
     budget, sizes, needs, converses, full, planes, dirty, waiting, clock, trail, count
 ):
@@ -154,7 +170,7 @@ def advance(  # type: ignore[no-untyped-def]
     return CLOSED
 
 
-@njit(cache=True)
+@kernel()
 def _require(relation, axis, size, needs, required):  # type: ignore[no-untyped-def]
     """For each atom of the result, the right atoms that give it together with some atom of ``relation``."""
     for c in range(size):
@@ -167,7 +183,7 @@ def _require(relation, axis, size, needs, required):  # type: ignore[no-untyped-
                 required[axis, c] |= row[c]
 
 
-@njit(cache=True)
+@kernel()
 def _remove_table(i, j, needs, planes, required, removed):  # type: ignore[no-untyped-def]
     """removed[a] = the things k that i cannot bear a to, because of j; False where there is none.
 
@@ -191,7 +207,7 @@ def _remove_table(i, j, needs, planes, required, removed):  # type: ignore[no-un
     return found != NONE
 
 
-@njit(cache=True)
+@kernel()
 def _remove_wide(i, j, needs, planes, required, removed):  # type: ignore[no-untyped-def]
     """The same for more than 64 atoms: the right atoms that give an atom are several words of ``required``."""
     _, words, atoms = planes.shape
@@ -221,7 +237,7 @@ def _remove_wide(i, j, needs, planes, required, removed):  # type: ignore[no-unt
     return found != NONE
 
 
-@njit(cache=True)
+@kernel()
 def _remove_product(i, j, sizes, needs, planes, required, boxes, scratch, removed):  # type: ignore[no-untyped-def]
     """The same for a product calculus: box by box of i's relation to j, and for each box axis by axis."""
     _, words, atoms = planes.shape
@@ -243,7 +259,7 @@ def _remove_product(i, j, sizes, needs, planes, required, boxes, scratch, remove
     return True
 
 
-@njit(cache=True)
+@kernel()
 def _compose_axis(given, required, before, size, after, out):  # type: ignore[no-untyped-def]
     """Compose on one axis: ``given`` and ``out`` (atoms,) hold the things of one word for every atom."""
     for outer in range(before):
@@ -258,7 +274,7 @@ def _compose_axis(given, required, before, size, after, out):  # type: ignore[no
                     out[target + k] |= given[source + k]
 
 
-@njit(cache=True)
+@kernel()
 def _boxes(i, j, sizes, planes, boxes):  # type: ignore[no-untyped-def]
     """Write the relation of i to j as a disjoint union of products; returns how many."""
     rows = np.zeros((sizes[0], sizes[1]), dtype=np.uint64)
@@ -282,12 +298,12 @@ def _boxes(i, j, sizes, planes, boxes):  # type: ignore[no-untyped-def]
     return found
 
 
-@njit(cache=True)
+@kernel()
 def row_seen(row, position):  # type: ignore[no-untyped-def]
     return (row[:position] == row[position]).any()
 
 
-@njit(cache=True)
+@kernel()
 def _alike(rows, a):  # type: ignore[no-untyped-def]
     """The slabs that are just like slab a; none where an earlier one is."""
     alike = NONE
@@ -299,7 +315,7 @@ def _alike(rows, a):  # type: ignore[no-untyped-def]
     return alike
 
 
-@njit(cache=True)
+@kernel()
 def _apply(i, j, removed, converses, full, planes, dirty, waiting, clock, changed, trail, count):  # type: ignore[no-untyped-def]
     """Take from row i what j removes, and marks what changed; False where a pair is left with nothing."""
     _, words, atoms = planes.shape
@@ -329,7 +345,7 @@ def _apply(i, j, removed, converses, full, planes, dirty, waiting, clock, change
     return True
 
 
-@njit(cache=True)
+@kernel()
 def undo(length, converses, planes, dirty, waiting, clock, trail, count):  # type: ignore[no-untyped-def]
     """Give back what was taken since the trail had that length, when the network was closed."""
     for m in range(count[0] - 1, length - 1, -1):
@@ -342,7 +358,7 @@ def undo(length, converses, planes, dirty, waiting, clock, trail, count):  # typ
     clock[2:] = -1
 
 
-@njit(cache=True)
+@kernel()
 def lightest(planes, weights):  # type: ignore[no-untyped-def]
     """The pair i < k of more than one atom with the fewest for its weight, as i * n + k; -1 where there is none."""
     n, _, atoms = planes.shape
@@ -357,7 +373,7 @@ def lightest(planes, weights):  # type: ignore[no-untyped-def]
     return best
 
 
-@njit(cache=True)
+@kernel()
 def relations(planes, out):  # type: ignore[no-untyped-def]
     """Write every pair's relation, (n, n, 64-bit words of atoms)."""
     n, words, atoms = planes.shape

@@ -9,12 +9,12 @@ which thing. All else is as in :mod:`deixis.reasoning.qualitative.networks.kerne
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
+from deixis.reasoning.kernel import kernel
 from deixis.reasoning.qualitative.networks.kernels import CLOSED, EMPTIED, FULL, ONE, PAUSED, low_bit, mark
 
 
-@njit(cache=True)
+@kernel()
 def _narrow(i, k, left, by, half, masks, converses, dirty, waiting, clock, trail, count):  # type: ignore[no-untyped-def]
     """Leaves a pair with less, seen from both things; False where that is nothing."""
     if count[0] >= 0:
@@ -32,7 +32,7 @@ def _narrow(i, k, left, by, half, masks, converses, dirty, waiting, clock, trail
     return left != 0
 
 
-@njit(cache=True)
+@kernel(lambda firsts, *rest: 10 * len(firsts))
 def restrict(firsts, seconds, ids, words, start, half, masks, converses, dirty, waiting, clock, trail, count):  # type: ignore[no-untyped-def]
     """Intersect pairs with relations, from constraint ``start`` on; returns the first constraint not dealt with."""
     for m in range(start, len(firsts)):
@@ -47,7 +47,12 @@ def restrict(firsts, seconds, ids, words, start, half, masks, converses, dirty, 
     return len(firsts)
 
 
-@njit(cache=True)
+def _steps(budget, half, compositions, converses, masks, *rest):  # type: ignore[no-untyped-def]
+    """About how many steps closure takes: every pair is passed on some times, to every third thing."""
+    return 4 * len(masks) ** 3
+
+
+@kernel(_steps)
 def advance(budget, half, compositions, converses, masks, dirty, waiting, clock, trail, count):  # type: ignore[no-untyped-def]
     """Pass changes on, ``budget`` pairs of them: CLOSED, EMPTIED, PAUSED (budget spent) or FULL (the trail is)."""
     n, words = dirty.shape
@@ -82,16 +87,15 @@ def advance(budget, half, compositions, converses, masks, dirty, waiting, clock,
     return CLOSED
 
 
-@njit(cache=True)
+@kernel()
 def _compose(relation, half, compositions, rows):  # type: ignore[no-untyped-def]
     """The relation composed with every lower part, and with every upper one."""
     low, high = compositions[0, relation & ((1 << half) - 1)], compositions[1, relation >> half]
     for part in range(2):
-        for right in range(1 << half):
-            rows[part, right] = low[part, right] | high[part, right]
+        np.bitwise_or(low[part], high[part], rows[part])
 
 
-@njit(cache=True)
+@kernel()
 def narrower(mine, others, half, low, high, changed, lefts):  # type: ignore[no-untyped-def]
     """List the pairs of a row that are narrowed, and to what; without a branch, since there is no telling which."""
     found, shift = np.uint64(0), np.uint64(half)

@@ -15,15 +15,14 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import njit
 
+from deixis.reasoning.kernel import kernel
 from deixis.reasoning.qualitative.networks.kernels import low_bit
 from deixis.reasoning.qualitative.networks.mask_kernels import narrower
 
 Array = Any
 
-_UNCOUNTED: dict[str, Any] = {"_nrt": False}
-loop = njit(cache=True, **_UNCOUNTED)
+loop = kernel(lambda budget, *rest: 20 * budget, _nrt=False)
 """Compiles without reference counts: nothing here allocates, and counting each use of an array takes four fifths of the
 time of the search (numba counts with atomic instructions whenever an array is taken from a tuple)."""
 
@@ -720,7 +719,7 @@ def _choice(edge, allowed, algebra, memory):  # type: ignore[no-untyped-def]
     return mask & best
 
 
-@loop
+@kernel(lambda algebra, memory: 5 * memory.masks.size, _nrt=False)
 def queue_edges(algebra, memory):  # type: ignore[no-untyped-def]
     """Before the first search of a network that is not closed: all that is stated is still to be passed on."""
     axes, n, _ = memory.masks.shape

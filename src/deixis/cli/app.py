@@ -141,6 +141,8 @@ def _fail(message: str | Exception, code: int = BAD_INPUT) -> None:
 def run() -> None:
     """The process's entry: a closed pipe ends it quietly, no character is too odd for a terminal, nothing is lost."""
     gc.set_threshold(100_000)  # what is imported stays: looking for garbage in it takes a tenth of a short command
+    # threads of OpenBLAS that have nothing to do sleep after 2^20 cycles, not 2^26: waiting, each takes 30 ms a command
+    os.environ.setdefault("OPENBLAS_THREAD_TIMEOUT", "20")
     if hasattr(signal, "SIGPIPE"):
         signal.signal(signal.SIGPIPE, signal.SIG_DFL)
     for stream in (sys.stdout, sys.stderr):

@@ -21,8 +21,8 @@ from deixis.cli.common import (
     print_json,
     print_lines,
     print_written,
-    ready_to_ground,
     require_plot,
+    tell_of_compiling,
     working,
 )
 
@@ -49,7 +49,7 @@ def check(
 
     require_plot(plot)
     seen = load_scene(scene, hide_labels, image)
-    ready_to_ground()
+    tell_of_compiling()
     with Session(memory) as session, working("grounding"):
         checked = run(layout, seen, time_limit, None if no_memory else session.knowledge_store)
     if report is not None:

@@ -158,18 +158,14 @@ def working(what: str, after: float = 0.0) -> Iterator[None]:
         status.stop()
 
 
-def ready_to_ground(engine: str = "exact") -> float:
-    """Has the engine compiled, and returns the seconds that it took, which count for no time limit."""
-    from deixis.workflows.ground import seconds_to_get_ready
+def tell_of_compiling() -> None:
+    """Say so on a terminal, once, where code has to be compiled, as it has after an installation."""
+    from functools import cache
 
-    with working("compiling, once", PATIENCE):
-        return seconds_to_get_ready(engine)
+    from deixis.reasoning.kernel import when_compiling
 
-
-def compiled(ready: Callable[[], None]) -> None:
-    """Says so where compiling takes long, as it does the first time after an installation."""
-    with working("compiling, once", PATIENCE):
-        ready()
+    if sys.stderr.isatty():
+        when_compiling(cache(lambda: print_note("compiling, once; this may take a minute")))
 
 
 def print_note(note: str | Exception) -> None:

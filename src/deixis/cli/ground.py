@@ -22,8 +22,8 @@ from deixis.cli.common import (
     print_json,
     print_lines,
     print_written,
-    ready_to_ground,
     require_plot,
+    tell_of_compiling,
     working,
 )
 from deixis.cli.output import StandardInput
@@ -70,6 +70,7 @@ def ground(
     from deixis.workflows.ground import GroundingRequest, answer
     from deixis.workflows.read import load_scene, read_script
 
+    tell_of_compiling()
     require_plot(plot)
     deadline = Deadline.after(time_limit)
     out = sys.stderr if as_json else sys.stdout  # of the dialogue
@@ -87,7 +88,7 @@ def ground(
         time_limit=time_limit,
         memory_limit=memory_limit,
         meaning=_meaning(memory),
-        deadline=deadline.delayed(ready_to_ground(engine)),
+        deadline=deadline,
     )
     found = answer(request, working)
     if found.exchanges is not None:

@@ -12,11 +12,11 @@ from deixis.cli.common import (
     UNDECIDED,
     AsJson,
     Script,
-    compiled,
     print_json,
     print_lines,
     print_written,
     require_scene_name,
+    tell_of_compiling,
 )
 
 if TYPE_CHECKING:
@@ -39,12 +39,11 @@ def imagine(
     from deixis.grammar.parser import read_script
     from deixis.report.imagine import imagination_lines, imagination_to_dict
     from deixis.workflows.imagine import imagine as run
-    from deixis.workflows.imagine import ready_to_imagine
 
     scenes, pictures = _numbered(out, count), _numbered(plot, count)
     _require_writable(script, scenes, pictures)
     parsed = read_script(script)
-    compiled(ready_to_imagine)
+    tell_of_compiling()
     found = run(parsed, any_size=any_size, seed=seed, count=count, time_limit=time_limit)
     _write(found, scenes, pictures)
     if as_json:

@@ -18,7 +18,7 @@ from deixis.cli.common import (
     print_json,
     print_lines,
     print_note,
-    ready_to_ground,
+    tell_of_compiling,
     working,
 )
 from deixis.cli.output import note_change
@@ -49,7 +49,7 @@ def learn(
     from deixis.workflows.read import example_pairs, load_scene
 
     pairs = [(script, load_scene(scene, hide_labels, image)) for script, scene in example_pairs(inputs)]
-    ready_to_ground(engine)
+    tell_of_compiling()
     with Session(memory) as session:
         try:
             with working("grounding"):

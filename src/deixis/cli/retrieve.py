@@ -20,7 +20,7 @@ from deixis.cli.common import (
     print_json,
     print_lines,
     print_note,
-    ready_to_ground,
+    tell_of_compiling,
     working,
 )
 
@@ -51,7 +51,7 @@ def retrieve(
     from deixis.report.retrieve import retrieval_lines, retrieval_to_dict
     from deixis.workflows.retrieve import retrieve as run
 
-    ready_to_ground()
+    tell_of_compiling()
     with _remembering(memory, no_memory) as session, working("comparing"):
         retrieved = run(
             query,

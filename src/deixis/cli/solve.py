@@ -13,13 +13,13 @@ from deixis.cli.common import (
     UNDECIDED,
     AsJson,
     TimeLimit,
-    compiled,
     print_json,
     print_line,
     print_lines,
     print_note,
     print_written,
     progress_bar,
+    tell_of_compiling,
 )
 
 if TYPE_CHECKING:
@@ -45,7 +45,7 @@ def solve(
     from deixis.errors import DeixisError
     from deixis.grammar.formats.networks import read_networks
     from deixis.report.solve import reason_lines
-    from deixis.workflows.solve import Wish, calculi_named, ready_to_solve, solve_text
+    from deixis.workflows.solve import Wish, calculi_named, solve_text
 
     if closure and scenario:
         raise DeixisError("--closure and --scenario exclude each other")
@@ -58,7 +58,7 @@ def solve(
     for note in notes:
         print_note(note)
     texts = read_networks(network, calculi)
-    compiled(lambda: ready_to_solve(wide=any(len(axis.atoms) > 16 for each in calculi for axis in each.factors)))
+    tell_of_compiling()
     aside = as_json or (out is None and (closure or scenario))  # what is printed then is read again, or by a program
     solved = []
     with progress_bar("closing") as progress:

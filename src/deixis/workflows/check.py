@@ -22,7 +22,6 @@ from deixis.reasoning.grounding.engines import engine_named
 from deixis.reasoning.grounding.evidence.meaning import SHIPPED
 from deixis.reasoning.grounding.hypotheses import AS_IT_STANDS
 from deixis.reasoning.grounding.options import DEFAULT_TIME_LIMIT
-from deixis.workflows.ground import ready_to_ground
 from deixis.workflows.read import as_scene, as_script, is_script_file
 
 if TYPE_CHECKING:
@@ -95,7 +94,6 @@ def check(
     evidence = graph_evidence(graph, scene, known, meaning, label_error=0.0)  # a check takes labels as identities
     evidence = replace(evidence, consistent=implied.consistent)
     notes = viewpoint_notes(concept.viewpoint, scene) + conflict_notes(find_conflict(implied))
-    ready_to_ground("exact")
     labels, engine = scene_labels(scene), engine_named("exact", sides=AS_IT_STANDS)
     table = checked_table(evidence, labels, known.kinds, engine, time_limit, scene.colours, known.colours)
     found = table.grounding

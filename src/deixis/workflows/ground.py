@@ -7,11 +7,10 @@ Python (:func:`deixis.ground`, ``Session.ground``) and the command line (``deixi
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Callable, Mapping
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, replace
-from functools import cache, cached_property
+from functools import cached_property
 from numbers import Integral
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -225,7 +224,7 @@ def ground(
         time_limit=time_limit,
         meaning=meaning,
         memory_limit=memory_limit,
-        deadline=deadline.delayed(seconds_to_get_ready(engine)),
+        deadline=deadline,
     )
     return answer(request)
 
@@ -237,7 +236,6 @@ def answer(request: GroundingRequest, stage: Stage = lambda _: nullcontext()) ->
     """
     from deixis.workflows.viewpoint import ground_from_sides, recover_scene
 
-    ready_to_ground(request.engine)
     deadline, contradiction = request.due, _contradiction(request)
     side, notes = None, viewpoint_notes(request.script.viewpoint, request.scene)
     if request.viewpoint != ViewpointName.STATED:
@@ -295,35 +293,3 @@ def _answer_with_questions(request: GroundingRequest, ask: Ask, scene: Scene, ti
     notes = _contradiction(request)
     found = ground_evidence(refined.evidence, engine_named(request.engine), refined.deadline, notes)
     return replace(found, exchanges=refined.inquiry.exchanges)
-
-
-def seconds_to_get_ready(engine: str) -> float:
-    """Get ready to ground, and return the seconds that it took: they count for no time limit."""
-    started = time.monotonic()
-    ready_to_ground(engine)
-    return time.monotonic() - started
-
-
-@cache
-def ready_to_ground(engine: str) -> None:
-    """Compiles, or loads compiled, what grounding with an engine needs, so that no time limit is spent on it.
-
-    A miniature goes the way of any grounding, and chains are run as for the probabilities of many things. Raises
-    UnknownTermError for a name that no engine has.
-    """
-    from deixis.grammar.parser import parse_script
-    from deixis.reasoning.grounding.evidence.evidence import evidence_from
-    from deixis.reasoning.kernel import load_compiled
-
-    load_compiled()
-    chosen = engine_named(engine)
-    boxes = [{"id": f"o{i}", "min": [0.2 * i, 0], "max": [0.2 * i + 0.1, 0.1]} for i in range(3)]
-    script = parse_script("fork left of plate\nknife right of plate\n")
-    find_conflict(Implications(script.graph()))
-    scene = as_scene({"frame": "table", "viewpoint": "chair", "unit": "m", "objects": boxes})
-    known, seen = script.ontology, scene.relations(script.ontology.relations)
-    evidence = evidence_from(script.graph(), seen, [None] * len(boxes), known.kinds, known.sizes)
-    ground_evidence(evidence, chosen, Deadline.after(3600.0))
-    from deixis.reasoning.grounding.matching.ladders import warm
-
-    warm()

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from functools import cache
 
 import numpy as np
 
@@ -214,13 +213,3 @@ def _no_table(graph: RelationGraph, objects: tuple[Sized, ...], found: Impossibl
     if conflict is not None and len(conflict.facts) <= len(facts) and all(map(is_firm, conflict.facts)):
         return NoTable(conflict.facts, (), found.minimal, conflict.reason)
     return NoTable(facts, (), found.minimal)
-
-
-@cache
-def ready_to_imagine() -> None:
-    """Compile, or load compiled, what imagining a table needs."""
-    from deixis.grammar.parser import parse_script
-    from deixis.reasoning.kernel import load_compiled
-
-    load_compiled()
-    imagine(parse_script("fork left of plate\nnapkin on plate\n"))

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import cache
 from pathlib import Path
 
 from deixis.answers import Answer, count
@@ -114,36 +113,12 @@ def verdict_of(script: Script | str | Path, time_limit: float = TIME_LIMIT) -> b
         return None
 
 
-@cache
-def ready_to_infer() -> None:
-    """Compile, or load compiled, the search over facts that leave a choice."""
-    from deixis.reasoning.constraints.difference import ORDERS, ZERO, Difference, DifferenceNetwork
-    from deixis.reasoning.entailment.why_not import why_not
-    from deixis.reasoning.kernel import load_compiled
-
-    load_compiled()
-    inference = inference_of(parse_script("a left of b\nb left or above c\nc is not right of d\n"))
-    inference.inferred()
-    inference.implications.unstated()
-    inference.implications.ntriples()
-    relations = inference.implications.vocabulary
-    why_not(inference.implications, parse_script("a left of c").facts[0])
-    inference.implications.derive(relations["left"], "a", "b")
-    orders = DifferenceNetwork(points=2, dtype=ORDERS)
-    orders.add(Difference(0, 0, 1, ZERO))
-    orders.path(0, 0, 1)  # what a search that goes back asks for
-    inference_of(parse_script("a left of b\nb left of a\n"))
-
-
 def infer(script: Script | str | Path, time_limit: float = TIME_LIMIT) -> Inference:
     """What follows from a script in the wide reading, and whether it contradicts itself.
 
     The time limit is for facts that leave a choice; the others need no search.
     """
-    script = as_script(script)
-    if not all(fact.plain for fact in script.facts):
-        ready_to_infer()
-    return inference_of(script, time_limit)
+    return inference_of(as_script(script), time_limit)
 
 
 def plain_fact(text: str, name: str) -> Fact:

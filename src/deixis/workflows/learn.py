@@ -16,7 +16,7 @@ from deixis.reasoning.grounding.answer import Grounding
 from deixis.reasoning.grounding.options import DEFAULT_TIME_LIMIT
 from deixis.version import VERSION
 from deixis.view_store import ViewStore, views_of_matches
-from deixis.workflows.ground import GroundingRequest, answer, ready_to_ground
+from deixis.workflows.ground import GroundingRequest, answer
 from deixis.workflows.read import as_scene, as_script
 from deixis.workflows.views_of_lessons import keep_lessons
 
@@ -92,7 +92,6 @@ def _lesson(
     from deixis.ontology.lessons.types import next_lesson_id
 
     script, scene = as_script(script, knowledge.ontology), as_scene(scene)
-    ready_to_ground(engine)
     request = GroundingRequest(script, scene, engine, time_limit=time_limit, meaning=knowledge.meaning())
     conflict = request.conflict
     if conflict is not None:

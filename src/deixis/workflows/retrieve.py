@@ -20,7 +20,6 @@ from deixis.reasoning.comparison.likeness import Comparison, Described, Likeness
 from deixis.reasoning.comparison.retrieval import rank_layouts, rank_scenes
 from deixis.reasoning.grounding.evidence.labels import category_of
 from deixis.reasoning.grounding.evidence.meaning import Meaning
-from deixis.workflows.ground import ready_to_ground
 
 if TYPE_CHECKING:
     from deixis.learning.recollection import Recollection
@@ -92,7 +91,6 @@ def retrieve(
     ``least`` is the similarity from which one is told. ``left_out`` is told, in one line, of what cannot be read.
     Raises DeixisError where nothing is known, or a file cannot be read.
     """
-    ready_to_ground("exact")
     deadline, folder = Deadline.after(time_limit), None if among is None else Path(among)
     comparison = Comparison(default_ontology(), memory.meaning().sizes if memory else None)
     if isinstance(query, str | Path):

@@ -5,7 +5,6 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cache
 from itertools import combinations
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -24,7 +23,6 @@ from deixis.reasoning.qualitative.networks.derivation import explain, require_pa
 from deixis.reasoning.qualitative.networks.network import Constraint, Network, compacted
 from deixis.reasoning.qualitative.networks.search import Verdict, solve
 from deixis.reasoning.qualitative.networks.state import Progress
-from deixis.reasoning.qualitative.networks.wide_search import WideSearch
 from deixis.reasoning.qualitative.relate import relate
 
 if TYPE_CHECKING:
@@ -222,27 +220,3 @@ def _renumbered(network: Network, constraints: Iterable[Constraint], things: lis
     return network.only(
         Constraint(things[c.first], things[c.second], c.relation) for c in constraints if c.relation != universal
     )
-
-
-@cache
-def ready_to_solve(wide: bool = True) -> None:
-    """Compile, or load compiled, closure and search, over plain calculi and over products.
-
-    ``wide`` includes the loops for calculi of more than 16 atoms.
-    """
-    from deixis.grammar.formats.networks import parse_networks
-    from deixis.reasoning.kernel import load_compiled
-    from deixis.reasoning.qualitative.calculi.registry import calculus
-
-    load_compiled()
-    wishes = (Wish(scenario=True), Wish(closure=True, explain=(0, 1)))
-    against = "2 #\n0 1 ( < )\n1 2 ( < )\n0 2 ( > )\n.\n"
-    texts = [("allen", "1 #\n0 1 ( < > )\n.\n"), ("ra", "2 #\n0 1 ( <,m >,< )\n1 2 ( <,< )\n.\n"), ("allen", against)]
-    if wide:
-        texts.append(("direction-distance", "1 #\n0 1 ( N,near S,near )\n.\n"))
-        joint = calculus("direction-distance")
-        WideSearch(Network(joint, 2, (Constraint(0, 1, joint.universal),))).run()
-    for name, text in texts:
-        for parsed in parse_networks(text, [calculus(name)], "warm"):
-            for wish in wishes:
-                solve_text(parsed, wish)

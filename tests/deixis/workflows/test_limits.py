@@ -16,12 +16,13 @@ from deixis.deadline import Deadline
 from deixis.experiments.generated_tables import generate
 from deixis.grammar.errors import ScriptTimeError
 from deixis.grammar.parser import parse_script
+from deixis.kernels import compile_grounding
 from deixis.perception.formats.scene_json import read_scene
 from deixis.reasoning.errors import OutOfMemoryError, OutOfTimeError, SettingError
 from deixis.reasoning.grounding.answer import Standing
 from deixis.reasoning.grounding.evidence.evidence import no_unary_evidence
 from deixis.reasoning.grounding.memory_budget import different_facts, leaves_room_for_chains, required_gigabytes
-from deixis.workflows.ground import GroundingRequest, answer, ready_to_ground
+from deixis.workflows.ground import GroundingRequest, answer
 
 
 def written(objects: int, folder: Path) -> tuple[Path, Path]:
@@ -37,7 +38,7 @@ def written(objects: int, folder: Path) -> tuple[Path, Path]:
 
 @pytest.mark.parametrize("objects", [60, 150])
 def test_the_memory_estimate_is_no_less_than_the_peak(objects: int, tmp_path: Path) -> None:
-    ready_to_ground("exact")
+    compile_grounding("exact")
     script, scene = written(objects, tmp_path)
     read, seen = package.read_script(script), read_scene(scene)
     description = read.graph()
@@ -50,7 +51,7 @@ def test_the_memory_estimate_is_no_less_than_the_peak(objects: int, tmp_path: Pa
 
 
 def test_what_takes_too_much_memory_is_refused_before_it_is_taken(tmp_path: Path) -> None:
-    ready_to_ground("exact")
+    compile_grounding("exact")
     script, scene = written(200, tmp_path)
     read, seen = package.read_script(script), read_scene(scene)
     tracemalloc.start()
@@ -84,7 +85,7 @@ def test_what_is_no_memory_limit_is_refused(limit: float) -> None:
 
 @pytest.mark.parametrize("objects", [40, 120, 240])
 def test_the_time_limit_holds_from_reading_on(objects: int, tmp_path: Path) -> None:
-    ready_to_ground("exact")
+    compile_grounding("exact")
     script, scene = written(objects, tmp_path)
     started, worked = time.monotonic(), time.process_time()
     found = package.ground(script, scene, time_limit=1.0)
