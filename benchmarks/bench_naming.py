@@ -28,10 +28,9 @@ from deixis.experiments.open_ended.things import FOLDER, in_metres, listed_meshe
 from deixis.learning.views import (
     FORM,
     SPIN_IMAGE_ROOTS,
-    TABLE,
     UPRIGHT,
+    Comparison,
     candidates_of,
-    comparisons_in,
     known_by,
 )
 from deixis.ontology.tbox import default_ontology
@@ -55,6 +54,11 @@ from deixis.perception.simulator.views import views_of
 
 Array = NDArray[np.float64]
 TAUGHT_VIEWS = (3, 5, 24)
+COMPARISON: Comparison = (UPRIGHT, FORM)
+"""What views of a table are compared by; meshes have no colours."""
+
+TREES = 150
+"""Of a random forest."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -189,8 +193,7 @@ def jointly(
     views: Views, matrices: dict[str, NDArray[np.float32]], taught: NDArray[np.int64], asked: NDArray[np.int64]
 ) -> Answers:
     """As ``deixis recognise`` names what stands on a table: by all its descriptors, calibrated by what was taught."""
-    comparison = comparisons_in(TABLE)[0]
-    ways = [normalised(matrices[way.name], views, taught, asked, DEFAULT) for way in comparison]
+    ways = [normalised(matrices[way.name], views, taught, asked, DEFAULT) for way in COMPARISON]
     calibration: Calibration = calibrate_jointly([held for _, held in ways], DEFAULT.prior_unknown, SHIPPED_JOINT)
     truth = np.searchsorted(np.unique(views.categories[taught]), views.categories[asked])
     found = calibration.mean([each for each, _ in ways])
@@ -201,17 +204,27 @@ def jointly(
 def forest(
     views: Views, matrices: dict[str, NDArray[np.float32]], taught: NDArray[np.int64], asked: NDArray[np.int64]
 ) -> Answers:
-    """A random forest (scikit-learn) on everything: the form, and the mean and spread of the local descriptors."""
+    """A random forest (scikit-learn) on everything: the form, and the mean and spread of the local descriptors.
+
+    For the unknown it is grown anew without each category. Leaving out the votes of a category that it was taught would
+    ask it about things that it knows: it votes for them, so that few votes are left, and AUROC comes to 0.81 to 0.88.
+    """
     from sklearn.ensemble import RandomForestClassifier
 
     def rows(places: NDArray[np.int64]) -> Array:
         local, form = views.described[UPRIGHT.name], views.described[FORM.name]
         return np.stack([np.concatenate([form[p][0], local[p].mean(axis=0), local[p].std(axis=0)]) for p in places])
 
-    trees = RandomForestClassifier(500, random_state=0).fit(rows(taught), views.categories[taught])
-    shares = trees.predict_proba(rows(asked))
+    learnt, seen, named = rows(taught), rows(asked), views.categories[taught]
+    trees = RandomForestClassifier(TREES, random_state=0).fit(learnt, named)
     truth = np.searchsorted(trees.classes_, views.categories[asked])
-    return Answers(truth, -shares, left_out(-shares, truth))
+    known = -trees.predict_proba(seen)
+    unknown = np.full_like(known, np.inf)
+    for number, category in enumerate(trees.classes_):
+        own, others = truth == number, named != category
+        fewer = RandomForestClassifier(TREES, random_state=0).fit(learnt[others], named[others])
+        unknown[np.ix_(own, np.arange(len(trees.classes_)) != number)] = -fewer.predict_proba(seen[own])
+    return Answers(truth, known, unknown)
 
 
 BEFORE = RecognitionSettings(shrinkage=5.0)
@@ -257,7 +270,6 @@ def calibrated(found: Sequence[Answers]) -> str:
 
 def words(views: Views, tables: int, facts: int) -> None:
     """Prints how many of twelve new things on a table are named rightly by looks, by words and by both."""
-    comparison = comparisons_in(TABLE)[0]
     taught, asked = split(views, 24, 0)
     categories = [
         tuple(
@@ -266,11 +278,11 @@ def words(views: Views, tables: int, facts: int) -> None:
                 [(str(place), views.described[way.name][place]) for place in taught if views.categories[place] == name],
                 {str(place): str(views.things[place]) for place in taught},
             )
-            for way in comparison
+            for way in COMPARISON
         )
         for name in np.unique(views.categories[taught])
     ]
-    known = known_by(comparison, categories).recogniser.calibrated()
+    known = known_by(COMPARISON, categories).calibrated().recogniser
     totals = np.zeros(3)
     for table in range(tables):
         rng = np.random.default_rng(table)
@@ -278,7 +290,7 @@ def words(views: Views, tables: int, facts: int) -> None:
         places = np.stack([rng.permutation(12) % 4 * 0.45, rng.permutation(12) // 4 * 0.45], axis=1)
         things, names, looks = [], [], []
         for number, place in enumerate(chosen):
-            answer = known.recognise([views.described[way.name][place] for way in comparison])
+            answer = known.recognise([views.described[way.name][place] for way in COMPARISON])
             points = views.clouds[place].points.copy()
             middle = (points[:, :2].min(axis=0) + points[:, :2].max(axis=0)) / 2
             points[:, :2] += rng.normal(places[number], 0.05) - middle

@@ -18,6 +18,7 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import Any, NamedTuple
 
 import numpy as np
 from numba import njit
@@ -37,7 +38,7 @@ from deixis.perception.recognition.distances import Target
 from deixis.perception.recognition.index import Nearest, ViewIndex, indexes_of
 from deixis.perception.recognition.instances import InstanceCategory
 from deixis.perception.recognition.joint import JointRecogniser
-from deixis.perception.recognition.settings import DEFAULT, MIN_LABEL_PROBABILITY, PAPER
+from deixis.perception.recognition.settings import DEFAULT, MIN_LABEL_PROBABILITY, PAPER, RecognitionSettings
 from deixis.perception.recognition.views import PackedViews, open_views, write_views
 from deixis.perception.simulator.tableware import make
 from deixis.perception.simulator.views import views_of
@@ -56,8 +57,8 @@ EACH = 8
 FIRST_TARGET = 10_000
 """The seed of the first thing that is only ever a target."""
 
-TABLE_COMPARISON = recognising.comparisons_in(recognising.TABLE)[0]
-"""What views of a table are compared by."""
+SHAPES: recognising.Comparison = (recognising.UPRIGHT, recognising.FORM)
+"""What views of a table are compared by where they have no colours."""
 
 Descriptors = NDArray[np.float32]
 Describe = Callable[[PointCloud], Descriptors]
@@ -198,14 +199,19 @@ def constants() -> None:
     for name, describe in {"spin_image_roots": recognising.SPIN_IMAGE_ROOTS.describe, **named}.items():
         icds = [category.width(over_things=True).icd or np.nan for category in taught(6, 2, describe).values()]
         print(f"PRIOR_SPREADS: {name} {np.median(icds):.3g}", flush=True)
+    learnt = [
+        [(name, [recognising.COLOUR.describe(cloud)]) for name, cloud in found_on_table(seed)] for seed in TABLES[0]
+    ]
+    icds = [one.intra_category_distance or np.nan for one in _taught((recognising.COLOUR,), learnt, DEFAULT).categories]
+    print(f"PRIOR_SPREADS: colour {np.median(icds):.3g}, of what is found on laid tables", flush=True)
     forms = [form_parts(view) for kind in KINDS for seed in range(4) for view in views_of_thing(kind, seed, 2)]
     for name in PARTS:
         print(f"PARTS: {name} {np.median(pdist([form[name] for form in forms if form is not None])):.4g}", flush=True)
-    for said, comparison in (("SHIPPED", (recognising.UPRIGHT,)), ("SHIPPED_JOINT", TABLE_COMPARISON)):
+    for said, comparison in (("SHIPPED", (recognising.UPRIGHT,)), ("SHIPPED_JOINT", SHAPES)):
         kinds = [taught(6, 3, descriptor.describe) for descriptor in comparison]
         folds = [[kind for place, kind in enumerate(KINDS) if place % 4 != fold] for fold in range(4)]
         found = [
-            known_by(comparison, [tuple(each[kind] for each in kinds) for kind in fold]).recogniser.calibrated()
+            known_by(comparison, [tuple(each[kind] for each in kinds) for kind in fold]).calibrated().recogniser
             for fold in folds
         ]
         for name in ("threshold", "even", "doubt", "choice", "slips", "weights"):
@@ -225,7 +231,7 @@ def calibration(things: int = 6, each: int = 3) -> None:
     print(
         f"\ncalibration: {things} things of {len(KINDS)} kinds, {each} views of each; 3 other things of each as targets"
     )
-    for way, comparison in (("upright", (recognising.UPRIGHT,)), ("by default", TABLE_COMPARISON)):
+    for way, comparison in (("upright", (recognising.UPRIGHT,)), ("upright and form", SHAPES)):
         by_things = [taught(things, each, descriptor.describe) for descriptor in comparison]
         by_views = [{kind: replace(known, things={}) for kind, known in kinds.items()} for kinds in by_things]
         seen = [(kind, [descriptor.describe(view) for descriptor in comparison]) for kind, view in fresh]
@@ -249,7 +255,7 @@ def _answers(
     """Probability of the likeliest answer, whether right, whether unknown, and ND; as many unknown as known targets."""
     hidden = set(KINDS[fold::4])
     rest = [tuple(each[kind] for each in categories) for kind in KINDS if kind not in hidden]
-    known = known_by(comparison, rest).recogniser.calibrated()
+    known = known_by(comparison, rest).calibrated().recogniser
     for kind, view in fresh:
         found, unknown = known.recognise(view), kind in hidden
         first = found.candidates[0]
@@ -267,54 +273,99 @@ def found_on_table(seed: int) -> list[tuple[str, PointCloud]]:
     return [(name, scene.cloud_of(match.perceived)) for name, match in matches.items()]
 
 
-def tables() -> None:
-    """Prints how things are named on six tables after one, three and six others were taught: as in the paper, and not.
+TABLES = tuple(range(first, first + 6) for first in (1, 7, 31, 37))
+"""Seeds of four sets of six tables; each set is asked for after the next one was taught."""
 
-    A thing counts as unknown with its category left out.
+
+def tables() -> None:
+    """Prints how things are named on six tables after one, three and six others were taught, for each set of tables.
+
+    A thing counts as unknown with its category left out. Calibration is that of all answers, known and unknown.
     """
-    seen, tested = ([found_on_table(seed) for seed in seeds] for seeds in (range(1, 7), range(31, 37)))
-    print(f"\nthings found on {len(tested)} laid tables: {sum(map(len, tested))}")
+    found = [[found_on_table(seed) for seed in seeds] for seeds in TABLES]
+    print(f"\nthings found on {sum(map(len, found))} laid tables: {sum(len(table) for own in found for table in own)}")
     ways = (
         ("equations 1-4", (recognising.SPIN_IMAGE_ROOTS,), PAPER),
         ("spin images", (recognising.SPIN_IMAGE_ROOTS,), DEFAULT),
         ("upright", (recognising.UPRIGHT,), DEFAULT),
-        ("by default", TABLE_COMPARISON, DEFAULT),
+        ("upright and form", SHAPES, DEFAULT),
+        ("by default", (*SHAPES, recognising.COLOUR), DEFAULT),
     )
+    print("taught  way               nearest  named  wrong name  unknown said  AUROC  calibration error")
     for said, comparison, settings in ways:
-        taught, asked = (
-            [[(name, [each.describe(cloud) for each in comparison]) for name, cloud in table] for table in found]
-            for found in (seen, tested)
-        )
+        described = [
+            [[(name, [each.describe(cloud) for each in comparison]) for name, cloud in table] for table in own]
+            for own in found
+        ]
         for count in (1, 3, 6):
-            views = [(name, f"{place} {name}", rows) for place in range(count) for name, rows in taught[place]]
-            names = sorted({name for name, _, _ in views})
-            categories = [
-                tuple(
-                    InstanceCategory.of(n, [(key, rows[place]) for m, key, rows in views if m == n])
-                    for place in range(len(comparison))
-                )
-                for n in names
-            ]
-            known = known_by(comparison, categories, settings).recogniser.calibrated()
-            rows = np.array([_named(known, name, view) for table in asked for name, view in table])
-            nearest, right, told = rows[:, :3].mean(axis=0)
+            answers: list[OnTable] = []
+            for number, asked in enumerate(described):
+                known = _taught(comparison, described[number - 1][:count], settings)
+                answers += [_named(known, name, view) for table in asked for name, view in table]
+            columns = OnTable(*(np.array(column) for column in zip(*answers, strict=True)))
+            sure = np.concatenate([columns.known_sure, columns.unknown_sure])
+            right = np.concatenate([columns.known_right, columns.unknown_right])
             print(
-                f"{count} taught, {said:13}: nearest by ND {nearest:.3f}; named rightly {right:.3f}; unknown said to be"
-                f" so {told:.3f}, AUROC {auroc(rows[:, 3], rows[:, 4]):.3f}",
+                f"{count:6}  {said:16}  {columns.nearest.mean():7.3f}  {columns.named.mean():5.3f}"
+                f"  {columns.wrong.mean():10.3f}  {columns.unknown.mean():12.3f}"
+                f"  {auroc(columns.least, columns.others):5.3f}  {expected_calibration_error(sure, right):17.3f}",
                 flush=True,
             )
 
 
-def _named(known: JointRecogniser, name: str, view: Sequence[Descriptors]) -> tuple[float, ...]:
-    """Whether nearest, named and, without its category, unknown; least ND as it is and without its category."""
+def _taught(
+    comparison: recognising.Comparison,
+    learnt: Sequence[Sequence[tuple[str, list[Descriptors]]]],
+    settings: RecognitionSettings,
+) -> JointRecogniser:
+    """What recognises the things of some tables, calibrated."""
+    views = [(name, f"{place} {name}", rows) for place, table in enumerate(learnt) for name, rows in table]
+    categories = [
+        tuple(
+            InstanceCategory.of(wanted, [(key, rows[place]) for name, key, rows in views if name == wanted])
+            for place in range(len(comparison))
+        )
+        for wanted in sorted({name for name, _, _ in views})
+    ]
+    return known_by(comparison, categories, settings).calibrated().recogniser
+
+
+class OnTable(NamedTuple):
+    """An answer, or arrays of many: whether the nearest category, the name and a name that is said are right or wrong;
+    whether unknown is said with the category left out; the least ND as it is and without the category; and confidence
+    and whether it is right, as it is and without."""
+
+    nearest: Any
+    named: Any
+    wrong: Any
+    unknown: Any
+    least: Any
+    others: Any
+    known_sure: Any
+    known_right: Any
+    unknown_sure: Any
+    unknown_right: Any
+
+
+def _named(known: JointRecogniser, name: str, view: Sequence[Descriptors]) -> OnTable:
     found = known.recognise(view)
-    least, others = found.candidates[0], [one.normalised for one in found.candidates if one.category != name]
+    least, others = found.candidates[0], np.array([one.normalised for one in found.candidates if one.category != name])
     calibration = known.calibration
-    if known.parts[0].settings.by_threshold:
-        unknown = min(others) > calibration.threshold
-    else:
-        unknown = calibration.probabilities(np.array(others))[:-1].max() < MIN_LABEL_PROBABILITY
-    return least.category == name, found.label == name, unknown, least.normalised, min(others)
+    *shares, none = calibration.probabilities(others).tolist()
+    by_threshold = known.parts[0].settings.by_threshold
+    unknown = others.min() > calibration.threshold if by_threshold else max(shares) < MIN_LABEL_PROBABILITY
+    return OnTable(
+        least.category == name,
+        found.label == name,
+        found.label is not None and found.label != name,
+        unknown,
+        least.normalised,
+        others.min(),
+        max(least.probability, found.unknown),
+        least.category == name and least.probability >= found.unknown,
+        max(*shares, none),
+        none > max(shares),
+    )
 
 
 def main() -> None:

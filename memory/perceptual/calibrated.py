@@ -1,15 +1,15 @@
-"""A calibration kept beside the views that it was worked out from, which takes seconds where there are many of them.
+"""Calibrations kept beside the views that they were worked out from, which takes seconds where there are many.
 
-It can always be worked out again: a file that is damaged, of views that are no longer these, or of views that were
+They can always be worked out again: a file that is damaged, of views that are no longer these, or of views that were
 compared in another way, is as good as none.
 
 >>> import tempfile
 >>> from deixis.perception.recognition.calibration import SHIPPED
 >>> folder, views = Path(tempfile.mkdtemp()), {("mug", "v1"), ("mug", "v2")}
->>> write_calibration(folder, SHIPPED, views, "spin images")
->>> read_calibration(folder, views, "spin images") == SHIPPED
+>>> write_calibrations(folder, [SHIPPED], views, "spin images")
+>>> read_calibrations(folder, views, "spin images") == (SHIPPED,)
 True
->>> read_calibration(folder, {("mug", "v1")}, "spin images"), read_calibration(folder, views, "colours")
+>>> read_calibrations(folder, {("mug", "v1")}, "spin images"), read_calibrations(folder, views, "colours")
 (None, None)
 """
 
@@ -18,7 +18,7 @@ from __future__ import annotations
 import contextlib
 import hashlib
 import json
-from collections.abc import Set
+from collections.abc import Sequence, Set
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -33,23 +33,23 @@ MAX_CHANGED_SHARE = 0.1
 """Maximum share of the views that may come, go or change their category while a calibration stays valid."""
 
 
-def write_calibration(folder: Path, calibration: Calibration, views: Set[ViewPlace], compared: str) -> None:
-    """Write it, in one step, with how views were compared; where that cannot be, nothing is kept."""
-    content = {"calibration": asdict(calibration), "compared": compared, "views": sorted(views)}
+def write_calibrations(folder: Path, calibrations: Sequence[Calibration], views: Set[ViewPlace], compared: str) -> None:
+    """Write them, in one step, with how views were compared; where that cannot be, nothing is kept."""
+    content = {"calibrations": [asdict(each) for each in calibrations], "compared": compared, "views": sorted(views)}
     new = folder / (CALIBRATION + ".new")
     with contextlib.suppress(OSError):
         new.write_text(json.dumps({**content, "sum": _sum(content)}), encoding="utf-8")
         new.replace(folder / CALIBRATION)
 
 
-def read_calibration(folder: Path, views: Set[ViewPlace], compared: str) -> Calibration | None:
+def read_calibrations(folder: Path, views: Set[ViewPlace], compared: str) -> tuple[Calibration, ...] | None:
     """Return what was kept, if it was worked out from about these views, compared in this way."""
     try:
         content = json.loads((folder / CALIBRATION).read_text(encoding="utf-8"))
         if content.pop("sum") != _sum(content) or content["compared"] != compared:
             return None
         before = {(category, view_id) for category, view_id in content["views"]}
-        kept = Calibration(**content["calibration"])
+        kept = tuple(Calibration(**each) for each in content["calibrations"])
     except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
         return None
     return kept if len(before ^ views) <= MAX_CHANGED_SHARE * len(views) else None

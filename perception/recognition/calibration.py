@@ -10,7 +10,8 @@ as if nothing had been seen, so that no answer is surer than held-out ones deser
 
 Where things are compared by several descriptors, ND is the weighted geometric mean of theirs: a logarithmic opinion
 pool (Genest and Zidek 1986), since a power of ND is what a probability is proportional to. The weights are fitted in
-the same way.
+the same way. What a colour says differs from one household to the next, so that its weight may move farther from the
+shipped one than those of descriptors of shape; and no two colours are nearer than noise lets them be told apart.
 """
 
 from __future__ import annotations
@@ -36,6 +37,16 @@ PRIOR_WIDTH = 1.0
 WEIGHTS_WIDTH = 0.3
 """The same of the ratios of weights: views of the same few things say less of these than their number suggests."""
 
+COLOUR_WEIGHT = 0.02
+"""Weight of colour beside the descriptors of shape until there are views to fit it to: next to nothing, since of things
+that are never twice of one colour it says nothing."""
+
+COLOUR_WIDTH = 1.0
+"""The same for colour, which tells some things apart at once and others not at all."""
+
+COLOUR_FLOOR = 0.25
+"""Least ND by colour: nearer ones are apart by the camera's noise."""
+
 SLIPS_WIDTH = 0.5
 """The same of the log-odds of slips."""
 
@@ -54,6 +65,9 @@ class Calibration:
     """``threshold``: an ND above it is unknown. ``even``: the least ND at which known and unknown are equally probable;
     ``doubt``: how fast that changes. ``choice``: how much a nearer category is preferred. ``slips`` is the share of
     things of which distances say nothing. ``weights`` are those of the descriptors in the mean, and sum to 1.
+    ``weights_widths`` are the standard deviations of the logarithms of their ratios to the first one where a fit begins
+    here (none: ``WEIGHTS_WIDTH``); that of the first says nothing. ``floors`` are the least ND that each descriptor can
+    tell, and one below counts as this (none: ``MIN_NORMALISED``).
     ``known`` and ``unknown`` count the held-out answers behind these.
 
     With none the numbers are constants, measured once on simulated tableware (docs/recognition.md).
@@ -67,9 +81,16 @@ class Calibration:
     unknown: int = 0
     weights: tuple[float, ...] = (1.0,)
     slips: float = 0.0
+    weights_widths: tuple[float, ...] = ()
+    floors: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "weights", tuple(self.weights))
+        for name in ("weights", "weights_widths", "floors"):
+            object.__setattr__(self, name, tuple(getattr(self, name)))
+        for name in ("weights_widths", "floors"):
+            values = getattr(self, name)
+            if values and not (len(values) == len(self.weights) and min(values) > 0):
+                raise RecognitionError(f"a calibration's {name} are above 0, one for each weight, not {values}")
         if not (min(self.weights, default=-1.0) >= 0 and abs(sum(self.weights) - 1) < WEIGHTS_ROUNDING):
             raise RecognitionError(f"a calibration's weights are 0 or more and sum to 1, not {self.weights}")
         if not 0 <= self.slips < 1:
@@ -89,7 +110,15 @@ class Calibration:
         >>> Calibration(1, 1, 1, 1, weights=(0.5, 0.5)).mean([np.array([1.0, 4.0]), np.array([4.0, np.inf])]).tolist()
         [2.0, inf]
         """
-        return np.exp(_mean_logs(_logs(normalised), np.array(self.weights)))
+        return np.exp(_mean_logs(self.logs(normalised), np.array(self.weights)))
+
+    def logs(self, normalised: Sequence[NDArray[np.float64]]) -> NDArray[np.float64]:
+        """Return the logarithms (b, ..., c) of ND by each of b descriptors, none below that of its floor."""
+        floors = self.floors or (MIN_NORMALISED,) * len(normalised)
+        result: NDArray[np.float64] = np.log(
+            np.stack([np.maximum(each, floor) for each, floor in zip(normalised, floors, strict=True)])
+        )
+        return result
 
     def probabilities(self, normalised: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return probabilities (..., c + 1) of c categories and, last, of none of them, from their ND (..., c).
@@ -109,6 +138,17 @@ SHIPPED = Calibration(threshold=0.756, even=0.745, doubt=6.6, choice=12.8, slips
 
 SHIPPED_JOINT = Calibration(threshold=0.76, even=0.736, doubt=6.9, choice=15.4, weights=(0.65, 0.35), slips=0.1)
 """The same for the descriptors that views of a table are compared by."""
+
+
+def beside_colour(calibration: Calibration) -> Calibration:
+    """Return what holds where views are compared by their colour, too, as the last descriptor."""
+    count = len(calibration.weights)
+    return replace(
+        calibration,
+        weights=(*(weight * (1 - COLOUR_WEIGHT) for weight in calibration.weights), COLOUR_WEIGHT),
+        weights_widths=(*(WEIGHTS_WIDTH,) * count, COLOUR_WIDTH),
+        floors=(*(MIN_NORMALISED,) * count, COLOUR_FLOOR),
+    )
 
 
 def calibrate(held: HeldOut, prior_unknown: float = 0.5, start: Calibration = SHIPPED) -> Calibration:
@@ -135,13 +175,13 @@ def calibrate_jointly(
 ) -> Calibration:
     """Return weights, threshold and probabilities from what the same views, held out, came to by each descriptor.
 
-    Logarithms of the weights' ratios have a normal prior of width ``WEIGHTS_WIDTH`` about those of ``start``. With few
+    Logarithms of the weights' ratios have a normal prior about those of ``start``, of its ``weights_widths``. With few
     answers everything stays as in ``start``, as in :func:`calibrate`.
     """
     known, truth = held[0].as_known
     if min(len(known), len(held[0].as_unknown)) < MIN_HELD_OUT_ANSWERS:
         return start
-    weights = _fitted_weights(_logs([each.as_known[0] for each in held]), truth, start)
+    weights = _fitted_weights(start.logs([each.as_known[0] for each in held]), truth, start)
     started = replace(start, weights=weights)
     return calibrate(HeldOut(started.mean([each.normalised for each in held]), held[0].truth), prior_unknown, started)
 
@@ -210,11 +250,6 @@ def _log_shares(normalised: NDArray[np.float64], logs: NDArray[np.float64]) -> N
     return np.concatenate([shares, unknown], axis=-1)
 
 
-def _logs(normalised: Sequence[NDArray[np.float64]]) -> NDArray[np.float64]:
-    """Return the logarithms (b, ..., c) of ND by each descriptor, none below that of ``MIN_NORMALISED``."""
-    return np.log(np.maximum(np.stack(normalised), MIN_NORMALISED))
-
-
 def _mean_logs(logs: NDArray[np.float64], weights: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the weighted mean (..., c) of logarithms (b, ..., c); infinite where one is."""
     finite = np.isfinite(logs)
@@ -228,7 +263,8 @@ def _fitted_weights(logs: NDArray[np.float64], truth: NDArray[np.int64], start: 
     from scipy.optimize import minimize
 
     ratios = np.log(np.array(start.weights) / start.weights[0])[1:]
-    rows, widths = np.arange(len(truth)), np.array([PRIOR_WIDTH, *[WEIGHTS_WIDTH] * len(ratios)])
+    _, *free = start.weights_widths or (WEIGHTS_WIDTH,) * len(start.weights)
+    rows, widths = np.arange(len(truth)), np.array([PRIOR_WIDTH, *free])
 
     def weights_of(logits: NDArray[np.float64]) -> NDArray[np.float64]:
         shares = np.exp(np.concatenate([[0.0], logits]))

@@ -71,5 +71,9 @@ class JointRecogniser:
     def calibrated(self, progress: Progress | None = None) -> JointRecogniser:
         """Return the same with weights, threshold and probabilities from its own views, each held out with all views
         of its thing."""
+        return self.calibrated_by(self.held_out(progress))
+
+    def calibrated_by(self, held: Sequence[HeldOut]) -> JointRecogniser:
+        """Return the same, calibrated by views that were held out already, by each descriptor."""
         prior = self.parts[0].settings.prior_unknown
-        return replace(self, calibration=calibrate_jointly(self.held_out(progress), prior, self.calibration))
+        return replace(self, calibration=calibrate_jointly(held, prior, self.calibration))

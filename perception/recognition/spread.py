@@ -28,14 +28,15 @@ PRIOR_SPREADS: Mapping[str, float] = MappingProxyType(
         "spin_image_roots": 0.384,
         "upright": 0.465,
         "form": 1.05,
+        "colour": 0.195,
         "fpfh": 49.5,
         "good": 0.249,
         "d2_extents": 0.0495,
     }
 )
 """By a descriptor's name, with its default settings: the median ICD over things of 16 kinds of simulated tableware, six
-things of each, two views of each thing (benchmarks/bench_recognition.py --constants). Roots of spin images are those of
-:data:`deixis.learning.views.SPIN_IMAGE_ROOTS`."""
+things of each, two views of each thing (benchmarks/bench_recognition.py --constants), by colour over what is found on
+six laid tables. Roots of spin images are those of :data:`deixis.learning.views.SPIN_IMAGE_ROOTS`."""
 
 
 @dataclass(frozen=True)

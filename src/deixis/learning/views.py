@@ -17,17 +17,18 @@ from numpy.typing import NDArray
 
 from deixis.answers import Answer, count
 from deixis.memory.errors import DamagedMemoryError, UnknownViewError
-from deixis.memory.perceptual.calibrated import read_calibration, write_calibration
+from deixis.memory.perceptual.calibrated import read_calibrations, write_calibrations
 from deixis.memory.perceptual.level import LevelMemory
 from deixis.memory.perceptual.protocol import PerceptualMemory, PerceptualReading, Progress, ViewKey
 from deixis.memory.perceptual.records import Batch, CategoryRecord, View
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.errors import CloudError
+from deixis.perception.features.colour import ColourDescriber
 from deixis.perception.features.describer import Describer
 from deixis.perception.features.form import FormDescriber
 from deixis.perception.features.spin_images import SpinImageDescriber
 from deixis.perception.features.upright import UprightDescriber
-from deixis.perception.recognition.calibration import SHIPPED, SHIPPED_JOINT
+from deixis.perception.recognition.calibration import SHIPPED, SHIPPED_JOINT, Calibration, beside_colour
 from deixis.perception.recognition.instances import InstanceCategory
 from deixis.perception.recognition.joint import JointRecogniser
 from deixis.perception.recognition.learners.view_features import roots
@@ -65,6 +66,9 @@ SPIN_IMAGE_ROOTS = ViewDescriptor("spin_image_roots", SpinImageDescriber(support
 """The descriptor of all other views, whatever their frame, and of views that were kept before there was another one.
 
 With square roots the distance of equation 1 is Hellinger's; a support of 20 cm takes in most of a thing on a table."""
+
+COLOUR = ViewDescriptor("colour", ColourDescriber())
+"""What views are compared by beside their shape, where all of them and what is seen have colours."""
 
 TABLE = "table"
 """The frame in which z is up, and 0 on the table."""
@@ -131,21 +135,29 @@ class Recognised(Answer):
 Comparison = tuple[ViewDescriptor, ...]
 """The descriptors that views are compared by together. A category keeps distances by the first one."""
 
-COMPARISONS: tuple[Comparison, ...] = ((UPRIGHT, FORM), (UPRIGHT,), (SPIN_IMAGE_ROOTS,))
+COMPARISONS: tuple[Comparison, ...] = (
+    (UPRIGHT, FORM, COLOUR),
+    (UPRIGHT, FORM),
+    (UPRIGHT,),
+    (SPIN_IMAGE_ROOTS, COLOUR),
+    (SPIN_IMAGE_ROOTS,),
+)
 """All of them, the best first."""
 
 
 def comparisons_in(frame: str) -> tuple[Comparison, ...]:
     """The ways to compare what is seen in a frame, the best first."""
-    return COMPARISONS if frame == TABLE else COMPARISONS[-1:]
+    return COMPARISONS if frame == TABLE else tuple(way for way in COMPARISONS if way[0] is SPIN_IMAGE_ROOTS)
 
 
 def view_of(cloud: PointCloud, frame: str, category: str, time: datetime, metadata: Mapping[str, Any]) -> View:
     """A view of a thing of a category, ready to be kept; raises CloudError where nothing on it can be described.
 
-    It is kept with what every descriptor needs in which it can be compared.
+    It is kept with what every descriptor needs in which it can be compared; without colours it has none of these.
     """
     needed = dict.fromkeys(chain.from_iterable(comparisons_in(frame)))
+    if cloud.colours is None:
+        del needed[COLOUR]
     descriptors = {descriptor.name: descriptor.describe(cloud) for descriptor in needed}
     if not all(map(len, descriptors.values())):
         raise CloudError("the thing has too few points to say what it looks like; perceive it from nearer")
@@ -289,19 +301,46 @@ def record_of(category: InstanceCategory, descriptor: ViewDescriptor, described:
 
 @dataclass(frozen=True)
 class Known:
-    """A recogniser, and the descriptors by which it compares."""
+    """A recogniser, and the descriptors by which it compares.
+
+    Where colour is one of these, ``by_shape`` compares by the others; it names what is seen without colours.
+    """
 
     recogniser: JointRecogniser
     comparison: Comparison
+    by_shape: Known | None = None
 
     def recognise(self, cloud: PointCloud) -> Recognition:
         """Name what a cloud shows, or say that it is unknown, and why."""
+        if self.by_shape is not None and cloud.colours is None:
+            return self.by_shape.recognise(cloud)
         return self.recogniser.recognise([descriptor.describe(cloud) for descriptor in self.comparison])
+
+    def calibrated(self, progress: Progress | None = None) -> Known:
+        """Return the same with weights, threshold and probabilities from its own views."""
+        held = self.recogniser.held_out(progress)
+        ways = [way.recogniser.calibrated_by(held[: len(way.comparison)]).calibration for way in self._ways]
+        return self.with_calibrations(ways)
+
+    @property
+    def calibrations(self) -> tuple[Calibration, ...]:
+        """The calibration, and that by shape alone where there is one."""
+        return tuple(way.recogniser.calibration for way in self._ways)
+
+    def with_calibrations(self, calibrations: Sequence[Calibration]) -> Known:
+        """Return the same with other calibrations, in the order of :attr:`calibrations`."""
+        whole, *rest = calibrations
+        by_shape = None if self.by_shape is None else self.by_shape.with_calibrations(rest)
+        return replace(self, recogniser=replace(self.recogniser, calibration=whole), by_shape=by_shape)
+
+    @property
+    def _ways(self) -> tuple[Known, ...]:
+        return (self,) if self.by_shape is None else (self, self.by_shape)
 
 
 def nothing_known(frame: str) -> Known:
     """What recognises nothing, as nothing was taught."""
-    return known_by(comparisons_in(frame)[0], [])
+    return known_by(comparisons_in(frame)[-1], [])
 
 
 def known_by(
@@ -315,7 +354,12 @@ def known_by(
         Recogniser.of(own, replace(settings, prior_spread=PRIOR_SPREADS[descriptor.name]))
         for own, descriptor in zip(by_descriptor, comparison, strict=True)
     )
-    return Known(JointRecogniser(parts, SHIPPED_JOINT if len(parts) > 1 else SHIPPED), comparison)
+    shapes = tuple(descriptor for descriptor in comparison if descriptor is not COLOUR)
+    shipped = SHIPPED_JOINT if len(shapes) > 1 else SHIPPED
+    by_shape = Known(JointRecogniser(parts[: len(shapes)], shipped), shapes)
+    if shapes == comparison:
+        return by_shape
+    return Known(JointRecogniser(parts, beside_colour(shipped)), comparison, by_shape)
 
 
 def recogniser_of(memory: LevelMemory, frame: str, progress: Progress | None = None) -> Known:
@@ -335,11 +379,11 @@ def recogniser_of(memory: LevelMemory, frame: str, progress: Progress | None = N
             if progress is not None:  # what was imported may have no distances yet, and then this takes longest
                 progress(len(categories), len(names))
         known, compared = known_by(comparison, categories), " ".join(map(str, (*comparison, DEFAULT)))
-        calibration = read_calibration(memory.path, views, compared)
-        if calibration is not None and len(calibration.weights) == len(comparison):
-            return replace(known, recogniser=replace(known.recogniser, calibration=calibration))
-        known = replace(known, recogniser=known.recogniser.calibrated(progress))
-        write_calibration(memory.path, known.recogniser.calibration, views, compared)
+        kept = read_calibrations(memory.path, views, compared)
+        if kept is not None and [len(each.weights) for each in kept] == [len(e.weights) for e in known.calibrations]:
+            return known.with_calibrations(kept)
+        known = known.calibrated(progress)
+        write_calibrations(memory.path, known.calibrations, views, compared)
     return known
 
 

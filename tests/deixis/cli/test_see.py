@@ -255,17 +255,18 @@ def test_a_calibration_is_kept_while_a_tenth_of_the_views_stays(
     tables: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     from deixis.learning.views import recogniser_of
+    from deixis.perception.recognition.held_out import HeldOut
     from deixis.perception.recognition.joint import JointRecogniser
 
     scene, file = tables / "7.scene.json", tmp_path / "memory" / "perceptual" / "calibration.json"
     calls: list[dict[str, str]] = []  # the thing that each view shows
-    work = JointRecogniser.calibrated
+    work = JointRecogniser.held_out
 
-    def calibrated(self: JointRecogniser, progress: None) -> JointRecogniser:
+    def held_out(self: JointRecogniser, progress: None) -> list[HeldOut]:
         calls.append({key: thing for known in self.categories for key, thing in known.things.items()})
         return work(self, progress)
 
-    monkeypatch.setattr(JointRecogniser, "calibrated", calibrated)
+    monkeypatch.setattr(JointRecogniser, "held_out", held_out)
     with Session(tmp_path / "memory") as session:
         for object, word in (("o1", "plate"), ("o5", "plate"), ("o3", "fork"), ("o4", "fork")):
             session.teach(scene, object, word)

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from deixis.learning.views import (
+    COLOUR,
     COMPARED,
     FORM,
     SPIN_IMAGE_ROOTS,
@@ -23,14 +24,15 @@ from deixis.learning.views import (
 from deixis.memory.perceptual.level import LevelMemory
 from deixis.memory.perceptual.records import Batch, CategoryRecord, View
 from deixis.perception.clouds.cloud import PointCloud
+from deixis.perception.recognition.calibration import COLOUR_WEIGHT
 from deixis.perception.simulator.tableware import make
 from deixis.perception.simulator.views import views_of
 
 THINGS = (("plate", 1), ("plate", 2), ("fork", 1), ("fork", 2))
 
 
-def seen(kind: str, seed: int) -> PointCloud:
-    return views_of(make(kind, seed=seed).mesh, 1, seed=seed, upright=True)[0]
+def seen(kind: str, seed: int, look: int | None = None) -> PointCloud:
+    return views_of(make(kind, seed=seed).mesh, 1, seed=seed if look is None else look, upright=True)[0]
 
 
 def view(kind: str, seed: int, frame: str = TABLE) -> View:
@@ -95,6 +97,54 @@ def test_a_new_memory_is_compared_in_the_new_way(tmp_path: Path) -> None:
         known = recogniser_of(memory, TABLE)
         assert known.comparison == (UPRIGHT, FORM)
         assert known.recognise(seen("fork", 9)).candidates[0].category == "fork"
+
+
+def painted(kind: str, seed: int, look: int, colour: tuple[float, ...]) -> PointCloud:
+    cloud = seen(kind, seed, look)
+    noise = np.random.default_rng(seed).normal(0, 3, (len(cloud), 3))
+    return replace(cloud, colours=np.clip(np.array(colour) + noise, 0, 255).astype(np.uint8))
+
+
+PAINT = {"bills cup": (180, 40, 40), "anns cup": (40, 60, 170)}
+
+
+def teach_painted_cups(memory: LevelMemory, count: int) -> None:
+    """Cups of the same shapes, which only their colours tell apart."""
+    views = [
+        view_of(painted("cup", seed, 100 * place + seed, colour), TABLE, name, datetime(2026, 1, seed, tzinfo=UTC), {})
+        for place, (name, colour) in enumerate(PAINT.items())
+        for seed in range(1, count + 1)
+    ]
+    keep_views(memory, views)
+
+
+def test_colour_tells_apart_what_shape_cannot(tmp_path: Path) -> None:
+    with LevelMemory.open(tmp_path / "perceptual", create=True) as memory:
+        teach_painted_cups(memory, 6)
+        known = recogniser_of(memory, TABLE)
+        assert known.comparison == (UPRIGHT, FORM, COLOUR)
+        assert known.recogniser.calibration.weights[-1] > 3 * COLOUR_WEIGHT  # as its own views showed
+        for name, colour in PAINT.items():
+            dim = painted("cup", 9, 9, tuple(0.6 * part for part in colour))  # in the shade
+            assert known.recognise(dim).candidates[0].category == name
+
+
+def test_what_has_no_colour_is_compared_by_shape_alone(tmp_path: Path) -> None:
+    with LevelMemory.open(tmp_path / "perceptual", create=True) as memory:
+        teach_painted_cups(memory, 6)
+        known = recogniser_of(memory, TABLE)
+        grey = known.recognise(seen("cup", 9))
+        assert grey.label is None and len(grey.candidates) == 2
+        assert known.by_shape is not None and grey == known.by_shape.recognise(seen("cup", 9))
+        again = recogniser_of(memory, TABLE)  # with the calibrations that were kept
+        assert again.calibrations == known.calibrations and again.recognise(seen("cup", 9)) == grey
+
+
+def test_colour_counts_only_where_all_views_have_it(tmp_path: Path) -> None:
+    with LevelMemory.open(tmp_path / "perceptual", create=True) as memory:
+        teach_painted_cups(memory, 2)
+        keep_views(memory, [view("plate", 1)])
+        assert recogniser_of(memory, TABLE).comparison == (UPRIGHT, FORM)
 
 
 def test_what_is_seen_in_another_frame_than_a_tables_is_compared_by_what_needs_none(tmp_path: Path) -> None:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from deixis.learning.views import COMPARISONS, SPIN_IMAGE_ROOTS, comparisons_in
+from deixis.learning.views import COLOUR, COMPARISONS, SPIN_IMAGE_ROOTS, comparisons_in
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.detection.detect import detect
 from deixis.perception.detection.settings import DetectionSettings
@@ -72,7 +72,7 @@ def test_two_pieces_apart_are_no_single_object() -> None:
 def test_without_a_table_things_are_compared_in_no_frame() -> None:
     cloud = PointCloud(shell((0.08, 0.08, 0.1)).astype(np.float32))
     assert detect(cloud).scene().frame == "object"
-    assert comparisons_in(detect(cloud).scene().frame) == ((SPIN_IMAGE_ROOTS,),)
+    assert comparisons_in(detect(cloud).scene().frame) == ((SPIN_IMAGE_ROOTS, COLOUR), (SPIN_IMAGE_ROOTS,))
     told = detect(cloud, DetectionSettings(up=(0.0, 0.0, 1.0)))
     assert (told.shows, told.scene().frame) == (Shows.OBJECT, "table")
     assert comparisons_in(told.scene().frame) == COMPARISONS

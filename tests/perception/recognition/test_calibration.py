@@ -12,10 +12,13 @@ from numpy.typing import NDArray
 
 from deixis.perception.errors import RecognitionError
 from deixis.perception.recognition.calibration import (
+    COLOUR_WEIGHT,
     MIN_HELD_OUT_ANSWERS,
     SHIPPED,
+    SHIPPED_JOINT,
     Calibration,
     auroc,
+    beside_colour,
     best_threshold,
     calibrate,
     calibrate_jointly,
@@ -233,3 +236,26 @@ def test_a_few_answers_calibrate_nothing() -> None:
     assert calibrate(held) == SHIPPED
     many = HeldOut(np.tile(held.normalised, (MIN_HELD_OUT_ANSWERS, 1)), np.tile(held.truth, MIN_HELD_OUT_ANSWERS))
     assert calibrate(many).calibrated
+
+
+def test_colour_begins_with_next_to_no_weight_and_may_move_far() -> None:
+    coloured = beside_colour(SHIPPED_JOINT)
+    *shapes, colour = coloured.weights
+    assert sum(coloured.weights) == pytest.approx(1.0) and colour == COLOUR_WEIGHT
+    assert shapes[0] / shapes[1] == pytest.approx(SHIPPED_JOINT.weights[0] / SHIPPED_JOINT.weights[1])
+    assert coloured.weights_widths[-1] > max(coloured.weights_widths[:-1])
+
+
+def test_nothing_is_nearer_than_a_descriptors_floor() -> None:
+    floored = Calibration(1, 1, 1, 1, weights=(0.5, 0.5), floors=(1e-6, 0.25))
+    shape = np.array([1.0, 1.0])
+    assert floored.mean([shape, np.array([0.0, 0.2])]).tolist() == [0.5, 0.5]
+    assert floored.mean([shape, np.array([1.0, np.inf])]).tolist() == [1.0, np.inf]
+
+
+@pytest.mark.parametrize("values", [(0.1,), (0.1, 0.0)])
+def test_floors_and_widths_are_one_for_each_weight(values: tuple[float, ...]) -> None:
+    with pytest.raises(RecognitionError, match="floors are above 0"):
+        Calibration(1, 1, 1, 1, weights=(0.5, 0.5), floors=values)
+    with pytest.raises(RecognitionError, match="weights_widths are above 0"):
+        Calibration(1, 1, 1, 1, weights=(0.5, 0.5), weights_widths=values)

@@ -1,0 +1,67 @@
+"""The colours of a view as one histogram of chromaticities, in which shade and exposure count little.
+
+A lamp that is twice as bright, a shadow and the turn of a surface multiply red, green and blue by one number. Their
+ratios stay, so that a point counts by the logarithms of red and of blue over green (the log-chromaticity of Finlayson
+and Hordley: Color constancy at a pixel, Journal of the Optical Society of America A 18(2), 2001). Each point is shared
+out among the four nearest cells, so that a small change of the lamp's colour moves the histogram a little.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.perception.clouds.cloud import PointCloud
+
+DARK = 16.0
+"""Added to red, green and blue (0 to 255) before their ratio is taken: that of dark points is mostly noise."""
+
+LARGEST_RATIO = 0.8
+"""Logarithm of the ratio at the middle of the outermost cells, which also hold what lies beyond."""
+
+
+@dataclass(frozen=True)
+class ColourDescriber:
+    """One vector for a view: the roots of the shares of its points in a grid of ``cells`` by ``cells`` chromaticities.
+
+    The Euclidean distance of two such vectors is Hellinger's. A cloud without colours has no descriptor.
+    """
+
+    cells: int = 8
+
+    @property
+    def name(self) -> str:
+        return "colour"
+
+    @property
+    def size(self) -> int:
+        return self.cells * self.cells
+
+    @property
+    def local(self) -> bool:
+        return False
+
+    def describe(self, cloud: PointCloud) -> NDArray[np.float32]:
+        """Return the descriptor (1, size), rows by red over green; (0, size) of a cloud without colours or points.
+
+        >>> red = np.full((9, 3), (200, 20, 20), np.uint8)
+        >>> bright, dim = (PointCloud(np.zeros((9, 3), np.float32), each) for each in (red, red // 2))
+        >>> between = ColourDescriber().describe(bright) - ColourDescriber().describe(dim)
+        >>> float(np.linalg.norm(between)) < 0.2
+        True
+        """
+        if cloud.colours is None or not cloud.finite.any():
+            return np.empty((0, self.size), np.float32)
+        seen = np.log(cloud.colours[cloud.finite] + DARK)
+        ratios = seen[:, [0, 2]] - seen[:, [1]]
+        place = (np.clip(ratios / LARGEST_RATIO, -1, 1) + 1) / 2 * (self.cells - 1)
+        low = np.minimum(place.astype(np.int64), self.cells - 2)
+        beyond = place - low
+        counts = np.zeros(self.size)
+        for row in (0, 1):
+            for column in (0, 1):
+                share = np.abs(1 - row - beyond[:, 0]) * np.abs(1 - column - beyond[:, 1])
+                counts += np.bincount((low[:, 0] + row) * self.cells + low[:, 1] + column, share, minlength=self.size)
+        return np.sqrt(counts / len(seen))[None].astype(np.float32)
