@@ -1,15 +1,20 @@
 """Large scenes: how well the marginals are calibrated, and whether limits of time and memory are kept.
 
-Calibration: generated tables (kinds known, 10 % of the facts off, one thing in ten missing and one in ten extra). For
-each size it prints the share of objects that are what is likeliest, the mean probability of that, the calibration error
-(ten bins), the share of objects whose match is decided, and how many of those are right; then what the marginals of a
-run many times as long differ by, at 30 objects, on average and at most; and seconds by the clock and of the processor,
-beside the limit. ``--limit SECONDS`` is the time limit (default 10).
+Calibration: generated tables (10 % of the facts off, one thing in ten missing and one in ten extra) of three layouts,
+kinds known or words alone, of seeds on which nothing was adjusted (``--seeds FIRST`` begins at another one). For each
+size it prints the share of objects that are what is likeliest, the mean probability of that, and the calibration error
+(ten bins), of all objects and then of those that are there; the share of objects whose match is decided, and how many
+of those are right; then what the marginals of a run many times as long differ by, at 30 objects, on average and at
+most; and seconds by the clock and of the processor, beside the limit. ``--limit SECONDS`` is the time limit (default
+10).
 
-Limits: whole scripts and scenes of 1,000 to 20,000 objects from files, each in a process of its own: seconds by the
-clock and of the processor, the peak of the memory beyond that of the loaded program (on Linux), and what came of it. On
-a busy machine compare the clock's seconds with the processor's: a time limit is one of the clock. ``--quick`` takes a
-few of both.
+``--only TEXT`` measures the arms whose line of ARMS has the text, ``--no-limits`` nothing but calibration.
+
+Limits: ten objects beside 20,000 labelled things, of which some bear a label that nothing else bears. Then whole
+scripts and scenes of 1,000 to 20,000 objects. All are read from files, each in a process of its own: seconds by the
+clock and of the processor, the peak of the memory beyond that of the loaded program (on Linux), and what came of it.
+On a busy machine compare the clock's seconds with the processor's: a time limit is one of the clock. ``--quick`` takes
+a few of both.
 """
 
 from __future__ import annotations
@@ -26,7 +31,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.deadline import Deadline
-from deixis.experiments.generated_tables import generate, lay_boxes
+from deixis.experiments.generated_tables import LAYOUTS, SETTING, generate, lay_boxes
 from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.geometry.rectangle import box_relations
 from deixis.reasoning.grounding.evidence.evidence import evidence_from
@@ -37,10 +42,34 @@ from deixis.reasoning.grounding.matching.posterior import posterior
 from deixis.reasoning.grounding.matching.problem import UNMATCHED, Problem
 from deixis.reasoning.grounding.options import is_decided
 
-SIZES = [(30, 2.5, 6), (100, 2.5, 4), (300, 2.5, 2), (300, 6.0, 2), (1000, 2.5, 1), (1000, 8.0, 1)]
-QUICK_SIZES = [(30, 2.5, 2), (100, 2.5, 1)]  # objects, facts an object, tables
+HELD_OUT = 100
+"""Seed of the first table: the settings of the chains were chosen on tables of the seeds before it."""
+
+ARMS = [  # layout, kinds known, objects, facts an object, tables
+    ("seats", True, 30, 2.5, 8),
+    ("seats", True, 100, 2.5, 8),
+    ("seats", True, 300, 2.5, 4),
+    ("seats", True, 300, 6.0, 4),
+    ("seats", True, 1000, 2.5, 3),
+    ("seats", True, 1000, 8.0, 3),
+    ("seats", False, 100, 6.0, 6),
+    ("seats", False, 300, 8.0, 3),
+    ("clusters", True, 100, 2.5, 6),
+    ("clusters", True, 300, 6.0, 3),
+    ("clusters", False, 100, 6.0, 6),
+    ("rows", True, 100, 2.5, 6),
+    ("rows", True, 300, 6.0, 3),
+    ("rows", False, 100, 6.0, 6),
+    ("rows", True, 1000, 8.0, 2),
+]
+QUICK_ARMS = [("seats", True, 30, 2.5, 2), ("clusters", True, 100, 2.5, 1)]
 LONGER = 4.0  # times as many proposals for the reference at REFERENCE_OBJECTS
 REFERENCE_OBJECTS = 30
+SHORT_LIMIT = 60.0  # seconds: enough on a busy machine, too
+RARE, QUICK_RARE = (0, 2, 6), (6,)
+"""Of ten described objects, how many bear a label that nothing else in the scene bears."""
+
+RARE_LABELS = ("candle", "teapot", "bowl", "saucer", "jug", "mug")
 LIMITS = [(1000, 2.0), (1000, 10.0), (2000, 3.0), (5000, 5.0), (20000, 5.0), (20000, 30.0)]  # things, seconds
 QUICK_LIMITS = [(1000, 2.0)]
 
@@ -57,7 +86,8 @@ before, worked = peak(), time.process_time()
 started = time.monotonic()
 try:
     found = deixis.ground(sys.argv[1], sys.argv[2], time_limit=float(sys.argv[3]))
-    said = f"{len(found.matches)} matched, probabilities {found.probabilities}"
+    decided = sum(match.decided for match in found.matches.values())
+    said = f"{len(found.matches)} matched, {decided} decided, probabilities {found.probabilities}"
 except deixis.DeixisError as error:
     said = f"{type(error).__name__}: {error}"
 seconds = time.monotonic() - started
@@ -67,31 +97,47 @@ print(f"{seconds:.2f} {time.process_time() - worked:.2f} {peak() - before:.0f} {
 
 def main() -> None:
     quick = "--quick" in sys.argv
-    limit = float(sys.argv[sys.argv.index("--limit") + 1]) if "--limit" in sys.argv else 10.0
+    limit = float(_option("--limit", 10.0))
     posterior(_case(12, 2.5, 0)[0], Deadline.after(2.0))  # compiled
-    print("objects  facts  right  said   calibration  decided  of which right  off, mean and most  clock   processor")
-    for objects, facts, tables in QUICK_SIZES if quick else SIZES:
-        _calibration(objects, facts, tables, limit)
+    first = int(_option("--seeds", HELD_OUT))
+    columns = "right  said   calibration  right  said   calibration  decided  of which right  off, mean and most  clock"
+    print(f"layout    kinds  objects  facts  {columns}   processor")
+    for arm in QUICK_ARMS if quick else ARMS:
+        if _option("--only", "") in " ".join(map(str, arm)):
+            _calibration(*arm, limit, first)
+    if "--no-limits" in sys.argv:
+        return
+    print("\nobjects  labels nobody else has  things  limit   clock   processor  memory  what came of it")
+    for rare in QUICK_RARE if quick else RARE:
+        _short(rare, 500 if quick else 20_000, SHORT_LIMIT)
     print("\nthings  limit   clock   processor  memory  what came of it")
     for things, seconds in QUICK_LIMITS if quick else LIMITS:
         _limits(things, seconds)
     print(f"\npeak memory of this process {resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20:.2f} GB")
 
 
-def _case(objects: int, facts: float, seed: int) -> tuple[Problem, NDArray[np.int64]]:
+def _option(name: str, default: float | str) -> str:
+    """Return what follows an option on the command line, as text."""
+    return sys.argv[sys.argv.index(name) + 1] if name in sys.argv else str(default)
+
+
+def _case(
+    objects: int, facts: float, seed: int, layout: str = "seats", kinds: bool = True
+) -> tuple[Problem, NDArray[np.int64]]:
     """A matching problem and the truth: each object's thing, the last column for what is not there."""
-    table, known = generate(objects, facts, missing=objects // 10, extra=objects // 10, seed=seed), default_ontology()
+    known, tenth = default_ontology(), objects // 10
+    table = generate(objects, facts, missing=tenth, extra=tenth, seed=seed, layout=LAYOUTS[layout])
     labels = [None] * len(table.boxes)
-    evidence = evidence_from(table.description(kinds=True), table.scene(), labels, known.kinds, known.sizes)
+    evidence = evidence_from(table.description(kinds=kinds), table.scene(), labels, known.kinds, known.sizes)
     truth = table.truth[[int(name[1:]) for name in evidence.description.nodes]]
     return evidence.problem, np.where(truth == UNMATCHED, len(table.boxes), truth)
 
 
-def _calibration(objects: int, facts: float, tables: int, limit: float) -> None:
-    said, right, decided, clock, worked = [], [], [], [], []
+def _calibration(layout: str, kinds: bool, objects: int, facts: float, tables: int, limit: float, first: int) -> None:
+    said, right, decided, there, clock, worked = [], [], [], [], [], []
     off: list[NDArray[np.float64]] = []
-    for seed in range(tables):
-        problem, truth = _case(objects, facts, seed)
+    for seed in range(first, first + tables):
+        problem, truth = _case(objects, facts, seed, layout, kinds)
         before, started = time.process_time(), time.monotonic()
         found = posterior(problem, Deadline.after(limit))
         clock.append(time.monotonic() - started)
@@ -100,13 +146,16 @@ def _calibration(objects: int, facts: float, tables: int, limit: float) -> None:
         known = [bool(is_decided(p, float(e))) for p, e in zip(probability, found.errors, strict=True)]
         said.append(probability)
         right.append(likeliest == truth)
+        there.append(truth < problem.unary.shape[1])
         decided.append(np.array(known) & (likeliest < problem.unary.shape[1]))
-        if objects == REFERENCE_OBJECTS:
+        if objects == REFERENCE_OBJECTS and layout == "seats":
             off.append(np.abs(found.marginals - _reference(problem)).max(axis=1))
-    p, r, d = np.concatenate(said), np.concatenate(right), np.concatenate(decided)
+    p, r, d, t = (np.concatenate(known) for known in (said, right, decided, there))
     far = np.concatenate(off) if off else None
     print(
-        f"{objects:7}  {facts:5}  {r.mean():.3f}  {p.mean():.3f}  {_calibration_error(p, r):11.3f}  {d.mean():7.3f}  "
+        f"{layout:8}  {'yes' if kinds else 'no':5}  {objects:7}  {facts:5}  "
+        f"{r.mean():.3f}  {p.mean():.3f}  {_calibration_error(p, r):11.3f}  "
+        f"{r[t].mean():.3f}  {p[t].mean():.3f}  {_calibration_error(p[t], r[t]):11.3f}  {d.mean():7.3f}  "
         f"{f'{(d & r).sum()} of {d.sum()}':>14}  {'' if far is None else f'{far.mean():.3f}, {far.max():.3f}':>18}  "
         f"{max(clock):5.1f}   {max(worked):5.1f}",
         flush=True,
@@ -132,13 +181,51 @@ def _calibration_error(probability: NDArray[np.float64], right: NDArray[np.bool_
     )
 
 
+def _short(rare: int, things: int, seconds: float) -> None:
+    """Ten neighbours among so many labelled things, described by thirty facts."""
+    with tempfile.TemporaryDirectory() as folder:
+        script, scene = Path(folder) / "short.layout", Path(folder) / "short.scene.json"
+        _write_short(rare, things, script, scene)
+        clock, worked, memory, said = _child(script, scene, seconds)
+    known = f"{10:7}  {rare:23}  {things:6}"
+    print(f"{known}  {seconds:5g} s  {clock:>6}  {worked:>9}  {memory:>4} MB  {said[:150]}", flush=True)
+
+
+def _child(script: Path, scene: Path, seconds: float) -> list[str]:
+    """Ground in a process of its own: seconds of the clock and the processor, megabytes, and what came of it."""
+    command = [sys.executable, "-c", CHILD, str(script), str(scene), str(seconds)]
+    out = subprocess.run(command, capture_output=True, text=True, check=True).stdout
+    return out.strip().split(" ", 3)
+
+
+def _write_short(rare: int, things: int, script: Path, scene: Path) -> None:
+    rng, relations, kinds = np.random.default_rng(0), default_ontology().relations, list(SETTING)
+    boxes, pieces = lay_boxes(things, rng)
+    middles = boxes.mean(axis=1)
+    chosen = np.argsort(np.linalg.norm(middles - middles[rng.integers(things)], axis=1))[:10]
+    labels = [kinds[piece] for piece in pieces]
+    for thing, label in zip(chosen[:rare].tolist(), RARE_LABELS, strict=False):
+        labels[thing] = label
+    names = [f"{labels[thing].replace(' ', '_')}_{number}" for number, thing in enumerate(chosen.tolist())]
+    said: dict[tuple[int, int], str] = {}
+    while len(said) < 30:
+        a, b = rng.choice(10, 2, replace=False).tolist()
+        if (b, a) not in said:
+            exact = int(box_relations(boxes[[chosen[a], chosen[b]]], relations).names[0, 1])
+            said[a, b] = f"{names[a]} {relations.wide(list(relations.values())[exact]).phrase} {names[b]}\n"
+    script.write_text("".join(said.values()), encoding="utf-8")
+    objects = [
+        {"id": f"o{p:05}", "min": low.tolist(), "max": high.tolist(), "label": labels[p]}
+        for p, (low, high) in enumerate(boxes)
+    ]
+    scene.write_text(json.dumps({"frame": "table", "viewpoint": "chair", "unit": "m", "objects": objects}))
+
+
 def _limits(things: int, seconds: float) -> None:
     with tempfile.TemporaryDirectory() as folder:
         script, scene = Path(folder) / "large.layout", Path(folder) / "large.scene.json"
         _write(things, script, scene)
-        command = [sys.executable, "-c", CHILD, str(script), str(scene), str(seconds)]
-        out = subprocess.run(command, capture_output=True, text=True, check=True).stdout
-    clock, worked, memory, said = out.strip().split(" ", 3)
+        clock, worked, memory, said = _child(script, scene, seconds)
     print(f"{things:6}  {seconds:5g} s  {clock:>6}  {worked:>9}  {memory:>4} MB  {said[:150]}", flush=True)
 
 

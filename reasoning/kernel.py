@@ -2,8 +2,8 @@
 
 Loading numba and compiled code takes about half a second of processor time; a script of a dozen objects needs some
 milliseconds of such loops in Python. So kernels whose work can be foreseen are interpreted while there is little to do.
-Both ways run the same function, so that both give the same answer. While code is loaded or compiled, the clock of all
-deadlines stands still: no time limit is spent on it.
+Both ways run the same function, so that both give the same answer. While code is compiled, which happens once after an
+installation, the clock of all deadlines stands still: no time limit is spent on it. Loading it counts.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from functools import cache, cached_property
 from types import FunctionType, ModuleType
 from typing import Any
 
-from deixis.deadline import CLOCK, clock_stopped
+from deixis.deadline import CLOCK
 
 MAX_GIVEN = 100_000
 """Steps of one interpreted call, of which each takes half a microsecond or less."""
@@ -61,9 +61,8 @@ class Kernel:
 
     def load(self) -> Callable[..., Any]:
         """Return numba's dispatcher of the function, in which the kernels that it calls are dispatchers too."""
-        with clock_stopped():
-            self.dispatcher = self.compiled(self._calling(lambda other: other.dispatcher or other.load()))
-            return self.dispatcher
+        self.dispatcher = self.compiled(self._calling(lambda other: other.dispatcher or other.load()))
+        return self.dispatcher
 
     def _calling(self, chosen: Callable[[Kernel], Callable[..., Any]]) -> Callable[..., Any]:
         """Return the function with what is chosen for each kernel that it calls."""
@@ -133,7 +132,7 @@ _TOLD: list[Callable[[], object]] = []
 
 @cache
 def _numba() -> ModuleType:
-    """Import numba, and have it stop the clock while it compiles or loads."""
+    """Import numba, and have it stop the clock while it compiles."""
     import numba
     from numba.core import event
     from numba.np import linalg
@@ -153,7 +152,7 @@ def _numba() -> ModuleType:
         def on_end(self, event: Any) -> None:
             pass
 
-    event.register("numba:compiler_lock", Stop())  # type: ignore[no-untyped-call]
+    event.register("numba:compile", Stop())  # type: ignore[no-untyped-call]
     event.register("numba:compile", Tell())  # type: ignore[no-untyped-call]
     imported, linalg.ensure_blas = linalg.ensure_blas, lambda: None
     try:  # this module looks whether scipy has a BLAS: a tenth of a second for what no kernel of ours calls

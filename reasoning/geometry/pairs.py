@@ -8,6 +8,7 @@ an extent included.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -17,6 +18,7 @@ from numpy.typing import NDArray
 from deixis.deadline import Deadline
 from deixis.reasoning.errors import OutOfTimeError
 from deixis.reasoning.geometry.rectangle import require_boxes
+from deixis.reasoning.kernel import njit
 
 Array = NDArray[np.float64]
 
@@ -168,6 +170,76 @@ class PairBlocks:
         counts = self.nearer[subjects, objects].astype(np.float64) + self.nearer[objects, subjects].T
         known = self.boxes[subjects]
         return PairGeometry(known, known if subjects == objects else self.boxes[objects], counts / (2 * others))
+
+
+@dataclass(frozen=True, eq=False)
+class Surroundings:
+    """Pairs of n boxes (n, 2, d) that lie among many more, a block at a time: how crowded they are is known about.
+
+    ``distances`` (n, r), in rising order, are those from each box to r others that are spread evenly over the scene:
+    the share of them that is nearer stands for that of all. The work grows with n r, and not with the square of all.
+    """
+
+    boxes: Array
+    distances: NDArray[np.float32]
+
+    @classmethod
+    def of(cls, boxes: Array, everything: Array, deadline: Deadline = Deadline.never()) -> Surroundings:
+        """Return the surroundings of boxes (n, 2, d) among ``everything`` (m, 2, d), which they are part of.
+
+        Raises OutOfTimeError at the ``deadline``.
+        """
+        spread = _spread_evenly(everything)
+        distances = np.empty((len(boxes), len(spread)), np.float32)
+        rows = max(1, ROW_CELLS // max(len(spread), 1))
+        for start in range(0, len(boxes), rows):
+            if start and deadline.passed:
+                raise OutOfTimeError(
+                    f"the time limit passed while {len(boxes)} things were compared; raise it, or look at fewer"
+                )
+            some = PairGeometry(boxes[start : start + rows], spread, np.zeros((0, 0)))
+            distances[start : start + rows] = np.sort(some.distance.astype(np.float32), axis=1)
+        return cls(boxes, distances)
+
+    def block(self, subjects: slice, objects: slice) -> PairGeometry:
+        """Return the pairs of these subjects with these objects."""
+        return self.block_with(subjects, self, objects)
+
+    def block_with(self, subjects: slice, other: Surroundings, objects: slice) -> PairGeometry:
+        """Return the pairs of these subjects with objects that another list of boxes of the same scene holds."""
+        known, others = self.boxes[subjects], other.boxes[objects]
+        crowd = np.empty((len(known), len(others)))
+        pairs = PairGeometry(known, others, crowd)
+        apart = np.ascontiguousarray(pairs.distance, dtype=np.float32)
+        shares_nearer(self.distances[subjects], other.distances[objects], apart, crowd)
+        return pairs
+
+
+SPREAD = 256
+"""Most things that stand for all of a scene in how crowded a pair is: a share is off by less than a hundredth."""
+
+
+def _spread_evenly(boxes: Array) -> Array:
+    """Return at most ``SPREAD`` of the boxes: of strips along y, sorted along x, every so many."""
+    if len(boxes) <= SPREAD:
+        return boxes
+    centres = boxes.mean(axis=1)
+    strips = np.argsort(np.argsort(centres[:, 1], kind="stable"), kind="stable") * math.isqrt(SPREAD) // len(boxes)
+    order = np.lexsort([centres[:, 0], strips])
+    chosen: Array = boxes[order[np.arange(SPREAD) * len(boxes) // SPREAD]]
+    return chosen
+
+
+@njit(cache=True)
+def shares_nearer(subjects, objects, apart, crowd):  # type: ignore[no-untyped-def]
+    """Fills in (n, m) the share of others nearer than the partner, the mean over both: distances (n, r) and (m, r) to
+    others in rising order, and those of the pairs (n, m). Where those of one side are not known (r is 0), the other
+    side's stand for both."""
+    total = subjects.shape[1] + objects.shape[1]
+    for p in range(apart.shape[0]):
+        for q in range(apart.shape[1]):
+            known = np.searchsorted(subjects[p], apart[p, q]) + np.searchsorted(objects[q], apart[p, q])
+            crowd[p, q] = known / max(total, 1)
 
 
 def pair_geometry(boxes: NDArray[np.float64]) -> PairGeometry:

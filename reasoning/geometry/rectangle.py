@@ -204,16 +204,26 @@ def require_boxes(boxes: NDArray[np.float64]) -> None:
         raise GraphError(f"box {bad} has a greatest corner below its least corner")
 
 
-def _related(
-    boxes: NDArray[np.float64], ranks: NDArray[np.int64], rows: slice, vocabulary: Relations, tolerance: float
+def cross_relations(
+    subjects: NDArray[np.float64],
+    objects: NDArray[np.float64],
+    ranks: tuple[NDArray[np.int64], NDArray[np.int64]],
+    vocabulary: Relations,
+    tolerance: float = 0.0,
 ) -> tuple[list[NDArray[np.int8]], NDArray[np.int8]]:
-    """Return the Allen codes by axis and the exact names of some boxes (rows) with all, each of shape (r, n)."""
-    low, high = boxes[:, 0], boxes[:, 1]
+    """Return the Allen codes by axis and the exact names of r boxes with n others, each of shape (r, n).
+
+    ``ranks`` (r,) and (n,) stand for the order of listing. Where a box is paired with itself, its name means nothing.
+    """
     codes = [
         allen_relations(
-            low[rows, None, axis], high[rows, None, axis], low[None, :, axis], high[None, :, axis], tolerance
+            subjects[:, None, 0, axis],
+            subjects[:, None, 1, axis],
+            objects[None, :, 0, axis],
+            objects[None, :, 1, axis],
+            tolerance,
         )
-        for axis in range(boxes.shape[2])
+        for axis in range(objects.shape[2])
     ]
     x, y = codes[:2]
     exact = vocabulary.of_reading(Reading.EXACT)
@@ -227,7 +237,14 @@ def _related(
                 settled = overlapping & (relation.z_atoms >> codes[2].astype(np.int64) & 1).astype(bool)
                 names = np.where(settled, np.int8(relation.index), names)
                 undecided &= ~settled
-    names = np.where(undecided, _offset_names(boxes, table, ranks, rows), names)
+    return codes, np.where(undecided, _offset_names(subjects, objects, table, ranks), names)
+
+
+def _related(
+    boxes: NDArray[np.float64], ranks: NDArray[np.int64], rows: slice, vocabulary: Relations, tolerance: float
+) -> tuple[list[NDArray[np.int8]], NDArray[np.int8]]:
+    """Return the same of some boxes (rows) with all; the name of each with itself is -1."""
+    codes, names = cross_relations(boxes[rows], boxes, (ranks[rows], ranks), vocabulary, tolerance)
     own = np.arange(len(boxes))[rows]
     names[np.arange(len(own)), own] = -1
     return codes, names
@@ -250,18 +267,21 @@ def _overlap_mask() -> NDArray[np.bool_]:
 
 
 def _offset_names(
-    boxes: NDArray[np.float64], table: NDArray[np.int8], ranks: NDArray[np.int64], rows: slice
+    subjects: NDArray[np.float64],
+    objects: NDArray[np.float64],
+    table: NDArray[np.int8],
+    ranks: tuple[NDArray[np.int64], NDArray[np.int64]],
 ) -> NDArray[np.int8]:
     """A name by the larger offset of the centres on x and y; by rank where both are zero."""
-    centres = boxes.mean(axis=1)[:, :2]
-    dx = centres[rows, None, 0] - centres[None, :, 0]
-    dy = centres[rows, None, 1] - centres[None, :, 1]
+    here, there = subjects.mean(axis=1), objects.mean(axis=1)
+    dx = here[:, None, 0] - there[None, :, 0]
+    dy = here[:, None, 1] - there[None, :, 1]
     left, right = table[Allen.BEFORE, Allen.EQUALS], table[Allen.AFTER, Allen.EQUALS]
     bottom, top = table[Allen.EQUALS, Allen.BEFORE], table[Allen.EQUALS, Allen.AFTER]
     on, under = table[Allen.DURING, Allen.DURING], table[Allen.CONTAINS, Allen.CONTAINS]
     by_x = np.where(dx < 0, left, right)
     by_y = np.where(dy < 0, bottom, top)
-    later = ranks[rows, None] > ranks[None, :]
+    later = ranks[0][:, None] > ranks[1][None, :]
     by_order = np.where(later, on, under)
     names = np.where(np.abs(dx) >= np.abs(dy), by_x, by_y)
     named: NDArray[np.int8] = np.where((dx == 0) & (dy == 0), by_order, names).astype(np.int8)

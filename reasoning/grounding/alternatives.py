@@ -18,6 +18,8 @@ MIN_LISTED_PROBABILITY = 0.01
 MAX_LISTED_GROUP = 100
 """Interchangeable objects up to which each lists the others' things: of k that would be k * k."""
 
+FITS_OTHERS = "the description names fewer things than were perceived, and fits the others at least as well"
+
 
 def alternatives(
     evidence: Evidence, alignment: Alignment, i: int, groups: tuple[tuple[str, ...], ...]
@@ -66,7 +68,7 @@ def left_out_objects(evidence: Evidence, alignment: Alignment, names: tuple[str,
             reason = "nothing was perceived"
         elif evidence.identified.all() and not evidence.allowed[i].any():
             reason = "the labels of the scene leave it nothing that it could be"
-        elif len(evidence.description.nodes) > len(evidence.scene.nodes) and (alignment.assignment != UNMATCHED).any():
+        elif len(evidence.description.nodes) > len(evidence.things) and (alignment.assignment != UNMATCHED).any():
             reason = "the description names more than was perceived, and the rest explains the scene best without it"
         else:
             reason = "what is said of it fits nothing perceived as well as its not being there"
@@ -87,9 +89,11 @@ def left_out_things(evidence: Evidence, alignment: Alignment, ids: tuple[str, ..
             reason = "the description names nothing"
         elif evidence.identified[p] and not evidence.allowed[:, p].any():
             reason = "the labels of the scene leave it nothing in the description that it could be"
-        elif len(evidence.description.nodes) < len(evidence.scene.nodes) and taken:
-            reason = "the description names fewer things than were perceived, and fits the others at least as well"
+        elif len(evidence.description.nodes) < len(evidence.things) and taken:
+            reason = FITS_OTHERS
         else:
             reason = "nothing that is described fits it better than its not being described"
         reasons[thing] = reason
+    if evidence.whole is not None:
+        reasons |= dict.fromkeys(set(evidence.whole.nodes) - set(evidence.scene.nodes), FITS_OTHERS)
     return tuple(LeftOut(thing, reasons[thing]) for thing in ids if thing in reasons)

@@ -30,6 +30,9 @@ from deixis.reasoning.grounding.symmetry import interchangeable
 SENSITIVITY_SHARE = 0.1
 """Share of the time limit for finding out what would change without each fact."""
 
+SECONDS_PER_NAME, MAX_MARGIN = 1e-4, 0.15
+"""What is kept of the time for telling the answer: seconds for each object and thing, and the most of what is left."""
+
 SENSITIVITY_OUT_OF_TIME = "there was no time to find out what rests on which fact"
 
 SENSITIVITY_NOT_ASKED = "whether it would be so without one of the facts was not looked for"
@@ -44,7 +47,10 @@ def ground(
     objects and facts were stated or things perceived: where the evidence leaves several answers, names decide, and
     the result says so (``interchangeable``, ``decided``).
     """
-    started, sensitivity_seconds = time.perf_counter(), SENSITIVITY_SHARE * deadline.left
+    started = time.perf_counter()
+    told = len(evidence.description.nodes) + len(evidence.things)
+    deadline = deadline.earlier(min(SECONDS_PER_NAME * told, MAX_MARGIN * deadline.left))
+    sensitivity_seconds = SENSITIVITY_SHARE * deadline.left
     rows = np.array(sorted(range(len(evidence.description.nodes)), key=lambda i: evidence.description.nodes[i]), int)
     columns = np.array(sorted(range(len(evidence.scene.nodes)), key=lambda i: evidence.scene.nodes[i]), int)
     in_order, stated = _facts_in_order(evidence.reordered(rows, columns))
@@ -57,12 +63,12 @@ def ground(
     matches = _matches(in_order, alignment, outcomes, groups)
     names = evidence.description.nodes
     posterior, verdict = alignment.posterior, alignment.verdict
-    pivotal = _pivotal(in_order, alignment, matches, Deadline.after(sensitivity_seconds))
+    pivotal = _pivotal(in_order, alignment, matches, deadline.within(sensitivity_seconds))
     return Grounding(
         engine=alignment.engine,
         matches=MappingProxyType({name: matches[name] for name in names if name in matches}),
         unmatched_objects=left_out_objects(in_order, alignment, names),
-        unmatched_perceived=left_out_things(in_order, alignment, evidence.scene.nodes),
+        unmatched_perceived=left_out_things(in_order, alignment, evidence.things),
         interchangeable=groups,
         graph_similarity=alignment.graph_similarity,
         outcomes=outcomes,

@@ -31,10 +31,10 @@ from numpy.typing import NDArray
 
 from deixis.deadline import Deadline
 from deixis.reasoning.errors import OutOfTimeError
-from deixis.reasoning.grounding.evidence.evidence import Evidence
+from deixis.reasoning.grounding.evidence.evidence import Evidence, Whole, without_facts
 from deixis.reasoning.grounding.matching.permanents import entropy_without_facts, log_prior, log_sum_without_facts
 from deixis.reasoning.grounding.matching.posterior import Posterior, posterior
-from deixis.reasoning.grounding.matching.problem import UNMATCHED, Problem
+from deixis.reasoning.grounding.matching.problem import UNMATCHED
 from deixis.reasoning.grounding.matching.scalable import scalable
 
 FACTS_POWER, CHANCE_SHARE, KINDS_POWER = 0.7, 0.37, 1.4
@@ -188,18 +188,20 @@ def weigh(
     if first.found is None or not (math.isfinite(first.found.error) or first.found.believed):
         return None
     problem, readings = evidence.problem, evidence.label_readings
-    alone = _log_sum([weight + log_sum_without_facts(_without_facts(known)) for weight, known in readings])
+    alone = _log_sum([weight + log_sum_without_facts(known.without_facts) for weight, known in readings])
     most = float(problem.tables.max(axis=(1, 2), initial=0.0)[problem.kinds].sum()) if len(problem.ends) else 0.0
-    most = max(0.0, most - entropy_without_facts(_without_facts(evidence)))
+    most = max(0.0, most - entropy_without_facts(evidence.without_facts))
     told = FitEvidence(
-        first.log_total - alone, most, min(0.0, alone - log_prior(problem) + KINDS_SLACK * len(problem.absent))
+        first.log_total - alone,
+        most,
+        min(0.0, alone - log_prior(evidence.without_facts) + KINDS_SLACK * len(problem.absent)),
     )
     maps = [first]
     weights = [math.log(sides[0].prior) + FACTS_POWER * told.facts]
     rest = list(zip(sides[1:], seen[1:] if seen else (None,) * len(sides[1:]), strict=True))
     for number, (side, known) in enumerate(rest):
         there = None
-        if not (deadline.passed or evidence.scene.boxes is None or len(evidence.scene.nodes) > MAX_THINGS):
+        if not (deadline.passed or evidence.scene.boxes is None or len(evidence.things) > MAX_THINGS):
             turned = evidence.seen_from(side.angle, side.mirrored) if known is None else known
             least = (max(weights) + math.log(NEGLIGIBLE) - math.log(side.prior)) / FACTS_POWER + alone
             left = deadline.share(1 / (len(rest) - number))
@@ -258,11 +260,28 @@ def _maps_of(
         if weight + total >= enough and (not seen or not deadline.passed):
             found = posterior(problem, deadline, start=best, chains=not known.frugal)
             total = log_total(found, value)
+            if known.whole is not None:
+                found, total = _of_shortlist(found, known.whole), total - math.log1p(-_all_outside(known.whole))
         seen.append((weight + value, weight + total, known, best, found))
     together = _log_sum([total for _, total, *_ in seen])
     parts = [(math.exp(total - together), found) for _, total, _, _, found in seen if found is not None]
     log_best, _, known, best, _ = max(seen, key=lambda one: one[0])
     return _Maps(known, best, log_best, together, _mixed(parts) if parts else None)
+
+
+def _of_shortlist(found: Posterior, whole: Whole) -> Posterior:
+    """Return the posterior of a shortlist's things in the whole scene: what is not on the list is missing, and makes it
+    no better known than by that."""
+    inside = 1.0 - whole.outside
+    errors = found.errors + whole.outside
+    return replace(
+        found, marginals=found.marginals * inside[:, None], exact=False, error=float(errors.max()), errors=errors
+    )
+
+
+def _all_outside(whole: Whole) -> float:
+    """Return about how probable it is that some object is not on the shortlist, less than 1."""
+    return min(float(whole.outside.max(initial=0.0)), 1.0 - 1e-9)
 
 
 def _mixed(parts: Sequence[tuple[float, Posterior]]) -> Posterior:
@@ -275,13 +294,6 @@ def _mixed(parts: Sequence[tuple[float, Posterior]]) -> Posterior:
         np.sum([share * one.errors for share, one in parts], axis=0),
         any(one.believed for _, one in parts),
     )
-
-
-def _without_facts(evidence: Evidence) -> Problem:
-    """Return the problem of the same evidence with no fact."""
-    n2 = len(evidence.scene.nodes)
-    ends, nothing = np.zeros((0, 2), dtype=np.int64), np.zeros((0, n2, n2), dtype=np.float32)
-    return Problem(ends, ends[:, 0], nothing, evidence.unary, evidence.absent, evidence.allowed)
 
 
 def _log_sum(values: Sequence[float]) -> float:
@@ -306,12 +318,11 @@ def _by_labels(evidence: Evidence) -> tuple[NDArray[np.int64], Posterior]:
     marginals[:, -1] = 1.0
     if not len(rows):
         return nobody, Posterior(marginals, True, 0.0)
-    bare = _without_facts(evidence)
-    labelled = replace(
-        bare, unary=np.where(spoken, evidence.labels, 0.0)[rows], absent=np.zeros(len(rows)), allowed=spoken[rows]
-    )
+    labelled = without_facts(np.where(spoken, evidence.labels, 0.0)[rows], np.zeros(len(rows)), spoken[rows])
     found = posterior(labelled)
     marginals[rows] = found.marginals
+    if evidence.whole is not None:
+        marginals *= evidence.whole.labelled_inside[:, None]
     nobody[rows] = exact(labelled).assignment
     return nobody, Posterior(marginals, found.exact, found.error, believed=found.believed)
 

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from deixis.deadline import Deadline
 from deixis.reasoning.grounding.engine import Alignment
-from deixis.reasoning.grounding.evidence.evidence import Evidence
+from deixis.reasoning.grounding.evidence.evidence import Evidence, Whole
 from deixis.reasoning.grounding.hypotheses import STATED_SIDES, Side, side_text, weigh
 from deixis.reasoning.grounding.matching.baselines import NodeSimilarity
 from deixis.reasoning.grounding.matching.exact import exact
@@ -108,6 +108,9 @@ def _answer(
 ) -> Alignment:
     """Return the likeliest map of the likeliest side with its probability over all hypotheses, where the time sufficed
     for one, and the paper's similarity for comparison."""
+    if evidence.whole is not None:  # other things are not looked at, so that nothing is proved
+        gap = math.inf
+        notes += _shortlist_notes(evidence, evidence.whole)
     matrix, converged, unknown = _similarity(evidence, deadline.share(SIMILARITY_SHARE))
     seen = tuple(None if other is None else other.in_order_of(evidence) for other in engine.seen)
     found = weigh(evidence, assignment, deadline, engine.sides, seen)
@@ -141,6 +144,14 @@ def _answer(
         verdict=found,
         seen=best.evidence if from_elsewhere and found.fits >= 0.5 else None,
     )
+
+
+def _shortlist_notes(evidence: Evidence, whole: Whole) -> tuple[str, ...]:
+    """Return what is to be said of an answer that rests on a shortlist of things."""
+    apart = [name for name, share in zip(evidence.description.nodes, whole.outside, strict=True) if share > APART]
+    shown = ", ".join(apart[:MAX_NAMED]) + (", …" if len(apart) > MAX_NAMED else "")
+    found = f"{len(evidence.scene.nodes)} of {len(whole.nodes)} things were looked at closely"
+    return (f"{found}: others are as likely to be {shown}" if apart else f"{found}: no other is likely to be meant",)
 
 
 def _posterior_notes(evidence: Evidence, probable: Posterior) -> tuple[str, ...]:

@@ -25,6 +25,19 @@ FIXED_BYTES = 3e7
 """Blocks of pairs at work, and the processor's own caches of compiled code."""
 
 
+BYTES_PER_LISTED_MATCH = 250
+"""Of each object with each thing of a scene of which a shortlist is made: labels, trusted and not, sizes, colours, what
+they come to, and beliefs."""
+
+BYTES_PER_LISTED_THING = 3000
+"""Of each thing of such a scene: how crowded it is, and what the answer says of it."""
+
+
+def bytes_of_things(objects: int, things: int) -> float:
+    """Return about how many bytes it takes to know things by themselves, before any two are compared."""
+    return float(things * (objects * BYTES_PER_LISTED_MATCH + BYTES_PER_LISTED_THING))
+
+
 def required_gigabytes(objects: int, things: int, facts: int, tables: int, *, chains: bool = True) -> float:
     """Return about how many gigabytes (10^9 bytes) it takes at most to ground a description in a scene.
 

@@ -63,7 +63,7 @@ class Deadline:
 
     Work that is split into phases gives each a share of the time that is left, so that one time limit holds for all
     of them. The clock is ``time.monotonic``, which does not jump when the system's clock is set; it stands still while
-    code is compiled or loaded (:func:`clock_stopped`).
+    code is compiled (:func:`clock_stopped`).
 
     Parameters
     ----------
@@ -110,3 +110,7 @@ class Deadline:
     def within(self, seconds: float) -> Self:
         """Return the earlier of this deadline and the one ``seconds`` from now."""
         return type(self)(min(self.at, CLOCK.now() + seconds))
+
+    def earlier(self, seconds: float) -> Self:
+        """Return the deadline that many seconds earlier, which leaves time for what has to be done after the work."""
+        return type(self)(self.at - seconds)

@@ -43,6 +43,7 @@ def compile_grounding(engine: str) -> None:
     from deixis.grammar.parser import parse_script
     from deixis.reasoning.entailment.conflict import find_conflict
     from deixis.reasoning.entailment.implications import Implications
+    from deixis.reasoning.geometry.pairs import Surroundings
     from deixis.reasoning.grounding.engines import engine_named
     from deixis.reasoning.grounding.evidence.evidence import evidence_from
     from deixis.reasoning.grounding.ground import ground
@@ -61,6 +62,7 @@ def compile_grounding(engine: str) -> None:
     ground(evidence, chosen, Deadline.after(3600.0))
     exact.warm()
     ladders.warm()
+    Surroundings.of(scene.boxes, scene.boxes).block(slice(0, 1), slice(1, 3))
 
 
 def compile_inference() -> None:

@@ -34,6 +34,7 @@ from deixis.reasoning.grounding.evidence.labels import Label, classes
 from deixis.reasoning.grounding.evidence.meaning import OUTLIERS, SHIPPED, Meaning
 from deixis.reasoning.grounding.evidence.unary import LABEL_ERROR, label_ratios, size_evidence
 from deixis.reasoning.grounding.matching.problem import UNMATCHED, Problem
+from deixis.reasoning.grounding.memory_budget import different_facts
 
 MAX_ABSENCE_ODDS = 0.015
 """Upper bound of the odds that an object is absent from a scene that has room for all."""
@@ -41,6 +42,8 @@ MAX_ABSENCE_ODDS = 0.015
 PRESENT_LOG_ODDS = -30.0
 """Log-odds of absence of an object that a certain label, or an answer, says is there."""
 
+SECONDS_PER_CELL = 1e-8
+"""Seconds that it takes to lay out a cell of the tables for an engine, which nothing interrupts."""
 
 UNRELIABLE_PRIOR, UNRELIABLE_ERROR = 0.01, 0.7
 """Probability that the labels of a scene are not to be trusted, and that one of them is wrong then: whoever is wrong
@@ -61,6 +64,43 @@ class DoubtedLabels:
 
 
 @dataclass(frozen=True, eq=False)
+class Whole:
+    """The scene of which evidence holds a shortlist: what all its n things are, and what is left out.
+
+    ``alone`` is the matching problem of all things without facts, ``doubted`` the same where labels are not to be
+    trusted (None where no label can be doubted). ``outside`` (n1,) is about the posterior probability that each object
+    is a thing that is not on the shortlist; ``labelled_inside`` (n1,) the share of what labels say of each object, or
+    of its being none, that is said of the shortlist.
+    """
+
+    nodes: tuple[str, ...]
+    boxes: NDArray[np.float64]  # (n, 2, d)
+    alone: Problem
+    doubted: Problem | None
+    outside: NDArray[np.float64]
+    labelled_inside: NDArray[np.float64]
+
+    def reordered(self, rows: NDArray[np.int64]) -> Whole:
+        """Return the same with the objects in another order."""
+
+        def in_order(problem: Problem) -> Problem:
+            return replace(
+                problem,
+                unary=problem.unary[rows],
+                absent=problem.absent[rows],
+                allowed=problem.allowed[rows],
+            )
+
+        return replace(
+            self,
+            alone=in_order(self.alone),
+            doubted=None if self.doubted is None else in_order(self.doubted),
+            outside=self.outside[rows],
+            labelled_inside=self.labelled_inside[rows],
+        )
+
+
+@dataclass(frozen=True, eq=False)
 class Evidence:
     """A description of n1 objects by m facts beside a scene of n2 things, with all that speaks for each match.
 
@@ -70,7 +110,8 @@ class Evidence:
     says what they are. ``doubted_labels`` are what labels say that are not to be trusted. Masks that are left out rule
     nothing out and identify nothing. ``consistent`` says whether the firm facts can hold together, where that is known
     already. By the ``deadline`` the facts' evidence has to be worked out: else :attr:`problem` raises OutOfTimeError.
-    ``frugal``: there is no memory for chains of maps to be drawn, so that probabilities are beliefs.
+    ``frugal``: there is no memory for chains of maps to be drawn, so that probabilities are beliefs. ``whole`` is the
+    scene of which ``scene`` is a shortlist, where it is one.
     """
 
     description: RelationGraph
@@ -85,6 +126,7 @@ class Evidence:
     consistent: bool | None = None
     deadline: Deadline = Deadline.never()
     frugal: bool = False
+    whole: Whole | None = None
 
     def __post_init__(self) -> None:
         shape = (len(self.description.nodes), len(self.scene.nodes))
@@ -108,7 +150,19 @@ class Evidence:
     @property
     def absent(self) -> NDArray[np.float64]:
         """What leaving each object out is worth, shape (n1,)."""
-        return np.where(self.present, PRESENT_LOG_ODDS, absence(*self.labels.shape))
+        return np.where(self.present, PRESENT_LOG_ODDS, absence(len(self.labels), len(self.things)))
+
+    @property
+    def things(self) -> tuple[str, ...]:
+        """All things of the scene, those that are not on a shortlist included."""
+        return self.scene.nodes if self.whole is None else self.whole.nodes
+
+    @property
+    def without_facts(self) -> Problem:
+        """The matching problem of all things of the scene, without facts."""
+        if self.whole is not None:
+            return self.whole.alone
+        return without_facts(self.unary, self.absent, self.allowed)
 
     @cached_property
     def label_readings(self) -> tuple[tuple[float, Evidence], ...]:
@@ -118,7 +172,10 @@ class Evidence:
         """
         if self.doubted_labels is None:
             return ((0.0, self),)
-        doubted = replace(self, labels=self.doubted_labels.ratios, doubted_labels=None)
+        whole = self.whole
+        if whole is not None and whole.doubted is not None:
+            whole = replace(whole, alone=whole.doubted)
+        doubted = replace(self, labels=self.doubted_labels.ratios, doubted_labels=None, whole=whole)
         trusted = math.log1p(-UNRELIABLE_PRIOR)
         return ((trusted, self), (math.log(UNRELIABLE_PRIOR) + self.doubted_labels.log_likelihood, doubted))
 
@@ -148,7 +205,8 @@ class Evidence:
             absent=absent,
             allowed=self.allowed,
             names=self.scene.names,
-            deadline=self.deadline,
+            everything=None if self.whole is None else self.whole.boxes,
+            deadline=self.deadline.earlier(SECONDS_PER_CELL * different_facts(self.description) * len(boxes) ** 2),
         )
         return Problem(facts.ends, facts.kinds, facts.tables, unary, absent, self.allowed)
 
@@ -223,6 +281,7 @@ class Evidence:
             doubted_labels=None if self.doubted_labels is None else self.doubted_labels.reordered(both),
             allowed=self.allowed[both],
             identified=self.identified[columns],
+            whole=None if self.whole is None else self.whole.reordered(rows),
         )
 
     def in_order_of(self, other: Evidence) -> Evidence:
@@ -257,6 +316,63 @@ def no_unary_evidence(description: RelationGraph, scene: SceneRelations, meaning
     return Evidence(description, scene, nothing, nothing, meaning)
 
 
+@dataclass(frozen=True, eq=False)
+class ThingEvidence:
+    """What is known of n2 things by themselves: log-likelihood ratios of n1 objects being them, as in
+    :class:`Evidence`."""
+
+    labels: NDArray[np.float64]
+    sizes: NDArray[np.float64]
+    colours: NDArray[np.float64] | None
+    doubted_labels: DoubtedLabels | None
+    allowed: NDArray[np.bool_]
+
+
+def thing_evidence(
+    description: RelationGraph,
+    boxes: NDArray[np.float64] | None,
+    labels: Sequence[Label | None],
+    kinds: Kinds,
+    sizes: Sizes,
+    *,
+    metric: bool = True,
+    meaning: Meaning = SHIPPED,
+    seen: NDArray[np.float64] | None = None,
+    colours: Colours | None = None,
+    label_error: float = LABEL_ERROR,
+    candidates: Sequence[Candidates | None] = (),
+) -> ThingEvidence:
+    """Return what labels, sizes and colours say, each by its weight; arguments are those of :func:`evidence_from`."""
+    weights, shape = meaning.weights, (len(description.nodes), len(labels))
+    said, measured, allowed = np.zeros(shape), np.zeros(shape), np.ones(shape, dtype=bool)
+    doubted = None
+    if weights.labels > 0:
+        told = label_ratios(description, labels, kinds, label_error)
+        said, allowed = weights.labels * told.ratios, told.allowed
+        ranked = np.zeros(shape)
+        if any(candidates):
+            ranked = weights.labels * np.where(allowed, candidate_ratios(description, candidates, kinds), 0.0)
+            said = said + ranked
+        if label_error > 0 and any(label is not None for label in labels):
+            unreliable = label_ratios(description, labels, kinds, UNRELIABLE_ERROR)
+            doubted = DoubtedLabels(
+                weights.labels * unreliable.ratios + ranked, weights.labels * (unreliable.by_chance - told.by_chance)
+            )
+    if weights.sizes > 0 and boxes is not None:
+        measured = weights.sizes * size_evidence(classes(description), boxes, sizes, meaning.sizes, metric)
+    shades = None
+    if weights.colours > 0 and seen is not None and colours is not None and description.colours:
+        shades = weights.colours * colour_evidence(description.colours, seen, colours)
+    return ThingEvidence(said, measured, shades, doubted, allowed)
+
+
+def without_facts(unary: NDArray[np.float64], absent: NDArray[np.float64], allowed: NDArray[np.bool_]) -> Problem:
+    """Return the matching problem of what is known of things by themselves (n1, n2), and no fact."""
+    n2 = unary.shape[1]
+    ends, nothing = np.zeros((0, 2), dtype=np.int64), np.zeros((0, n2, n2), dtype=np.float32)
+    return Problem(ends, ends[:, 0], nothing, unary, absent, allowed)
+
+
 def evidence_from(
     description: RelationGraph,
     scene: SceneRelations,
@@ -279,27 +395,28 @@ def evidence_from(
     ``label_error`` is the probability that a label of confidence 1 is wrong; 0 takes such labels as identities.
     ``candidates`` are those of each thing, and weigh as labels do; none of any where they are left out.
     """
-    weights, shape = meaning.weights, (len(description.nodes), len(scene.nodes))
-    said, measured, allowed = np.zeros(shape), np.zeros(shape), np.ones(shape, dtype=bool)
-    doubted = None
-    if weights.labels > 0:
-        told = label_ratios(description, labels, kinds, label_error)
-        said, allowed = weights.labels * told.ratios, told.allowed
-        ranked = np.zeros(shape)
-        if any(candidates):
-            ranked = weights.labels * np.where(allowed, candidate_ratios(description, candidates, kinds), 0.0)
-            said = said + ranked
-        if label_error > 0 and any(label is not None for label in labels):
-            unreliable = label_ratios(description, labels, kinds, UNRELIABLE_ERROR)
-            doubted = DoubtedLabels(
-                weights.labels * unreliable.ratios + ranked, weights.labels * (unreliable.by_chance - told.by_chance)
-            )
-    if weights.sizes > 0 and scene.boxes is not None:
-        measured = weights.sizes * size_evidence(classes(description), scene.boxes, sizes, meaning.sizes, metric)
-    shades = None
-    if weights.colours > 0 and seen is not None and colours is not None and description.colours:
-        shades = weights.colours * colour_evidence(description.colours, seen, colours)
-    identified = np.any(~allowed, axis=0)
+    known = thing_evidence(
+        description,
+        scene.boxes,
+        labels,
+        kinds,
+        sizes,
+        metric=metric,
+        meaning=meaning,
+        seen=seen,
+        colours=colours,
+        label_error=label_error,
+        candidates=candidates,
+    )
     return Evidence(
-        description, scene, said, measured, meaning, shades, doubted, allowed, identified, deadline=deadline
+        description,
+        scene,
+        known.labels,
+        known.sizes,
+        meaning,
+        known.colours,
+        known.doubted_labels,
+        known.allowed,
+        np.any(~known.allowed, axis=0),
+        deadline=deadline,
     )

@@ -16,6 +16,7 @@ A saying model gives the probability that a fact is said of a pair, up to a cons
 
 from __future__ import annotations
 
+import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import prod
@@ -28,7 +29,7 @@ from deixis.ontology.graph import RelationGraph
 from deixis.ontology.models.relations import SAYING, RelationModels
 from deixis.ontology.relation import Relation, Relations
 from deixis.reasoning.errors import OutOfTimeError, SettingError
-from deixis.reasoning.geometry.pairs import PairBlocks, PairGeometry
+from deixis.reasoning.geometry.pairs import PairBlocks, PairGeometry, Surroundings
 from deixis.reasoning.geometry.rectangle import box_relations, require_boxes
 from deixis.reasoning.grounding.evidence.degrees import WordDegrees, log_likelihood_ratio, saying_degree
 from deixis.reasoning.grounding.evidence.literalness import LITERAL, literal_share
@@ -42,6 +43,9 @@ JUDGEMENT_SHARE = 0.2
 
 SIDE = 256
 """Things on either side of a block of pairs that is looked at at once: small enough for a processor's cache."""
+
+FORESEEN_FROM, FORESEEN_EXCESS = 4, 1.5
+"""Blocks after which it is foreseen how long all of them take, and times as long as is left that is too long."""
 
 IMPLIED = 0.1
 """How readily a literal speaker says *left* of a pair whose name is *top left*: nine times in ten, the name is said."""
@@ -67,6 +71,22 @@ class FactTables:
     tables: NDArray[np.float32]  # (k, n2, n2), log-likelihood ratios, finite, 0 on the diagonal
 
 
+Said = tuple[int, bool, float]
+"""What makes facts differ: the set of relations, the sign, and the weight."""
+
+
+def compared_facts(
+    description: RelationGraph,
+) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64], list[Said]]:
+    """Return the m edges that are compared (m,), their ends (m, 2), which different fact each is (m,), and those."""
+    edges = np.flatnonzero(description.subjects != description.objects).astype(np.int64)
+    columns = (description.relation_sets, description.affirmed, description.net_weights)
+    keys = list(zip(*(column[edges].tolist() for column in columns), strict=True))
+    distinct = sorted(set(keys))
+    places = {key: place for place, key in enumerate(distinct)}
+    return edges, _ends(description, edges), np.array([places[key] for key in keys], dtype=np.int64), distinct
+
+
 def fact_tables(
     description: RelationGraph,
     boxes: NDArray[np.float64],
@@ -78,6 +98,7 @@ def fact_tables(
     absent: Array | None = None,
     allowed: NDArray[np.bool_] | None = None,
     names: NDArray[np.integer] | None = None,
+    everything: NDArray[np.float64] | None = None,
     deadline: Deadline = Deadline.never(),
 ) -> FactTables:
     """Return the evidence of every fact for every ordered pair of n2 boxes (n2, 2, d).
@@ -86,18 +107,13 @@ def fact_tables(
     of facts that are meant literally; where it is None, it is judged from the description by the shipped models, with
     what is known of things by themselves (``unary``, shape (n1, n2), and the mask ``allowed``) and of their absence
     (``absent``, (n1,)), as in :class:`deixis.reasoning.grounding.matching.problem.Problem`. ``names`` (n2, n2) are the
-    exact names of the pairs, where they are known already. Raises GraphError for boxes that are none, UnknownTermError
+    exact names of the pairs, where they are known already. ``everything`` (n, 2, d) are all boxes of the scene, where
+    those that are compared are some of them. Raises GraphError for boxes that are none, UnknownTermError
     for a word that has no model, SettingError for a weight or a share beyond 0 to 1, OutOfTimeError at the deadline.
     """
     if literal is not None and not 0 <= literal <= 1:
         raise SettingError(f"the share of facts that are meant literally lies between 0 and 1, not at {literal:g}")
-    edges = np.flatnonzero(description.subjects != description.objects).astype(np.int64)
-    columns = (description.relation_sets, description.affirmed, description.net_weights)
-    keys = list(zip(*(column[edges].tolist() for column in columns), strict=True))  # relations, sign, weight
-    distinct = sorted(set(keys))
-    places = {key: place for place, key in enumerate(distinct)}
-    kinds = np.array([places[key] for key in keys], dtype=np.int64)
-    ends = _ends(description, edges)
+    edges, ends, kinds, distinct = compared_facts(description)
     order = np.zeros(0, dtype=np.int64)  # of the boxes by their coordinates
     if len(boxes):
         order = np.lexsort(np.reshape(boxes, (len(boxes), -1)).T[::-1])
@@ -105,10 +121,10 @@ def fact_tables(
         names = box_relations(np.asarray(boxes, dtype=np.float64), description.vocabulary).names
     names, boxes = names[np.ix_(order, order)], np.asarray(boxes[order], dtype=np.float64)
     require_boxes(boxes)
-    nearer = PairBlocks.of(boxes, deadline)
+    nearer = PairBlocks.of(boxes, deadline) if everything is None else Surroundings.of(boxes, everything, deadline)
 
     def ratios(known: RelationModels) -> _FactRatios:
-        return _FactRatios(nearer, names, known, description.vocabulary, saying, distinct, deadline)
+        return _FactRatios(nearer, names, SaidFacts(known, description.vocabulary, saying, distinct), deadline)
 
     usual = ratios(shipped_models()) if models is None or literal is None else None
     if literal is None:
@@ -125,82 +141,32 @@ def fact_tables(
     return FactTables(edges, ends, kinds, usual.tables(literal, np.argsort(order)))
 
 
-class _FactRatios:
-    """What k different facts (relations, sign, weight) say of the pairs of one scene, to either speaker.
+class SaidFacts:
+    """What different facts (relations, sign, weight) say of pairs, to a graded speaker and to a literal one.
 
-    Kept as likelihood ratios, not as their logarithms: speakers mix and hedges weaken by sums of them.
+    ``literal`` holds, for each fact, the likelihood ratio of a literal speaker by the exact name of the pair, shape
+    (relations + 1,): the last one is of no name, -1.
     """
 
-    def __init__(
-        self,
-        pairs: PairBlocks,
-        names: NDArray[np.integer],
-        models: RelationModels,
-        vocabulary: Relations,
-        saying: bool,
-        distinct: Sequence[tuple[int, bool, float]],
-        deadline: Deadline,
-    ) -> None:
-        self.names = np.where(names < 0, len(vocabulary), names).astype(np.uint8)
-        self.models, self.vocabulary, self.deadline = models, vocabulary, deadline
+    def __init__(self, models: RelationModels, vocabulary: Relations, saying: bool, distinct: Sequence[Said]) -> None:
+        self.models, self.vocabulary, self.saying = models, vocabulary, saying
         self.spoken_by_chance = models[SAYING].chance if saying else 1.0
         self.said = [(vocabulary.members(mask), positive, weight) for mask, positive, weight in distinct]
         self.literal = [self._literal(relations, positive) for relations, positive, _ in self.said]
-        self.graded = np.empty((len(self.said), *names.shape), np.float32)
-        starts = range(0, len(names), SIDE)
-        for subjects in (slice(start, start + SIDE) for start in starts):
-            for objects in (slice(start, start + SIDE) for start in starts if start <= subjects.start):
-                self._require_time()
-                self._fill(subjects, objects, pairs.block(subjects, objects), saying)
 
-    def tables(self, share: float, order: NDArray[np.int64] | None = None) -> NDArray[np.float32]:
-        """Return the evidence where ``share`` of facts is meant literally, shape (k, n2, n2), 0 on the diagonals.
+    def spoken(self, pairs: PairGeometry) -> NDArray[np.float32] | np.float32:
+        """Return how readily each pair of a block is spoken of."""
+        return saying_degree(pairs, self.models).astype(np.float32) if self.saying else np.float32(1.0)
 
-        ``order`` (n2,) lists the things as they shall stand.
-        """
-        n = len(self.names)
-        tables = empty_tables(len(self.said), n)
-        said = np.empty((n, n), dtype=np.float32)
-        for table, (_, _, weight), graded, literal in zip(tables, self.said, self.graded, self.literal, strict=True):
-            self._require_time()
-            offset = (weight * share * literal + (1 - weight)).astype(np.float32)
-            np.take(offset, self.names, out=said, mode="clip")
-            said += np.multiply(graded, np.float32(weight * (1 - share)), out=table)
-            np.log(said, out=said)
-            np.fill_diagonal(said, 0.0)
-            if order is None:
-                table[:] = said
-            else:
-                for row, place in zip(table, order, strict=True):
-                    np.take(said[place], order, out=row, mode="clip")
-        return tables
-
-    def _require_time(self) -> None:
-        """Raise OutOfTimeError at the deadline; a scene of one block takes no time worth mentioning."""
-        if len(self.names) > SIDE and self.deadline.passed:
-            raise OutOfTimeError(
-                f"the time limit passed before the evidence of {len(self.names)} things was worked out; raise it, or "
-                "ground a smaller scene"
-            )
-
-    def _fill(self, subjects: slice, objects: slice, pairs: PairGeometry, saying: bool) -> None:
-        """Work out the degrees of a block of pairs, and of the same pairs the other way round."""
-        degrees = WordDegrees(pairs, self.models)
-        both = [(subjects, objects, pairs, degrees), (objects, subjects, pairs.reverse, degrees.reverse)]
-        for rows, columns, some, fitting in both if subjects != objects else both[:1]:
-            spoken = saying_degree(some, self.models).astype(np.float32) if saying else np.float32(1.0)
-            for ratio, (relations, positive, _) in zip(self.graded, self.said, strict=True):
-                ratio[rows, columns] = self._ratio(relations, positive, fitting, self.names[rows, columns], spoken)
-
-    def _ratio(
+    def ratio(
         self,
-        relations: tuple[Relation, ...],
-        positive: bool,
+        fact: int,
         degrees_of: WordDegrees,
         names: NDArray[np.uint8],
         spoken: NDArray[np.float32] | np.float32,
     ) -> NDArray[np.float32]:
         """Return by how much likelier a graded speaker says a fact of each pair of a block than by chance."""
+        relations, positive, _ = self.said[fact]
         outliers = float(np.mean([self.models.of(relation).outliers for relation in relations]))
         chances = np.array([self.models.of(relation).chance for relation in relations])
         fitting = [degrees_of.of(relation) for relation in relations]
@@ -217,12 +183,85 @@ class _FactRatios:
         ratio += np.float32(outliers / by_chance)
         return ratio
 
+    def offset(self, fact: int, share: float) -> NDArray[np.float32]:
+        """Return what is added to the graded speaker's part, by the exact name of the pair: a ``share`` of facts is
+        meant literally, and a hedged fact may say nothing."""
+        weight = self.said[fact][2]
+        offset: NDArray[np.float32] = (weight * share * self.literal[fact] + (1 - weight)).astype(np.float32)
+        return offset
+
+    def mixed(self, fact: int, pairs: PairGeometry, names: NDArray[np.uint8], share: float) -> NDArray[np.float32]:
+        """Return the likelihood ratio of a fact for each pair of a block, ``share`` of facts being meant literally."""
+        ratio = self.ratio(fact, WordDegrees(pairs, self.models), names, self.spoken(pairs))
+        ratio *= np.float32(self.said[fact][2] * (1 - share))
+        ratio += self.offset(fact, share)[names]
+        return ratio
+
     def _literal(self, relations: tuple[Relation, ...], positive: bool) -> Array:
-        """Return degrees by the exact name of the pair, shape (relations + 1,): the last one of no name, -1."""
         names = np.append(np.arange(len(self.vocabulary)), -1)
         degree = literal_degree(relations, positive, names, self.vocabulary, IMPLIED)
         chance = min(LITERAL_CHANCE * len(relations), 1.0)
         return np.exp(log_likelihood_ratio(degree, OUTLIERS, chance if positive else 1 - chance))
+
+
+class _FactRatios:
+    """What k different facts say of all pairs of one scene.
+
+    Kept as likelihood ratios, not as their logarithms: speakers mix and hedges weaken by sums of them.
+    """
+
+    def __init__(
+        self, pairs: PairBlocks | Surroundings, names: NDArray[np.integer], facts: SaidFacts, deadline: Deadline
+    ) -> None:
+        self.names = np.where(names < 0, len(facts.vocabulary), names).astype(np.uint8)
+        self.facts, self.deadline = facts, deadline
+        self.graded = np.empty((len(facts.said), *names.shape), np.float32)
+        starts, started = range(0, len(names), SIDE), time.monotonic()
+        blocks = [(a, b) for a in starts for b in starts if b <= a]
+        for done, (subject, object) in enumerate(blocks):
+            needed = (time.monotonic() - started) / max(done, 1) * (len(blocks) - done)
+            self._require_time(needed if done >= FORESEEN_FROM else 0.0)
+            subjects, objects = slice(subject, subject + SIDE), slice(object, object + SIDE)
+            self._fill(subjects, objects, pairs.block(subjects, objects))
+
+    def tables(self, share: float, order: NDArray[np.int64] | None = None) -> NDArray[np.float32]:
+        """Return the evidence where ``share`` of facts is meant literally, shape (k, n2, n2), 0 on the diagonals.
+
+        ``order`` (n2,) lists the things as they shall stand.
+        """
+        n, known = len(self.names), self.facts
+        tables = empty_tables(len(known.said), n)
+        said = np.empty((n, n), dtype=np.float32)
+        for fact, (table, graded) in enumerate(zip(tables, self.graded, strict=True)):
+            self._require_time()
+            np.take(known.offset(fact, share), self.names, out=said, mode="clip")
+            said += np.multiply(graded, np.float32(known.said[fact][2] * (1 - share)), out=table)
+            np.log(said, out=said)
+            np.fill_diagonal(said, 0.0)
+            if order is None:
+                table[:] = said
+            else:
+                for row, place in zip(table, order, strict=True):
+                    np.take(said[place], order, out=row, mode="clip")
+        return tables
+
+    def _require_time(self, needed: float = 0.0) -> None:
+        """Raise OutOfTimeError at the deadline, or where much more is ``needed`` (seconds) than is left; a scene of one
+        block takes no time worth mentioning."""
+        if len(self.names) > SIDE and (self.deadline.passed or needed > FORESEEN_EXCESS * self.deadline.left):
+            raise OutOfTimeError(
+                f"the time limit passed before the evidence of {len(self.names)} things was worked out; raise it, or "
+                "ground a smaller scene"
+            )
+
+    def _fill(self, subjects: slice, objects: slice, pairs: PairGeometry) -> None:
+        """Work out the degrees of a block of pairs, and of the same pairs the other way round."""
+        degrees = WordDegrees(pairs, self.facts.models)
+        both = [(subjects, objects, pairs, degrees), (objects, subjects, pairs.reverse, degrees.reverse)]
+        for rows, columns, some, fitting in both if subjects != objects else both[:1]:
+            spoken = self.facts.spoken(some)
+            for fact, ratio in enumerate(self.graded):
+                ratio[rows, columns] = self.facts.ratio(fact, fitting, self.names[rows, columns], spoken)
 
 
 def literal_degree(

@@ -78,10 +78,10 @@ def naming(description: RelationGraph, labels: Sequence[Label | None], kinds: Ki
         text: _columns(description, text, kinds) if text is not None else (nothing, nothing)
         for text in dict.fromkeys(said)
     }
-    columns = [texts[text] for text in said]
-    shape = (len(columns), len(nothing))
-    named = np.array([column[0] for column in columns], dtype=bool).reshape(shape).T
-    fitting = np.array([column[1] for column in columns], dtype=bool).reshape(shape).T
+    place = {text: number for number, text in enumerate(texts)}
+    which = np.array([place[text] for text in said], dtype=np.int64)
+    both = np.array(list(texts.values()), dtype=bool).reshape(len(texts), 2, len(nothing))  # (different texts, 2, n1)
+    named, fitting = both[which, 0].T, both[which, 1].T
     sureness = np.array([label.confidence if label is not None else 0.0 for label in labels])
     by_name = named & fitting
     narrower = fitting & ~named

@@ -1,9 +1,10 @@
 """The sum over all maps of what speaks for their matches one by one, without facts: a permanent of partial maps.
 
 It is what the evidence of kinds, sizes, colours and labels comes to before anything is said of pairs. Up to
-``MAX_EXACT`` objects or things it is exact, by subsets of the smaller side (Ryser's problem by dynamic programming,
-Held and Karp 1962). Beyond, belief propagation gives the Bethe approximation of the permanent (Huang and Jebara 2009,
-arXiv:0908.1769; Vontobel 2013, IEEE Trans. Inf. Theory 59), corrected by its error where nothing speaks for a match.
+``MAX_EXACT`` objects or things, the other side not being very many, it is exact, by subsets of the smaller side
+(Ryser's problem by dynamic programming, Held and Karp 1962). Beyond, belief propagation gives the Bethe approximation
+of the permanent (Huang and Jebara 2009, arXiv:0908.1769; Vontobel 2013, IEEE Trans. Inf. Theory 59), corrected by its
+error where nothing speaks for a match.
 """
 
 from __future__ import annotations
@@ -18,8 +19,8 @@ from deixis.reasoning.grounding.matching.problem import Problem
 
 Array = NDArray[np.float64]
 
-MAX_EXACT = 12
-"""Objects or things up to which the sum is exact."""
+MAX_EXACT, MAX_STEPS = 12, 3e7
+"""Objects or things up to which the sum is exact, and terms that it may have."""
 
 ITERATIONS, TOLERANCE, MAX_CELLS = 200, 1e-5, 1e7
 """Rounds of messages at most, the change of a logarithm below which they have settled, and messages of all rounds."""
@@ -55,7 +56,7 @@ def log_sum_without_facts(problem: Problem) -> float:
     if problem.allowed.all() and not problem.unary.any():
         return log_prior(problem)
     gains = np.where(problem.allowed, problem.unary - problem.absent[:, None], LOWEST)  # against leaving out
-    if min(n1, n2) <= MAX_EXACT:
+    if min(n1, n2) <= MAX_EXACT and n1 * n2 << min(n1, n2) <= MAX_STEPS:
         total = _by_subsets(gains if n2 <= n1 else gains.T)
     else:
         nothing = np.broadcast_to(-problem.absent[:, None], gains.shape)

@@ -10,12 +10,14 @@ import io
 import os
 import signal
 import sys
+import time
 from importlib import import_module
 from typing import Annotated, Any
 
 import typer
 from typer.core import TyperGroup
 
+from deixis.cli import common
 from deixis.cli.common import BAD_INPUT, UNDECIDED, print_note
 from deixis.cli.interrupts import INTERRUPTED, noting_interrupts
 from deixis.cli.output import visible_output, what_is_kept
@@ -140,6 +142,7 @@ def _fail(message: str | Exception, code: int = BAD_INPUT) -> None:
 
 def run() -> None:
     """The process's entry: a closed pipe ends it quietly, no character is too odd for a terminal, nothing is lost."""
+    common.started = time.monotonic() - time.process_time()
     gc.set_threshold(100_000)  # what is imported stays: looking for garbage in it takes a tenth of a short command
     # threads of OpenBLAS that have nothing to do sleep after 2^20 cycles, not 2^26: waiting, each takes 30 ms a command
     os.environ.setdefault("OPENBLAS_THREAD_TIMEOUT", "20")

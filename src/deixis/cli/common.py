@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
+import time
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -12,9 +13,13 @@ from typing import Annotated, Any
 import typer
 
 from deixis.cli.output import terminal
+from deixis.deadline import Deadline
 from deixis.printable import visible_line
 
 NO, BAD_INPUT, UNDECIDED = 1, 2, 3
+
+started: float | None = None
+"""When this process began, by ``time.monotonic``, where it is a command's own; it worked all the time until then."""
 
 PATIENCE = 2.0  # seconds without a progress bar
 
@@ -156,6 +161,11 @@ def working(what: str, after: float = 0.0) -> Iterator[None]:
         begin.cancel()
         begin.join()
         status.stop()
+
+
+def deadline_of(time_limit: float) -> Deadline:
+    """Return when a command has to be done that may take so many seconds from the start of its process."""
+    return Deadline.after(time_limit if started is None else time_limit - (time.monotonic() - started))
 
 
 def tell_of_compiling() -> None:

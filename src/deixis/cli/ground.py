@@ -19,6 +19,7 @@ from deixis.cli.common import (
     SceneFile,
     Script,
     TimeLimit,
+    deadline_of,
     print_json,
     print_lines,
     print_written,
@@ -27,7 +28,6 @@ from deixis.cli.common import (
     working,
 )
 from deixis.cli.output import StandardInput
-from deixis.deadline import Deadline
 from deixis.reasoning.grounding.options import EngineName, Select, ViewpointName
 
 if TYPE_CHECKING:
@@ -72,7 +72,7 @@ def ground(
 
     tell_of_compiling()
     require_plot(plot)
-    deadline = Deadline.after(time_limit)
+    deadline = deadline_of(time_limit)
     out = sys.stderr if as_json else sys.stdout  # of the dialogue
     described, seen = read_script(script, deadline=deadline), load_scene(scene, hide_labels, image)
     request = GroundingRequest(

@@ -4,11 +4,13 @@ Seats stand in rows; each is laid with some pieces of a formal setting, a little
 pieces by facts between two of them, half of the facts between near neighbours and half between any two. A share of the
 facts is off: its relation is replaced by a neighbouring one (the next direction around, where a piece lies on another
 any direction, and the reverse). ``missing`` described pieces are then taken off the table, ``extra`` ones were never
-described. The same seed gives the same table. Every piece has a kind, which a description may tell or keep back.
+described. The same seed gives the same table. Every piece has a kind, which a description may tell or keep back. Other
+layouts than seats put the same pieces in clusters, or in straight rows.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -40,6 +42,8 @@ SETTING = {
 PIECES = np.array(list(SETTING.values()))
 SEAT = np.array([0.75, 0.70])  # from one seat to the next, metres
 JITTER = 0.015  # how far a piece lies off its place, metres (standard deviation)
+CLUSTER, CLUSTER_APART = 12, 1.0  # pieces of a cluster; metres from one to the next, about
+ROW_STEP = 0.3  # metres from one place of a row to the next, and from row to row
 NEAR = 6  # a near neighbour is one of so many
 RING = ("top", "top_right", "right", "bottom_right", "bottom", "bottom_left", "left", "top_left")
 
@@ -94,11 +98,21 @@ class GeneratedTable:
 
 
 def generate(
-    objects: int, facts_each: float = 2.5, off: float = 0.1, missing: int = 0, extra: int = 0, *, seed: int
+    objects: int,
+    facts_each: float = 2.5,
+    off: float = 0.1,
+    missing: int = 0,
+    extra: int = 0,
+    *,
+    seed: int,
+    layout: Layout | None = None,
 ) -> GeneratedTable:
-    """A table of ``objects`` described pieces and ``extra`` others, ``missing`` described ones then taken off."""
+    """A table of ``objects`` described pieces and ``extra`` others, ``missing`` described ones then taken off.
+
+    ``layout`` is :func:`lay_boxes` where none is given, else one of ``LAYOUTS``.
+    """
     rng = np.random.default_rng([seed, objects])
-    boxes, pieces = lay_boxes(objects + extra, rng)
+    boxes, pieces = (layout or lay_boxes)(objects + extra, rng)
     relations = default_ontology().relations
     ends = _draw_pairs(boxes, objects, round(facts_each * objects), rng)
     names = box_relations(boxes, relations).names[ends[:, 0], ends[:, 1]]
@@ -123,6 +137,34 @@ def lay_boxes(count: int, rng: np.random.Generator) -> tuple[NDArray[np.float64]
     seat, piece = np.divmod(chosen, len(PIECES))
     centres = places[seat] + PIECES[piece, :2] + rng.normal(0, JITTER, (count, 2))
     halves = PIECES[piece, 2:] * rng.uniform(0.9, 1.1, (count, 1)) / 2
+    return np.stack([centres - halves, centres + halves], axis=1), piece.astype(np.int64)
+
+
+def lay_clusters(count: int, rng: np.random.Generator) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """Boxes of any pieces in round clusters of about ``CLUSTER`` each, at random places; which pieces."""
+    clusters = max(1, round(count / CLUSTER))
+    places = rng.uniform(0, 1, (clusters, 2)) * np.sqrt(clusters) * CLUSTER_APART
+    centres = places[rng.integers(clusters, size=count)] + rng.normal(0, CLUSTER_APART / 4, (count, 2))
+    return _boxes_at(centres, rng)
+
+
+def lay_rows(count: int, rng: np.random.Generator) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """Boxes of any pieces in straight rows, about twice as long as there are rows, a little awry; which pieces."""
+    columns = max(1, round(np.sqrt(2 * count)))
+    places = rng.permutation(columns * -(-count // columns))[:count]
+    centres = np.stack([places % columns, places // columns], axis=1) * ROW_STEP
+    return _boxes_at(centres + rng.normal(0, JITTER, (count, 2)), rng)
+
+
+Layout = Callable[[int, np.random.Generator], tuple[NDArray[np.float64], NDArray[np.int64]]]
+
+LAYOUTS: dict[str, Layout] = {"seats": lay_boxes, "clusters": lay_clusters, "rows": lay_rows}
+
+
+def _boxes_at(centres: NDArray[np.float64], rng: np.random.Generator) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """Return a piece drawn at random for each centre (n, 2), as boxes (n, 2, 2), and which it is (n,)."""
+    piece = rng.integers(len(PIECES), size=len(centres))
+    halves = PIECES[piece, 2:] * rng.uniform(0.9, 1.1, (len(centres), 1)) / 2
     return np.stack([centres - halves, centres + halves], axis=1), piece.astype(np.int64)
 
 

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from deixis.deadline import Deadline
 from deixis.grammar.script import Script
 from deixis.ontology.graph import RelationGraph
 from deixis.ontology.tbox import Ontology
 from deixis.perception.scene import PerceivedObject, Scene
 from deixis.reasoning.entailment.conflict import Conflict
-from deixis.reasoning.grounding.evidence.evidence import Evidence, evidence_from
+from deixis.reasoning.grounding.evidence.evidence import Evidence, evidence_from, thing_evidence
 from deixis.reasoning.grounding.evidence.labels import Label
 from deixis.reasoning.grounding.evidence.meaning import SHIPPED, Meaning
 from deixis.reasoning.grounding.evidence.unary import LABEL_ERROR
+from deixis.reasoning.grounding.shortlisted import evidence_of_shortlist
 
 
 def evidence_of(script: Script, scene: Scene, meaning: Meaning = SHIPPED) -> Evidence:
@@ -29,24 +32,58 @@ def graph_evidence(
 ) -> Evidence:
     """The same of a description that is a graph already, to be worked out until the deadline; of labels said to be
     certain a share ``label_error`` is wrong."""
-    labels = scene_labels(scene)
-    ranked = [named_by_candidates(thing) for thing in scene.objects]
     return evidence_from(
         description,
         scene.relations(ontology.relations, deadline=deadline),
-        [None if each else labels[thing.id] for thing, each in zip(scene.objects, ranked, strict=True)],
-        ontology.kinds,
-        ontology.sizes,
-        metric=scene.unit == "m",
+        kinds=ontology.kinds,
+        sizes=ontology.sizes,
         meaning=meaning,
-        seen=scene.colours,
         colours=ontology.colours,
         label_error=label_error,
         deadline=deadline,
-        candidates=[
+        **_perceived(scene),
+    )
+
+
+def shortlisted_evidence(
+    description: RelationGraph,
+    scene: Scene,
+    ontology: Ontology,
+    meaning: Meaning,
+    gigabytes: float,
+    deadline: Deadline,
+) -> Evidence:
+    """Return the same for the few things of a large scene that the objects may be.
+
+    Neither all pairs of things are compared, nor is memory for them taken: the whole takes ``gigabytes`` at the most.
+    Raises OutOfMemoryError or OutOfTimeError where what is known of the things by themselves leaves too many.
+    """
+    known = thing_evidence(
+        description,
+        scene.boxes,
+        kinds=ontology.kinds,
+        sizes=ontology.sizes,
+        meaning=meaning,
+        colours=ontology.colours,
+        **_perceived(scene),
+    )
+    return evidence_of_shortlist(
+        description, scene.ids, scene.boxes, ontology.relations, known, meaning, gigabytes, deadline
+    )
+
+
+def _perceived(scene: Scene) -> dict[str, Any]:
+    """Return what perception says of the things of a scene, as the evidence of things takes it."""
+    labels = scene_labels(scene)
+    ranked = [named_by_candidates(thing) for thing in scene.objects]
+    return {
+        "labels": [None if each else labels[thing.id] for thing, each in zip(scene.objects, ranked, strict=True)],
+        "metric": scene.unit == "m",
+        "seen": scene.colours,
+        "candidates": [
             dict(thing.candidates) if each else None for thing, each in zip(scene.objects, ranked, strict=True)
         ],
-    )
+    }
 
 
 def scene_labels(scene: Scene) -> dict[str, Label | None]:

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 from deixis.deadline import Deadline
 from deixis.grammar.script import Script
-from deixis.learning.scene_evidence import conflict_notes, graph_evidence, viewpoint_notes
+from deixis.learning.scene_evidence import conflict_notes, graph_evidence, shortlisted_evidence, viewpoint_notes
 from deixis.ontology.graph import RelationGraph
 from deixis.perception.scene import Scene
 from deixis.reasoning.entailment.conflict import Conflict, find_conflict
@@ -28,7 +28,13 @@ from deixis.reasoning.grounding.engines import engine_named
 from deixis.reasoning.grounding.evidence.evidence import Evidence
 from deixis.reasoning.grounding.evidence.meaning import SHIPPED, Meaning
 from deixis.reasoning.grounding.ground import ground as ground_evidence
-from deixis.reasoning.grounding.memory_budget import DEFAULT_MEMORY_LIMIT, leaves_room_for_chains, require_memory_limit
+from deixis.reasoning.grounding.memory_budget import (
+    DEFAULT_MEMORY_LIMIT,
+    different_facts,
+    leaves_room_for_chains,
+    require_memory_limit,
+    required_gigabytes,
+)
 from deixis.reasoning.grounding.options import DEFAULT_TIME_LIMIT, EngineName, Select, ViewpointName
 from deixis.workflows.read import as_scene, as_script
 
@@ -40,6 +46,10 @@ CONFLICT_SHARE = 0.15
 
 SIDES_HELD = {ViewpointName.STATED: 1, ViewpointName.QUARTER: 3, ViewpointName.UNKNOWN: 7}
 """Times as many things as memory has to be for: the square of it is the number of sides looked from at once."""
+
+MIN_SHORTLISTED, PAIRS_PER_SECOND = 10, 4e5
+"""Things for each object from which a shortlist of them is worth its while, and pairs of things that all of grounding
+deals with in a second, about."""
 
 Stage = Callable[[str], AbstractContextManager[None]]
 """Accompanies one stage of the work, which it is told in words."""
@@ -155,6 +165,19 @@ class GroundingRequest:
         return find_conflict(self.implied)
 
     @cached_property
+    def shortlisted(self) -> bool:
+        """Whether only a shortlist of the scene's things is compared, since all pairs take too much memory or time."""
+        if self.engine not in (EngineName.EXACT, EngineName.SCALABLE) or self.viewpoint != ViewpointName.STATED:
+            return False
+        if self.ask is not None:  # the truth may be off the list
+            return False
+        objects, things = len(self.graph.nodes), len(self.scene.objects)
+        if things <= MIN_SHORTLISTED * objects:
+            return False
+        needed = required_gigabytes(objects, things, len(self.graph), different_facts(self.graph))
+        return needed > self.memory_limit or things**2 > PAIRS_PER_SECOND * self.due.left
+
+    @cached_property
     def frugal(self) -> bool:
         """Whether the memory limit leaves no room to sample marginals.
 
@@ -171,12 +194,22 @@ class GroundingRequest:
 
     def evidence(self, scene: Scene) -> Evidence:
         """Return all that speaks for who is who in the scene as seen from one side."""
+        if self.shortlisted:
+            known = shortlisted_evidence(
+                self.graph, scene, self.script.ontology, self.effective_meaning, self.memory_limit, self.due
+            )
+            return replace(known, consistent=self._consistent)
         frugal = self.frugal
         known = graph_evidence(self.graph, scene, self.script.ontology, self.effective_meaning, deadline=self.due)
+        return replace(known, frugal=frugal, consistent=self._consistent)
+
+    @cached_property
+    def _consistent(self) -> bool:
+        """Whether the firm facts can hold together; False where nothing is to be inferred."""
         try:
-            return replace(known, frugal=frugal, consistent=self.implied.consistent)
+            return self.implied.consistent
         except LimitError:
-            return replace(known, frugal=frugal, consistent=False)  # nothing is to be inferred
+            return False
 
 
 def ground(
@@ -197,8 +230,8 @@ def ground(
     """Work out which perceived thing each object of a script is.
 
     ``script`` and ``scene`` may be files; the options are those of :class:`GroundingRequest`. The answer comes within
-    about ``time_limit`` seconds, reading included, proved or not, and says which. Raises DeixisError for bad input,
-    OutOfTimeError or OutOfMemoryError where the limits leave no answer at all.
+    about ``time_limit`` seconds, loading and reading included, proved or not, and says which. Raises DeixisError for
+    bad input, OutOfTimeError or OutOfMemoryError where the limits leave no answer at all.
 
     >>> import deixis
     >>> boxes = {"o1": [0.0, 0.0], "o2": [0.4, 0.0], "o3": [0.8, 0.0]}

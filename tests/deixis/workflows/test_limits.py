@@ -12,6 +12,7 @@ import pytest
 from commands import deixis
 
 import deixis as package
+from deixis.cli import common
 from deixis.deadline import Deadline
 from deixis.experiments.generated_tables import generate
 from deixis.grammar.errors import ScriptTimeError
@@ -107,3 +108,22 @@ def test_past_the_deadline_a_large_scene_has_no_evidence() -> None:
     with pytest.raises(OutOfTimeError, match="300 things"):
         _ = replace(known, deadline=Deadline.after(-1.0)).problem
     assert issubclass(OutOfTimeError, TimeoutError)
+
+
+def test_the_time_limit_of_a_command_begins_with_its_process(tmp_path: Path) -> None:
+    script, scene = written(40, tmp_path)
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(common, "started", time.monotonic() - 100.0)
+        assert common.deadline_of(30.0).passed
+        code, _, err = deixis("ground", script, scene, "--time-limit", "30")
+    assert code == 3 or "no time" in err
+    assert not common.deadline_of(30.0).passed
+
+
+def test_pairs_of_a_large_scene_are_given_up_as_foreseen() -> None:
+    table = generate(1500, seed=0)
+    known = no_unary_evidence(table.description(), table.scene())
+    started = time.monotonic()
+    with pytest.raises(OutOfTimeError):
+        _ = replace(known, deadline=Deadline.after(0.2)).problem
+    assert time.monotonic() - started < 5.0
