@@ -1,4 +1,4 @@
-"""What can be said: the OWL TBox, the names of relations and kinds of things, and the relation graph.
+"""The vocabulary of the project: the OWL TBox, relation words, kinds of things, and the relation graph.
 
-This is the lowest room. It knows no other one, and every other one meets in its types.
+This is the lowest package: it imports none of the others, and all others exchange its types.
 """

@@ -1,7 +1,7 @@
 """Allen's thirteen relations between two intervals (Allen 1983), as names and codes.
 
-The codes run along the conceptual neighbourhood, so that the converse of code ``i`` is code ``12 - i``. What the
-relations imply is reasoned out in :mod:`deixis.reasoning.geometry.allen`; here they are only named.
+The codes follow the conceptual neighbourhood, so that the converse of code ``i`` is code ``12 - i``. Reasoning with
+the relations is in :mod:`deixis.reasoning.geometry.allen`.
 """
 
 from __future__ import annotations
@@ -40,12 +40,12 @@ class Allen(IntEnum):
 
     @property
     def converse(self) -> Allen:
-        """The relation of *b* to *a*."""
+        """Relation of *b* to *a*."""
         return Allen(12 - self)
 
     @property
     def symbol(self) -> str:
-        """The usual sign: ``<``, ``m``, ``o``, …, ``>``."""
+        """Allen's symbol: ``<``, ``m``, ``o``, …, ``>``."""
         return SYMBOLS[self]
 
 

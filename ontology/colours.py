@@ -1,4 +1,4 @@
-"""Colours: the basic colour terms, with what people call by them, looked up by word and at the head of a name."""
+"""The basic colour terms: their words, and the region of the colour space that people call by each."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ if TYPE_CHECKING:
     from deixis.ontology.triple_index import TripleIndex
 
 Rgb = tuple[int, int, int]
-"""Red, green and blue in sRGB, each 0 to 255."""
+"""Red, green and blue in sRGB, each from 0 to 255."""
 
 
 @dataclass(frozen=True, slots=True)
 class Colour:
-    """A colour term: its words (label and synonyms, case-folded), and the colours that people call by it.
+    """A colour term: its words (label and synonyms, case-folded) and the distribution of colours called by it.
 
-    ``prototype`` is the middle of them, ``covariance`` how they lie around it in CIELAB: LL, La, Lb, aa, ab, bb.
+    ``prototype`` is the mean of the distribution, ``covariance`` its covariance in CIELAB, as LL, La, Lb, aa, ab, bb.
     """
 
     iri: str
@@ -67,7 +67,7 @@ class Colours:
 
     @cached_property
     def words(self) -> dict[str, Colour]:
-        """Every word for a colour, spaces single, case-folded; where two share a word the first one has it."""
+        """Colours by word, single-spaced and case-folded; the first of two colours keeps a word that both have."""
         words: dict[str, Colour] = {}
         for colour in self._all:
             for word in colour.words:
@@ -83,11 +83,13 @@ class Colours:
         return max((len(word.split()) for word in self.words), default=0)
 
     def of_word(self, word: str) -> Colour | None:
-        """Return the colour that a word stands for; ``dark_blue``, ``Dark blue`` and ``dark-blue`` alike."""
+        """Return the colour that a word stands for; ``dark_blue``, ``Dark blue`` and ``dark-blue`` are equal."""
         return self.words.get(" ".join(_parts(word)))
 
     def split(self, name: str) -> tuple[Colour | None, str]:
-        """The colour that the first words of a name say, the most of them, and the rest; None where none is left.
+        """Return the longest colour at the start of a name, and the rest of the name.
+
+        The colour is None where the name starts with no colour, or is a colour and nothing else.
 
         >>> from deixis.ontology.tbox import default_ontology
         >>> colours = default_ontology().colours
@@ -109,7 +111,7 @@ def _parts(name: str) -> list[str]:
 
 
 def rgb_of_hex(text: str) -> Rgb | None:
-    """Return the colour that ``#rrggbb`` stands for; None where a text is no such thing.
+    """Return the colour that ``#rrggbb`` stands for, or None for any other text.
 
     >>> rgb_of_hex("#Ff8000"), rgb_of_hex("#f80")
     ((255, 128, 0), None)
@@ -130,21 +132,34 @@ def hex_of_rgb(rgb: Rgb) -> str:
 
 
 def colours_from_triples(triples: TripleIndex, words: dict[str, tuple[str, ...]]) -> Colours:
-    """Read all colours, ``words`` by IRI; raises OntologyError where a prototype or a spread is none."""
+    """Read all colours from the TBox.
+
+    Parameters
+    ----------
+    triples
+        The statements of the TBox.
+    words
+        The words of each colour, by IRI.
+
+    Raises
+    ------
+    OntologyError
+        If a prototype is not written as ``#rrggbb``, or a spread is not a covariance matrix.
+    """
     return Colours(tuple(_colour(iri, triples, words[iri]) for iri in words))
 
 
 def _colour(iri: str, triples: TripleIndex, words: tuple[str, ...]) -> Colour:
     prototype = rgb_of_hex(triples.only(iri, DX.PROTOTYPE))
     if prototype is None:
-        raise OntologyError(f"<{iri}>: a prototype is written as #rrggbb, not '{triples.only(iri, DX.PROTOTYPE)}'")
+        raise OntologyError(f"<{iri}>: a prototype must be written as #rrggbb, got '{triples.only(iri, DX.PROTOTYPE)}'")
     text = triples.only(iri, DX.SPREAD)
     try:
         ll, la, lb, aa, ab, bb = map(float, text.split())
     except ValueError:
-        raise OntologyError(f"<{iri}>: a spread is six numbers (LL La Lb aa ab bb), not '{text}'") from None
+        raise OntologyError(f"<{iri}>: a spread must be six numbers (LL La Lb aa ab bb), got '{text}'") from None
     spread = (ll, la, lb, aa, ab, bb)
     minors = (ll, ll * aa - la**2, ll * (aa * bb - ab**2) - la * (la * bb - ab * lb) + lb * (la * ab - aa * lb))
     if not all(map(math.isfinite, spread)) or min(minors) <= 0:  # Sylvester's criterion
-        raise OntologyError(f"<{iri}>: its spread is no covariance: the matrix of '{text}' is not positive definite")
+        raise OntologyError(f"<{iri}>: its spread must be a positive definite matrix, got '{text}'")
     return Colour(iri, triples.only(iri, W3C.RDFS_LABEL), words, prototype, spread)

@@ -1,4 +1,4 @@
-"""A relation graph as JSON, Turtle and DOT."""
+"""Export a relation graph as JSON, Turtle and DOT."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def fact_to_dict(fact: Fact) -> dict[str, Any]:
-    """Return a fact as the commands' JSON has it: relation, subject, object, and what qualifies it."""
+    """Return a fact as it appears in the JSON output of the commands."""
     entry: dict[str, Any] = {
         "relation": " or ".join(relation.word for relation in fact.relations),
         "subject": fact.subject,
@@ -63,17 +63,25 @@ PREFIXES = {
 }
 
 GRAPH_BASE = "urn:deixis:graph:"
-"""Under which the objects of a graph by itself have their IRIs."""
+"""Base of the IRIs of the objects of a graph that belongs to no layout."""
 
 IRI_SIGNS = ":/?#[]@!$&'()*+,;=%"
-"""What an IRI may have unescaped besides letters, digits and ``-._~``."""
+"""Characters besides letters, digits and ``-._~`` that may stand unescaped in an IRI."""
 
 
 def graph_to_turtle(graph: RelationGraph, base: str = GRAPH_BASE) -> str:
-    """The graph as Turtle: each object under ``base``, each edge a ``dx:RelationStatement`` under ``base`` + ``fact/``.
+    """Return the graph as Turtle.
 
-    Names become percent-encoded IRIs (so that none has a slash) and escaped literals: no name can add a statement of
-    its own, or be taken for one.
+    Names become percent-encoded IRIs without slashes, and escaped literals, so that no name can add a statement or be
+    mistaken for one.
+
+    Parameters
+    ----------
+    graph
+        The graph to export.
+    base
+        Prefix of the IRIs: each object is ``base`` + its name, and each edge is a ``dx:RelationStatement`` named
+        ``base`` + ``fact/`` + its number.
     """
     lines = [f"@prefix {prefix}: <{iri}> ." for prefix, iri in PREFIXES.items()]
     lines.append("")
@@ -97,7 +105,17 @@ def graph_to_turtle(graph: RelationGraph, base: str = GRAPH_BASE) -> str:
 
 
 def pairs_to_ntriples(relation: Relation, pairs: NDArray[np.int64], iris: Sequence[str]) -> str:
-    """One N-Triples line a pair, shape (k, 2), sorted by subject; ``iris`` are the nodes' IRIs in angle brackets."""
+    """Return one N-Triples line per pair, sorted by subject.
+
+    Parameters
+    ----------
+    relation
+        The predicate of all lines.
+    pairs
+        Node indices of subject and object, shape (k, 2).
+    iris
+        The IRIs of the nodes in angle brackets, as of :func:`node_iris`.
+    """
     import numpy as np
 
     chunks: list[str] = []
@@ -111,7 +129,7 @@ def pairs_to_ntriples(relation: Relation, pairs: NDArray[np.int64], iris: Sequen
 
 
 def node_iris(graph: RelationGraph, base: str = GRAPH_BASE) -> list[str]:
-    """Return the nodes' IRIs as :func:`graph_to_turtle` writes them, in angle brackets."""
+    """Return the IRIs of the nodes in angle brackets, as :func:`graph_to_turtle` writes them."""
     return [_iri(base, name) for name in graph.nodes]
 
 
@@ -132,7 +150,7 @@ def _literal(text: str) -> str:
 
 
 def graph_to_dot(graph: RelationGraph) -> str:
-    """Return the graph in Graphviz' language: denied facts dashed, optional ones dotted, hedged ones thinner."""
+    """Return the graph in Graphviz's DOT language: denied facts dashed, optional ones dotted, hedged ones thinner."""
     lines = ["digraph layout {", "    node [shape=box, style=rounded, fontname=Helvetica];"]
     lines += [f"    {_literal(name)};" for name in graph.nodes]
     for fact in graph.facts():

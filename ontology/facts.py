@@ -1,4 +1,4 @@
-"""What is stated of two objects, and where it was written."""
+"""Facts: the relation stated between two objects, and the place where it was written."""
 
 from __future__ import annotations
 
@@ -28,10 +28,10 @@ class Source:
 
 @dataclass(frozen=True, slots=True)
 class Fact:
-    """The subject stands in one of the relations to the object, or, where not ``positive``, in none of them.
+    """A statement that the subject stands in one of the relations to the object, or, if not ``positive``, in none.
 
-    ``weight`` is above 0 and at most 1, below one half where it is rarely so; an ``optional`` fact need not hold.
-    ``source`` is where it was written.
+    ``weight`` is above 0 and at most 1, and below 0.5 for a fact that is rarely true. An ``optional`` fact need not
+    hold. ``source`` is the place where the fact was written.
 
     >>> from deixis.ontology.tbox import default_ontology
     >>> r = default_ontology().relations
@@ -54,22 +54,22 @@ class Fact:
 
     @property
     def rare(self) -> bool:
-        """Whether it is said to be rarely so, which is mostly not."""
+        """True if the fact is said to hold rarely, so that its negation is more likely."""
         return self.weight < 0.5
 
     @property
     def affirmed_weight(self) -> float:
-        """The weight of what it affirms: what is rarely so (0.2) is not so by 0.8."""
+        """Weight of the more likely of the fact and its negation: a fact that holds rarely (0.2) is denied with 0.8."""
         return max(self.weight, 1 - self.weight)
 
     @property
     def plain(self) -> bool:
-        """One relation that is affirmed, and not rarely so: what Definition 1 and equations 5-9 can see."""
+        """True for a single affirmed relation that is not rare, as Definition 1 and equations 5-9 of the paper need."""
         return self.positive and not self.rare and len(self.relations) == 1
 
     @property
     def relation_set(self) -> int:
-        """The relations as a bit mask over their indices."""
+        """Bit mask of the relations, over their indices."""
         mask = 0
         for relation in self.relations:
             mask |= relation.bit
@@ -77,11 +77,11 @@ class Fact:
 
 
 OPTIONAL_WEIGHT = 0.5
-"""By what the weight of an optional fact is multiplied."""
+"""Factor by which the weight of an optional fact is multiplied."""
 
 
 def dispensable(facts: Iterable[Fact]) -> frozenset[str]:
-    """The objects of which something is said, but nothing firmly: no plain affirmed fact needs them to be there."""
+    """Return the objects that no certain fact needs: all facts about them are denied, optional or hedged."""
     mentioned: set[str] = set()
     needed: set[str] = set()
     for fact in facts:

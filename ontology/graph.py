@@ -1,8 +1,8 @@
-"""The relation graph: what language and perception both end in, and what grounding compares.
+"""The relation graph, which scripts and scenes are both turned into, and which grounding compares.
 
 A :class:`RelationGraph` is a weighted directed multigraph over objects. Its edges are numpy arrays; a
-:class:`~deixis.ontology.facts.Fact` is one edge as an object. :class:`PaperGraph` is the paper's Definition 1: a
-directed graph with one label an edge.
+:class:`~deixis.ontology.facts.Fact` is one edge as an object. :class:`PaperGraph` is Definition 1 of the paper: a
+directed graph with one label per edge.
 """
 
 from __future__ import annotations
@@ -28,8 +28,8 @@ __all__ = ["OPTIONAL_WEIGHT", "Fact", "PaperGraph", "RelationGraph", "Source", "
 class RelationGraph:
     """A weighted directed multigraph over named objects (n nodes, m edges).
 
-    An edge holds a set of relations (several are a disjunction), a sign, an optional flag, a weight and its source.
-    Relations carry their reading, so wide and exact never mix by accident.
+    An edge has a set of relations (several are a disjunction), a sign, an optional flag, a weight and a source. Each
+    relation has its reading, so that wide and exact relations are never mixed up.
     """
 
     vocabulary: Relations
@@ -40,7 +40,7 @@ class RelationGraph:
     positive: NDArray[np.bool_]  # (m,)
     optional: NDArray[np.bool_]  # (m,)
     weights: NDArray[np.float64]  # (m,)
-    sources: tuple[Source | None, ...] = ()  # (m,), or empty where no edge has one
+    sources: tuple[Source | None, ...] = ()  # (m,), or empty if no edge has a source
     kinds: tuple[str | None, ...] = ()  # (n,) class IRIs, or empty
     colours: tuple[str | None, ...] = ()  # (n,) IRIs of described colours, or empty
     boxes: NDArray[np.float64] | None = None  # (n, 2, d): least and greatest corner, metres
@@ -55,31 +55,31 @@ class RelationGraph:
         m = len(self.subjects)
         arrays = (self.objects, self.relation_sets, self.positive, self.optional, self.weights)
         if any(len(array) != m for array in arrays) or len(self.sources) not in (0, m):
-            raise GraphError("the edge arrays differ in length")
+            raise GraphError("the edge arrays must all have the same length")
         if len(self.kinds) not in (0, len(self.nodes)) or len(self.colours) not in (0, len(self.nodes)):
-            raise GraphError("there must be one kind a node, or none at all, and so with colours")
+            raise GraphError("`kinds` and `colours` must have one entry per node, or be empty")
         if self.boxes is not None and len(self.boxes) != len(self.nodes):
-            raise GraphError("there must be one box a node, or none at all")
+            raise GraphError("`boxes` must have one box per node, or be None")
 
     @property
     def net_weights(self) -> NDArray[np.float64]:
-        """By what each edge counts (m,): the weight of what it affirms, half of it where it is optional."""
+        """Weights of what the edges affirm (m,), halved for optional edges."""
         return self.affirmed_weights * np.where(self.optional, OPTIONAL_WEIGHT, 1.0)
 
     @property
     def affirmed_weights(self) -> NDArray[np.float64]:
-        """The weight of what each edge affirms (m,): what is rarely so (0.2) is not so by 0.8."""
+        """Weights of what the edges affirm (m,): a fact that holds rarely (0.2) is denied with 0.8."""
         weights: NDArray[np.float64] = np.maximum(self.weights, 1 - self.weights)
         return weights
 
     @property
     def affirmed(self) -> NDArray[np.bool_]:
-        """Which edges say that a relation holds (m,): what is rarely so is mostly not so."""
+        """True for edges that affirm a relation (m,); a fact that holds rarely is more likely denied."""
         affirmed: NDArray[np.bool_] = self.positive == (self.weights >= 0.5)
         return affirmed
 
     def affirming(self) -> RelationGraph:
-        """The same in other words: what is rarely so is mostly not so, so that no edge weighs less than one half."""
+        """Return an equivalent graph without weights below one half: rare facts become denials of the other weight."""
         return replace(self, positive=self.affirmed, weights=self.affirmed_weights)
 
     @classmethod
@@ -92,13 +92,13 @@ class RelationGraph:
         boxes: NDArray[np.float64] | None = None,
         colours: Sequence[str | None] = (),
     ) -> RelationGraph:
-        """Return the graph of these facts; raises GraphError where one names an object that is no node."""
+        """Return the graph of the facts; raise GraphError if a fact names an object that is not in ``nodes``."""
         index = {name: i for i, name in enumerate(nodes)}
         listed = list(facts)
         for fact in listed:
             for name in (fact.subject, fact.object):
                 if name not in index:
-                    raise GraphError(f"the fact {fact} names '{name}', which is no node of the graph")
+                    raise GraphError(f"the fact {fact} names '{name}', which is not a node of the graph")
         return cls(
             vocabulary=vocabulary,
             nodes=tuple(nodes),
@@ -119,14 +119,14 @@ class RelationGraph:
         return len(self.subjects)
 
     def index(self, node: str) -> int:
-        """Return the position of a node; raises GraphError where there is none of that name."""
+        """Return the position of a node; raise GraphError if there is no node of that name."""
         try:
             return self._index[node]
         except KeyError:
             raise GraphError(f"the graph has no object '{node}'") from None
 
     def fact(self, edge: int) -> Fact:
-        """One edge as an object."""
+        """Return one edge as a fact."""
         return Fact(
             subject=self.nodes[self.subjects[edge]],
             relations=self.vocabulary.members(int(self.relation_sets[edge])),
@@ -138,11 +138,11 @@ class RelationGraph:
         )
 
     def facts(self) -> Iterator[Fact]:
-        """Return all edges as objects, in their order."""
+        """Yield all edges as facts, in their order."""
         return (self.fact(edge) for edge in range(len(self)))
 
     def subgraph(self, nodes: Sequence[str]) -> RelationGraph:
-        """Return the graph that these nodes induce, in the order given."""
+        """Return the induced subgraph of these nodes, in the order given."""
         keep = np.array([self.index(name) for name in nodes], dtype=np.int64)
         position = np.full(len(self.nodes), -1, dtype=np.int32)
         position[keep] = np.arange(len(keep), dtype=np.int32)
@@ -163,7 +163,7 @@ class RelationGraph:
         )
 
     def to_networkx(self) -> nx.MultiDiGraph[Any]:
-        """Return the graph as a ``networkx.MultiDiGraph``, one edge a fact.
+        """Return the graph as a ``networkx.MultiDiGraph``, with one edge per fact.
 
         Returns
         -------
@@ -203,11 +203,11 @@ class RelationGraph:
         return graph
 
     def paper_view(self) -> PaperGraph:
-        """Return the graph of Definition 1: one word an edge and one edge an ordered pair.
+        """Return the graph of Definition 1: one word per edge and one edge per ordered pair.
 
-        Facts that are no single affirmed relation do not enter it, nor what is rarely so, which is a denial. Where
-        several facts name one pair, the most telling label stays: the one that implies the most others, the first
-        stated among equals.
+        It leaves out facts that are not a single affirmed relation, and rare facts, which amount to denials. Of several
+        facts about one pair, it keeps the most specific label: the one that implies the most others, and the first
+        stated of equals.
         """
         labels = tuple(r.word for r in self.vocabulary.of_reading(Reading.EXACT))
         label_of = np.array([labels.index(r.word) for r in self.vocabulary.values()], dtype=np.int8)
@@ -238,14 +238,14 @@ class PaperGraph:
     labels: tuple[str, ...]  # L_E
 
     def adjacency(self) -> NDArray[np.float64]:
-        """One 0/1 matrix a label, shape (labels, n, n), axis 1 from, axis 2 to."""
+        """Return one 0/1 matrix per label, shape (labels, n, n); axis 1 is the start of an edge, axis 2 its end."""
         n = len(self.vertices)
         matrices = np.zeros((len(self.labels), n, n))
         matrices[self.edge_labels, self.edges[:, 0], self.edges[:, 1]] = 1.0
         return matrices
 
     def histograms(self) -> NDArray[np.int64]:
-        """Definition 2, the labelled edge histograms: shape (n, 2, labels), incoming first, then outgoing.
+        """Return the labelled edge histograms of Definition 2, shape (n, 2, labels): incoming, then outgoing edges.
 
         >>> graph = PaperGraph(("a", "b"), ("a", "b"), np.array([[0, 1]], np.int32), np.zeros(1, np.int8), ("left",))
         >>> graph.histograms().tolist()

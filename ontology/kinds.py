@@ -9,7 +9,7 @@ from functools import cached_property
 
 
 def plain_name(name: str) -> str:
-    """Return the name of one of several things without its number.
+    """Return the name of an object without its trailing number.
 
     >>> plain_name("wine_glass_2"), plain_name("fork")
     ('wine_glass', 'fork')
@@ -18,7 +18,7 @@ def plain_name(name: str) -> str:
 
 
 def with_article(noun: str) -> str:
-    """Return the noun after its indefinite article, by how English words that begin so are mostly spoken.
+    """Return a noun with its indefinite article, chosen by its spelling.
 
     >>> with_article("egg cup"), with_article("utensil"), with_article("fork")
     ('an egg cup', 'a utensil', 'a fork')
@@ -28,7 +28,7 @@ def with_article(noun: str) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Kind:
-    """A class of the taxonomy: its words (label and synonyms, case-folded) and every broader class's IRI."""
+    """A class of the taxonomy: its words (label and synonyms, case-folded) and the IRIs of all broader classes."""
 
     iri: str
     label: str
@@ -37,7 +37,7 @@ class Kind:
 
     @property
     def name(self) -> str:
-        """The local name: ``DessertFork``."""
+        """Local name of the class, such as ``DessertFork``."""
         return self.iri.rsplit("#", 1)[-1]
 
 
@@ -63,7 +63,7 @@ class Kinds:
         return len(self._all)
 
     def __contains__(self, iri: object) -> bool:
-        """Return whether a kind has that IRI."""
+        """Return whether a kind has this IRI."""
         return iri in self._by_iri
 
     def __getitem__(self, iri: str) -> Kind:
@@ -71,7 +71,7 @@ class Kinds:
 
     @cached_property
     def words(self) -> dict[str, Kind]:
-        """Every word for a kind, spaces single, case-folded; where two kinds share a word the first one has it."""
+        """Kinds by word, single-spaced and case-folded; the first of two kinds keeps a word that both have."""
         words: dict[str, Kind] = {}
         for kind in self._all:
             for word in (*kind.words, kind.name.casefold()):
@@ -79,9 +79,9 @@ class Kinds:
         return words
 
     def of_word(self, word: str) -> Kind | None:
-        """The kind that a word or a name stands for; ``dinner_plate``, ``Dinner plate`` and ``DinnerPlate`` alike."""
+        """Return the kind that a word stands for; ``dinner_plate``, ``Dinner plate`` and ``DinnerPlate`` are equal."""
         return self.words.get(" ".join(word.casefold().replace("_", " ").replace("-", " ").split()))
 
     def is_a(self, kind: Kind, broader: Kind) -> bool:
-        """Return whether every ``kind`` is a ``broader``."""
+        """Return whether ``kind`` is ``broader`` or a subclass of it."""
         return kind.iri == broader.iri or broader.iri in kind.broader

@@ -1,4 +1,4 @@
-"""Relation words and what they mean: a reading, an inverse, and the rectangle-algebra atoms that they admit."""
+"""Relation words and their meaning: a reading, an inverse, and the atoms of the rectangle algebra that they admit."""
 
 from __future__ import annotations
 
@@ -21,19 +21,20 @@ if TYPE_CHECKING:
 
 
 class Reading(StrEnum):
-    """How a relation word is taken (DESIGN: the two readings of a word)."""
+    """The two readings of a relation word."""
 
-    WIDE = "wide"  # in a script: constrains the axis it names, leaves the rest open
-    EXACT = "exact"  # between two boxes: one of ten names, of which every pair bears just one
+    WIDE = "wide"  # in a script: constrains the axis that the word names, and leaves the other one open
+    EXACT = "exact"  # between two boxes: one of ten names, of which each pair of boxes has exactly one
 
 
 @dataclass(frozen=True, slots=True, repr=False)
 class Relation:
-    """A relation word in one reading, as the TBox states it.
+    """A relation word in one reading, as stated in the TBox.
 
-    ``x_atoms`` and ``y_atoms`` are 13-bit masks of Allen relations (bit = code): the product of the two is the set
-    of rectangle-algebra atoms that the relation admits. ``z_atoms`` settle it where heights are known (0: they do
-    not). ``broader`` names the relations that follow from this one, ``index`` is its bit in a relation set.
+    ``x_atoms`` and ``y_atoms`` are 13-bit masks of Allen relations (bit = code); their product is the set of
+    rectangle-algebra atoms that the relation admits. ``z_atoms`` decides instead where heights are known; 0 means that
+    heights decide nothing. ``broader`` names the relations that this one implies, ``index`` is its bit in a relation
+    set.
     """
 
     name: str  # 'top_left', 'exactly_top_left'
@@ -58,6 +59,7 @@ class Relation:
 
     @property
     def bit(self) -> int:
+        """Bit mask with only the bit of this relation set."""
         return 1 << self.index
 
     def admits(self) -> NDArray[np.bool_]:
@@ -69,7 +71,7 @@ class Relation:
 
 
 class Relations(Mapping[str, Relation]):
-    """All relations by name, in the order of their indices; unknown names fail with the nearest known one.
+    """All relations by name, in the order of their indices; an unknown name raises an error that suggests a known one.
 
     >>> from deixis.ontology.tbox import default_ontology
     >>> relations = default_ontology().relations
@@ -87,7 +89,7 @@ class Relations(Mapping[str, Relation]):
         for relation in relations:
             for other in (relation.inverse, *relation.broader):
                 if other not in self._by_name:
-                    raise OntologyError(f"relation '{relation.name}' refers to '{other}', which is none")
+                    raise OntologyError(f"relation '{relation.name}' refers to '{other}', which is not a relation")
 
     def __getitem__(self, name: str) -> Relation:
         try:
@@ -105,6 +107,7 @@ class Relations(Mapping[str, Relation]):
         return len(self._all)
 
     def of_reading(self, reading: Reading) -> tuple[Relation, ...]:
+        """Return the relations of one reading, by index."""
         return tuple(relation for relation in self._all if relation.reading is reading)
 
     def members(self, mask: int) -> tuple[Relation, ...]:
@@ -113,14 +116,16 @@ class Relations(Mapping[str, Relation]):
 
     @cached_property
     def by_word(self) -> dict[str, Relation]:
-        """Every phrase that a script may use, case-folded, single-spaced, without articles."""
+        """Relations by each phrase that a script may use, case-folded, single-spaced and without articles."""
         words: dict[str, Relation] = {}
         for relation in self._all:
             for word in relation.words:
                 plain = plain_phrase(word)
                 other = words.setdefault(plain, relation)
                 if other is not relation:
-                    raise OntologyError(f"the word '{plain}' stands for both '{other}' and '{relation}'")
+                    raise OntologyError(
+                        f"the word '{plain}' stands for both '{other}' and '{relation}'; keep it for one of them"
+                    )
         return words
 
     def wide(self, exact: Relation) -> Relation:
@@ -133,11 +138,11 @@ class Relations(Mapping[str, Relation]):
 
     @cached_property
     def degrees(self) -> NDArray[np.float64]:
-        """How far a relation holds of a pair that bears an exact name: shape (relations, relations).
+        """Degree to which each relation holds of a pair with a given exact relation, shape (relations, relations).
 
-        ``degrees[stated, name]`` is 1 where they are the same word read exactly, 0.5 where the name only implies
-        the stated relation in its wide reading, else 0. Columns of wide relations are 0: no pair bears them as
-        its name. A relation stated in its exact reading holds exactly or not at all.
+        ``degrees[stated, name]`` is 1 if both are the same word and ``name`` is exact, 0.5 if ``name`` implies the
+        stated wide relation of another word, and 0 otherwise. Columns of wide relations are 0, since the relation of a
+        pair is always an exact one. A stated exact relation holds fully or not at all.
         """
         import numpy as np
 
@@ -151,7 +156,7 @@ class Relations(Mapping[str, Relation]):
 
 
 def plain_phrase(words: str) -> str:
-    """Return a phrase as scripts are matched against it: case-folded, articles dropped, underscores as spaces.
+    """Return a phrase in the form that scripts are matched against: case-folded, without articles and underscores.
 
     >>> plain_phrase("To the  Left_of")
     'to left of'
@@ -163,7 +168,7 @@ ARTICLES = frozenset({"the", "a", "an"})
 
 
 def nearest(word: str, known: Iterable[str]) -> str | None:
-    """Return the known word that looks most like ``word``, or None where none comes near.
+    """Return the known word that is spelt most like ``word``, or None if all are too different.
 
     >>> nearest("rihgt", ["left", "right"])
     'right'
@@ -173,7 +178,7 @@ def nearest(word: str, known: Iterable[str]) -> str | None:
 
 
 def relation_from_triples(iri: str, triples: TripleIndex, index: int) -> Relation:
-    """Build a relation from what the TBox says of ``iri``; raises OntologyError where something lacks."""
+    """Build a relation from the statements about ``iri``; raise OntologyError if a statement is missing."""
     label = triples.only(iri, W3C.RDFS_LABEL)
     reading = Reading.WIDE if triples.only(iri, DX.READING) == DX.WIDE else Reading.EXACT
     broader = [
@@ -187,12 +192,12 @@ def relation_from_triples(iri: str, triples: TripleIndex, index: int) -> Relatio
     else:
         direct = [p for p in triples.values(iri, W3C.RDFS_SUB_PROPERTY_OF) if p in broader]
         if len(direct) != 1:
-            raise OntologyError(f"the exact relation <{iri}> must be a sub-property of exactly one wide one")
+            raise OntologyError(f"the exact relation <{iri}> must be a sub-property of exactly one wide relation")
         word = _name(triples.only(direct[0], W3C.RDFS_LABEL))
-    # OWL states an inverse from either side.
+    # OWL may state an inverse from either side.
     stated = {*triples.values(iri, W3C.OWL_INVERSE_OF), *triples.subjects(W3C.OWL_INVERSE_OF, iri)}
     if len(stated) != 1:
-        raise OntologyError(f"<{iri}> must have exactly one owl:inverseOf, and has {len(stated)}")
+        raise OntologyError(f"<{iri}> must have exactly one owl:inverseOf, got {len(stated)}")
     inverse = _name(triples.only(stated.pop(), W3C.RDFS_LABEL))
     return Relation(
         name=name,
@@ -219,5 +224,5 @@ def _atoms(iri: str, prop: DX, triples: TripleIndex) -> int:
     symbols = [triples.only(allen, DX.ALLEN_SYMBOL) for allen in triples.values(iri, prop)]
     unknown = [symbol for symbol in symbols if symbol not in SYMBOLS]
     if unknown:
-        raise OntologyError(f"<{iri}> admits '{unknown[0]}', which is the sign of no Allen relation")
+        raise OntologyError(f"<{iri}> admits '{unknown[0]}', which is not the symbol of an Allen relation")
     return allen_mask(Allen(SYMBOLS.index(symbol)) for symbol in symbols)

@@ -1,4 +1,4 @@
-"""Usual sizes of kinds of things, in metres, as the TBox states them with their sources."""
+"""Usual sizes of kinds of things in metres, as stated in the TBox with their sources."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 class Outline(StrEnum):
-    """The shape of a thing seen from above."""
+    """Shape of a thing seen from above."""
 
     CIRCLE = "circle"
     RECTANGLE = "rectangle"
@@ -23,7 +23,7 @@ class Outline(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Extent:
-    """A range of lengths in metres (or of shares), with what is typical."""
+    """A range of lengths in metres, or of ratios, with a typical value."""
 
     least: float
     typical: float
@@ -33,7 +33,7 @@ class Extent:
         return f"{100 * self.least:g} to {100 * self.greatest:g} cm"
 
     def admits(self, metres: float, tolerance: float = 0.0) -> bool:
-        """Return whether a length is usual.
+        """Return whether a length lies in the range, give or take ``tolerance`` metres.
 
         >>> Extent(0.2, 0.25, 0.3).admits(0.31), Extent(0.2, 0.25, 0.3).admits(0.31, tolerance=0.02)
         (False, True)
@@ -43,11 +43,11 @@ class Extent:
 
 @dataclass(frozen=True, slots=True)
 class SizeRange:
-    """How large things of a kind usually are: ``length`` is the longer side in the plan, ``width`` the shorter one.
+    """The usual size of a kind: ``length`` is the longer side seen from above, ``width`` the shorter one.
 
-    Of a circle both are the diameter. ``reach`` is how far a handle stands out, as a share of the length, which leaves
-    it out; None where there is none. ``stated_of`` is the IRI of the kind of which the TBox states it, the kind
-    itself or the nearest broader one; ``source`` says where the numbers are from.
+    For a circle, both are the diameter. ``reach`` is how far a handle sticks out, as a share of the length, which does
+    not include it; None for kinds without a handle. ``stated_of`` is the IRI of the kind that states the size: the kind
+    itself or its nearest broader one. ``source`` cites the origin of the numbers.
     """
 
     outline: Outline
@@ -65,7 +65,7 @@ class SizeRange:
 
 
 class Sizes:
-    """The size range of every kind, by IRI; of a kind that states none, what its nearest broader kind states.
+    """The size of every kind, by IRI; a kind without its own size takes that of its nearest broader kind.
 
     >>> from deixis.ontology.tbox import default_ontology
     >>> ontology = default_ontology()
@@ -80,9 +80,9 @@ class Sizes:
         self._parents = {iri: tuple(above) for iri, above in parents.items()}
 
     def of(self, kind: str | None) -> SizeRange:
-        """Return the size range of a kind; what is stated of all things where the kind is not known (None).
+        """Return the size of a kind, or the size stated of all things where the kind is None.
 
-        Raises OntologyError where the TBox states none for all things.
+        Raises OntologyError if the TBox states no size of all things.
         """
         level = [kind or DX.THING.value]
         seen: set[str] = set()
@@ -94,7 +94,7 @@ class Sizes:
             level = [above for iri in level for above in self._parents.get(iri, ()) if above not in seen]
         if DX.THING in self._stated:
             return self._stated[DX.THING]
-        raise OntologyError(f"no usual size is stated of <{DX.THING}>, so that unknown things have none; state one")
+        raise OntologyError(f"<{DX.THING}> has no usual size, so unknown things have none; state one")
 
 
 _EXTENTS = {
@@ -106,7 +106,7 @@ _EXTENTS = {
 
 
 def sizes_from_triples(triples: TripleIndex) -> Sizes:
-    """Read all sizes; raises OntologyError where one is not whole or out of order."""
+    """Read all sizes from the TBox; raise OntologyError where one is incomplete or its numbers are out of order."""
     classes = triples.subjects(W3C.RDF_TYPE, W3C.OWL_CLASS)
     stated = {iri: _size_range(iri, triples) for iri in classes if triples.values(iri, DX.OUTLINE)}
     return Sizes(stated, {iri: triples.values(iri, W3C.RDFS_SUB_CLASS_OF) for iri in classes})
@@ -115,7 +115,7 @@ def sizes_from_triples(triples: TripleIndex) -> Sizes:
 def _size_range(iri: str, triples: TripleIndex) -> SizeRange:
     named = triples.only(iri, DX.OUTLINE)
     if named not in list(Outline):
-        raise OntologyError(f"<{iri}>: an outline is one of {', '.join(Outline)}, not '{named}'")
+        raise OntologyError(f"<{iri}>: an outline must be one of {', '.join(Outline)}, got '{named}'")
     outline = Outline(named)
     length = _extent(iri, "length", triples)
     return SizeRange(
@@ -134,7 +134,7 @@ def _extent(iri: str, name: str, triples: TripleIndex) -> Extent:
     try:
         least, typical, greatest = map(float, texts)
     except ValueError:
-        raise OntologyError(f"<{iri}>: its {name} must be given in numbers, not as {', '.join(texts)}") from None
+        raise OntologyError(f"<{iri}>: its {name} must be three numbers, got {', '.join(texts)}") from None
     if not 0 < least <= typical <= greatest < float("inf"):
         raise OntologyError(f"<{iri}>: its least, typical and greatest {name} must be above 0 and in that order")
     return Extent(least, typical, greatest)

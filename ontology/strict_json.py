@@ -1,4 +1,4 @@
-"""JSON that users write, read strictly: no repeated keys, no numbers that are none, no digits without end."""
+"""Strict reading of the JSON that users write: no repeated keys, no ``NaN``, and no numbers of unlimited length."""
 
 from __future__ import annotations
 
@@ -10,21 +10,36 @@ from deixis.errors import DeixisError
 from deixis.printable import shortened
 
 MAX_DIGITS = 4000
-"""Digits of a whole number: what Python itself reads at the most, nearly."""
+"""Maximum number of digits of a whole number, a little below Python's own limit."""
 
 
 def parse_json(text: str, file: str, error: type[DeixisError], no_number: str | None) -> Any:
-    """Return the data in a JSON text; raises ``error`` with the file, and the line and column where it is no JSON.
+    """Return the data in a JSON text.
 
-    ``no_number`` says what is wrong with ``NaN`` and ``Infinity``, after their name; None lets them in, for a reader
-    that refuses them where they stand.
+    Parameters
+    ----------
+    text
+        The JSON text; a byte order mark at its start is skipped.
+    file
+        Name of the file, for messages.
+    error
+        The type of the error to raise.
+    no_number
+        Message about ``NaN`` and ``Infinity``, after their name. None accepts them, for readers that check them later.
 
-    >>> parse_json('{"x": 1}', "t.json", DeixisError, "is no number")
+    Raises
+    ------
+    error
+        If the text is not valid JSON, with the file, line and column, or breaks one of the limits, with the file.
+
+    Examples
+    --------
+    >>> parse_json('{"x": 1}', "t.json", DeixisError, "is not a number")
     {'x': 1}
-    >>> parse_json('{"x": NaN}', "t.json", DeixisError, "is no number")
+    >>> parse_json('{"x": NaN}', "t.json", DeixisError, "is not a number")
     Traceback (most recent call last):
         ...
-    deixis.errors.DeixisError: t.json: NaN is no number
+    deixis.errors.DeixisError: t.json: NaN is not a number
     """
 
     def refuse(name: str) -> float:
@@ -32,7 +47,7 @@ def parse_json(text: str, file: str, error: type[DeixisError], no_number: str | 
 
     def whole_number(digits: str) -> int:
         if len(digits) > MAX_DIGITS:
-            raise ValueError(f"a number of {len(digits)} digits is too large")
+            raise ValueError(f"a number of {len(digits)} digits is too large: at most {MAX_DIGITS} digits are read")
         return int(digits)
 
     def without_repeats(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
@@ -40,7 +55,7 @@ def parse_json(text: str, file: str, error: type[DeixisError], no_number: str | 
         if len(found) != len(pairs):
             counts = Counter(key for key, _ in pairs)
             twice = next(key for key, count in counts.items() if count > 1)
-            raise ValueError(f"the key '{shortened(twice, 60)}' stands twice in one object")
+            raise ValueError(f"the key '{shortened(twice, 60)}' occurs twice in one object")
         return found
 
     try:
@@ -51,7 +66,7 @@ def parse_json(text: str, file: str, error: type[DeixisError], no_number: str | 
             object_pairs_hook=without_repeats,
         )
     except json.JSONDecodeError as wrong:
-        raise error(f"{file}:{wrong.lineno}:{wrong.colno}: this is no JSON: {wrong.msg}") from wrong
+        raise error(f"{file}:{wrong.lineno}:{wrong.colno}: this is not valid JSON: {wrong.msg}") from wrong
     except RecursionError as wrong:
         raise error(f"{file}: the JSON is nested too deeply") from wrong
     except ValueError as wrong:

@@ -1,4 +1,4 @@
-"""Reads the TBox (``deixis.ttl``, ``everyday.ttl``): the names and meanings that the other rooms use."""
+"""Read the TBox (``deixis.ttl``, ``everyday.ttl``): the words and their meanings that the other packages use."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ if TYPE_CHECKING:
     import pyoxigraph as ox
 
 TBOX_FILES = tuple(Path(__file__).with_name(name) for name in ("deixis.ttl", "everyday.ttl"))
-"""The vocabulary and the kinds of tableware, and the everyday kinds around them: one ontology."""
+"""Turtle files of one ontology: the vocabulary with the kinds of tableware, and the everyday kinds around them."""
 
 
 @dataclass(frozen=True)
 class Ontology:
-    """What the TBox says, ready for use: relations, kinds of things, usual sizes, colours, and hedges with weights."""
+    """The content of the TBox: relations, kinds of things, usual sizes, colours, and hedges with their weights."""
 
     relations: Relations
     kinds: Kinds
@@ -36,13 +36,14 @@ class Ontology:
 
     @cached_property
     def kinds_key(self) -> str:
-        """A short name for what is said of kinds: their words, what they are, and their usual sizes."""
+        """Hash of all statements about kinds: their words, their broader kinds, and their usual sizes."""
         return content_key(repr([(kind.iri, kind.words, kind.broader, self.sizes.of(kind.iri)) for kind in self.kinds]))
 
     def quality(self, words: str) -> tuple[Kind | None, Colour | None]:
-        """The kind, the colour, or the kind in a colour that words stand for; a colour too where the rest is no kind.
+        """Return the kind, the colour, or both, that words such as ``red mug`` stand for.
 
-        What names a kind as a whole says no colour: a red wine glass is no red glass.
+        A colour is split off only where the other words are not a kind by themselves: a red wine glass need not be
+        red. Words that name neither give (None, None); a colour before unknown words gives (None, colour).
 
         >>> kind, colour = default_ontology().quality("red mug")
         >>> kind.name, colour.label
@@ -58,9 +59,9 @@ class Ontology:
         return (None, self.colours.of_word(words)) if colour is None else (self.kinds.of_word(rest), colour)
 
     def of_name(self, name: str) -> tuple[Kind | None, Colour | None]:
-        """Return the kind and the colour that the name of an object stands for, its number aside.
+        """Return the kind and the colour that the name of an object stands for, without its number.
 
-        A name that is a colour's word and no more says none: an orange may be a fruit.
+        A name that is only a colour word gives no colour, since an orange may be a fruit.
         """
         plain = plain_name(name)
         kind, colour = self.quality(plain)
@@ -70,15 +71,23 @@ class Ontology:
 def load_ontology(*extra: str) -> Ontology:
     """Return the shipped TBox, with further Turtle texts merged into it.
 
-    A ``skos:altLabel`` in an extra text is enough for scripts to understand a new word for a relation:
+    Parameters
+    ----------
+    *extra
+        Turtle texts. A ``skos:altLabel`` is enough for scripts to understand a new word for a relation.
 
+    Raises
+    ------
+    OntologyError
+        If a text is not valid Turtle, or a relation, hedge, size or colour is incomplete.
+
+    Examples
+    --------
     >>> more = load_ontology('''@prefix dx: <https://w3id.org/deixis/onto#> .
     ... @prefix skos: <http://www.w3.org/2004/02/skos/core#> .
     ... dx:left skos:altLabel "port side of" .''')
     >>> more.relations.by_word["port side of"].name
     'left'
-
-    Raises OntologyError where a text is no Turtle or a relation lacks what code needs.
     """
     triples = TripleIndex(quad for text in (tbox_turtle(), *extra) for quad in _parse(text))
     relations: list[Relation] = []
@@ -105,7 +114,7 @@ def default_ontology() -> Ontology:
 
 
 def _parse(text: str) -> Iterator[ox.Quad]:
-    """The statements of a Turtle text between named things, or about one."""
+    """Yield the statements whose subject is an IRI and whose object is not a blank node."""
     import pyoxigraph as ox
 
     try:
@@ -113,7 +122,7 @@ def _parse(text: str) -> Iterator[ox.Quad]:
             if isinstance(quad.subject, ox.NamedNode) and not isinstance(quad.object, ox.BlankNode):
                 yield quad
     except SyntaxError as error:
-        raise OntologyError(f"the ontology is no valid Turtle: {error}") from error
+        raise OntologyError(f"the ontology is not valid Turtle: {error}") from error
 
 
 def _words(triples: TripleIndex, iri: str) -> tuple[str, ...]:
@@ -138,8 +147,8 @@ def _hedges(triples: TripleIndex) -> dict[str, float]:
         try:
             weight = float(text)
         except ValueError:
-            raise OntologyError(f"<{iri}>: a hedge weighs a number, not '{text}'") from None
+            raise OntologyError(f"<{iri}>: the weight of a hedge must be a number, got '{text}'") from None
         if not 0 < weight <= 1:
-            raise OntologyError(f"<{iri}>: a hedge weighs above 0 and at most 1, not {weight}")
+            raise OntologyError(f"<{iri}>: the weight of a hedge must be above 0 and at most 1, got {weight}")
         weights.update(dict.fromkeys(_words(triples, iri), weight))
     return weights

@@ -1,9 +1,9 @@
-"""The index over triples that the rooms share: what a subject says under a predicate, and which subjects say a value.
+"""An index over triples that several packages share: the objects of a subject, and the subjects of an object.
 
-Libraries were measured beside it. Reading the TBox takes 2.4 times as long with a ``pyoxigraph.Store`` and 6 times as
-long with an ``rdflib.Graph``, which make each term anew at each look-up. The rules of OWL 2 RL match numbers with it,
-for which an ``rdflib.Graph`` takes 4.2 times as long. In ``memory/``, where terms stay those of pyoxigraph, its store
-is used instead.
+It was measured against libraries. Reading the TBox takes 2.4 times as long with a ``pyoxigraph.Store`` and 6 times as
+long with an ``rdflib.Graph``, which create each term again at each look-up. The OWL 2 RL rules use this index with
+integers as terms; an ``rdflib.Graph`` takes 4.2 times as long for them. ``memory/`` keeps pyoxigraph's own terms, and
+uses its store instead.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ Term = TypeVar("Term", bound=Hashable)
 
 
 class TermIndex(Generic[Term]):
-    """Triples of any terms, by predicate and subject, and by predicate and object.
+    """Triples of terms of any type, indexed by predicate and subject, and by predicate and object.
 
     >>> index = TermIndex[int]()
     >>> index.add(1, 7, 2)
@@ -35,20 +35,21 @@ class TermIndex(Generic[Term]):
         self._subjects: dict[Term, dict[Term, set[Term]]] = defaultdict(lambda: defaultdict(set))
 
     def add(self, subject: Term, predicate: Term, object: Term) -> None:
+        """Add a triple; adding it twice changes nothing."""
         self._objects[predicate][subject].add(object)
         self._subjects[predicate][object].add(subject)
 
     def objects(self, subject: Term, predicate: Term) -> Collection[Term]:
-        """Return the objects of a subject under a predicate; to be read only."""
+        """Return the objects of a subject under a predicate; do not modify the collection."""
         return self._objects[predicate].get(subject, ()) if predicate in self._objects else ()
 
     def subjects(self, predicate: Term, object: Term) -> Collection[Term]:
-        """Return the subjects of an object under a predicate; to be read only."""
+        """Return the subjects of an object under a predicate; do not modify the collection."""
         return self._subjects[predicate].get(object, ()) if predicate in self._subjects else ()
 
 
 class TripleIndex(TermIndex[str]):
-    """Triples of pyoxigraph as plain strings: IRIs, labels of blank nodes, and literals without their datatypes."""
+    """The triples of pyoxigraph as plain strings: IRIs, labels of blank nodes, and literals without their datatypes."""
 
     def __init__(self, triples: Iterable[ox.Triple | ox.Quad]) -> None:
         super().__init__()
@@ -57,26 +58,26 @@ class TripleIndex(TermIndex[str]):
             self.add(subject, triple.predicate.value, value)
 
     def values(self, subject: str, predicate: str) -> list[str]:
-        """Return what a subject says under a predicate, sorted."""
+        """Return the objects of a subject under a predicate, sorted."""
         return sorted(self.objects(subject, predicate))
 
     def value(self, subject: str, predicate: str) -> str | None:
-        """Return the first value, or None."""
+        """Return the first of the sorted objects, or None if there is no object."""
         return min(self.objects(subject, predicate), default=None)
 
     def only(self, subject: str, predicate: str) -> str:
-        """Return the one value; raises OntologyError where there is none, or several."""
+        """Return the only object of a subject under a predicate; raise OntologyError unless there is exactly one."""
         found = self.values(subject, predicate)
         if len(found) != 1:
-            raise OntologyError(f"<{subject}> must have exactly one <{predicate}>, and has {len(found)}")
+            raise OntologyError(f"<{subject}> must have exactly one <{predicate}>, got {len(found)}")
         return found[0]
 
     def subjects(self, predicate: str, object: str) -> list[str]:
-        """Return the subjects that say a value under a predicate, sorted."""
+        """Return the subjects that have an object under a predicate, sorted."""
         return sorted(super().subjects(predicate, object))
 
     def ancestors(self, subject: str, predicate: str) -> frozenset[str]:
-        """Return everything reached from ``subject`` along ``predicate``, without itself; cycles do no harm."""
+        """Return all terms reached from ``subject`` along ``predicate``, without itself; cycles are allowed."""
         seen: set[str] = set()
         todo = [subject]
         while todo:

@@ -1,8 +1,7 @@
-"""RDF terms and triples: IRIs of learned things, literals, a look-up over a set of triples, and Skolem IRIs for blank
-nodes.
+"""RDF terms and triples: IRIs of learned resources, literals, and Skolem IRIs for blank nodes.
 
-An OWL class expression needs blank nodes; a store that must take back exactly what one lesson said needs names. So the
-memory holds skolem IRIs, and they become blank nodes on the way out.
+OWL class expressions need blank nodes. The memory needs names instead, so that it can remove exactly the triples of one
+lesson. It therefore stores Skolem IRIs, and exports them as blank nodes.
 """
 
 from __future__ import annotations
@@ -21,7 +20,7 @@ LEARNED = "https://w3id.org/deixis/learned/"
 
 
 def learned_iri(*parts: str | int) -> str:
-    """An IRI under :data:`LEARNED`; every part is percent-encoded, so that no name can reach out of its place.
+    """Return an IRI under :data:`LEARNED`, each part percent-encoded so that no part can add a path segment.
 
     >>> learned_iri("category", "fish knife>")
     'https://w3id.org/deixis/learned/category/fish%20knife%3E'
@@ -35,17 +34,17 @@ def _encoded(part: str) -> str:
 
 
 def category_iri(name: str) -> str:
-    """The class of things that go by a name, as it was learned."""
+    """Return the IRI of the learned class of the objects called ``name``."""
     return learned_iri("category", name)
 
 
 def content_key(content: str) -> str:
-    """A short name for a text, in the letters that a blank node's label may have."""
+    """Return a hash of a text: 16 hexadecimal digits of SHA-256, valid in the label of a blank node."""
     return hashlib.sha256(content.encode("utf-8")).hexdigest()[:16]
 
 
 def last_part(iri: str) -> str:
-    """The name that the last part of a learned IRI was made from.
+    """Return the last part of a learned IRI, decoded.
 
     >>> last_part(learned_iri("category", "fish knife>"))
     'fish knife>'
@@ -57,16 +56,21 @@ XSD = "http://www.w3.org/2001/XMLSchema#"
 
 
 def iri(value: str) -> ox.NamedNode:
-    """A named node; ``value`` may be a member of the closed vocabulary."""
+    """Return a named node; ``value`` may be a member of the closed vocabulary."""
     return ox.NamedNode(str(value))
 
 
 def text(value: str) -> ox.Literal:
+    """Return a plain string literal."""
     return ox.Literal(value)
 
 
 def typed(value: bool | int | float | datetime) -> ox.Literal:
-    """A boolean, integer or dateTime as such (HermiT reads no finer than milliseconds); a float as xsd:double."""
+    """Return a typed literal.
+
+    A boolean, integer or datetime keeps its type; a datetime has milliseconds, the finest unit that HermiT reads. A
+    float becomes an xsd:double.
+    """
     if isinstance(value, bool):
         return ox.Literal(str(value).lower(), datatype=iri(XSD + "boolean"))
     if isinstance(value, datetime):
@@ -76,12 +80,12 @@ def typed(value: bool | int | float | datetime) -> ox.Literal:
 
 
 def decimal(value: float) -> ox.Literal:
-    """A number as xsd:decimal, which has no exponent."""
+    """Return a number as xsd:decimal, which is written without an exponent."""
     return ox.Literal(format(Decimal(repr(float(value))), "f"), datatype=iri(XSD + "decimal"))
 
 
 class Description:
-    """Triples about one subject, in the order in which they are said.
+    """Triples about one subject, in the order in which they were added.
 
     >>> about = Description("urn:fork")
     >>> about.say("urn:p", text("x"), text("y"))
@@ -94,6 +98,7 @@ class Description:
         self._triples: list[ox.Triple] = []
 
     def say(self, predicate: str, *objects: ox.NamedNode | ox.Literal) -> None:
+        """Add one triple per object."""
         self._triples += [ox.Triple(self.subject, iri(predicate), value) for value in objects]
 
     def __iter__(self) -> Iterator[ox.Triple]:
@@ -104,12 +109,12 @@ GENID = "https://w3id.org/deixis/.well-known/genid/"
 
 
 def skolem(key: str) -> ox.NamedNode:
-    """The IRI that stands for a blank node; ``key`` is letters, digits, ``-``, ``_`` and ``.`` only."""
+    """Return the IRI that stands for a blank node; ``key`` has only letters, digits, ``-``, ``_`` and ``.``."""
     return ox.NamedNode(GENID + key)
 
 
 def with_blank_nodes(triples: Iterable[ox.Triple]) -> Iterator[ox.Triple]:
-    """The triples with skolem IRIs as blank nodes.
+    """Yield the triples with Skolem IRIs replaced by blank nodes.
 
     >>> list(with_blank_nodes([ox.Triple(skolem("x"), ox.NamedNode("urn:p"), ox.Literal("1"))]))[0].subject
     <BlankNode value=x>
@@ -119,7 +124,7 @@ def with_blank_nodes(triples: Iterable[ox.Triple]) -> Iterator[ox.Triple]:
 
 
 def with_names(triples: Iterable[ox.Triple]) -> Iterator[ox.Triple]:
-    """The triples with blank nodes as skolem IRIs, by their labels."""
+    """Yield the triples with blank nodes replaced by Skolem IRIs, made from their labels."""
     for triple in triples:
         yield ox.Triple(_named(triple.subject), triple.predicate, _named(triple.object))
 
@@ -128,7 +133,7 @@ _Term = TypeVar("_Term")
 
 
 def with_blank(term: _Term) -> _Term | ox.BlankNode:
-    """A term, as a blank node where it is a skolem IRI."""
+    """Return the blank node that a Skolem IRI stands for, or any other term unchanged."""
     if isinstance(term, ox.NamedNode) and term.value.startswith(GENID):
         return ox.BlankNode(term.value.removeprefix(GENID))
     return term

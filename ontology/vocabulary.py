@@ -1,4 +1,4 @@
-"""The closed vocabulary: every IRI that code writes is a member here, so that a misspelt one fails at once.
+"""The closed vocabulary: every IRI in the code is a member here, so that a misspelt one fails at once.
 
 A test compares the members with the TBox in both directions.
 """
@@ -130,7 +130,7 @@ class DX(StrEnum):
 
 
 class W3C(StrEnum):
-    """The terms of RDF, RDFS, OWL and SKOS that code refers to."""
+    """Terms of RDF, RDFS, OWL and SKOS that the code refers to."""
 
     RDF_TYPE = "http://www.w3.org/1999/02/22-rdf-syntax-ns#type"
     RDFS_LABEL = "http://www.w3.org/2000/01/rdf-schema#label"
@@ -148,7 +148,7 @@ class W3C(StrEnum):
 
 
 class PROV(StrEnum):
-    """The terms of PROV-O that code refers to."""
+    """Terms of PROV-O that the code refers to."""
 
     ACTIVITY = "http://www.w3.org/ns/prov#Activity"
     ENTITY = "http://www.w3.org/ns/prov#Entity"

@@ -1,1 +1,1 @@
-"""Pure inference over relation graphs: calculi, what follows, similarity, assignment, grounding. No input or output."""
+"""Pure inference over relation graphs: entailment, consistency, time, similarity and grounding. No input or output."""

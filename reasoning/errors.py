@@ -1,4 +1,4 @@
-"""Errors that reasoning raises."""
+"""Errors raised by reasoning."""
 
 from __future__ import annotations
 
@@ -8,15 +8,15 @@ from deixis.errors import DeixisError
 
 
 class LimitError(DeixisError, OverflowError):
-    """A question that is larger than what can be answered in bounded time and memory; nothing was decided."""
+    """A question too large to be answered in bounded time and memory; nothing was decided."""
 
 
 class OutOfTimeError(LimitError, TimeoutError):
-    """The time limit struck before a search was done; nothing was decided."""
+    """A search that reached its time limit; nothing was decided."""
 
 
 class OutOfMemoryError(DeixisError, MemoryError):
-    """A question that takes more memory than its limit; nothing was decided, and none of it was taken."""
+    """A question that needs more memory than its limit; nothing was decided, and no memory was allocated."""
 
 
 class InconsistencyError(DeixisError, ValueError):
@@ -24,25 +24,25 @@ class InconsistencyError(DeixisError, ValueError):
 
 
 class SettingError(DeixisError, ValueError):
-    """A setting of a call that it cannot have."""
+    """An invalid value of a setting."""
 
 
 def require_time_limit(seconds: float) -> None:
-    """Raises SettingError for what is no time limit, not a number among them."""
+    """Raise SettingError unless ``seconds`` is a number of at least 0."""
     if not isinstance(seconds, Real) or not seconds >= 0:
-        raise SettingError(f"a time limit is 0 or more seconds, not {seconds}")
+        raise SettingError(f"the time limit must be 0 or more seconds, got {seconds}")
 
 
 class NothingFoundError(DeixisError, LookupError):
-    """A script of which a scene shows nothing."""
+    """A script that matches nothing in a scene."""
 
 
 class UnknownAtomError(DeixisError, LookupError):
-    """A sign that stands for no atom of a calculus."""
+    """A symbol that is not an atom of a calculus."""
 
 
 class CalculusError(DeixisError, ValueError):
-    """Tables that are no calculus; ``atom`` is the code of the atom where that shows."""
+    """Invalid tables of a calculus; ``atom`` is the code of the atom that shows the error."""
 
     def __init__(self, message: str, atom: int) -> None:
         super().__init__(message)
@@ -50,11 +50,11 @@ class CalculusError(DeixisError, ValueError):
 
 
 class UnknownCalculusError(DeixisError, LookupError):
-    """A name that stands for no calculus."""
+    """A name that is not the name of a calculus."""
 
 
 class TriplesError(DeixisError, ValueError):
-    """Text that is no N-Triples, or triples that say no ontology."""
+    """Text that is not N-Triples, or triples that are not an ontology."""
 
 
 class ReasonerError(DeixisError, RuntimeError):
@@ -62,8 +62,8 @@ class ReasonerError(DeixisError, RuntimeError):
 
 
 class NotEntailedError(DeixisError, ValueError):
-    """A statement of which a justification was asked, and which does not follow."""
+    """A statement that does not follow, so that it has no justification."""
 
 
 class NetworkError(DeixisError, ValueError):
-    """A network whose parts do not fit together, or a question about a pair that it does not have."""
+    """A network of inconsistent parts, or a question about a pair that is not in the network."""

@@ -34,16 +34,16 @@ term.
 
 ## Relations, the wide reading
 
-What a word means in a script, and what inference and checking use: it constrains the axis that it names and leaves the
-rest open. *x* points to the viewer's right, *y* away from the viewer, *z* up. Of a pair in a relation, the projections
-on an axis bear one of the Allen relations that stand there.
+The meaning of a word in a script, which inference and checking use: it constrains the axis that it names and leaves the
+other open. *x* points to the viewer's right, *y* away from the viewer, *z* up. The projections of a related pair on an
+axis have one of the Allen relations listed for that axis.
 
 {wide}
 
 ## Relations, the exact reading
 
-The name of a pair of boxes: of these ten every ordered pair bears exactly one. None is transitive, and each implies the
-wide relation that it stands under.
+The relation of a pair of boxes: every ordered pair has exactly one of these ten. None of them is transitive, and each
+implies the wide relation of the same word.
 
 {exact}
 
@@ -57,10 +57,9 @@ wide relation that it stands under.
 
 ## Usual sizes
 
-How large things usually are, in centimetres: least, typical, greatest. The length is the longer side of the outline,
-seen from above, the width the shorter one; of a circle both are the diameter. Handles are not counted: the reach is how
-far they stand out, in hundredths of the length. A kind of which nothing stands here is as
-large as the nearest broader one that does.
+Usual sizes in centimetres: least, typical, greatest. The length is the longer side of the outline seen from above, the
+width the shorter one; for a circle, both are the diameter. Handles are not included: the reach is the distance by which
+they stick out, in percent of the length. A kind that is not listed has the size of its nearest broader kind.
 
 {sizes}
 
@@ -70,7 +69,7 @@ large as the nearest broader one that does.
 
 ## Colours
 
-What people call by a word: the middle of it in sRGB, and the covariance around that in CIELAB (LL, La, Lb, aa, ab, bb;
+The colours that people call by a word: their mean in sRGB, and their covariance in CIELAB (LL, La, Lb, aa, ab, bb;
 white point D65).
 
 {colours}
@@ -95,13 +94,13 @@ white point D65).
 
 {individuals}
 
-## Terms of others
+## Terms of other vocabularies
 
-Used as they are defined elsewhere: {others}.
+Used as defined there: {others}.
 """
 
 Columns = dict[str, Callable[[Any], str]]
-"""What the cells of a column say of a term, by the head of the column."""
+"""Functions that give the cell of a term, by the heading of the column."""
 
 graph = Graph("SimpleMemory")  # keeps the order of the files
 for file in ("deixis.ttl", "everyday.ttl"):
@@ -176,7 +175,7 @@ def tree(kind: Node, depth: int) -> Iterator[str]:
 
 
 def properties(kind: URIRef) -> str:
-    """Return the table of the properties of a kind that are no relations."""
+    """Return the table of the properties of a kind that are not spatial relations."""
 
     def notes(term: URIRef) -> str:
         found = [name.lower() for name in CHARACTERISTICS if OWL[f"{name}Property"] in graph[term : RDF.type]]

@@ -1,1 +1,1 @@
-"""Lessons: what a grounding taught, as types, as triples and as SHACL shapes."""
+"""Lessons: the result of a grounding as types, as triples and as SHACL shapes."""

@@ -1,4 +1,4 @@
-"""Reads layouts and lessons back from triples."""
+"""Read layouts and lessons back from triples."""
 
 from __future__ import annotations
 
@@ -18,19 +18,19 @@ from deixis.ontology.vocabulary import DX, PROV, W3C
 
 
 def layouts(triples: Iterable[ox.Triple], relations: Relations) -> tuple[LayoutConcept, ...]:
-    """Return every layout that learned triples describe, by lesson."""
+    """Return all layouts in the learned triples, by lesson."""
     index = TripleIndex(triples)
     return tuple(_layout(layout, index, relations) for layout in index.subjects(W3C.RDFS_SUB_CLASS_OF, DX.LAYOUT))
 
 
 def unknown_layout(name: str, known: Iterable[str]) -> UnknownTermError:
-    """Return the error that says that no layout has a name, with the nearest of those that there are."""
+    """Return the error for a layout name that is not known; its message suggests the nearest of the known names."""
     names = sorted(set(known))
     if not names:
-        return UnknownTermError(f"no layout '{name}' has been learned, nor any other")
+        return UnknownTermError(f"no layout '{name}' has been learned; the memory has no layouts yet")
     hint = nearest(name, names)
-    told = f"did you mean '{hint}'?" if hint else f"the learned ones are: {', '.join(names)}"
-    return UnknownTermError(f"no layout '{name}' has been learned; {told}")
+    advice = f"did you mean '{hint}'?" if hint else f"the learned layouts are: {', '.join(names)}"
+    return UnknownTermError(f"no layout '{name}' has been learned; {advice}")
 
 
 def _layout(layout: str, index: TripleIndex, relations: Relations) -> LayoutConcept:
@@ -89,7 +89,7 @@ def _fact(fact: str, index: TripleIndex, by_iri: dict[str, Relation]) -> Fact:
 
 @dataclass(frozen=True)
 class LessonRecord:
-    """A lesson as it was kept. ``words_only``: the labels of its scene say who is who, and there are no matches."""
+    """A lesson as stored; ``words_only`` lessons have no matches, since the labels of their scene name the objects."""
 
     id: str
     script_file: str
@@ -100,7 +100,7 @@ class LessonRecord:
 
 
 def lesson_records(learned: Iterable[ox.Triple], episodes: Iterable[ox.Triple]) -> tuple[LessonRecord, ...]:
-    """Return every lesson that keeps its script and its scene, by id."""
+    """Return all lessons that store their script and their scene, by id."""
     told, said = TripleIndex(episodes), TripleIndex(learned)
     records = []
     for lesson in told.subjects(W3C.RDF_TYPE, DX.LESSON):
@@ -118,7 +118,7 @@ def lesson_records(learned: Iterable[ox.Triple], episodes: Iterable[ox.Triple]) 
 
 
 def _match(part: str, said: TripleIndex) -> Match | None:
-    """Return a match as it was kept; None where that does not say what is likeliest, as the first lessons did not."""
+    """Return a stored match, or None if it names no scene object, as in lessons of the first format."""
     taken = said.value(part, DX.PERCEIVED_AS) or said.value(part, DX.LIKELIEST)
     if taken is None:
         return None

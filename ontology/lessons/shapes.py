@@ -1,9 +1,9 @@
-"""A layout as SHACL shapes, and a scene as the data that they are checked on.
+"""Write a layout as SHACL shapes, and a scene as the data that the shapes validate.
 
-A scene conforms to a layout where every role is filled, everything in it fills a role, and every fact holds of what
-fills its roles; facts about an unfilled role are passed over, since the role itself is reported. The focus node of a
-broken fact is the statement itself, which leads to its line. A hedged fact is a warning, an optional one information.
-What fills a role of a stated colour may be of no other.
+A scene conforms to a layout if every role is filled, every object in it fills a role, and every fact holds of the
+objects in its roles. A fact about an unfilled role is skipped, since the role itself is reported. The focus node of a
+violated fact is its statement, which has its line in the script. A hedged fact gives a warning, an optional one an
+info. The object in a role with a stated colour may have no other colour.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ _RDF = "http://www.w3.org/1999/02/22-rdf-syntax-ns#"
 
 
 def layout_shapes(layout: LayoutConcept) -> Iterator[ox.Triple]:
-    """Yield the shapes graph of a layout; blank nodes as skolem IRIs."""
+    """Yield the shapes graph of a layout, with Skolem IRIs for blank nodes."""
     writer = _Shapes(layout)
     yield from writer.extra()
     spare = dispensable(layout.facts)
@@ -42,21 +42,21 @@ class _Shapes:
         self._count = 0
 
     def extra(self) -> Iterator[ox.Triple]:
-        shape = self._shape("extra", "Violation", "has no place in the layout: take it away")
+        shape = self._shape("extra", "Violation", "has no role in the layout: remove it")
         shape.say(SH + "targetSubjectsOf", iri(DX.IN_SCENE))
         shape.say(SH + "path", iri(DX.FILLS))
         shape.say(SH + "minCount", typed(1))
         yield from shape
 
     def missing(self, role: str, severity: str) -> Iterator[ox.Triple]:
-        shape = self._shape(f"role-{role}", severity, f"{role} is missing: put one in its place")
+        shape = self._shape(f"role-{role}", severity, f"{role} is missing: add it")
         shape.say(SH + "targetNode", iri(role_iri(self._lesson, role)))
         yield from self._path(shape, [self._inverse(DX.FILLS)])
         shape.say(SH + "minCount", typed(1))
         yield from shape
 
     def miscoloured(self, role: str, colour: str) -> Iterator[ox.Triple]:
-        shape = self._shape(f"colour-{role}", "Violation", f"{role} is of another colour than is said")
+        shape = self._shape(f"colour-{role}", "Violation", f"{role} does not have the colour described")
         shape.say(SH + "targetNode", iri(role_iri(self._lesson, role)))
         yield from self._path(shape, [self._inverse(DX.FILLS), ([], iri(DX.OF_COLOUR))])
         triples, head = self._list([iri(colour)])
@@ -127,7 +127,7 @@ class _Shapes:
         shape.say(SH + "path", head)
 
     def _list(self, items: Sequence[ox.NamedNode]) -> tuple[list[ox.Triple], ox.NamedNode]:
-        """Return an RDF list, and its head."""
+        """Return the triples of an RDF list, and its head."""
         triples: list[ox.Triple] = []
         rest = iri(_RDF + "nil")
         for item in reversed(items):
@@ -146,11 +146,22 @@ def scene_data(
     related: Iterable[tuple[str, Relation, str]],
     coloured: Mapping[str, str],
 ) -> Iterator[ox.Triple]:
-    """The data graph of a check: the things of a scene, what role each fills, and the relations that hold of pairs.
+    """Yield the data graph of a check: the objects of a scene, their roles, and the relations that hold between them.
 
-    ``fills`` is from thing to role; ``related`` holds every relation that is satisfied, in whatever reading it is
-    stated; ``coloured`` is from thing to the IRI of a colour, where it is of another than is said. The layout's
-    statements stand beside them, as the focus nodes of its shapes.
+    The statements of the layout are in it too, as the focus nodes of its shapes.
+
+    Parameters
+    ----------
+    layout
+        The layout to check against.
+    things
+        Names of the objects in the scene.
+    fills
+        Role of each object that fills one.
+    related
+        All relations that hold, in the readings in which the layout states them: subject, relation, object.
+    coloured
+        IRI of the colour of each object whose colour is not the described one.
     """
     scene = learned_iri("checked", layout.lesson)
     yield from _said(scene, (W3C.RDF_TYPE, iri(DX.SCENE)), (W3C.RDF_TYPE, iri(layout_iri(layout.lesson))))

@@ -1,4 +1,4 @@
-"""What is learned: layouts, categories of objects, and the lessons that taught them."""
+"""Results of learning: layouts, categories of objects, and the lessons that taught them."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Role:
-    """A place in a layout: its name, the class IRI of what fills it, whether that was declared, and a colour's IRI."""
+    """A place in a layout: its name, the class IRI of its kind, whether that was declared, and the IRI of a colour."""
 
     name: str
     kind: str | None = None
@@ -29,7 +29,7 @@ class Role:
 
 @dataclass(frozen=True)
 class LayoutConcept:
-    """A learned layout: the roles in it and the facts that hold between them, as one script states them."""
+    """A learned layout: its roles and the facts between them, as stated in one script."""
 
     lesson: str
     name: str
@@ -52,10 +52,10 @@ class LayoutConcept:
 
 @dataclass(frozen=True, slots=True)
 class Alternative:
-    """Something else that an object could be; ``perceived`` None is that it is not there.
+    """Another scene object that an object could be; ``perceived`` is None for being absent from the scene.
 
-    ``cost`` is what choosing it would lose: log-likelihood, or similarity where the engine gives no ``probability``. A
-    lesson does not keep it: NaN.
+    ``cost`` is the loss of choosing it: log-likelihood, or similarity if the engine gives no ``probability``. It is NaN
+    in a stored lesson, which does not keep it.
     """
 
     perceived: str | None
@@ -65,12 +65,12 @@ class Alternative:
 
 @dataclass(frozen=True, slots=True, repr=False)
 class Match(Answer):
-    """An object of the description and the perceived thing that it is.
+    """An object of the description, and the scene object that it is matched to.
 
-    ``score`` is the share of what is said of the object and can be compared that holds (by degree and weight; 1 where
-    there is nothing), ``similarity`` the paper's (NaN in a lesson, which does not keep it), ``probability`` that of the
-    match given all the evidence (None where the engine gives none). ``decided`` says that it is high enough
-    (:func:`deixis.reasoning.grounding.options.is_decided`), or that nothing else is as similar.
+    ``score`` is the share of the comparable facts about the object that hold, by degree and weight; 1 without such
+    facts. ``similarity`` is the paper's, and NaN in a stored lesson, which does not keep it. ``probability`` is the
+    posterior probability of the match, None if the engine gives none. ``decided`` is True if the probability is high
+    enough (:func:`deixis.reasoning.grounding.options.is_decided`), or if no other object is as similar.
     """
 
     object: str
@@ -88,15 +88,16 @@ class Match(Answer):
 
     @property
     def could_be(self) -> tuple[str, ...]:
-        """What the object may be, the match first, where that is not decided."""
+        """Scene objects that the object may be, the match first; empty for a decided match."""
         others = tuple(other.perceived for other in self.alternatives if other.perceived is not None)
         return () if self.decided else (self.perceived, *others)
 
     @property
     def sureness(self) -> float:
-        """How sure the match is, 0 to 1: its probability; without one 1, or an equal share among what it could be.
+        """Confidence in the match, in [0, 1].
 
-        0 where it is not decided, and not known what else it could be.
+        It is the probability if there is one, else 1 for a decided match, else one share for each object in
+        ``could_be``. It is 0 for an undecided match without known alternatives.
         """
         if self.probability is not None:
             return self.probability
@@ -106,44 +107,72 @@ class Match(Answer):
 
 
 class SeenObject(Protocol):
-    """What a lesson keeps of a perceived object: corners of 2 or 3 coordinates, the colour in sRGB."""
+    """A perceived object as a lesson stores it."""
 
     @property
-    def id(self) -> str: ...
+    def id(self) -> str:
+        """Identifier of the object in its scene."""
+        ...
+
     @property
-    def minimum(self) -> tuple[float, ...]: ...
+    def minimum(self) -> tuple[float, ...]:
+        """Least corner of the bounding box, 2 or 3 coordinates in the scene's unit."""
+        ...
+
     @property
-    def maximum(self) -> tuple[float, ...]: ...
+    def maximum(self) -> tuple[float, ...]:
+        """Greatest corner of the bounding box, 2 or 3 coordinates in the scene's unit."""
+        ...
+
     @property
-    def label(self) -> str | None: ...
+    def label(self) -> str | None:
+        """Label that a recogniser or an annotation gave."""
+        ...
+
     @property
-    def confidence(self) -> float: ...
+    def confidence(self) -> float:
+        """Confidence in the label, in [0, 1]."""
+        ...
+
     @property
-    def colour(self) -> Rgb | None: ...
+    def colour(self) -> Rgb | None:
+        """Mean colour in sRGB."""
+        ...
 
 
 class SeenScene(Protocol):
-    """What a lesson keeps of a scene; perception's ``Scene`` is one."""
+    """A scene as a lesson stores it; perception's ``Scene`` has this type."""
 
     @property
-    def frame(self) -> str: ...
+    def frame(self) -> str:
+        """Name of the coordinate frame."""
+        ...
+
     @property
-    def viewpoint(self) -> str: ...
+    def viewpoint(self) -> str:
+        """Name of the viewpoint that the scene is seen from."""
+        ...
+
     @property
-    def unit(self) -> str: ...
+    def unit(self) -> str:
+        """Unit of the coordinates."""
+        ...
+
     @property
-    def objects(self) -> Sequence[SeenObject]: ...
+    def objects(self) -> Sequence[SeenObject]:
+        """Perceived objects, in their order."""
+        ...
 
 
 SeenRelation = tuple[str, Relation, str]
-"""The exact relation of a pair of perceived objects, by their ids."""
+"""Exact relation of a pair of perceived objects: subject id, relation, object id."""
 
 
 @dataclass(frozen=True)
 class Lesson:
-    """The learning of one layout, and of what fills its roles, from one script and one scene.
+    """The learning of one layout, and of the objects in its roles, from one script and one scene.
 
-    ``relations`` are those of pairs of the scene's objects.
+    ``relations`` are the exact relations of pairs of the scene's objects.
     """
 
     layout: LayoutConcept
@@ -161,16 +190,17 @@ class Lesson:
 
     @property
     def id(self) -> str:
+        """Identifier of the lesson, which is that of its layout."""
         return self.layout.lesson
 
     def categories(self) -> tuple[Match, ...]:
-        """The matches that teach a category: decided ones; what is doubtful or interchangeable teaches nothing."""
+        """Return the decided matches, which teach a category; doubtful or interchangeable objects teach none."""
         return tuple(match for match in self.matches if match.decided)
 
 
 @dataclass(frozen=True)
 class WordLesson:
-    """What a script and a scene whose labels name its things teach: words and sizes, and no layout."""
+    """The learning of words and sizes, but no layout, from a script and a scene whose labels name its objects."""
 
     id: str
     scene: SeenScene
@@ -185,11 +215,20 @@ class WordLesson:
 
 
 def next_lesson_id(name: str, taken: Callable[[str], bool]) -> str:
-    """Return the id of a new lesson about a layout of this name; ``taken`` says which are.
+    """Return the id of a new lesson about a layout of this name.
 
-    The number is one that is free behind one that is taken. It is looked for in steps that double, since there may be
-    thousands of lessons of one name.
+    The number is free and the one before it is taken. It is searched for in doubling steps, since one name may have
+    thousands of lessons.
 
+    Parameters
+    ----------
+    name
+        Name of the layout.
+    taken
+        Function that returns whether an id is in use.
+
+    Examples
+    --------
     >>> next_lesson_id("formal_dinner", ["formal_dinner-1", "picnic-7"].__contains__)
     'formal_dinner-2'
     """

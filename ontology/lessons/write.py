@@ -1,4 +1,4 @@
-"""A lesson as triples, by the graph that each belongs to."""
+"""Write a lesson as triples, grouped by the named graph that each belongs to."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _CORNERS = ((DX.MIN_X, DX.MAX_X), (DX.MIN_Y, DX.MAX_Y), (DX.MIN_Z, DX.MAX_Z))
 
 
 def learned_triples(lesson: Lesson, relations: Relations) -> Iterator[ox.Triple]:
-    """Yield the layout as a class with its roles and statements, the categories, and the matches that show them."""
+    """Yield the layout as a class with its roles and statements, the categories, and the matches."""
     layout = lesson.layout
     yield from _layout(layout, relations)
     for position, role in enumerate(layout.roles, 1):
@@ -42,7 +42,7 @@ def learned_triples(lesson: Lesson, relations: Relations) -> Iterator[ox.Triple]
 
 
 def asserted_triples(lesson: Lesson | WordLesson) -> Iterator[ox.Triple]:
-    """The scene: its objects with their boxes, the exact relations between them, and what the decided ones are."""
+    """Yield the scene: its objects with boxes, their exact relations, and the categories of decided matches."""
     record, scene = lesson.scene, scene_iri(lesson)
     about = Description(scene)
     about.say(W3C.RDF_TYPE, iri(DX.SCENE))
@@ -61,7 +61,7 @@ def asserted_triples(lesson: Lesson | WordLesson) -> Iterator[ox.Triple]:
 
 
 def episode_triples(lesson: Lesson | WordLesson) -> Iterator[ox.Triple]:
-    """When, from what, and by what the lesson was learned."""
+    """Yield the provenance of the lesson: its time, script, scene, engine and software version."""
     about = Description(lesson_iri(lesson.id))
     about.say(W3C.RDF_TYPE, iri(DX.LESSON))
     if isinstance(lesson, WordLesson):
@@ -86,38 +86,42 @@ def episode_triples(lesson: Lesson | WordLesson) -> Iterator[ox.Triple]:
 
 
 def lesson_iri(lesson: str) -> str:
+    """Return the IRI of a lesson."""
     return learned_iri("lesson", lesson)
 
 
 def script_iri(lesson: str) -> str:
-    """Return the script that a lesson was read from, as what its statements are derived from."""
+    """Return the IRI of a lesson's script, which its statements are derived from."""
     return learned_iri("lesson", lesson, "script")
 
 
 def layout_iri(lesson: str) -> str:
+    """Return the IRI of the layout that a lesson taught."""
     return learned_iri("layout", lesson)
 
 
 def role_iri(lesson: str, role: str) -> str:
+    """Return the IRI of a role of a layout."""
     return learned_iri("layout", lesson, "role", role)
 
 
 def fact_iri(lesson: str, position: int) -> str:
-    """Return the statement of a layout's fact, counted from 1."""
+    """Return the IRI of the statement of a layout's fact; ``position`` counts from 1."""
     return learned_iri("layout", lesson, "fact", position)
 
 
 def scene_iri(lesson: Lesson | WordLesson) -> str:
-    """Named by its content, so that two lessons from one scene speak of the same things."""
+    """Return the IRI of a lesson's scene, made from its content, so that lessons from one scene share its objects."""
     return scene_text_iri(lesson.scene_text)
 
 
 def scene_text_iri(scene_text: str) -> str:
-    """Return the scene that a lesson's text of it describes."""
+    """Return the IRI of the scene with this text."""
     return learned_iri("scene", content_key(scene_text))
 
 
 def thing_iri(lesson: Lesson | WordLesson, name: str) -> str:
+    """Return the IRI of an object of a lesson's scene."""
     return learned_iri("scene", content_key(lesson.scene_text), name)
 
 

@@ -1,7 +1,8 @@
-"""What a relation word means by degrees, as data: the parameters of graded models, and where they come from.
+"""Graded models of the relation words as data: their parameters, and the examples that they were fitted to.
 
-A model is a sum of terms. A term maps one feature of a pair of boxes to the logarithm of a degree, piecewise linear
-between knots, 0 where it fits the word best. Nothing here computes; :mod:`deixis.reasoning.grounding.evidence` does.
+A model is a sum of terms. A term maps one feature of a pair of boxes to the logarithm of a degree; it is piecewise
+linear between knots, and 0 where the pair fits the word best. The degrees are computed in
+:mod:`deixis.reasoning.grounding.evidence`.
 """
 
 from __future__ import annotations
@@ -16,11 +17,11 @@ from deixis.errors import OntologyError, UnknownTermError
 from deixis.ontology.relation import Relation, nearest
 
 SAYING = "saying"
-"""The name of the model of which pairs people speak of at all, whatever the word."""
+"""Name of the model of the pairs that people mention at all, in whatever relation."""
 
 
 class Trend(IntEnum):
-    """Which way a term must go for the word to keep its meaning."""
+    """Direction in which the values of a term must go for the word to keep its meaning."""
 
     FALLING = -1
     FREE = 0
@@ -29,9 +30,10 @@ class Trend(IntEnum):
 
 @dataclass(frozen=True, slots=True)
 class Term:
-    """Log degree by a feature: ``values[i]`` at ``knots[i]``, linear between them, constant beyond.
+    """A log degree as a function of a feature: ``values[i]`` at ``knots[i]``, linear between knots, constant outside.
 
-    Raises OntologyError where knots do not rise, numbers are not finite, a value is above 0 or against the trend.
+    Raises OntologyError if the knots do not increase, a number is not finite, or a value is above 0 or goes against
+    the trend.
     """
 
     feature: str
@@ -42,22 +44,22 @@ class Term:
     def __post_init__(self) -> None:
         where = f"the term '{self.feature}'"
         if len(self.knots) != len(self.values) or len(self.knots) < 2:
-            raise OntologyError(f"{where}: give one value a knot, and two knots at least")
+            raise OntologyError(f"{where}: there must be one value per knot, and at least two knots")
         if not all(map(math.isfinite, (*self.knots, *self.values))):
-            raise OntologyError(f"{where}: a knot or a value is not finite")
+            raise OntologyError(f"{where}: knots and values must be finite")
         if any(b <= a for a, b in zip(self.knots, self.knots[1:], strict=False)):
-            raise OntologyError(f"{where}: knots must rise")
+            raise OntologyError(f"{where}: knots must increase")
         if max(self.values) > 1e-9:
-            raise OntologyError(f"{where}: a log degree is 0 at the most, not {max(self.values):g}")
+            raise OntologyError(f"{where}: a log degree must be at most 0, got {max(self.values):g}")
         if any((b - a) * self.trend < -1e-9 for a, b in zip(self.values, self.values[1:], strict=False)):
             raise OntologyError(f"{where}: its values must be {self.trend.name.lower()}")
 
 
 @dataclass(frozen=True, slots=True)
 class Provenance:
-    """What a model was made from: ``examples`` facts of ``sources`` (files) and ``lessons`` (ids), when, and by what.
+    """Origin of a model: ``examples`` facts of ``sources`` (files) and ``lessons`` (ids), and when it was made.
 
-    ``version`` is that of Deixis, ``strength`` that of the prior, the shipped models; None where it is not known.
+    ``version`` is the version of Deixis, ``strength`` that of the prior (the shipped models), None if it is not known.
     """
 
     sources: tuple[str, ...] = ()
@@ -70,9 +72,9 @@ class Provenance:
 
 @dataclass(frozen=True, slots=True)
 class RelationModel:
-    """The graded meaning of a family of words that mirror each other, or, named ``saying``, of speaking of a pair.
+    """Graded meaning of a family of words that mirror each other; the model ``saying`` is of mentioning a pair at all.
 
-    ``outliers`` is the share of facts that are said of any pair whatever; ``chance`` the mean degree of a random pair.
+    ``outliers`` is the share of facts that fit any pair, ``chance`` the mean degree of a random pair.
     """
 
     name: str  # 'horizontal', 'vertical', 'diagonal', 'support' or 'saying'
@@ -83,12 +85,12 @@ class RelationModel:
 
     def __post_init__(self) -> None:
         if not 0 < self.outliers < 1 or not 0 < self.chance <= 1:
-            raise OntologyError(f"the model '{self.name}': outliers and chance lie between 0 and 1")
+            raise OntologyError(f"the model '{self.name}': outliers and chance must lie between 0 and 1")
         if len({term.feature for term in self.terms}) != len(self.terms):
             raise OntologyError(f"the model '{self.name}' has two terms for one feature")
 
     def without(self, *features: str) -> RelationModel:
-        """Return the same model blind to some features."""
+        """Return the model without the terms of some features."""
         terms = tuple(term for term in self.terms if term.feature not in features)
         return RelationModel(self.name, terms, self.outliers, self.chance, self.provenance)
 
@@ -105,12 +107,12 @@ FAMILIES: Mapping[str, str] = {
     "on": "support",
     "under": "support",
 }
-"""The model that each word shares with its mirror images and its inverse."""
+"""Model of each word, shared with its mirror images and its inverse."""
 
 
 @dataclass(frozen=True)
 class RelationModels:
-    """All models, by name."""
+    """All graded models, by name."""
 
     models: Mapping[str, RelationModel]
 
@@ -126,7 +128,7 @@ class RelationModels:
             raise UnknownTermError(f"there is no graded model '{name}'") from None
 
     def of(self, relation: Relation) -> RelationModel:
-        """Return the model of a relation's word; raises UnknownTermError where it has none."""
+        """Return the model of the word of a relation; raise UnknownTermError if the word has no model."""
         if relation.word not in FAMILIES:
             hint = nearest(relation.word, FAMILIES)
             advice = f"; did you mean '{hint}'?" if hint else ""
@@ -134,5 +136,5 @@ class RelationModels:
         return self[FAMILIES[relation.word]]
 
     def replaced(self, *models: RelationModel) -> RelationModels:
-        """Return the same with some models exchanged for others of their names."""
+        """Return a copy in which these models replace those of the same names."""
         return RelationModels({**self.models, **{model.name: model for model in models}})

@@ -1,6 +1,6 @@
-"""Learned sizes of kinds, and their triples: one model per kind, derived (PROV-O) from the scenes that showed it.
+"""Learned sizes of kinds and their triples: one model per kind, derived (PROV-O) from the scenes that showed it.
 
-They bear no time: the same lessons always come to the same triples. When those were, the lessons say.
+The triples hold no time, so that the same lessons always give the same triples; the lessons state their times.
 """
 
 from __future__ import annotations
@@ -19,10 +19,10 @@ from deixis.ontology.vocabulary import BASE, DX, PROV, W3C
 
 @dataclass(frozen=True, slots=True)
 class SizeModel:
-    """Log-normal length (longer side in the plan) and aspect (shorter by longer side) of a kind of thing.
+    """Log-normal length (longer side seen from above) and aspect (shorter by longer side) of a kind of thing.
 
-    ``relative``: as images teach it. The length is in units of the scene's median length, and the aspect is height by
-    width, since what is up stays up.
+    A ``relative`` model is learned from images: its length is in units of the median length in the scene, and its
+    aspect is height by width, since objects in images are upright.
     """
 
     length: tuple[float, float]  # mean and standard deviation of the natural logarithm
@@ -35,16 +35,16 @@ SIZE_PROPERTIES = (
     W3C.RDF_TYPE, DX.OF_KIND, DX.MEDIAN_LENGTH, DX.LENGTH_DEVIATION, DX.MEDIAN_ASPECT, DX.ASPECT_DEVIATION,
     DX.RELATIVE_LENGTH, DX.VIEW_COUNT,
 )  # fmt: skip
-"""What is said of a size model, but for the scenes that it is derived from."""
+"""Predicates of a size model, except its link to the scenes that it is derived from."""
 
 
 def size_iri(kind: str) -> str:
-    """The model of the size of a kind (its class IRI)."""
+    """Return the IRI of the size model of a kind, given by its class IRI."""
     return learned_iri("size-model", kind.removeprefix(BASE).removeprefix(LEARNED))
 
 
 def size_triples(kind: str, model: SizeModel, scenes: Iterable[str]) -> Iterator[ox.Triple]:
-    """Return the size of a kind (its class IRI), learned from the scenes of those IRIs."""
+    """Return the triples of the size model of a kind, given by its class IRI, and of the IRIs of its scenes."""
     about = Description(size_iri(kind))
     about.say(W3C.RDF_TYPE, iri(DX.SIZE_MODEL))
     about.say(DX.OF_KIND, iri(kind))
@@ -59,12 +59,12 @@ def size_triples(kind: str, model: SizeModel, scenes: Iterable[str]) -> Iterator
 
 
 def _median(logarithm: float) -> float:
-    """Return what a logarithm is of, to six digits: more than anybody measures, and free of its rounding."""
+    """Return the exponential of a logarithm, rounded to six digits to remove rounding errors."""
     return float(f"{math.exp(logarithm):.6g}")
 
 
 def sizes_from_triples(triples: Iterable[ox.Triple]) -> dict[str, SizeModel]:
-    """Return every learned size that the triples state, by class IRI; raises OntologyError where one is not whole."""
+    """Return all size models in the triples, by class IRI; raise OntologyError where one is incomplete."""
     index = TripleIndex(triples)
     sizes = {}
     for subject in index.subjects(W3C.RDF_TYPE, DX.SIZE_MODEL):
@@ -76,7 +76,7 @@ def sizes_from_triples(triples: Iterable[ox.Triple]) -> dict[str, SizeModel]:
             except ValueError:
                 number = math.nan
             if not 0 < number < math.inf:
-                raise OntologyError(f"<{subject}>: <{prop}> must be a number above 0, not '{written}'")
+                raise OntologyError(f"<{subject}>: <{prop}> must be a number above 0, got '{written}'")
             values[prop] = number
         relative = index.only(subject, DX.RELATIVE_LENGTH)
         sizes[index.only(subject, DX.OF_KIND)] = SizeModel(

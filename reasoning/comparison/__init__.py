@@ -1,1 +1,1 @@
-"""Compares a table with a layout: what is wrong with it, and which layout it is most like."""
+"""Comparison of a table with layouts: its faults, and the layouts that it is most similar to."""

@@ -1,15 +1,15 @@
-"""Checks a table against a layout: what is missing, misplaced and extra, and what cannot be determined.
+"""Check a table against a layout: find what is missing, misplaced or extra, and what cannot be determined.
 
-Identity comes from labels. A thing whose label names a role, and which fits there best, is that role's; where nothing
-but the layout says who is who, its place is *undetermined*, never correct. Two or three labelled things have changed
-places where all that is said of them would hold if they stood in each other's, and more would hold of each. Which end
-of another broken fact is misplaced is settled by how much else is broken about it: the worst share explains the others.
+Labels identify objects. An object whose label names a role, and which fits that role best, fills it. If only the layout
+suggests which object fills a role, the role is *undetermined*, never correct. Two or three labelled objects have
+changed places if all facts about them would hold with the objects exchanged, and more facts would hold of each. Of
+another violated fact, the misplaced end is the one with the larger share of violated facts.
 
-Whatever fills a role that is said to be of a colour, and is plainly of another, is *miscoloured*, misplaced or not.
+An object in a role with a stated colour is *miscoloured* if its colour is clearly another one, misplaced or not.
 
-The likeliest map may give a role the one thing that is left, whatever that is, since sizes rule nothing out. Where no
-label says so, and it stands in none of the role's places, what is plainly higher, larger or smaller than a fork is no
-misplaced fork: the fork is missing, and it is extra.
+The most probable grounding may give a role the only object that is left, whatever it is, since sizes exclude nothing.
+An object that has no label for its role and is misplaced there does not fill the role if it is clearly higher, larger
+or smaller than the role's kind: then the role is missing, and the object is extra.
 """
 
 from __future__ import annotations
@@ -37,26 +37,26 @@ from deixis.reasoning.grounding.matching.problem import UNMATCHED
 from deixis.reasoning.grounding.options import DEFAULT_TIME_LIMIT
 
 SURE_CONFIDENCE = 0.9
-"""Confidence from which a label counts as an identity."""
+"""Confidence from which a label identifies its object."""
 
 MAX_ROLES_ROTATED = 30
-"""Labelled roles among which rotations of three are looked for; among more, only swaps."""
+"""Number of labelled roles up to which rotations of three are searched for; with more roles, only swaps."""
 
 
 class RoleVerdict(StrEnum):
-    """What became of a role."""
+    """The verdict on a role."""
 
-    CORRECT = "correct"  # its label says that it is there, and what is broken about it is the fault of others
-    MISPLACED = "misplaced"  # it is there, and not where it belongs
-    MISCOLOURED = "miscoloured"  # it is where it belongs, and of another colour than it should be
-    MISSING = "missing"  # nothing fills it
-    ABSENT = "absent"  # nothing fills it, and nothing firm is said of it: it need not be there
-    UNDETERMINED = "undetermined"  # something may fill it, but only the layout says so
+    CORRECT = "correct"  # its label says that it is there, and others explain its violated facts
+    MISPLACED = "misplaced"  # its object is there, but in the wrong place
+    MISCOLOURED = "miscoloured"  # its object is in the right place, but has the wrong colour
+    MISSING = "missing"  # no object fills it
+    ABSENT = "absent"  # no object fills it, and no certain fact requires it
+    UNDETERMINED = "undetermined"  # an object may fill it, but only the layout suggests it
 
 
 @dataclass(frozen=True, slots=True)
 class Miscoloured:
-    """The colour that a role's thing should be of, and the one that it plainly is of instead."""
+    """The described colour of a role, and the clearly different colour of its object."""
 
     described: Colour
     seen: Colour
@@ -64,10 +64,10 @@ class Miscoloured:
 
 @dataclass(frozen=True)
 class RoleCheck:
-    """A role, the thing that fills it, the verdict, and the broken facts that explain it.
+    """A role, the object that fills it, the verdict, and the violated facts that explain it.
 
-    ``in_place_of`` is the role in whose place its thing stands, where two or three have changed places. What is
-    misplaced may be ``miscoloured`` as well.
+    ``in_place_of`` is the role in whose place the object stands, if two or three objects have changed places. A
+    misplaced role may have a ``miscoloured`` too.
     """
 
     role: str
@@ -82,7 +82,7 @@ class RoleCheck:
 
 @dataclass(frozen=True, slots=True)
 class Extra:
-    """A thing that has no place in the layout."""
+    """An object that fills no role of the layout, and the reason."""
 
     perceived: str
     label: str | None
@@ -91,25 +91,26 @@ class Extra:
 
 @dataclass(frozen=True)
 class TableCheck:
-    """A whole table against a layout."""
+    """The check of a whole table against a layout."""
 
     roles: tuple[RoleCheck, ...]
     extra: tuple[Extra, ...]
-    broken: tuple[FactOutcome, ...]  # firm facts that do not hold
-    unexpected: tuple[FactOutcome, ...]  # hedged facts that do not hold: no fault
+    broken: tuple[FactOutcome, ...]  # unhedged facts that do not hold
+    unexpected: tuple[FactOutcome, ...]  # hedged facts that do not hold, which are not faults
     grounding: Grounding
 
     def of(self, verdict: RoleVerdict) -> tuple[RoleCheck, ...]:
+        """Return the roles with a verdict."""
         return tuple(check for check in self.roles if check.verdict is verdict)
 
     @property
     def miscoloured(self) -> Iterator[tuple[RoleCheck, Miscoloured]]:
-        """The roles whose things are of another colour, those that are misplaced too among them."""
+        """Roles whose objects have another colour than described, misplaced ones included."""
         return ((check, check.miscoloured) for check in self.roles if check.miscoloured)
 
     @property
     def well(self) -> bool:
-        """Nothing is missing, misplaced, of another colour or extra, as far as can be told."""
+        """True if, as far as can be determined, nothing is missing, misplaced, miscoloured or extra."""
         wrong = (self.of(verdict) for verdict in (RoleVerdict.MISSING, RoleVerdict.MISPLACED, RoleVerdict.MISCOLOURED))
         return not (any(wrong) or self.extra or self.broken)
 
@@ -122,10 +123,22 @@ def check_table(
     seen: NDArray[np.float64] | None = None,
     colours: Colours | None = None,
 ) -> TableCheck:
-    """Read a grounding of a layout in a scene as a verdict on every role and every thing.
+    """Turn a grounding of a layout in a scene into a verdict on every role and every object.
 
-    ``evidence`` is what was grounded; ``labels`` has one entry for each thing of its scene. ``seen`` are the n2 things'
-    colours in sRGB, shape (n2, 3), NaN where not known, and ``colours`` the known terms.
+    Parameters
+    ----------
+    evidence
+        The evidence of the grounding.
+    labels
+        The label of each object of the scene, or None.
+    kinds
+        The known kinds, which labels are compared by.
+    grounding
+        The grounding of the layout in the scene.
+    seen
+        Colours of the n2 objects in sRGB, shape (n2, 3), NaN where not known.
+    colours
+        The known colour terms.
     """
     layout = evidence.description
     sure = sure_roles(layout, labels, kinds)
@@ -164,7 +177,7 @@ def check_table(
 def _miscoloured(
     evidence: Evidence, grounding: Grounding, seen: NDArray[np.float64] | None, colours: Colours | None
 ) -> dict[str, Miscoloured]:
-    """Return the roles whose things are plainly of another colour than is said of them."""
+    """Return the roles whose objects clearly have another colour than described."""
     layout = evidence.description
     if seen is None or colours is None or not layout.colours:
         return {}
@@ -179,10 +192,10 @@ def _miscoloured(
 
 
 def _exchanged_roles(evidence: Evidence, grounding: Grounding, sure: Mapping[str, frozenset[str]]) -> dict[str, str]:
-    """Labelled roles that have changed places, each with the role in whose place its thing stands.
+    """Return labelled roles that have changed places, each with the role in whose place its object stands.
 
-    Of all changes among two or three roles that would mend the most broken facts, leave none about them broken and
-    make more hold of each, the smallest is taken first; then the next among the others.
+    Among all changes of two or three roles that repair the most violated facts, leave no fact about them violated and
+    make more hold of each, the smallest comes first; then the next one among the other roles.
     """
     layout, scene = evidence.description, evidence.scene
     assignment = np.full(len(layout.nodes), UNMATCHED, dtype=np.int64)
@@ -203,7 +216,7 @@ def _exchanged_roles(evidence: Evidence, grounding: Grounding, sure: Mapping[str
 def _best_change(
     evidence: Evidence, assignment: NDArray[np.int64], known: list[int]
 ) -> tuple[tuple[int, ...], tuple[int, ...]] | None:
-    """Roles, and the roles in whose places their things stand; None where no change explains what is broken."""
+    """Return roles, and the roles in whose places their objects stand; None if no change explains the violations."""
     firm = evidence.firm()
     now = evidence.degrees(assignment)
     broken = set(_ends(evidence, firm & (now <= 0), assignment).tolist())
@@ -221,7 +234,7 @@ def _best_change(
 
 
 def _changes(known: list[int], broken: set[int]) -> Iterator[tuple[tuple[int, ...], tuple[int, ...]]]:
-    """Swaps and rotations of three among known roles, at least one of them in a broken fact."""
+    """Yield swaps and rotations of three among known roles, at least one of them in a violated fact."""
     sizes = (2, 3) if len(known) <= MAX_ROLES_ROTATED else (2,)
     for roles in (roles for size in sizes for roles in combinations(known, size)):
         if broken & set(roles):
@@ -238,7 +251,7 @@ def _explains_faults(
     then: NDArray[np.float64],
     other: NDArray[np.int64],
 ) -> bool:
-    """Return whether after the change nothing firm about these roles is broken, and more holds of each of them."""
+    """Return whether, after the change, no unhedged fact about these roles is violated and more hold of each role."""
     if set(roles) & set(_ends(evidence, firm & (then <= 0), other).tolist()):
         return False
     edges = evidence.facts
@@ -248,7 +261,7 @@ def _explains_faults(
 
 
 def _ends(evidence: Evidence, chosen: NDArray[np.bool_], assignment: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Return the objects of the chosen facts, of those both of whose ends are matched."""
+    """Return the objects of the chosen facts, for facts whose two ends are both matched."""
     edges = evidence.facts[chosen]
     subjects, objects = evidence.description.subjects[edges], evidence.description.objects[edges]
     both = (assignment[subjects] != UNMATCHED) & (assignment[objects] != UNMATCHED)
@@ -256,7 +269,7 @@ def _ends(evidence: Evidence, chosen: NDArray[np.bool_], assignment: NDArray[np.
 
 
 def sure_roles(layout: RelationGraph, labels: Mapping[str, Label | None], kinds: Kinds) -> dict[str, frozenset[str]]:
-    """Return the roles that a sure label says its thing fills: those that it fits, or the one that it names."""
+    """Return for each object the roles that it fills by a confident label: those that fit, or the one that it names."""
     known = naming(layout, list(labels.values()), kinds)
     roles = {}
     for column, (thing, label) in enumerate(labels.items()):
@@ -268,10 +281,10 @@ def sure_roles(layout: RelationGraph, labels: Mapping[str, Label | None], kinds:
 
 
 def _misplaced_ends(grounding: Grounding, broken: Sequence[FactOutcome]) -> frozenset[str]:
-    """Return the fewest ends that explain all broken facts, as far as greed finds them: the worst share first.
+    """Return few ends that explain all violated facts, found greedily: the end with the worst share first.
 
-    A share is an end's broken facts over all that could be compared. Of two ends as bad it is the subject, which is
-    what the script places with respect to the object.
+    The share of an end is the number of its violated facts divided by the number of its comparable facts. On a tie it
+    is the subject, which the script places relative to the object.
     """
     compared: dict[str, int] = {}
     for entry in grounding.outcomes:
@@ -301,23 +314,22 @@ def _extra(
         if thing in taken:
             continue
         if label is None and grounding.unmatched_objects:
-            reason = "it fits no place that is left in the layout"
+            reason = "it fits none of the unfilled roles of the layout"
         elif label is None:
-            reason = "there are more things than the layout has places"
+            reason = "the scene has more objects than the layout has roles"
         elif sure[thing]:
             reason = f"one {label.text} too many"
         else:
-            reason = f"the layout has no place left for {with_article(label.text)}"
+            reason = f"the layout has no unfilled role for {with_article(label.text)}"
         found.append(Extra(thing, label.text if label else None, reason))
     return tuple(found)
 
 
 MIN_SIZE_LOG_RATIO = float(np.log(OUTLIERS / SURE_CONFIDENCE))
-"""Log-likelihood ratio of a size below which the thing's size is not its kind's with probability ``SURE_CONFIDENCE``;
-of what is too high sizes say less."""
+"""Log-likelihood ratio of a size below which the object is not of the role's kind, with ``SURE_CONFIDENCE``."""
 
 RULED_OUT_LOG_RATIO = 2 * PRESENT_LOG_ODDS
-"""What such a match counts as then: no facts about it outweigh that."""
+"""Log-likelihood ratio given to an excluded match, so low that no facts outweigh it."""
 
 
 def checked_table(
@@ -329,7 +341,25 @@ def checked_table(
     seen: NDArray[np.float64] | None = None,
     colours: Colours | None = None,
 ) -> TableCheck:
-    """Ground a layout and read the grounding as :func:`check_table` does, as often as an impostor is found."""
+    """Ground a layout and check the table, repeatedly as long as an object is found that cannot fill its role.
+
+    Parameters
+    ----------
+    evidence
+        The evidence for grounding the layout in the scene.
+    labels
+        The label of each object of the scene, or None.
+    kinds
+        The known kinds, which labels are compared by.
+    engine
+        The grounding engine.
+    time_limit
+        Time limit in seconds.
+    seen
+        Colours of the n2 objects in sRGB, shape (n2, 3), NaN where not known.
+    colours
+        The known colour terms.
+    """
     deadline = Deadline.after(time_limit)
     sure = sure_roles(evidence.description, labels, kinds)
     while True:

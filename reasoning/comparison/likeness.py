@@ -1,31 +1,27 @@
-"""Similarity of a scene and a layout.
+"""The similarity of a scene and a layout.
 
-A size is as usual as can be within two deviations of the kind's, and less so beyond, as a Gaussian of the logarithm.
+The similarity follows Nedas and Egenhofer ("Spatial-Scene Similarity Queries", Transactions in GIS 2008): corresponding
+objects and relations are compared by degrees, and anything without a counterpart counts as incompleteness. Both parts
+are Dice's coefficients over the best grounding: twice the degrees of correspondence, divided by the total of both
+sides. Objects have two thirds of the weight and relations one third; objects have all of it if no relations are stated.
+So the similarity is 1 exactly if everything corresponds, and symmetric between two fully related scenes of at least two
+objects.
 
-A direction is one of the 3 by 3 tiles around a box; two directions are as many steps apart as there are tiles from the
-one to the other, diagonals taking two (Goyal and Egenhofer, "Similarity of Cardinal Directions", SSTD 2001). *On* and
-*under* share the middle tile, two steps apart.
+- Objects correspond by kind: the degree halves with every kind, itself and broader ones, that only one of them has. A
+  word for no known kind is its own kind (:func:`deixis.reasoning.grounding.evidence.labels.classes`), of the objects
+  with that name, numbers aside, and is similar to no other kind. An unlabelled object corresponds as far as its size is
+  usual for the kind; in an image, its size relative to the others. Without any knowledge it corresponds fully.
+- A size is fully usual within two deviations of the kind's, and less so outside, as a Gaussian of its logarithm.
+- Relations correspond by the steps between directions: the degree halves with every step from the nearest exact
+  relation that the stated relation admits.
+- A direction is one of the 3 by 3 tiles around a box. The steps between two directions are the tiles from one to the
+  other, two for a diagonal (Goyal and Egenhofer, "Similarity of Cardinal Directions", SSTD 2001). *On* and *under*
+  share the middle tile, two steps apart.
+- A layout states few of all relations, while a scene has them all. So as many relations of the scene need a counterpart
+  as the layout would state of as many objects.
 
-After Nedas and Egenhofer ("Spatial-Scene Similarity Queries", Transactions in GIS 2008): objects and relations that
-correspond are compared by degrees, and what has no counterpart on either side weighs in as incompleteness. Here both
-are Dice's coefficient over the best grounding: twice what corresponds, by degree, divided by what both sides have; two
-thirds of the similarity are that of objects and one third that of relations (all that of objects, where nothing is said
-of relations). So it is 1 just where everything corresponds, and between two fully related scenes of two and more things
-it is symmetric.
-
-- Objects correspond by kind: half with every kind, itself and broader ones, that only one of the two is. A word that
-  stands for no known kind is a kind by itself (:func:`deixis.reasoning.grounding.evidence.labels.classes`): of it is
-  what is called so, numbers aside, and nothing else is like it. An unlabelled thing corresponds as far as its size is
-  usual for the kind (:mod:`deixis.reasoning.comparison.likeness`), in an image beside the others; where nothing is
-  known, nothing counts against it.
-- Relations correspond by the steps between directions (:mod:`deixis.reasoning.comparison.likeness`): half with every
-step
-  from the nearest name that the stated relation admits.
-- A layout states few of the relations there are; a scene shows them all. Of the scene's as many are taken to ask for a
-  counterpart as the layout would state of so many objects.
-
-Each of the two denominators is a constant, and no term is below 0. So the best grounding is the optimum of a matching
-problem whose value is the similarity itself.
+Both denominators are constants, and no term is below 0. So the best grounding is the optimum of a matching problem
+whose value is the similarity itself.
 """
 
 from __future__ import annotations
@@ -54,17 +50,27 @@ from deixis.reasoning.grounding.matching.problem import UNMATCHED, Problem
 Array = NDArray[np.float64]
 
 SIZE_SPREAD = 0.35
-"""How far (natural logarithm) a length lies outside the usual range where its similarity has fallen to exp(-1/2)."""
+"""Distance from the usual range, in natural logarithms of length, at which the similarity has fallen to exp(-1/2)."""
 
 
 def usual_sizes(
     kinds: Sequence[str], boxes: NDArray[np.float64], sizes: Sizes, learned: Mapping[str, SizeModel], metric: bool
 ) -> dict[str, Array]:
-    """Return how usual n boxes, shape (n, 2, d), are for each of some objects' kinds (class IRIs), each (n,).
+    """Return how usual the sizes of n boxes are for some kinds, shape (n,) each, in [0, 1].
 
-    A learned model takes the place of the usual size. Where units are pixels (not ``metric``), sizes in metres say how
-    large the objects are beside each other, from above or from aside, whichever fits the better. A kind of which no
-    size is known may look as it will.
+    Parameters
+    ----------
+    kinds
+        Class IRIs of the kinds.
+    boxes
+        Least and greatest corners, shape (n, 2, d).
+    sizes
+        The usual sizes, in metres.
+    learned
+        Learned size models by class IRI, which replace the usual sizes.
+    metric
+        Whether boxes are in metres. If they are in pixels, sizes in metres are compared relative to each other, seen
+        from above or from the side, whichever fits better. A kind without a known size fits every box.
     """
     if metric:
         extents = np.sort(boxes[:, 1, :2] - boxes[:, 0, :2], axis=1)[:, ::-1]
@@ -75,13 +81,13 @@ def usual_sizes(
     logs = log_sizes(boxes, relative=True)
     best, usual = -1.0, {}
     for looks in looks_in_image(kinds, sizes, learned):
-        # A look may be met in several ways: the one that a thing is nearest to counts.
+        # An object of a kind may appear in several ways in an image: the most similar one counts.
         view = dict.fromkeys(kinds, np.ones(len(boxes)))
         for kind in view.keys() & looks.keys():
             spread = 2 * looks[kind].spread
             ways = [_within(logs, centre - spread, centre + spread) for centre in looks[kind].centres]
             view[kind] = np.max(ways, axis=0)
-        # How well the whole scene fits is the sum over the best assignment.
+        # The fit of the whole scene is the sum over the best assignment.
         table = np.array([view[kind] for kind in kinds])
         fit = float(table[linear_sum_assignment(table, maximize=True)].sum()) if table.size else 0.0
         if fit > best:
@@ -96,7 +102,7 @@ def _within(logs: Array, least: Array, greatest: Array) -> Array:
 
 
 def _range(kind: str, sizes: Sizes, learned: Mapping[str, SizeModel]) -> tuple[Array, Array]:
-    """Least and greatest logarithms of length and width, each (2,): two deviations off where they were learned."""
+    """Return the least and greatest logarithms of length and width, each (2,); two deviations from a learned mean."""
     model = learned.get(kind)
     if model is None or model.relative:
         usual = sizes.of(kind)
@@ -109,11 +115,11 @@ def _range(kind: str, sizes: Sizes, learned: Mapping[str, SizeModel]) -> tuple[A
 
 
 STEP_FACTOR = 0.5
-"""By what similarity is multiplied for every step: it falls exponentially with distance (Shepard 1987)."""
+"""Factor of the similarity for every step, which falls exponentially with distance (Shepard 1987)."""
 
 
 class Closeness:
-    """How close each exact name is to what a fact admits, by relation index: 1 admitted, half with every step."""
+    """Degree of each exact relation for a fact, by relation index: 1 if admitted, halved with every step from that."""
 
     def __init__(self, vocabulary: Relations) -> None:
         self._vocabulary = vocabulary
@@ -126,6 +132,7 @@ class Closeness:
         self._known: dict[tuple[int, bool], Array] = {}
 
     def __call__(self, mask: int, positive: bool) -> Array:
+        """Return the degree of each exact relation for a set of admitted relations, or for its denial."""
         if (mask, positive) in self._known:
             return self._known[mask, positive]
         members = [relation.index for relation in self._vocabulary.members(mask)]
@@ -140,7 +147,7 @@ class Closeness:
 
 
 def _tile(relation: Relation) -> tuple[int, int, int]:
-    """Return where the subject lies about the object: -1, 0 or 1 on x and y, and 1 or -1 on top of it or below."""
+    """Return the subject's position relative to the object: -1, 0 or 1 on x and y, and 1 on top of it or -1 below."""
     before, after = allen_mask([Allen.BEFORE, Allen.MEETS]), allen_mask([Allen.AFTER, Allen.MET_BY])
     x, y = (
         -1 if not atoms & ~before else 1 if not atoms & ~after else 0 for atoms in (relation.x_atoms, relation.y_atoms)
@@ -150,41 +157,44 @@ def _tile(relation: Relation) -> tuple[int, int, int]:
 
 
 OBJECT_WEIGHT = 2 / 3
-"""Weight of objects in the similarity, the rest being that of relations: it retrieved best among 1/3, 1/2, 3/5 and 2/3
-in ``benchmarks/bench_retrieval.py`` with seed 2."""
+"""Weight of objects in the similarity; relations have the rest.
+
+Of 1/3, 1/2, 3/5 and 2/3, this value retrieved best in ``benchmarks/bench_retrieval.py`` with seed 2.
+"""
 
 
 @dataclass(frozen=True, eq=False)
 class Described:
-    """A layout made ready: its objects' kinds, and its facts as sets of admitted exact names."""
+    """A layout prepared for comparison: its kinds of objects, and its facts as sets of admitted exact relations."""
 
     name: str
     graph: RelationGraph
 
     @cached_property
     def said(self) -> tuple[tuple[str, str], ...]:
-        """The class of each object and the category of its name, both IRIs."""
+        """Class of each object and category of its name, both as IRIs."""
         return tuple(
             (kind, category_of(node)) for kind, node in zip(classes(self.graph), self.graph.nodes, strict=True)
         )
 
     @cached_property
     def edges(self) -> NDArray[np.int64]:
-        """The facts that can be compared: all but those of an object to itself."""
+        """Facts that can be compared, which are all except those of an object to itself."""
         return np.flatnonzero(self.graph.subjects != self.graph.objects)
 
     @cached_property
     def weights(self) -> Array:
-        """Of the comparable facts."""
+        """Weights of the comparable facts."""
         return self.graph.net_weights[self.edges]
 
     @cached_property
     def total(self) -> float:
+        """Total weight of the comparable facts."""
         return float(self.weights.sum())
 
     @cached_property
     def densest(self) -> Array:
-        """The weight of what is said of each ordered pair, the largest first."""
+        """Weights of the facts about each ordered pair, the largest first."""
         n = len(self.graph.nodes)
         pair = self.graph.subjects[self.edges].astype(np.int64) * n + self.graph.objects[self.edges]
         sums = np.bincount(pair, self.weights).astype(np.float64)
@@ -194,9 +204,9 @@ class Described:
 
 @dataclass(frozen=True, eq=False)
 class Seen:
-    """A scene made ready: exact names of pairs, the classes that labels say (IRI or None), and boxes or None.
+    """A scene prepared for comparison: exact relations of pairs, classes of the labels (IRI or None), boxes or None.
 
-    ``metric`` says whether the boxes are in metres; otherwise they are in pixels.
+    ``metric`` is True for boxes in metres, and False for boxes in pixels.
     """
 
     name: str
@@ -208,23 +218,23 @@ class Seen:
 
     @cached_property
     def counts(self) -> NDArray[np.int64]:
-        """How many ordered pairs bear each exact name, by relation index."""
+        """Number of ordered pairs with each exact relation, by relation index."""
         named = self.names[self.names >= 0]
         return np.bincount(named) if len(named) else np.zeros(0, np.int64)
 
 
 def seen(name: str, scene: SceneRelations, metric: bool = True) -> Seen:
-    """Make a scene ready; ``scene.kinds`` are what labels say."""
+    """Prepare a scene for comparison; ``scene.kinds`` are the classes of its labels."""
     kinds = scene.kinds or (None,) * len(scene.nodes)
     return Seen(name, scene.nodes, scene.names, kinds, scene.boxes, metric)
 
 
 @dataclass(frozen=True, eq=False)
 class Likeness:
-    """How similar a scene is to a layout, 0 to 1, and the grounding by which (n1,).
+    """The similarity of a scene and a layout in [0, 1], and the grounding that gives it, shape (n1,).
 
-    ``similarity`` is the weighted mean of ``objects`` and ``relations``, or ``objects`` alone where nothing is related.
-    ``proved``: no other grounding makes it more similar.
+    ``similarity`` is the weighted mean of ``objects`` and ``relations``, or ``objects`` alone if there are no facts.
+    ``proved`` is True if no other grounding gives a larger similarity.
     """
 
     layout: str
@@ -238,7 +248,7 @@ class Likeness:
 
 @dataclass(frozen=True, slots=True)
 class Shares:
-    """Weights of objects and relations, and what both sides have of them together."""
+    """Weights of objects and relations, and the totals of both sides."""
 
     objects: float
     relations: float
@@ -247,10 +257,9 @@ class Shares:
 
 
 class Comparison:
-    """Compares layouts with scenes; keeps what it works out for every relation and kind.
+    """A comparison of layouts with scenes, which caches the degrees of relations and kinds.
 
-    ``learned`` sizes, by class IRI, take the place of the usual ones of the TBox; those in median lengths of a scene,
-    only where scenes are in pixels.
+    ``learned`` sizes, by class IRI, replace the usual ones of the TBox; relative ones only for scenes in pixels.
     """
 
     def __init__(self, ontology: Ontology, learned: Mapping[str, SizeModel] | None = None) -> None:
@@ -261,7 +270,7 @@ class Comparison:
         self._of_kinds: dict[tuple[str, str], float] = {}
 
     def likeness(self, layout: Described, scene: Seen, deadline: Deadline = Deadline.never()) -> Likeness:
-        """Return the similarity by the best grounding, until ``deadline``."""
+        """Return the similarity by the best grounding found until ``deadline``."""
         from deixis.reasoning.grounding.matching.exact import exact
 
         problem = self.problem(layout, scene)
@@ -284,7 +293,7 @@ class Comparison:
         )
 
     def problem(self, layout: Described, scene: Seen) -> Problem:
-        """Return the matching problem whose value of a map is the similarity by it."""
+        """Return the matching problem in which the value of a map is the similarity that it gives."""
         shares, n2 = self.shares(layout, scene), len(scene.names)
         graph = layout.graph
         edges = layout.edges
@@ -303,7 +312,7 @@ class Comparison:
         return Problem(ends, kinds, tables, unary, np.zeros(len(graph.nodes)))
 
     def objects(self, layout: Described, scene: Seen) -> Array:
-        """Return how far each object corresponds to each thing, shape (n1, n2), 0 to 1."""
+        """Return the degree to which each object corresponds to each thing, shape (n1, n2), in [0, 1]."""
         said = layout.said
         sized = [kind for kind, _ in said if kind in self._kinds or kind in self._learned]
         usual: Mapping[str, Array] = {}
@@ -313,7 +322,7 @@ class Comparison:
         return np.array([alike[pair] for pair in said]).reshape(len(said), len(scene.kinds))
 
     def _like(self, kind: str, name: str, scene: Seen, usual: Mapping[str, Array]) -> Array:
-        """Return how far each thing (n2,) is what an object is: of its kind, of its size, or of its very name."""
+        """Return how far each thing (n2,) corresponds to an object, by its kind, its size or its exact name."""
         found = usual[kind].copy() if kind in usual else np.ones(len(scene.kinds))
         for p, label in enumerate(scene.kinds):
             if label is not None:
@@ -321,9 +330,9 @@ class Comparison:
         return found
 
     def _kinship(self, a: str, b: str) -> float:
-        """Return 1 for the same kind, times ``STEP_FACTOR`` for every kind that only one of the two is (itself too).
+        """Return 1 for equal kinds, times ``STEP_FACTOR`` for every kind that only one of them has, itself included.
 
-        0 where they differ and one is no known kind.
+        It is 0 if the kinds differ and one is not a known kind.
         """
         if (a, b) not in self._of_kinds:
             self._of_kinds[a, b] = float(a == b)
@@ -333,6 +342,7 @@ class Comparison:
         return self._of_kinds[a, b]
 
     def shares(self, layout: Described, scene: Seen) -> Shares:
+        """Return the weights of both parts, and the number of objects and the weight of facts on both sides."""
         n1, n2 = len(layout.graph.nodes), len(scene.names)
         if not layout.total:
             return Shares(1.0, 0.0, n1 + n2, 1.0)

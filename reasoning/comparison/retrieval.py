@@ -1,8 +1,8 @@
-"""Which layout is this? The layouts most similar to a scene, and the scenes most similar to a layout.
+"""Retrieve the layouts most similar to a scene, and the scenes most similar to a layout.
 
-Comparing takes a grounding. Two upper bounds on the similarity tell which pairs need not be compared: one from counts
-of kinds and names alone, and one from an assignment in which every fact has its way. What is found is the same as if
-all pairs had been compared.
+Each comparison needs a grounding. Two upper bounds on the similarity show which pairs need no comparison: one from
+counts of kinds and relations alone, and one from an assignment in which every fact is free. The result is the same as
+if all pairs had been compared.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from deixis.reasoning.comparison.likeness import Comparison, Described, Likeness
 from deixis.reasoning.errors import SettingError
 
 BOUND_TOLERANCE = 1e-5
-"""How much a bound may fall short of a similarity by rounding."""
+"""Largest amount by which a bound may be below a similarity because of rounding."""
 
 
 def rank_layouts(
@@ -28,7 +28,7 @@ def rank_layouts(
     top: int = 10,
     deadline: Deadline = Deadline.never(),
 ) -> list[Likeness]:
-    """The ``top`` layouts most similar to a scene, best first, by name among equals; as if all had been compared."""
+    """Return the ``top`` layouts most similar to a scene, best first, equal ones by name; see :func:`rank_scenes`."""
     return _ranked([(layout, scene) for layout in layouts], comparison, top, deadline)
 
 
@@ -39,16 +39,35 @@ def rank_scenes(
     top: int = 10,
     deadline: Deadline = Deadline.never(),
 ) -> list[Likeness]:
-    """The ``top`` scenes most similar to a layout, best first, by name among equals; as if all had been compared."""
+    """Return the ``top`` scenes most similar to a layout, best first, equal ones by name.
+
+    Parameters
+    ----------
+    layout
+        The layout.
+    scenes
+        The scenes to rank.
+    comparison
+        The similarity.
+    top
+        Maximum number of results, at least 1.
+    deadline
+        Time at which each comparison returns its best grounding so far, not proved to be the best.
+
+    Raises
+    ------
+    SettingError
+        If ``top`` is less than 1.
+    """
     return _ranked([(layout, scene) for scene in scenes], comparison, top, deadline)
 
 
 def _ranked(
     pairs: Sequence[tuple[Described, Seen]], comparison: Comparison, top: int, deadline: Deadline
 ) -> list[Likeness]:
-    """Compare pair by pair, the one of the largest bound next, until no bound reaches the last of the best."""
+    """Compare the pair of the largest bound next, until no bound reaches the similarity of the last result."""
     if top < 1:
-        raise SettingError(f"so many as are to be found is 1 or more, not {top}")
+        raise SettingError(f"`top` must be at least 1, got {top}")
     open_ = [(-quick_bound(comparison, *pair), k, False) for k, pair in enumerate(pairs)]
     heapq.heapify(open_)
     found: list[Likeness] = []
@@ -65,7 +84,7 @@ def _ranked(
 
 
 def quick_bound(comparison: Comparison, layout: Described, scene: Seen) -> float:
-    """No less than the similarity, from counts alone: of kinds that are alike, and of pairs that bear a name."""
+    """Return an upper bound of the similarity from counts alone: of equal kinds, and of pairs with each relation."""
     shares, alike = comparison.shares(layout, scene), comparison.objects(layout, scene)
     objects = min(alike.max(axis=1, initial=0.0).sum(), alike.max(axis=0, initial=0.0).sum())
     bound = 2 * shares.objects * float(objects) / max(shares.things, 1)
@@ -87,9 +106,9 @@ def quick_bound(comparison: Comparison, layout: Described, scene: Seen) -> float
 
 
 def assignment_bound(comparison: Comparison, layout: Described, scene: Seen) -> float:
-    """No less than the similarity: the best assignment where each fact chooses its other end freely.
+    """Return an upper bound of the similarity: the best assignment if each fact chooses its other end freely.
 
-    Each object counts a half of every fact that it is in (Gilmore 1962, Lawler 1963).
+    Each object counts half of every fact about it (Gilmore 1962, Lawler 1963).
     """
     from scipy.optimize import linear_sum_assignment
 

@@ -1,19 +1,19 @@
-"""Difference constraints: what they imply of every two points, which of them exclude each other, and why.
+"""Difference constraints: the tightest bounds between all points, conflicts among the constraints, and explanations.
 
-A constraint bounds ``x[head] - x[tail]`` from above. Constraints have a solution where no cycle of them has a negative
-sum (Bellman 1958), and then the shortest paths are all that follows from them: a simple temporal network (Dechter,
-Meiri and Pearl 1991). All shortest distances are kept, updated as a constraint is added in time proportional to the
-distances that change, and taken back in reverse order.
+A constraint bounds ``x[head] - x[tail]`` from above. Constraints have a solution unless a cycle of them has a negative
+sum (Bellman 1958), and the shortest paths are all that they imply: a simple temporal network (Dechter, Meiri and Pearl
+1991). All shortest distances are kept. Adding a constraint takes time proportional to the number of distances that
+change; constraints are taken back in reverse order.
 
 A bound *x <= b* or *x < b* is one integer, its *code*: ``2 * b + 1`` or ``2 * b``, so that the smaller code is the
-tighter bound, and the sum of two bounds is strict where either is. That is how difference bound matrices are kept for
-timed automata (Bengtsson and Yi 2004), and it does without an epsilon. Times are codes in microseconds, places codes
-in millimetres, and mere orders of edges codes of 0, for which a byte a distance is enough.
+tighter bound, and the sum of two bounds is strict if either is. Timed automata store difference bound matrices in this
+way (Bengtsson and Yi 2004); it needs no epsilon. Times are codes in microseconds, places codes in millimetres, and
+orders of edges codes of 0, for which one byte per distance is enough.
 
-Orders of the edges of thousands of objects have a closure of their own, :mod:`deixis.reasoning.entailment.closed`: for
-them reachability is the whole truth, a bit for each pair of points. In bits a chain of 5,000 objects is closed in 0.1
-s; here, a byte for each pair, its 10,000 points take 2.8 s and 100 MB on each axis. Where facts leave a choice, this
-engine takes over for the objects that are connected with it; of 100 it decides as fast as a search over bits did.
+Orders of the edges of thousands of objects have their own closure, :mod:`deixis.reasoning.entailment.closed`, which
+needs only reachability, one bit per pair of points. In bits, a chain of 5,000 objects is closed in 0.1 s; with one byte
+per pair, its 10,000 points take 2.8 s and 100 MB on each axis. Facts that leave a choice use this engine for the
+objects connected with the choice; with 100 objects it is as fast as a search over bits.
 """
 
 from __future__ import annotations
@@ -25,17 +25,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 UNBOUNDED = 1 << 62
-"""The code of no bound at all, for distances of 64 bits."""
+"""The code of no bound, for distances of 64 bits."""
 
 ZERO, STRICT = 1, 0
 """The codes of *x <= 0* and of *x < 0*."""
 
 ORDERS = np.dtype(np.int8)
-"""The type of distances among which there are no other codes than ZERO and STRICT."""
+"""The type of distances whose codes are only ZERO and STRICT."""
 
 
 class Difference(NamedTuple):
-    """``x[head] - x[tail]`` on one axis is at most, or less than, what ``code`` says."""
+    """The constraint that ``x[head] - x[tail]`` on one axis is at most, or less than, the bound with this code."""
 
     axis: int
     tail: int
@@ -43,28 +43,28 @@ class Difference(NamedTuple):
     code: int
 
     def denied(self) -> Difference:
-        """Return what holds where this does not: ``x[tail] - x[head]`` is less than, or at most, the negated bound."""
+        """Return the negation: ``x[tail] - x[head]`` is less than, or at most, the negated bound."""
         return Difference(self.axis, self.head, self.tail, 1 - self.code)
 
 
 def add(a: int, b: int) -> int:
-    """Return the sum of two codes: of *x <= a* and *y < b* the bound *x + y < a + b*."""
+    """Return the code of a sum of bounds: *x <= a* and *y < b* give *x + y < a + b*."""
     if a >= UNBOUNDED or b >= UNBOUNDED:
         return UNBOUNDED
     return (a & ~1) + (b & ~1) | (a & b & 1)
 
 
 def add_arrays(a: NDArray[np.int64], b: NDArray[np.int64] | int) -> NDArray[np.int64]:
-    """Return the sums of two arrays of codes, which broadcast."""
+    """Return the codes of sums of bounds, for two arrays of codes, which broadcast."""
     b = np.asarray(b, dtype=np.int64)
     total = (a & ~1) + (b & ~1) | (a & b & 1)
     return np.where((a >= UNBOUNDED) | (b >= UNBOUNDED), UNBOUNDED, total)
 
 
 class DifferenceNetwork:
-    """Constraints on points on some axes that have nothing to do with each other; they always have a solution.
+    """Constraints on points, separately for each axis; they always have a solution.
 
-    ``dtype`` is the type of the distances; with :data:`ORDERS` all codes must be ZERO or STRICT.
+    ``dtype`` is the type of the distances; with :data:`ORDERS`, all codes must be ZERO or STRICT.
 
     >>> network = DifferenceNetwork(points=3)
     >>> network.add(Difference(0, 0, 1, 2 * 5 + 1)), network.add(Difference(0, 1, 2, 2 * -7))  # x1-x0<=5, x2-x1<-7
@@ -85,31 +85,31 @@ class DifferenceNetwork:
         self._changes: list[tuple[NDArray[np.int64], NDArray[Any]] | None] = []
         self._kept = 0
 
-    # ``matrices`` has room for further points; compiled loops get it whole, since of views they are compiled anew
+    # ``matrices`` has room for more points; compiled loops get it whole, since they would be compiled again for views
     @property
     def distances(self) -> NDArray[Any]:
-        """The tightest codes of ``x[column] - x[row]``, shape (axes, points, points), ``free`` where there is none.
+        """Tightest codes of ``x[column] - x[row]``, shape (axes, points, points), ``free`` for no bound.
 
-        A view, not to be written to.
+        This is a view; do not write to it.
         """
         return self.matrices[:, : self._points, : self._points]
 
     @property
     def points(self) -> int:
-        """How many points there are on each axis."""
+        """Number of points on each axis."""
         return self._points
 
     def __len__(self) -> int:
-        """Return how many constraints were added; :meth:`back` goes back to such a number."""
+        """Return the number of constraints; :meth:`back` takes such a number."""
         return len(self._changes)
 
     @property
     def constraints(self) -> NDArray[np.int64]:
-        """The constraints that were added, in their order: axis, tail, head and code, shape (len, 4); a view."""
+        """All constraints in the order of adding: axis, tail, head and code, shape (len, 4); a view."""
         return self._table[: len(self)]
 
     def add_point(self) -> None:
-        """Add a point on every axis, of which nothing is known; nothing added before can be taken back any more."""
+        """Add an unconstrained point on every axis; no earlier constraint can be taken back any more."""
         if self._points == self.matrices.shape[1]:
             axes, capacity = len(self.matrices), max(8, 2 * self._points)
             larger = np.full((axes, capacity, capacity), self.free, dtype=self.matrices.dtype)
@@ -126,7 +126,7 @@ class DifferenceNetwork:
         return against >= self.free or add(against, code) >= ZERO
 
     def add(self, difference: Difference) -> bool:
-        """Add a constraint; where it closes a negative cycle return False, and change nothing."""
+        """Add a constraint and return True; return False and change nothing if it closes a negative cycle."""
         if not self.admits(difference):
             return False
         from deixis.reasoning.constraints.kernels import tighten
@@ -144,9 +144,9 @@ class DifferenceNetwork:
         return True
 
     def add_all(self, differences: NDArray[np.int64]) -> bool:
-        """Add constraints (k, 4) in one compiled loop, for good: they cannot be taken back.
+        """Add constraints (k, 4) in one compiled loop; they cannot be taken back.
 
-        Where they close a negative cycle return False; the network is of no use then.
+        Returns False if they close a negative cycle; the network must not be used after that.
         """
         from deixis.reasoning.constraints.kernels import tighten_all
 
@@ -164,12 +164,12 @@ class DifferenceNetwork:
                 flat[change[0]] = change[1]
 
     def keep(self) -> None:
-        """Forget how to take back what was added so far, and the memory that it takes."""
+        """Make the constraints so far permanent, which frees the memory for taking them back."""
         self._changes[self._kept :] = [None] * (len(self._changes) - self._kept)
         self._kept = len(self._changes)
 
     def replace(self, differences: Sequence[Difference]) -> None:
-        """Begin anew with other constraints, which have a solution."""
+        """Replace all constraints by others, which must have a solution."""
         self._table, self._changes, self._kept = self._table[:0], [], 0
         self.matrices.fill(self.free)
         capacity = np.arange(self.matrices.shape[1])
@@ -177,7 +177,7 @@ class DifferenceNetwork:
         self.add_all(np.array(differences, np.int64).reshape(-1, 4))
 
     def copy(self) -> DifferenceNetwork:
-        """Return a network with the same points and constraints, which cannot be taken back there."""
+        """Return a network of the same points and constraints, which cannot be taken back there."""
         other = DifferenceNetwork(0)
         other.free, other._points = self.free, self._points
         other.matrices, other._table = self.matrices.copy(), self._table.copy()
@@ -185,21 +185,21 @@ class DifferenceNetwork:
         return other
 
     def path(self, axis: int, tail: int, head: int) -> list[int]:
-        """Return the fewest constraints that add up to the distance from ``tail`` to ``head``, by their numbers."""
+        """Return the numbers of the fewest constraints that add up to the distance from ``tail`` to ``head``."""
         from deixis.reasoning.constraints.path_kernels import tight_path
 
         found = tight_path(self.matrices[axis], self._points, self.constraints, axis, tail, head)
         return [int(number) for number in found]
 
     def cycle(self, difference: Difference) -> list[int]:
-        """Return the fewest constraints that with one that is not admitted close a negative cycle, by their numbers."""
+        """Return the numbers of the fewest constraints that close a negative cycle with a refused one."""
         return self.path(difference.axis, difference.head, difference.tail)
 
     def nearest(self, wanted: NDArray[np.int64]) -> NDArray[np.int64]:
-        """Return a solution in whole numbers near the wanted ones (axes, points), and equal to them if they are one.
+        """Return a solution in whole numbers near the wanted ones (axes, points); equal to them if they are one.
 
-        Each number is lowered as far as the others demand: the result is the greatest solution below ``wanted``. No
-        constraint may be strict.
+        Each number is lowered as far as the constraints require, so the result is the greatest solution below
+        ``wanted``. No constraint may be strict.
         """
         return np.stack(
             [(row[:, None] + (matrix >> 1)).min(axis=0) for row, matrix in zip(wanted, self.distances, strict=True)]

@@ -1,10 +1,10 @@
-"""Choosing a piece of every clause so that all difference constraints agree, or proving that none can be chosen.
+"""Choose one piece of every clause so that all difference constraints are consistent, or prove that it is impossible.
 
-The problem is a disjunctive temporal one (Stergiou and Koubarakis 2000). The search looks ahead (a piece that what was
-chosen excludes is no choice; a clause with the fewest choices left comes next; a clause of which a piece holds anyway
-is passed over) and jumps back to the latest choice that had a part in a failure (conflict-directed backjumping, Prosser
-1993). It is complete: where it ends without a solution there is none, and the clauses that it names have none beside
-what the network says without them.
+This is a disjunctive temporal problem (Stergiou and Koubarakis 2000). The search looks ahead: pieces that the chosen
+ones exclude are not tried, the clause with the fewest possible pieces comes next, and a clause with an implied piece is
+skipped. It jumps back to the latest choice that contributed to a failure (conflict-directed backjumping, Prosser 1993).
+It is complete: if it ends without a solution there is no solution, and the clauses in its core are inconsistent with
+the network alone.
 """
 
 from __future__ import annotations
@@ -27,13 +27,13 @@ Piece = tuple[Difference, ...]
 
 @dataclass(frozen=True, slots=True)
 class Clause:
-    """Of these pieces one must hold, all its constraints together; an empty piece holds, and no piece cannot."""
+    """A disjunction of pieces, each a conjunction of constraints; an empty piece holds, an empty clause fails."""
 
     pieces: tuple[Piece, ...]
 
 
 class Clauses(Sequence[Clause]):
-    """Clauses, and all their constraints as flat arrays for the compiled loops."""
+    """Clauses, with all their constraints as flat arrays for the compiled loops."""
 
     def __init__(self, clauses: Iterable[Clause]) -> None:
         self._clauses = tuple(clauses)
@@ -50,14 +50,14 @@ class Clauses(Sequence[Clause]):
         return self._clauses[position]
 
     def next(self, network: DifferenceNetwork, taken: NDArray[np.int64]) -> tuple[int, int]:
-        """Return the open clause with the fewest pieces that the network admits, and how many; -1 where all hold."""
+        """Return the open clause with the fewest pieces that the network admits, and their number; -1 if all hold."""
         from deixis.reasoning.constraints.kernels import next_clause
 
         clause, left = next_clause(network.matrices, *self._arrays, taken, network.free)
         return int(clause), int(left)
 
     def admitted(self, network: DifferenceNetwork, clause: int) -> list[bool]:
-        """Return which pieces of a clause can be added to a network."""
+        """Return for each piece of a clause whether it can be added to a network."""
         from deixis.reasoning.constraints.kernels import standing
 
         _, first_bound, bounds = self._arrays
@@ -66,7 +66,7 @@ class Clauses(Sequence[Clause]):
         return [standing(network.matrices, bounds, *end, network.free) >= 0 for end in ends]
 
     def dive(self, network: DifferenceNetwork, last: NDArray[np.int64]) -> tuple[int, NDArray[Any]]:
-        """Decide all clauses without going back; 1, -1 or 0 for a solution, a refutation or neither; the distances."""
+        """Decide all clauses without backtracking; return 1, -1 or 0 for solved, refuted or neither, and distances."""
         from deixis.reasoning.constraints.kernels import dive
 
         distances = np.ascontiguousarray(network.distances).copy()
@@ -74,7 +74,7 @@ class Clauses(Sequence[Clause]):
 
 
 class SearchOutcome(Enum):
-    """How a search ended."""
+    """The result of a search."""
 
     SOLVED = "solved"  # the network holds a solution
     REFUTED = "refuted"  # there is no solution, or no further one
@@ -87,19 +87,19 @@ class Level:
 
     clause: int
     length: int  # of the network before it
-    order: Sequence[int]  # its pieces
-    forced: bool  # only the last one in this order could be added
+    order: Sequence[int]  # the numbers of its pieces, as they are tried
+    forced: bool  # only the last piece in this order could be added
     tried: int = 0
-    reasons: set[int] = field(default_factory=set)  # the clauses for which the pieces tried before failed
-    solved: bool = False  # a solution was found under one of them
+    reasons: set[int] = field(default_factory=set)  # the clauses that excluded the pieces tried before
+    solved: bool = False  # a solution was found under one of the pieces
 
 
 class Search:
-    """Goes through the solutions of clauses over a network, which it changes: ``network.back(search.base)`` ends it.
+    """A search through the solutions of clauses over a network, which it changes; ``network.back(base)`` undoes it.
 
-    Searches end at ``deadline``. After REFUTED without a solution, ``core`` has the positions of clauses that have none
-    over the network. With ``keep`` the clauses of one piece that are taken first stay in the network for good, which
-    saves the memory to take them back.
+    The search ends at ``deadline``. After REFUTED without a solution, ``core`` has the positions of clauses that are
+    inconsistent with the network. With ``keep``, the clauses of one piece that are taken first stay in the network,
+    which saves the memory for taking them back.
     """
 
     def __init__(self, network: DifferenceNetwork, clauses: Clauses, deadline: Deadline, keep: bool = False) -> None:
@@ -112,11 +112,11 @@ class Search:
         self._solved = False
 
     def propagate(self) -> SearchOutcome:
-        """Take the pieces that are the only ones left, until a choice is; SOLVED says that nothing contradicts them."""
+        """Take pieces that are the only possible ones, until a choice is needed; SOLVED means no contradiction."""
         return self._run(only_forced=True)
 
     def advance(self) -> SearchOutcome:
-        """Go to the first solution, or from one to the next; earlier pieces of a clause are preferred."""
+        """Go to the first or next solution; earlier pieces of a clause are preferred."""
         if self._solved:
             self._solved = False
             for level in self.levels:
@@ -132,7 +132,7 @@ class Search:
         return self.outcome
 
     def open(self) -> list[int]:
-        """Return the clauses that are neither decided nor hold anyway."""
+        """Return the clauses that are neither decided nor implied."""
         taken, found = self.taken.copy(), list[int]()
         while (clause := self.clauses.next(self.network, taken)[0]) >= 0:
             found.append(clause)
@@ -157,7 +157,7 @@ class Search:
         return Level(clause, len(self.network), range(len(self.clauses[clause].pieces)), left == 1)
 
     def _decide(self) -> bool:
-        """Give the latest level a piece, going back as far as needed; False where no level has one left."""
+        """Give the latest level a piece, backtracking as needed; return False if no level has a piece left."""
         while True:
             level = self.levels[-1]
             if self._take_next_piece(level):
@@ -182,7 +182,7 @@ class Search:
         self.taken[level.clause] = -1
 
     def _take_next_piece(self, level: Level) -> bool:
-        """Take the first piece not tried that agrees with all that is chosen; keep why the others do not."""
+        """Take the first untried piece that is consistent with all choices, and record why the others are not."""
         pieces = self.clauses[level.clause].pieces
         while level.tried < len(level.order):
             number = level.order[level.tried]
@@ -202,16 +202,16 @@ class Search:
             self.network.back(level.length)
         return False
 
-    # ---- for searches that prove what they find
+    # ---- hooks for searches that prove their results
 
     def _note_taken(self, level: Level, number: int) -> None:
-        """Called when a level's piece of this number has been added to the network."""
+        """Handle that a level's piece of this number has been added to the network."""
 
     def _note_refused(self, level: Level, number: int, difference: Difference, cycle: Sequence[int]) -> None:
-        """Called when a constraint of a piece closes a negative cycle; earlier ones of the piece are added."""
+        """Handle that a constraint of a piece closes a negative cycle; earlier ones of the piece are added."""
 
     def _note_failed(self, failed: Level, into: Level | None) -> None:
-        """Called when a level has no piece left, with the level whose latest piece that refutes; None for all."""
+        """Handle that a level has no piece left, which refutes the latest piece of the level ``into``; None for all."""
 
 
 def solve(points: int, axes: int, clauses: Iterable[Clause], deadline: Deadline) -> Search:
@@ -224,13 +224,13 @@ def solve(points: int, axes: int, clauses: Iterable[Clause], deadline: Deadline)
 def solution(
     network: DifferenceNetwork, clauses: Clauses, last: NDArray[np.int64], deadline: Deadline
 ) -> NDArray[Any] | None:
-    """Return the distances in a solution of clauses over a network, which is left as it is; None where there is none.
+    """Return the distances in a solution of clauses over a network, or None without a solution.
 
-    A single dive comes first, since most solutions are found so. It takes the pieces in ``last`` (clauses,), all -1 to
-    begin with, and keeps there what it took. Raises OutOfTimeError at the deadline.
+    The network is not changed. A single dive comes first, since it finds most solutions. It takes the pieces in
+    ``last`` (clauses,), -1 for none, and writes the pieces it took there. Raises OutOfTimeError at the deadline.
     """
     if deadline.passed:
-        raise OutOfTimeError("the time limit struck before every choice in the facts was weighed")
+        raise OutOfTimeError("time limit reached before every choice in the facts was considered")
     found, distances = clauses.dive(network, last)
     if found != 0:
         return distances if found > 0 else None
@@ -239,5 +239,5 @@ def solution(
     distances = network.distances.copy()
     network.back(search.base)
     if search.outcome is SearchOutcome.TIMED_OUT:
-        raise OutOfTimeError("the time limit struck before every choice in the facts was weighed")
+        raise OutOfTimeError("time limit reached before every choice in the facts was considered")
     return distances if search.outcome is SearchOutcome.SOLVED else None

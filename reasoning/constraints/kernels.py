@@ -1,7 +1,8 @@
-"""The compiled loops of this folder's search, on plain arrays.
+"""Compiled loops of the search of this folder, on plain arrays.
 
-Throughout, ``distances`` (m, m), of which the first ``count`` rows and columns are in use, holds the tightest bound on
-*column point minus row point* as a code of :mod:`deixis.reasoning.constraints.difference`, ``free`` and more for none.
+``distances`` has shape (m, m), of which the first ``count`` rows and columns are in use. It holds the tightest bound on
+*column point minus row point* as a code of :mod:`deixis.reasoning.constraints.difference`; a code of ``free`` or more
+means no bound.
 """
 
 from __future__ import annotations
@@ -23,10 +24,10 @@ def added(a, b, free):  # type: ignore[no-untyped-def]
 
 @kernel(lambda distances, count, *rest: count**2)
 def tighten(distances, count, tail, head, code, free):  # type: ignore[no-untyped-def]
-    """Take in one constraint that closes no negative cycle, in O(count ** 2), in place.
+    """Add one constraint that closes no negative cycle, in O(count ** 2), in place.
 
     Only rows that reach the head better through it, and columns that the tail reaches better, can change. Returns the
-    cells that changed, as flat indices, and what stood there before.
+    cells that changed, as flat indices, and their old codes.
     """
     rows, reach = np.empty(count, np.int64), np.empty(count, np.int64)
     columns, onward = np.empty(count, np.int64), np.empty(count, np.int64)
@@ -55,7 +56,7 @@ def tighten(distances, count, tail, head, code, free):  # type: ignore[no-untype
 
 @kernel()
 def insert(distances, count, tail, head, code, free):  # type: ignore[no-untyped-def]
-    """Take in one constraint that closes no negative cycle for good: the same without what stood there before."""
+    """Add one constraint that closes no negative cycle, in place, without recording the old codes."""
     columns, onward = np.empty(count, np.int64), np.empty(count, np.int64)
     n_columns = 0
     for j in range(count):
@@ -74,7 +75,7 @@ def insert(distances, count, tail, head, code, free):  # type: ignore[no-untyped
 
 @kernel(lambda matrices, count, constraints, free: len(constraints) * count**2 // 4)
 def tighten_all(matrices, count, constraints, free):  # type: ignore[no-untyped-def]
-    """Take in constraints (rows of axis, tail, head, code); False where they close a negative cycle."""
+    """Add constraints (rows of axis, tail, head, code); return False if they close a negative cycle."""
     for k in range(len(constraints)):
         axis, tail, head, code = constraints[k, 0], constraints[k, 1], constraints[k, 2], constraints[k, 3]
         if added(matrices[axis, head, tail], code, free) < 1:
@@ -89,10 +90,10 @@ def tighten_all(matrices, count, constraints, free):  # type: ignore[no-untyped-
 
 @kernel(lambda distances, bounds, begin, end, free: 4 * (end - begin) ** 2)
 def standing(distances, bounds, begin, end, free):  # type: ignore[no-untyped-def]
-    """Return whether the constraints ``begin:end`` hold anyway (1), cannot all be added (-1), or neither (0).
+    """Return whether the constraints ``begin:end`` are implied (1), cannot all be added (-1), or neither (0).
 
-    ``distances`` is (axes, m, m), ``bounds`` rows of axis, tail, head and code. What the constraints exclude together
-    is seen among the few points that they are about: the distances among these are all that the others say of them.
+    ``distances`` has shape (axes, m, m), ``bounds`` rows of axis, tail, head and code. Only the few points of these
+    constraints are examined, since the distances between them hold all that the other constraints imply of them.
     """
     left = 0
     for b in range(begin, end):
@@ -148,10 +149,10 @@ def standing(distances, bounds, begin, end, free):  # type: ignore[no-untyped-de
 
 @kernel(lambda distances, first_piece, first_bound, bounds, *rest: 4 * len(bounds))
 def next_clause(distances, first_piece, first_bound, bounds, taken, free):  # type: ignore[no-untyped-def]
-    """Return the clause with the fewest pieces that can be added, and how many; -1 where all hold.
+    """Return the clause with the fewest pieces that can be added, and their number; -1 if all clauses hold.
 
     The pieces of clause c are ``first_piece[c]:first_piece[c + 1]``, the constraints of piece p
-    ``first_bound[p]:first_bound[p + 1]``. Clauses that were decided, or that hold anyway, are passed over.
+    ``first_bound[p]:first_bound[p + 1]``. Clauses that are decided or implied are skipped.
     """
     best, fewest_left = -1, 1 << 40
     for c in range(len(taken)):
@@ -174,11 +175,11 @@ def next_clause(distances, first_piece, first_bound, bounds, taken, free):  # ty
 
 @kernel(lambda distances, first_piece, first_bound, bounds, last, free: 4 * len(last) * len(bounds))
 def dive(distances, first_piece, first_bound, bounds, last, free):  # type: ignore[no-untyped-def]
-    """Decide all clauses without ever going back: each takes the piece that it took last, else the first one left.
+    """Decide all clauses without backtracking: each takes the piece that it took last, or else the first possible one.
 
-    Takes what is forced first, then decides the clause with the fewest pieces left. Returns 1 where all clauses hold
-    in the end, -1 where what is forced contradicts itself, and 0 where that is so after a decision, which says nothing
-    of other ways. ``distances`` and ``last`` (clauses,), -1 for none, are written.
+    The loop takes forced pieces first, then decides the clause with the fewest possible pieces. It returns 1 if all
+    clauses hold in the end, -1 if the forced pieces are inconsistent, and 0 if a decision led to an inconsistency, so
+    that other decisions may succeed. It writes ``distances`` and ``last`` (clauses,), -1 for no piece.
     """
     alive = np.ones(len(first_bound) - 1, np.bool_)
     pending = np.ones(len(last), np.bool_)

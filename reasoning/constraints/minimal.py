@@ -1,10 +1,10 @@
-"""Minimal subsets: of items that together have a property, some that have it and of which none can be spared.
+"""Minimal subsets: some of the items that still have a property, of which none can be left out.
 
-The property must be monotone: it stays when items are added, as inconsistency and entailment do. Few items are left out
-one by one (deletion: Chinneck and Dravnieks 1991); of many, the shortest beginning that still has the property is
-bracketed, and its last item is needed (progression: Marques-Silva, Janota and Belov, CAV 2013). Both drop items from
-the end as long as the rest has the property, so that they agree, and with QuickXplain (Junker 2004). A test that can
-tell on which of the items the property rests makes the rest smaller at once.
+The property must be monotone: it stays when items are added, as inconsistency and entailment do. From few items, one at
+a time is left out (deletion: Chinneck and Dravnieks 1991). From many, a search with growing steps brackets the shortest
+prefix that still has the property; its last item is needed (progression: Marques-Silva, Janota and Belov, CAV 2013).
+Both methods drop items from the end as long as the rest has the property, so they agree with each other and with
+QuickXplain (Junker 2004). A test that reports which items the property rests on removes the others at once.
 """
 
 from __future__ import annotations
@@ -19,18 +19,18 @@ from deixis.reasoning.errors import LimitError
 Item = TypeVar("Item")
 
 FEW = 8
-"""Items that are left out one by one; of more, the shortest beginning is bracketed for each needed one."""
+"""Number of items up to which one at a time is left out; with more items, the shortest prefix is bracketed."""
 
 Test = Callable[[list[Item]], Sequence[Item] | None]
-"""Returns those of the items on which the property rests (all, if it cannot tell), None where they do not have it."""
+"""Test that returns the items on which the property rests (all, if it cannot tell), or None without the property."""
 
 FirstOf = Callable[[Iterable[list[Item]]], tuple[int, Sequence[Item]] | None]
-"""Returns the place of the first of several lists that has the property, and on what it rests; None where none has."""
+"""Test that returns the position of the first list with the property, and the items on which it rests, or None."""
 
 
 @dataclass(frozen=True)
 class Minimal(Generic[Item]):
-    """Items that have a property; where ``proved``, without any one of them the others do not."""
+    """Items that have a property; if ``proved``, no proper subset of them has it."""
 
     items: tuple[Item, ...]
     proved: bool
@@ -39,21 +39,30 @@ class Minimal(Generic[Item]):
 def minimal_subset(
     items: Sequence[Item], test: Test[Item], deadline: Deadline = Deadline.never(), keep_last: bool = False
 ) -> Minimal[Item]:
-    """Return a minimal subset of items that have a property, in their order; it keeps rather the first or last ones.
+    """Return a minimal subset of items that has a property, in their order.
 
-    ``test`` is asked of ever fewer items until ``deadline``, at which those left are returned. That ``items`` have the
-    property is taken for granted.
+    Parameters
+    ----------
+    items
+        Items that have the property.
+    test
+        Test of a subset: the items on which the property rests, or None if the subset does not have it.
+    deadline
+        Time at which the items left so far are returned, not proved to be minimal.
+    keep_last
+        Prefer the last items to the first ones.
 
+    Examples
+    --------
     >>> minimal_subset([3, 5, 8, 1], lambda chosen: chosen if sum(chosen) >= 9 else None)
     Minimal(items=(3, 8), proved=True)
     """
-
     way = -1 if keep_last else 1
 
     def first_of(candidates: Iterable[list[Item]]) -> tuple[int, Sequence[Item]] | None:
         for place, candidate in enumerate(candidates):
             if deadline.passed:
-                raise LimitError("the time was up between two tests")
+                raise LimitError("time limit reached between two tests")
             core = test(candidate[::way])
             if core is not None:
                 return place, core
@@ -64,13 +73,13 @@ def minimal_subset(
 
 
 def minimal_by(items: Sequence[Item], first_of: FirstOf[Item], width: int = 1) -> Minimal[Item]:
-    """Return the same by a test of several candidates in one go, about ``width`` of them.
+    """Return a minimal subset by a test of about ``width`` candidates in one run.
 
-    That is for tests that are slow to start, such as a reasoner in a process of its own. Where a test raises
-    LimitError, the items that were left then are returned, not proved to be minimal.
+    This suits tests that are slow to start, such as a reasoner in its own process. If a test raises LimitError, the
+    result has the items left so far, not proved to be minimal.
     """
     rest, needed = list(items), list[Item]()
-    bracketing = width > 1 and len(items) > FEW  # a bracket takes one go for each needed item, deletion for each other
+    bracketing = width > 1 and len(items) > FEW  # bracketing needs one run per needed item, deletion one per other item
     try:
         while rest:
             if len(rest) <= FEW and not bracketing:
@@ -80,7 +89,7 @@ def minimal_by(items: Sequence[Item], first_of: FirstOf[Item], width: int = 1) -
                 k = len(rest) - 1 - found[0]
                 rest, needed = _among(rest[:k], found[1]), [*rest[k + 1 :], *needed]
                 continue
-            low, step = 0, 1  # the beginning that it takes has low items or more, and all are enough
+            low, step = 0, 1  # the prefix needs at least low items, and all items are enough
             while low < len(rest):
                 high = len(rest)
                 lengths = range(low, high, -(-(high - low) // width)) if width > 1 else [max(low, high - step)]

@@ -1,7 +1,7 @@
-"""The loops under :mod:`deixis.reasoning.constraints.paths`: graphs of orders, and the shortest explanations in them.
+"""Compiled loops of :mod:`deixis.reasoning.constraints.paths`: graphs of orders, and their shortest explanations.
 
 A graph is in rows: the edges out of point u are ``first[u]:first[u + 1]`` of ``heads``, ``strict`` and ``premise``.
-``distances`` are as in :mod:`deixis.reasoning.constraints.kernels`.
+``distances`` are those of :mod:`deixis.reasoning.constraints.kernels`.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ FAR = np.int64(1 << 40)
 
 @kernel()
 def rows_of(tails, n):  # type: ignore[no-untyped-def]
-    """Return where each point's edges begin, shape (n + 1,), and the edges in the order of their tails."""
+    """Return the first edge of each point, shape (n + 1,), and the edges sorted by their tails."""
     first = np.zeros(n + 1, np.int64)
     for u in tails:
         first[u + 1] += 1
@@ -32,9 +32,9 @@ def rows_of(tails, n):  # type: ignore[no-untyped-def]
 
 @kernel()
 def strong_parts(first, heads):  # type: ignore[no-untyped-def]
-    """Find the strongly connected parts (Tarjan 1972), numbered so that edges lead to lower numbers.
+    """Find the strongly connected components (Tarjan 1972), numbered so that edges lead to lower numbers.
 
-    Returns the part of each point, and the points in the order of their parts.
+    Returns the component of each point, and the points in the order of their components.
     """
     n = len(first) - 1
     index = np.full(n, -1, np.int64)
@@ -87,7 +87,7 @@ def strong_parts(first, heads):  # type: ignore[no-untyped-def]
 
 @kernel()
 def strict_within(first, heads, strict, part):  # type: ignore[no-untyped-def]
-    """Return the tail of a strict edge whose ends are forced to be equal, or -1 where there is none."""
+    """Return the tail of a strict edge within a strongly connected component, or -1 if there is no such edge."""
     for u in range(len(first) - 1):
         for edge in range(first[u], first[u + 1]):
             if strict[edge] and part[heads[edge]] == part[u]:
@@ -97,12 +97,12 @@ def strict_within(first, heads, strict, part):  # type: ignore[no-untyped-def]
 
 @kernel()
 def fewest(first, heads, strict, premise, root, goal, limit, cost, before, by, queue):  # type: ignore[no-untyped-def]
-    """Find how few premises it takes from a point to all states within ``limit``, or until the state ``goal``.
+    """Find the smallest number of premises from a point to all states within ``limit``, or to the state ``goal``.
 
-    A state is twice a point, plus 1 where a strict edge has been passed. Edges of premise -1 cost nothing, others one.
-    ``cost`` holds ``FAR`` throughout and gets the costs, ``before`` and ``by`` the state and edge that a state was
-    reached from; ``queue`` has room for four entries a state, and two more. Returns how many states were reached; they
-    are the first ones in ``queue``, maybe several times.
+    A state is twice a point, plus 1 if the path has passed a strict edge. Edges of premise -1 cost nothing, others one.
+    ``cost`` must be ``FAR`` throughout, and receives the costs; ``before`` and ``by`` receive the state and the edge
+    that each state was reached from; ``queue`` needs room for four entries per state, and two more. Returns the number
+    of states reached, which are the first ones in ``queue``, possibly repeated.
     """
     begin, end = 0, 1
     queue[0] = 2 * root
@@ -142,15 +142,15 @@ def fewest(first, heads, strict, premise, root, goal, limit, cost, before, by, q
 
 
 @kernel()
-def shortest_circle(first, heads, strict, premise, part):  # type: ignore[no-untyped-def]
-    """Return the edges of a circle with a strict edge that takes the fewest premises, in order."""
+def shortest_strict_cycle(first, heads, strict, premise, part):  # type: ignore[no-untyped-def]
+    """Return the edges of a cycle with a strict edge and the fewest premises, in order."""
     points = len(first) - 1
     cost = np.full(2 * points, FAR)
     before = np.empty(2 * points, np.int64)
     by = np.empty(2 * points, np.int64)
     queue = np.empty(2 * (4 * points + 2), np.int64)
     best = FAR
-    circle = np.empty(2 * points + 1, np.int64)
+    cycle = np.empty(2 * points + 1, np.int64)
     length = 0
     for u in range(points):
         for edge in range(first[u], first[u + 1]):
@@ -163,22 +163,22 @@ def shortest_circle(first, heads, strict, premise, part):  # type: ignore[no-unt
             if cost[state] + own < best:
                 best = cost[state] + own
                 length = 1
-                circle[0] = edge
+                cycle[0] = edge
                 while before[state] >= 0:
-                    circle[length] = by[state]
+                    cycle[length] = by[state]
                     length += 1
                     state = before[state]
             for k in range(reached):
                 cost[queue[k]] = FAR
-    return circle[:length]
+    return cycle[:length]
 
 
 @kernel()
 def tight_path(distances, count, constraints, axis, start, end):  # type: ignore[no-untyped-def]
     """Return the fewest constraints (rows of axis, tail, head, code) that add up to the distance between two points.
 
-    They are looked for breadth first among those on some shortest way, with and without a strict one passed so far,
-    since a strict distance needs one.
+    The search is breadth first over the constraints on shortest paths. It distinguishes paths with and without a strict
+    constraint so far, since a strict distance needs one.
     """
     if start == end:
         return np.empty(0, np.int64)

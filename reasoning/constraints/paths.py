@@ -1,8 +1,8 @@
-"""Why an order of two points holds: the path of orders with the fewest premises, or the smallest cycle of them.
+"""Explanations of an order of two points: the path of orders with the fewest premises, or the smallest cycle.
 
-Where all bounds are 0, so that constraints are mere orders, an order holds in every solution where a path says so, and
-the orders contradict each other where a cycle has a strict one among them. Explanations need the stated orders only,
-not what follows from them: searches go breadth first, a premise a step, from any of thousands of points.
+If all bounds are 0, so that the constraints are orders, an order is implied exactly if there is a path for it, and the
+orders are inconsistent exactly if a cycle contains a strict one. Explanations need only the stated orders, not the
+implied ones. The searches are breadth first, one premise per step, from any of thousands of points.
 """
 
 from __future__ import annotations
@@ -19,12 +19,12 @@ _KEPT_TREES = 24
 
 @dataclass(frozen=True, eq=False)
 class OrderGraph:
-    """Points and the orders between them as rows of edges: from each point to those that lie not before it."""
+    """Points and the orders between them as rows of edges, from each point to the points that are not before it."""
 
     first: NDArray[np.int64]  # (points + 1,)
     heads: NDArray[np.int64]
     strict: NDArray[np.bool_]
-    premise: NDArray[np.int64]  # what each order comes from, as a number of the caller's; -1: from nothing
+    premise: NDArray[np.int64]  # the caller's number of the premise of each order; -1 for none
 
     @classmethod
     def of(
@@ -47,7 +47,7 @@ class OrderGraph:
 
     @cached_property
     def parts(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """The strongly connected part of each point, and the points in the order of their parts, last ones first."""
+        """Strongly connected component of each point, and the points by component, last ones first."""
         from deixis.reasoning.constraints.path_kernels import strong_parts
 
         part, members = strong_parts(self.first, self.heads)
@@ -55,38 +55,38 @@ class OrderGraph:
 
     @cached_property
     def contradictory(self) -> bool:
-        """Whether some orders go round in a cycle with a strict one among them."""
+        """True if a cycle of orders contains a strict one."""
         from deixis.reasoning.constraints.path_kernels import strict_within
 
         return bool(strict_within(self.first, self.heads, self.strict, self.parts[0]) >= 0)
 
     @property
     def is_single_cycle(self) -> bool:
-        """Whether the edges between points that are forced to be equal are one cycle, which any one edge opens."""
+        """True if the edges between points that must be equal form one cycle, which removing any edge opens."""
         part = self.parts[0]
         inside = part[self._tails] == part[self.heads]
         large = np.flatnonzero(np.bincount(part) > 1)
         return len(large) == 1 and int(inside.sum()) == int((part == large[0]).sum())
 
     def reversed(self) -> OrderGraph:
-        """Return the same graph with every edge turned round."""
+        """Return the graph with every edge reversed."""
         return OrderGraph.of(len(self.first) - 1, self.heads, self._tails, self.strict, self.premise)
 
     def shortest_cycle(self) -> tuple[int, ...] | None:
-        """Return the premises of the contradiction that takes the fewest; None where the orders agree."""
-        from deixis.reasoning.constraints.path_kernels import shortest_circle
+        """Return the premises of the contradiction with the fewest premises, or None if the orders are consistent."""
+        from deixis.reasoning.constraints.path_kernels import shortest_strict_cycle
 
         if not self.contradictory:
             return None
-        edges = shortest_circle(self.first, self.heads, self.strict, self.premise, self.parts[0])
+        edges = shortest_strict_cycle(self.first, self.heads, self.strict, self.premise, self.parts[0])
         return tuple(dict.fromkeys(premise for premise in self.premise[edges].tolist() if premise >= 0))
 
 
 @dataclass(frozen=True, eq=False)
 class _Tree:
-    """The states that a search reached, ascending, with their costs and the states and premises that led there.
+    """The states that a search reached, ascending, with their costs and the states and premises before them.
 
-    A state is twice a point, plus 1 where a strict edge has been passed.
+    A state is twice a point, plus 1 if the path has passed a strict edge.
     """
 
     states: NDArray[np.int64]
@@ -95,12 +95,12 @@ class _Tree:
     premise: NDArray[np.int64]
 
     def find(self, state: int) -> int:
-        """Return the position of a state, or -1 where it was not reached."""
+        """Return the position of a state, or -1 if it was not reached."""
         place = int(np.searchsorted(self.states, state))
         return place if place < len(self.states) and self.states[place] == state else -1
 
     def way(self, target: int, strict: bool) -> tuple[int, ...] | None:
-        """Return the premises from the root to a point, each once where it comes twice in a row; None without a way."""
+        """Return the premises on the path from the root to a point, no two equal in a row; None if there is no path."""
         found = [self.find(2 * target + passed) for passed in ((1,) if strict else (0, 1))]
         place = min((place for place in found if place >= 0), key=lambda place: int(self.cost[place]), default=-1)
         if place < 0:
@@ -115,9 +115,9 @@ class _Tree:
 
 
 class ShortestPaths:
-    """Shortest explanations over a graph; the searches from a point are kept as long as they are likely to be used.
+    """Shortest explanations over a graph; recent searches are cached by their root.
 
-    ``backwards`` goes against the edges, so that one search explains what lies before a point.
+    ``backwards`` searches against the edges, so that one search explains all that is before a point.
     """
 
     def __init__(self, graph: OrderGraph) -> None:
@@ -126,15 +126,15 @@ class ShortestPaths:
 
     @cached_property
     def reverse(self) -> OrderGraph:
-        """The graph with every edge turned round."""
+        """Graph with every edge reversed."""
         return self.graph.reversed()
 
     def path(self, root: int, target: int, strict: bool, backwards: bool = False) -> tuple[int, ...] | None:
-        """Return the fewest premises by which the target is not before the root, or after it; None where it is not."""
+        """Return the fewest premises for the target being not before the root, or after it; None if not implied."""
         return self._tree(root, backwards).way(target, strict)
 
     def costs(self, root: int, targets: NDArray[np.int64], strict: bool, backwards: bool = False) -> NDArray[np.int64]:
-        """Return how many premises those paths take to each of some points, ``FAR`` where there is none."""
+        """Return the number of premises of the paths to some points, ``FAR`` for points without a path."""
         from deixis.reasoning.constraints.path_kernels import FAR
 
         tree = self._tree(root, backwards)

@@ -1,8 +1,7 @@
-"""Proofs: trees from a conclusion down to what was stated, whatever they are about.
+"""Proofs: trees from a conclusion down to stated claims, for claims of any type.
 
-The room that proves decides what a claim is: a fact or an order of edges (:mod:`deixis.reasoning.entailment`), a bound
-on a time in words (:mod:`deixis.reasoning.temporal`), the relation of a pair
-(:mod:`deixis.reasoning.qualitative.networks`).
+The caller decides what a claim is: a fact or an order of edges (:mod:`deixis.reasoning.entailment`), a bound on a time
+in words (:mod:`deixis.reasoning.temporal`), or the relation of a pair (:mod:`deixis.reasoning.qualitative.networks`).
 """
 
 from __future__ import annotations
@@ -18,14 +17,14 @@ Claim = TypeVar("Claim", covariant=True)
 
 
 class Rule(StrEnum):
-    """How a claim follows from its premises."""
+    """The rule by which a claim follows from its premises."""
 
     STATED = "stated"
     CASES = "cases"  # it holds in every case, or every case is refuted
     ASSUMED = "assumed"  # one of the cases
     CONTRADICTION = "contradiction"  # the premises exclude each other
-    CONJUNCTION = "conjunction"  # the premises are about one pair, and together say it
-    COMPOSITION = "composition"  # of the premises' relations, from the first thing to the last
+    CONJUNCTION = "conjunction"  # the premises are about one pair, and together imply the claim
+    COMPOSITION = "composition"  # the premises' relations are composed, from the first object to the last
     # of relations between objects
     INVERSE = "inverse"  # owl:inverseOf
     SUB_PROPERTY = "sub-property"  # rdfs:subPropertyOf
@@ -35,7 +34,7 @@ class Rule(StrEnum):
     PROPER_INTERVAL = "proper interval"  # a fluent starts before it finishes
     DEFINITION = "definition"  # of Allen's relations by end points (Allen 1983)
     SHORTEST_PATH = "shortest path"  # difference constraints added up (Dechter, Meiri, Pearl 1991)
-    NEGATIVE_CYCLE = "negative cycle"  # the same, back to where it began: a contradiction
+    NEGATIVE_CYCLE = "negative cycle"  # difference constraints around a cycle that add up to a contradiction
     ELIMINATION = "elimination"  # all other alternatives of a disjunction are refuted
     INTERSECTION = "intersection"  # of sets of relations that all hold
     CASE = "case"  # assumed, within CASES
@@ -43,11 +42,11 @@ class Rule(StrEnum):
 
 @dataclass(frozen=True)
 class Proof(Generic[Claim]):
-    """A claim, the rule that gives it, and the proofs of what the rule needs.
+    r"""A claim, its rule, and the proofs of the premises of the rule.
 
     >>> stated = Proof("a.finish <= 5", Rule.STATED, source="t.json: fluents[0].finish")
     >>> proper = Proof("a.start < a.finish", Rule.PROPER_INTERVAL)
-    >>> print(*Proof("a.start < 5", Rule.SHORTEST_PATH, (stated, proper)).lines(), sep="\\n")
+    >>> print(*Proof("a.start < 5", Rule.SHORTEST_PATH, (stated, proper)).lines(), sep="\n")
     a.start < 5   by shortest path
         a.finish <= 5   by stated   [t.json: fluents[0].finish]
         a.start < a.finish   by proper interval
@@ -59,28 +58,28 @@ class Proof(Generic[Claim]):
     source: Source | str | None = None
 
     def leaves(self) -> tuple[Proof[Claim], ...]:
-        """Return the stated leaves that it rests on, without repetition, in the order of use."""
+        """Return the stated leaves, without repetition, in the order of use."""
         return tuple(dict.fromkeys(proof for proof, _, _ in self._walk() if proof.rule is Rule.STATED))
 
     def stated(self) -> tuple[Claim, ...]:
-        """Return the claims of its stated leaves, without repetition, in the order of use."""
+        """Return the claims of the stated leaves, without repetition, in the order of use."""
         return tuple(dict.fromkeys(leaf.claim for leaf in self.leaves()))
 
     def size(self) -> int:
-        """Return how many leaves it has, written out each time."""
+        """Return the number of leaves of the tree with shared parts written out each time."""
         return sum(premise.size() for premise in self.premises) or 1
 
     def lines(self, indent: str = "") -> Iterator[str]:
-        """Return the proof as indented text, conclusion first; what was proved above is only referred to."""
+        """Yield the proof as indented text, conclusion first; a repeated part refers to its first occurrence."""
         for proof, depth, again in self._walk():
             place = f"   [{proof.source}]" if proof.source else ""
             above = ", as above" if again and proof.premises else ""
             yield f"{indent}{'    ' * depth}{proof.claim}   by {proof.rule}{above}{place}"
 
     def _walk(self) -> Iterator[tuple[Proof[Claim], int, bool]]:
-        """Return each proof in the order of print, its depth, and whether it came before: its premises do not again.
+        """Yield each proof in the order of print, its depth, and whether it occurred before.
 
-        Proofs share parts, and written out each time they would grow exponentially.
+        The premises of a repeated proof are not yielded again: proofs share parts, and would grow exponentially.
         """
         met: set[int] = set()
         waiting: list[tuple[Proof[Claim], int]] = [(self, 0)]

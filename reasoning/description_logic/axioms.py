@@ -1,8 +1,8 @@
-"""An ontology's triples as axioms: each axiom a group of triples that mean something only together.
+"""Split the triples of an ontology into axioms: groups of triples that have a meaning only together.
 
-Source: OWL 2 Web Ontology Language Mapping to RDF Graphs (second edition). A class expression, a list or a negative
-assertion is written with blank nodes; the triples of those belong to the axiom that leads to them. Declarations say
-what a name is, and annotations say nothing that follows: both are kept apart.
+Source: OWL 2 Web Ontology Language Mapping to RDF Graphs (second edition). Class expressions, lists and negative
+assertions are written with blank nodes, whose triples belong to the axiom that refers to them. Declarations and
+annotations imply nothing, and are kept separately.
 """
 
 from __future__ import annotations
@@ -56,24 +56,25 @@ _DECLARING = {
 
 @dataclass(frozen=True, slots=True)
 class Axiom:
-    """The triples of one axiom: the one that it begins with, then those of the blank nodes that it leads to."""
+    """The triples of one axiom: its first triple, then those of the blank nodes that it refers to."""
 
     triples: tuple[Triple, ...]
 
     @property
     def root(self) -> Triple:
+        """First triple of the axiom."""
         return self.triples[0]
 
     @property
     def signature(self) -> frozenset[str]:
-        """The names that it uses, those of RDF, RDFS and OWL left out."""
+        """Names in the axiom, except those of RDF, RDFS and OWL."""
         parts = {part for triple in self.triples for part in triple}
         return frozenset(part for part in parts if not is_literal(part) and not part.startswith(_BUILT_IN))
 
 
 @dataclass(frozen=True, slots=True)
 class Axioms:
-    """An ontology in parts: what says something, what names are, and what is only for people."""
+    """The parts of an ontology: axioms, declarations of names, and annotations."""
 
     axioms: tuple[Axiom, ...]
     declarations: tuple[Triple, ...]
@@ -83,15 +84,15 @@ class Axioms:
 def split_axioms(triples: Iterable[Triple]) -> Axioms:
     """Return the axioms of some triples, in their order.
 
-    ``owl:imports`` is dropped, so that nobody follows it. A property that is used between things and declared as
-    nothing is declared here, since a description-logic reasoner would take it for an annotation.
+    ``owl:imports`` is dropped, so that no import is followed. A property that relates individuals without a declaration
+    is declared, since a description-logic reasoner would treat it as an annotation property.
     """
     triples = list(dict.fromkeys(triples))
     about: dict[str, list[Triple]] = defaultdict(list)
     for triple in triples:
         about[triple.subject].append(triple)
     kinds = _NameKinds(triples)
-    # blank nodes that are part of an axiom's syntax, and no individuals
+    # blank nodes that are part of the syntax of an axiom, not individuals
     structural = {
         node
         for node, said in about.items()
@@ -127,7 +128,7 @@ def split_axioms(triples: Iterable[Triple]) -> Axioms:
 
 
 class _NameKinds:
-    """What the names of an ontology are."""
+    """The kinds of the names in an ontology."""
 
     def __init__(self, triples: list[Triple]) -> None:
         typed: dict[str, set[str]] = defaultdict(set)
@@ -159,7 +160,7 @@ class _NameKinds:
         )
 
     def implied(self) -> list[Triple]:
-        """Return declarations of properties that are used and not declared."""
+        """Return declarations of the properties that are used but not declared."""
         used = {
             (triple.predicate, DATATYPE_PROPERTY if is_literal(triple.object) else OBJECT_PROPERTY): None
             for triple in self._triples
@@ -169,15 +170,14 @@ class _NameKinds:
 
 
 def _stands_alone(said: list[Triple]) -> bool:
-    """Return whether a blank node that nothing leads to is an axiom: a set of members, a negative one, a general
-    one."""
+    """Return whether an unreferenced blank node is an axiom: a member set, a negative assertion or a general axiom."""
     predicates = {triple.predicate for triple in said}
     alone = {term(f"owl:{name}") for name in ("members", "distinctMembers", "sourceIndividual", "disjointWith")}
     return not predicates.isdisjoint({*alone, term("rdfs:subClassOf"), term("owl:equivalentClass")})
 
 
 def _expression(node: str, about: dict[str, list[Triple]], structural: set[str]) -> list[Triple]:
-    """Return the triples of a blank node and of those that it leads to."""
+    """Return the triples of a blank node and of the blank nodes that it refers to."""
     found: list[Triple] = []
     todo, seen = [node], {node}
     while todo:

@@ -1,8 +1,8 @@
-"""What follows from an ontology, and whether it can hold at all: the engines of description logic behind one call.
+"""Entailment and consistency of ontologies: the engines of description logic behind one call.
 
-``rl`` is the rules of OWL 2 RL: facts by the ten thousand, but not everything that OWL 2 DL entails. ``hermit`` and
-``pellet`` are complete for OWL 2 DL and slow where facts are many. ``auto`` gives the facts to the rules and the
-classes alone to HermiT, which is where each is good; figures are in ``docs/description_logic.md``.
+``rl`` runs the rules of OWL 2 RL, which handle tens of thousands of facts but do not find everything that OWL 2 DL
+entails. ``hermit`` and ``pellet`` are complete for OWL 2 DL, but slow with many facts. ``auto`` gives the facts to the
+rules and only the classes to HermiT; figures are in ``docs/description_logic.md``.
 """
 
 from __future__ import annotations
@@ -30,13 +30,13 @@ from deixis.reasoning.description_logic.terms import (
 from deixis.reasoning.errors import InconsistencyError, LimitError, SettingError
 
 MAX_EXPLAINED = 5
-"""Unsatisfiable classes that are explained; those after them usually fail for the same reasons."""
+"""Maximum number of unsatisfiable classes that are explained; later ones usually have the same reasons."""
 
 _WORDS_OF_OWL = tuple(f"<{base}" for base in PREFIXES.values())
 
 
 class LogicEngine(StrEnum):
-    """Who reasons."""
+    """An engine of description logic."""
 
     AUTO = "auto"
     RL = "rl"
@@ -46,12 +46,12 @@ class LogicEngine(StrEnum):
 
 @dataclass(frozen=True)
 class Entailment:
-    """What an engine found.
+    """The result of an engine.
 
-    ``complete`` says whether the whole of OWL 2 DL was decided: of the rules alone, an ontology without a contradiction
-    is one in which they find none. ``inferred`` is empty where the ontology is inconsistent. ``inconsistency`` says
-    why it is, and ``impossible`` why each of the first unsatisfiable classes is, as far as :func:`explained` found out;
-    where it did not find out all that was asked, ``unexplained`` says why not.
+    ``complete`` is True if all of OWL 2 DL was decided; with the rules alone, ``consistent`` only means that they found
+    no contradiction. ``inferred`` is empty for an inconsistent ontology. ``inconsistency`` explains the inconsistency,
+    and ``impossible`` each of the first unsatisfiable classes, as far as :func:`explained` found justifications; if it
+    did not find all, ``unexplained`` is the reason.
     """
 
     engine: LogicEngine
@@ -65,18 +65,37 @@ class Entailment:
 
     @property
     def possible(self) -> bool:
-        """Whether the ontology can hold, and something can belong to each of its classes."""
+        """True if the ontology and each of its classes are satisfiable."""
         return self.consistent and not self.unsatisfiable
 
 
 def entail(ntriples: str, engine: LogicEngine | str = LogicEngine.AUTO, time_limit: float = 60.0) -> Entailment:
-    """Return what follows between named things, and whether the ontology, and each class of it, is possible.
+    """Return the entailed triples between named resources, and whether the ontology and its classes are satisfiable.
 
-    :func:`explained` adds why not. Raises LimitError where ``time_limit`` (seconds) is up, SettingError for an engine
-    of another name, and what :func:`deixis.reasoning.description_logic.reasoners.classify` raises of bad input.
+    Parameters
+    ----------
+    ntriples
+        The ontology as N-Triples.
+    engine
+        The engine, or its name.
+    time_limit
+        Time limit in seconds.
+
+    Returns
+    -------
+    The result without justifications; :func:`explained` adds them.
+
+    Raises
+    ------
+    SettingError
+        If there is no engine of that name.
+    LimitError
+        At the time limit.
+    DeixisError
+        If the input is invalid; see :func:`deixis.reasoning.description_logic.reasoners.classify`.
     """
     if engine not in list(LogicEngine):
-        raise SettingError(f"an engine is one of {', '.join(LogicEngine)}, not '{engine}'")
+        raise SettingError(f"the engine must be one of {', '.join(LogicEngine)}, got '{engine}'")
     engine = LogicEngine(engine)
     complete = engine in (LogicEngine.HERMIT, LogicEngine.PELLET)
     try:
@@ -90,9 +109,9 @@ def entail(ntriples: str, engine: LogicEngine | str = LogicEngine.AUTO, time_lim
 
 
 def explained(ntriples: str, found: Entailment, deadline: Deadline, every: bool = False) -> Entailment:
-    """Return what was found with a justification, or with ``every``, of what is impossible.
+    """Return a result with a justification of each impossibility, or with ``every``, with all justifications.
 
-    The verdict stays whatever the time: there are as many justifications as were found in it.
+    The verdict does not change; at the deadline, the result has the justifications found so far.
     """
     why: list[Justification] = []
     unexplained = None
@@ -133,7 +152,7 @@ def _by_rules(ntriples: str, engine: LogicEngine, deadline: Deadline) -> Found:
 
 
 def _is_telling(triple: Triple) -> bool:
-    """Return whether a triple relates named things, and none of the words of OWL."""
+    """Return whether a triple relates named resources that are not terms of OWL."""
     subject, _, obj = triple
     blank = is_blank(subject) or is_blank(obj)
     return not blank and not subject.startswith(_WORDS_OF_OWL) and not obj.startswith(_WORDS_OF_OWL)
@@ -150,10 +169,10 @@ def _schema(parts: Axioms) -> Iterable[Triple]:
 
 
 def unsatisfiable_by_rules(triples: Iterable[Triple], deadline: Deadline = Deadline.never()) -> tuple[str, ...]:
-    """Return the IRIs of the named classes of which the rules see that nothing can belong to them, sorted.
+    """Return the IRIs of the named classes that the rules find unsatisfiable, sorted.
 
-    Each class is given a member of its own: a contradiction that needs one of these members only condemns its class.
-    Raises LimitError where the deadline passes.
+    Each class is given its own member; a contradiction that depends on a member only affects the class of that member.
+    Raises LimitError at the deadline.
     """
     triples = list(triples)
     classes = {t.subject for t in triples if t.predicate == TYPE and t.object == CLASS and not is_blank(t.subject)}

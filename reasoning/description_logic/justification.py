@@ -1,17 +1,16 @@
-"""Justifications: the axioms of an ontology, none of them superfluous, from which a statement follows; and the denial
-of a statement.
+"""Justifications: minimal sets of axioms of an ontology that entail a statement.
 
 >>> from deixis.reasoning.description_logic.terms import Triple
 >>> from deixis.reasoning.description_logic.terms import NOTHING, SUB_CLASS_OF
 >>> [str(triple) for triple in denial(Triple("<urn:Spork>", SUB_CLASS_OF, NOTHING))]
 ['<urn:deixis:someone> <http://www.w3.org/1999/02/22-rdf-syntax-ns#type> <urn:Spork> .']
 
-To find why a statement follows, its denial is added: the axioms that then contradict each other are a justification.
-Where the rules of OWL 2 RL find the contradiction, its derivation says which axioms to begin with; else those are taken
-that share names with the statement, and names with those, until HermiT finds the contradiction. Then HermiT proves that
-no axiom can be spared, several ontologies in one process.
+To justify a statement, its denial is added: the axioms that then contradict each other are a justification. If the
+rules of OWL 2 RL find the contradiction, the search starts from the axioms of its derivation. Otherwise it starts from
+axioms that share names with the statement, and adds axioms that share names with those, until HermiT finds the
+contradiction. Then HermiT proves that no axiom can be left out, testing several ontologies in one process.
 
-Sources: Kalyanpur, Parsia, Horridge, Sirin, *Finding all justifications of OWL DL entailments*, ISWC 2007 (black box:
+Source: Kalyanpur, Parsia, Horridge, Sirin, *Finding all justifications of OWL DL entailments*, ISWC 2007 (black box:
 expand, then contract).
 """
 
@@ -57,11 +56,10 @@ _OURS = tuple(f"<{PREFIXES[name]}" for name in ("rdf", "rdfs", "owl"))
 
 
 def denial(triple: Triple) -> tuple[Triple, ...]:
-    """Return the triples that deny a statement about named things; raises SettingError for one that cannot be denied
-    so."""
+    """Return the triples that deny a statement about named resources; raise SettingError for other statements."""
     subject, predicate, obj = triple
     if any(is_blank(part) for part in triple):
-        raise SettingError(f"a statement to explain is about named things: {triple}")
+        raise SettingError(f"a statement to explain must be about named resources, got {triple}")
     some_pair = Triple(_SOMEONE, subject, _OTHER)
     cases: dict[str, Callable[[], tuple[Triple, ...]]] = {
         SUB_CLASS_OF: lambda: (Triple(_SOMEONE, TYPE, subject), *_not_a(_SOMEONE, obj)),
@@ -97,18 +95,17 @@ def _not_related(subject: str, predicate: str, obj: str) -> tuple[Triple, ...]:
 
 
 BATCH, MAX_RINGS, MAX_CONTRADICTIONS = 24, 10, 100
-"""Ontologies, rings of names, and contradictions that are looked at at once."""
+"""Limits on the ontologies per run, the rings of names, and the contradictions considered."""
 
 Oracle = Callable[[Sequence[Sequence[Axiom]]], int | None]
-"""Which of several sets of axioms is the first that contradicts itself and the denial."""
+"""Function that returns the position of the first set of axioms that contradicts itself and the denial, or None."""
 
 
 @dataclass(frozen=True)
 class Justification:
-    """Axioms from which a statement follows, or that contradict each other where there is no statement.
+    """Axioms that entail a statement, or that are inconsistent if there is no statement.
 
-    Take any one away, and it does not follow any more; unless ``minimal`` is False: then the time was up before that
-    was seen of all of them.
+    ``minimal`` is True if all axioms are needed, and False if the time ran out before that was proved.
     """
 
     entailed: Triple | None
@@ -117,23 +114,38 @@ class Justification:
 
     @property
     def ntriples(self) -> str:
-        """The axioms, each with its blank nodes, as N-Triples, which are Turtle too."""
+        """Axioms with their blank nodes as N-Triples, which are also Turtle."""
         return write_ntriples(dict.fromkeys(triple for axiom in self.axioms for triple in axiom.triples))
 
 
 def justify(ntriples: str, entailed: Triple | None = None, deadline: Deadline = Deadline.never()) -> Justification:
-    """Return why a statement follows from an ontology, or, without one, why the ontology is inconsistent.
+    """Return a justification of an entailed statement, or of the inconsistency of an ontology.
 
-    The statement is about named things: ``rdfs:subClassOf`` (of ``owl:Nothing``: why a class is unsatisfiable),
-    ``rdfs:subPropertyOf``, ``rdfs:domain``, ``rdfs:range``, ``owl:disjointWith``, ``owl:sameAs``,
-    ``owl:differentFrom``, ``rdf:type`` or a property of the ontology's own. Raises NotEntailedError where it does not
-    follow, LimitError where the deadline passes before that is known, SettingError for a statement of another kind.
+    Parameters
+    ----------
+    ntriples
+        The ontology as N-Triples.
+    entailed
+        A statement about named resources: ``rdfs:subClassOf`` (of ``owl:Nothing`` for an unsatisfiable class),
+        ``rdfs:subPropertyOf``, ``rdfs:domain``, ``rdfs:range``, ``owl:disjointWith``, ``owl:sameAs``,
+        ``owl:differentFrom``, ``rdf:type``, or a property of the ontology. None stands for the inconsistency.
+    deadline
+        Time limit.
+
+    Raises
+    ------
+    NotEntailedError
+        If the statement does not follow, or the ontology is consistent.
+    LimitError
+        If the deadline passes before that is known.
+    SettingError
+        If the statement is of another kind.
     """
     parts = split_axioms(read_ntriples(ntriples))
     found = _justification(parts, parts.axioms, entailed, deadline)
     if found is None:
-        told = "the ontology is consistent" if entailed is None else f"does not follow from the ontology: {entailed}"
-        raise NotEntailedError(f"there is nothing to justify: {told}")
+        reason = "the ontology is consistent" if entailed is None else f"does not follow from the ontology: {entailed}"
+        raise NotEntailedError(f"there is nothing to justify: {reason}")
     return found
 
 
@@ -142,10 +154,10 @@ def justify_all(
 ) -> Iterator[Justification]:
     """Yield every justification of a statement, or of an inconsistency, as each is found.
 
-    Every set of axioms that takes one away from each justification known so far is left out in turn, the smaller sets
-    first, and what still follows is justified anew (a hitting set tree: Reiter, *A theory of diagnosis from first
-    principles*, Artificial Intelligence 32, 1987). There may be exponentially many. Raises as :func:`justify` does;
-    LimitError also where the deadline passes before it is known that there are no more.
+    The search is a hitting set tree (Reiter, *A theory of diagnosis from first principles*, Artificial Intelligence 32,
+    1987): it removes one axiom of each known justification in all combinations, smaller sets first, and justifies the
+    statement again if it still follows. There may be exponentially many justifications. Raises the errors of
+    :func:`justify`, and LimitError if the deadline passes before all are known.
     """
     parts = split_axioms(read_ntriples(ntriples))
     first = justify(ntriples, entailed, deadline)
@@ -160,7 +172,7 @@ def justify_all(
             if found is None:
                 continue
             if not found.minimal:
-                raise LimitError(f"undecided: the time was up after {len(known)} justifications; allow it more")
+                raise LimitError(f"undecided: time limit reached after {len(known)} justifications; raise it")
             untouched = frozenset(found.axioms)
             known.append(untouched)
             yield found
@@ -174,10 +186,10 @@ def justify_all(
 def _justification(
     parts: Axioms, axioms: Sequence[Axiom], entailed: Triple | None, deadline: Deadline
 ) -> Justification | None:
-    """Return a justification among some of an ontology's axioms; None where from these nothing follows."""
+    """Return a justification among some of an ontology's axioms, or None if they do not entail the statement."""
     denied = () if entailed is None else denial(entailed)
     oracle = _oracle(parts, denied, deadline)
-    # the fewest axioms in the derivation of a contradiction by OWL 2 RL; many of them only if HermiT agrees
+    # start from the smallest derivation of a contradiction by OWL 2 RL; HermiT confirms it if it has many axioms
     known = Materialisation([*_triples(axioms), *parts.declarations, *denied], deadline)
     owner: dict[Triple, list[Axiom]] = defaultdict(list)
     for each in axioms:
@@ -195,7 +207,7 @@ def _justification(
 
 
 def _in_order(parts: Axioms, axioms: Iterable[Axiom]) -> list[Axiom]:
-    """Return axioms in the order of the ontology."""
+    """Return the axioms in the order of the ontology."""
     chosen = set(axioms)
     return [axiom for axiom in parts.axioms if axiom in chosen]
 
@@ -205,7 +217,7 @@ def _oracle(parts: Axioms, denied: Sequence[Triple], deadline: Deadline) -> Orac
 
     def first(candidates: Sequence[Sequence[Axiom]]) -> int | None:
         if deadline.passed:
-            raise LimitError("undecided: the time was up before a justification was found; allow it more")
+            raise LimitError("undecided: time limit reached before a justification was found; raise it")
         return first_inconsistent([[*background, *_triples(axioms)] for axioms in candidates], deadline.left)
 
     return first
@@ -221,14 +233,14 @@ def _owners(known: Materialisation, owner: dict[Triple, list[Axiom]], seen: Cont
 
 
 def _expanded(axioms: Sequence[Axiom], entailed: Triple | None, oracle: Oracle) -> list[Axiom] | None:
-    """Return the axioms around the statement, as far from it as it takes to contradict its denial; near ones first."""
+    """Return the axioms nearest to the statement that contradict its denial, in order of distance; None without any."""
     ordered, ends = _rings(axioms, entailed)
     place = oracle([ordered[:end] for end in ends])
     return None if place is None else ordered[: ends[place]]
 
 
 def _rings(axioms: Sequence[Axiom], entailed: Triple | None) -> tuple[list[Axiom], list[int]]:
-    """Return axioms by how many steps of shared names they are from a statement, and where each of the steps ends."""
+    """Return axioms by their distance in shared names from a statement, and the end of each distance."""
     names = {part for part in entailed or () if not is_literal(part)}
     ordered: list[Axiom] = []
     ends: list[int] = []
@@ -246,9 +258,9 @@ def _rings(axioms: Sequence[Axiom], entailed: Triple | None) -> tuple[list[Axiom
 
 
 def _minimal(axioms: list[Axiom], oracle: Oracle) -> Minimal[Axiom] | None:
-    """Return the axioms without those that can be spared; None where a few contradict nothing.
+    """Return a minimal subset of contradictory axioms, or None if a few axioms contradict nothing.
 
-    Of few mostly none can be spared, so that they are asked about themselves in the run that leaves each out in turn.
+    Few axioms are usually all needed, so the run that leaves each out in turn also tests all of them.
     """
     if len(axioms) <= FEW:
         place = oracle([*(axioms[:k] + axioms[k + 1 :] for k in reversed(range(len(axioms)))), axioms])

@@ -1,4 +1,4 @@
-"""OWL 2 RL materialisation: everything that the rules make of some triples, why, and what contradicts itself.
+"""OWL 2 RL materialisation: all triples that the rules derive, their derivations, and contradictions.
 
 >>> from deixis.reasoning.description_logic.terms import Triple
 >>> from deixis.reasoning.description_logic.terms import SUB_CLASS_OF, TYPE
@@ -23,7 +23,7 @@ from deixis.reasoning.errors import NotEntailedError
 
 @dataclass(frozen=True, slots=True)
 class InferenceStep:
-    """One step of a derivation: a triple, and the W3C name of the rule that gives it; None where it was stated."""
+    """One step of a derivation: a triple, and the W3C name of its rule, or None for a stated triple."""
 
     triple: Triple
     rule: str | None
@@ -32,17 +32,17 @@ class InferenceStep:
 
 @dataclass(frozen=True, slots=True)
 class Contradiction:
-    """Triples that cannot all hold, and the W3C name of the rule that says so."""
+    """Triples that cannot all hold, and the W3C name of the rule that they violate."""
 
     rule: str
     premises: tuple[Triple, ...]
 
 
 class Materialisation:
-    """All that follows by the rules of OWL 2 RL from the triples added so far.
+    """All triples that follow by the rules of OWL 2 RL from the triples added so far.
 
-    The rules, and what is left out, are listed in :mod:`deixis.reasoning.description_logic.rl_rules`. Adding triples
-    costs in proportion to what they entail; to take triples back, materialise what is left anew.
+    :mod:`deixis.reasoning.description_logic.rl_rules` lists the rules and the omitted ones. The cost of adding triples
+    is proportional to their consequences. To remove triples, materialise the remaining ones again.
     """
 
     def __init__(self, triples: Iterable[Triple] = (), deadline: Deadline = Deadline.never()) -> None:
@@ -50,23 +50,23 @@ class Materialisation:
         self.add(triples, deadline)
 
     def add(self, triples: Iterable[Triple], deadline: Deadline = Deadline.never()) -> tuple[Triple, ...]:
-        """Add triples; give the triples that follow now and did not before, in the order found.
+        """Add triples, and return the triples that follow now and did not before, in the order found.
 
-        Raises LimitError where the deadline passes; start anew then.
+        Raises LimitError at the deadline; the materialisation must be started again then.
         """
         facts = [self._chaining.terms.fact(triple) for triple in triples]
         return tuple(map(self._triple, self._chaining.add(facts, deadline)))
 
     @property
     def inferred(self) -> tuple[Triple, ...]:
-        """The triples that follow and were not stated, in the order found."""
-        literals = self._chaining.terms.literals  # which datatypes they have is for rules alone
+        """Triples that follow and were not stated, in the order found."""
+        literals = self._chaining.terms.literals  # only rules use their datatypes
         why = self._chaining.why.items()
         return tuple(self._triple(fact) for fact, rule in why if rule is not None and fact[0] not in literals)
 
     @property
     def contradictions(self) -> tuple[Contradiction, ...]:
-        """The premises that cannot all hold, in the order found; empty where no rule finds a contradiction."""
+        """Contradictions in the order found; empty if no rule finds one."""
         found = self._chaining.contradictions.items()
         return tuple(Contradiction(name, tuple(map(self._triple, premises))) for (name, _), premises in found)
 
@@ -77,7 +77,7 @@ class Materialisation:
         return len(self._chaining.why)
 
     def derivation(self, triples: Iterable[Triple]) -> tuple[InferenceStep, ...]:
-        """Return the steps that lead to these triples from stated ones, each once and after its premises.
+        """Return the steps from stated triples to these triples, each once and after its premises.
 
         Raises NotEntailedError for a triple that does not follow.
         """

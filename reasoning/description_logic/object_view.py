@@ -1,7 +1,7 @@
-"""An ontology as Python objects: classes, individuals and properties, as owlready2 has them.
+"""An ontology as Python objects: classes, individuals and properties of owlready2.
 
-Beside :mod:`deixis.reasoning.description_logic.reasoners`, which runs the reasoners that owlready2 packages, this is
-the only module that knows owlready2.
+Only this module and :mod:`deixis.reasoning.description_logic.reasoners`, which runs the reasoners that owlready2
+packages, use owlready2.
 """
 
 from __future__ import annotations
@@ -24,17 +24,17 @@ from deixis.reasoning.errors import ReasonerError
 if TYPE_CHECKING:
     from owlready2 import Ontology, World
 
-CLOSED = "this view is closed; make another with Session.owl()"
+CLOSED = "this view is closed; open another with Session.owl()"
 
 
 class ObjectView:
-    """An ontology as owlready2's objects, in a ``World`` of its own; use it as a context manager, or close it.
+    r"""An ontology as owlready2's objects, in its own ``World``; use it as a context manager, or close it.
 
-    It is a copy, in memory: what is changed in it changes nothing else. Class expressions, which are blank nodes in
-    RDF, are owlready2's constructs. What an individual is an instance of is what the triples say; no reasoner is run.
-    Raises ReasonerError where owlready2 is not installed, or once it is closed.
+    The view is a copy in memory: changes to it change nothing else. Class expressions, which are blank nodes in RDF,
+    are owlready2's constructs. The types of individuals are those in the triples; no reasoner is run. Raises
+    ReasonerError if owlready2 is not installed, or if the view is closed.
 
-    >>> declared = "<urn:x#{}> <http://www.w3.org/1999/02/22-rdf-syntax-ns#type> <{}> .\\n"
+    >>> declared = "<urn:x#{}> <http://www.w3.org/1999/02/22-rdf-syntax-ns#type> <{}> .\n"
     >>> text = declared.format("Fork", "http://www.w3.org/2002/07/owl#Class") + declared.format("o1", "urn:x#Fork")
     >>> with ObjectView.of(text, "urn:x#") as view:
     ...     view["urn:x#Fork"].instances(), [thing.name for thing in view.individuals()]
@@ -47,10 +47,22 @@ class ObjectView:
 
     @classmethod
     def of(cls, ntriples: str, base: str) -> ObjectView:
-        """Return a view of a document's triples; terms whose IRI begins with ``base`` are attributes of its ontology.
+        """Return a view of the triples of a document.
 
-        ``owl:imports`` is not followed, so that nothing is read from elsewhere. What is of a declared class is declared
-        an individual, without which owlready2 does not list it. Raises TriplesError for what is no N-Triples.
+        ``owl:imports`` is not followed, so that nothing is read from elsewhere. Members of declared classes are
+        declared as individuals, since owlready2 lists no others.
+
+        Parameters
+        ----------
+        ntriples
+            The document as N-Triples.
+        base
+            Start of the IRIs that become attributes of the view's ontology.
+
+        Raises
+        ------
+        TriplesError
+            If the document is not N-Triples.
         """
         triples = read_ntriples(ntriples)
         classes = {triple.subject for triple in triples if triple.predicate == TYPE and triple.object == CLASS}
@@ -68,25 +80,25 @@ class ObjectView:
 
     @property
     def world(self) -> World:
-        """The ``owlready2.World``, never ``default_world``."""
+        """The ``owlready2.World`` of the view, which is never ``default_world``."""
         if self._world is None:
             raise ReasonerError(CLOSED)
         return self._world
 
     @property
     def ontology(self) -> Ontology:
-        """The ``owlready2.Ontology``: ``view.ontology.Fork`` is a class of the base IRI."""
+        """The ``owlready2.Ontology`` of the view: ``view.ontology.Fork`` is a class of the base IRI."""
         if self._world is None:
             raise ReasonerError(CLOSED)
         return self._ontology
 
     def classes(self) -> Iterator[Any]:
-        """Return every named class."""
+        """Return all named classes."""
         found: Iterator[Any] = self.world.classes()
         return found
 
     def individuals(self) -> Iterator[Any]:
-        """Return every named individual."""
+        """Return all named individuals."""
         found: Iterator[Any] = self.world.individuals()
         return found
 
@@ -95,7 +107,7 @@ class ObjectView:
         return list(self.world.search(**what))
 
     def __getitem__(self, iri: str) -> Any:
-        """Return the entity of that IRI, or None."""
+        """Return the entity with an IRI, or None."""
         return self.world[iri]
 
     def __enter__(self) -> Self:
@@ -105,7 +117,7 @@ class ObjectView:
         self.close()
 
     def close(self) -> None:
-        """Give the memory of the world back; its objects are of no use any more."""
+        """Free the memory of the world; its objects cannot be used after that."""
         if self._world is not None:
             world, self._world = self._world, None
             world.close()

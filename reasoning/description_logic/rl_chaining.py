@@ -1,10 +1,11 @@
-"""Semi-naive forward chaining over facts as numbers, with transitive closures kept incrementally.
+"""Semi-naive forward chaining over facts as integers, with incremental transitive closures.
 
-Source: Italiano, *Amortized efficiency of a path retrieval data structure*, Theoretical Computer Science 48 (1986):
-a new pair (x, y) joins what reaches x with what y reaches, and only pairs that are new are looked at.
+Source: Italiano, *Amortized efficiency of a path retrieval data structure*, Theoretical Computer Science 48 (1986): a
+new pair (x, y) joins all that reach x with all that y reaches, and only new pairs are processed.
 
-A rule is specialised by the axioms that it is about (a domain becomes a rule about one property), so that a fact meets
-only the rules about its own predicate and class, and adding facts costs in proportion to what they entail.
+A rule is specialised by the axioms that it refers to (a domain becomes a rule about one property), so that a fact is
+matched only with the rules about its own predicate and class. The cost of adding facts is proportional to their
+consequences.
 """
 
 from __future__ import annotations
@@ -47,7 +48,7 @@ Pair = tuple[int, int]
 
 
 class TransitiveClosure:
-    """A transitive relation.
+    """A transitive relation, closed incrementally.
 
     >>> closure = TransitiveClosure()
     >>> list(closure.add(1, 2)), list(closure.add(2, 3))
@@ -59,7 +60,7 @@ class TransitiveClosure:
         self._before: dict[int, set[int]] = {}
 
     def add(self, x: int, y: int) -> Iterator[tuple[Pair, Pair, Pair]]:
-        """Add a pair; give each pair that is now in the closure, after the two that it follows from."""
+        """Add a pair; yield each new pair of the closure, and the two pairs that it follows from."""
         after, before = self._after, self._before
         if y in after.get(x, ()):
             return
@@ -76,26 +77,27 @@ class TransitiveClosure:
 
 
 BATCH = 1000
-"""Facts between two looks at the clock."""
+"""Number of facts between two checks of the deadline."""
 
 IS_TYPE, NOT_TYPE, DIFFERENT = "dt-type2", "dt-not-type", "dt-diff"
-"""The names of the rules about literals."""
+"""Names of the rules about literals."""
 
 _REFLEXIVE = (SAME_AS, SUB_CLASS_OF, SUB_PROPERTY_OF, EQUIVALENT_CLASS, EQUIVALENT_PROPERTY)
 
 
 class Terms:
-    """Terms as numbers, counted from 0 in the order met; literals of one value have one number (``dt-eq``)."""
+    """Terms as numbers, from 0 in the order of their first use; literals of equal value have one number (``dt-eq``)."""
 
     def __init__(self) -> None:
         self._number: dict[str, int] = {}
         self._terms: list[str] = []
         self._by_value: dict[DataValue, int] = {}
-        self._as_stated: dict[Fact, Triple] = {}  # where a literal is spelled otherwise than the first of its value
-        self.literals: dict[int, DataValue | None] = {}  # and what they denote, None where that is not known
+        self._as_stated: dict[Fact, Triple] = {}  # literals spelled differently from the first one of their value
+        self.literals: dict[int, DataValue | None] = {}  # literals and their values, None if not known
         self.ill_formed: set[int] = set()
 
     def number(self, term: str) -> int:
+        """Return the number of a term, which is new for a new term."""
         known = self._number.get(term)
         if known is None:
             known = self._literal(term) if is_literal(term) else self._new(term)
@@ -120,20 +122,23 @@ class Terms:
         return number
 
     def term(self, number: int) -> str:
+        """Return the term with a number."""
         return self._terms[number]
 
     def fact(self, triple: Triple) -> Fact:
+        """Return a triple as a fact of numbers, and remember the spelling of its literal."""
         fact = self.number(triple.subject), self.number(triple.predicate), self.number(triple.object)
         if self._terms[fact[2]] != triple.object:
             self._as_stated.setdefault(fact, triple)
         return fact
 
     def known_fact(self, triple: Triple) -> Fact | None:
-        """Return the fact of a triple all of whose terms were met, else None."""
+        """Return the fact of a triple, or None if one of its terms has no number."""
         s, p, o = (self._number.get(term) for term in triple)
         return None if s is None or p is None or o is None else (s, p, o)
 
     def triple(self, fact: Fact) -> Triple:
+        """Return the triple of a fact, in the spelling in which it was stated."""
         stated = self._as_stated.get(fact)
         if stated is not None:
             return stated
@@ -143,9 +148,9 @@ class Terms:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class HornClause:
-    """A rule, specialised by the facts ``given``: patterns, and what follows where all of them are facts.
+    """A rule, specialised by the facts ``given``: patterns, and their conclusion if all of them are facts.
 
-    What follows is a fact, or a contradiction (no head), or, where ``then`` is set, a clause with that body.
+    The conclusion is a fact, or a contradiction (no head), or, if ``then`` is set, a clause with that body.
     """
 
     name: str
@@ -156,7 +161,7 @@ class HornClause:
 
 
 class Watcher(NamedTuple):
-    """A clause, the pattern of it that a fact may fit, the patterns that are left then, and the short cut, if any."""
+    """A clause, its pattern that a fact may match, the other patterns, and the short cut, if any."""
 
     clause: HornClause
     atom: Atom
@@ -168,7 +173,7 @@ Watchers = list[Watcher]
 
 
 class ForwardChaining:
-    """Facts, the clauses about them, and why each fact holds: the rule and its premises, or None where it is stated."""
+    """Facts, clauses about them, and the origin of each fact: the rule and its premises, or None for a stated fact."""
 
     def __init__(self) -> None:
         self.terms = Terms()
@@ -181,21 +186,21 @@ class ForwardChaining:
         self._by_object: dict[tuple[int, int], Watchers] = defaultdict(list)
         self._by_node: dict[tuple[str, int], Watchers] = defaultdict(list)  # patterns with a variable predicate
         self._closures: dict[int, tuple[TransitiveClosure, HornClause]] = {}
-        self._unread: list[Fact] = []  # axioms whose lists are not whole yet
+        self._unread: list[Fact] = []  # axioms whose lists are not complete yet
         number = self.terms.number
         self._list_predicates = {number(predicate): predicate for predicate, _ in EXPANSIONS}
         self._reflexive = {number(name) for name in _REFLEXIVE}
         self._same, self._some_values = number(SAME_AS), number(SOME_VALUES_FROM)
-        self._asked: set[int] = set()  # datatypes of which it matters which literals belong to them
-        self._met: set[int] = set()  # literals that facts are about
+        self._asked: set[int] = set()  # datatypes for which the membership of literals matters
+        self._met: set[int] = set()  # literals in facts
         self._type, self._first, self._rest, self._nil = (number(name) for name in (TYPE, FIRST, REST, NIL))
         for rule in rules():
             self._learn(rule)
 
     def add(self, facts: Iterable[Fact], deadline: Deadline = Deadline.never()) -> list[Fact]:
-        """Add stated facts; give the facts that follow now and did not before.
+        """Add stated facts, and return the facts that follow now and did not before.
 
-        Raises LimitError where the deadline passes; what was found stays, and is not all.
+        Raises LimitError at the deadline; the facts found so far stay, but are incomplete.
         """
         self._found = []
         for fact in facts:
@@ -206,7 +211,7 @@ class ForwardChaining:
             for _ in range(min(len(self._queue), BATCH)):
                 self._process(self._queue.popleft())
             if deadline.passed:
-                raise LimitError(f"undecided: the time was up after {len(self.why)} triples; allow it more")
+                raise LimitError(f"undecided: time limit reached after {len(self.why)} triples; raise it")
             if not self._queue:
                 self._read_lists()
         return [fact for fact in self._found if self.why[fact] is not None]
@@ -253,7 +258,7 @@ class ForwardChaining:
     def _joined(
         self, atoms: Sequence[Atom], bound: Binding, found: dict[Atom, Fact]
     ) -> list[tuple[Binding, tuple[Fact, ...]]]:
-        """Return all solutions at once, so that what they conclude does not change what is being looked at."""
+        """Return all solutions at once, so that their conclusions do not change the facts during the search."""
         return [(binding, tuple(found.values())) for binding in self._index.solutions(atoms, bound, found)]
 
     def _conclude(self, clause: HornClause, binding: Binding, facts: tuple[Fact, ...]) -> None:
@@ -281,14 +286,14 @@ class ForwardChaining:
     # ---- literals
 
     def _meet(self, literal: int, fact: Fact) -> None:
-        """Look at a literal when the first fact about it comes: is it well formed, and of which datatypes is it?"""
+        """Check a literal when its first fact comes: whether it is well formed, and its datatypes."""
         self._met.add(literal)
         if literal in self.terms.ill_formed:
             self.contradictions.setdefault((NOT_TYPE, frozenset((fact,))), (fact,))
         self._type_literals((literal,), self._asked)
 
     def _type_literals(self, literals: Iterable[int], datatypes: Iterable[int]) -> None:
-        """Add which of some literals belong to which datatypes."""
+        """Add the facts that some literals belong to some datatypes."""
         for literal in literals:
             value = self.terms.literals[literal]
             for datatype in datatypes:
@@ -298,7 +303,7 @@ class ForwardChaining:
                     self._queue.append(fact)
 
     def _check_value(self, fact: Fact, premises: tuple[Fact, ...]) -> None:
-        """Compare what would follow about a literal with the value that it denotes."""
+        """Compare a conclusion about a literal with the value that it denotes."""
         literal, predicate, other = fact
         value = self.terms.literals[literal]
         if value is None:
@@ -320,7 +325,7 @@ class ForwardChaining:
     # ---- rules
 
     def _learn(self, rule: TextRule, given: tuple[Fact, ...] = ()) -> None:
-        """Take in a rule; where it has a schema, the axioms that match it make the clauses about facts."""
+        """Add a rule; if it has a schema, the axioms that match it turn it into clauses about facts."""
         variables: dict[str, int] = {}
         schema, body = (tuple(self._atom(atom, variables) for atom in part) for part in (rule.schema, rule.body))
         head = None if rule.head is None else self._atom(rule.head, variables)
@@ -336,7 +341,7 @@ class ForwardChaining:
         return s, p, o
 
     def _install(self, clause: HornClause) -> None:
-        """Watch for facts that a clause's patterns fit, and apply it to those that are there."""
+        """Watch for facts that match a clause's patterns, and apply the clause to the known facts."""
         if _is_transitivity(clause):
             predicate = clause.body[0][1]
             if predicate not in self._closures:
@@ -360,7 +365,7 @@ class ForwardChaining:
     # ---- lists
 
     def _read_lists(self) -> None:
-        """Learn the rules of those axioms whose lists have become whole."""
+        """Learn the rules of the axioms whose lists are complete now."""
         unread, self._unread = self._unread, []
         for axiom in unread:
             expanded = list(self._expanded(axiom))
@@ -383,7 +388,7 @@ class ForwardChaining:
 
 
 def _is_transitivity(clause: HornClause) -> bool:
-    """Return whether a clause says of one predicate that it is transitive."""
+    """Return whether a clause states that a predicate is transitive."""
     if clause.then is not None or clause.head is None or len(clause.body) != 2:
         return False
     (x, p, y), (y2, q, z), (a, r, b) = *clause.body, clause.head

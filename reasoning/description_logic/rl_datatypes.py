@@ -1,8 +1,8 @@
-"""Literals as data values: which denote the same value, which are ill-formed, and which belong to a datatype.
+"""Literals as data values: equality of values, ill-formed literals, and membership in datatypes.
 
 Source: OWL 2 Web Ontology Language Structural Specification (second edition), section 4, and XML Schema Definition
-Language 1.1 Part 2. The datatypes are those of OWL 2 RL and ``owl:real``, ``owl:rational``. Of a literal of another
-datatype nothing is known.
+Language 1.1 Part 2. The datatypes are those of OWL 2 RL, ``owl:real`` and ``owl:rational``. The values of other
+datatypes are not known.
 
 >>> value_of('"01"^^<http://www.w3.org/2001/XMLSchema#int>') == value_of('"1.0"^^<http://www.w3.org/2001/XMLSchema#decimal>')
 True
@@ -26,7 +26,7 @@ from deixis.reasoning.description_logic.terms import term
 
 
 class ValueSpace(Enum):
-    """Sets of values that have nothing in common with each other."""
+    """Pairwise disjoint sets of values."""
 
     REAL = "real"
     FLOAT = "float"
@@ -40,18 +40,18 @@ class ValueSpace(Enum):
 
 
 class DataValue(NamedTuple):
-    """A value: two literals denote the same one just where these are equal."""
+    """A value of a literal; two literals denote the same value exactly if these are equal."""
 
     space: ValueSpace
     value: object
 
 
 class IllFormedError(ValueError):
-    """The text of a literal is none of its datatype."""
+    """A text that is not in the lexical space of its datatype."""
 
 
 class Datatype(NamedTuple):
-    """A datatype: how its literals are read, and which values of its space belong to it."""
+    """A datatype: the function that reads its literals, and the test of which values of its space belong to it."""
 
     space: ValueSpace
     read: Callable[[str], object]
@@ -67,7 +67,7 @@ _TIME = re.compile(
     r"T(?P<hour>\d\d):(?P<minute>\d\d):(?P<second>\d\d)(?P<fraction>\.\d+)?(?P<zone>Z|[+-]\d\d:\d\d)?"
 )
 MOST_DIGITS = 4000
-"""Digits of a number, at the most, that are read; of a longer one nothing is known."""
+"""Maximum number of digits of a number that is read; the value of a longer one is not known."""
 
 
 def _matching(pattern: re.Pattern[str], text: str) -> re.Match[str]:
@@ -122,13 +122,13 @@ def _base64(text: str) -> bytes:
 
 
 def _time(text: str) -> tuple[object, ...]:
-    """Return the instant (days since a year 0, seconds of the day), and whether a time zone was given."""
+    """Return the instant (days since year 0, seconds of the day), and whether it has a time zone."""
     found = _matching(_TIME, text)
     year, month, day, hour, minute, second = map(int, found.groups()[:6])
     midnight = hour == 24
     if midnight and (minute or second or int((found["fraction"] or ".0")[1:])):
         raise IllFormedError(text)
-    cycle = year % 400  # the calendar repeats after 400 years; datetime knows those from 1 on
+    cycle = year % 400  # the calendar repeats after 400 years; datetime supports years from 1 on
     try:
         moment = datetime(cycle + 400, month, day, 0 if midnight else hour, minute, second) + timedelta(days=midnight)
     except ValueError as error:
@@ -143,7 +143,7 @@ def _time(text: str) -> tuple[object, ...]:
 
 
 def _is_decimal(value: object) -> bool:
-    """Return whether a fraction has a finite number of decimals."""
+    """Return whether a fraction has finitely many decimals."""
     assert isinstance(value, Fraction)
     rest = value.denominator
     for prime in (2, 5):
@@ -171,7 +171,7 @@ _NAME_START, _NAME = r"[^\W\d]", r"[\w.\-·]"
 
 
 def _checked(belongs: Callable[[object], bool], read: Callable[[str], object]) -> Callable[[str], object]:
-    """Return a reader that refuses what does not belong."""
+    """Return a reader that refuses values that do not belong to the datatype."""
 
     def checked(text: str) -> object:
         value = read(text)
@@ -238,7 +238,7 @@ DATATYPES: dict[str, Datatype] = {
         ),
     }.items()
 }
-"""The datatypes that are known, by their terms."""
+"""Known datatypes, by their terms."""
 
 LITERAL = term("rdfs:Literal")
 _STRING = term("xsd:string")
@@ -249,9 +249,9 @@ _LETTERS = {"t": "\t", "b": "\b", "n": "\n", "r": "\r", "f": "\f"}
 
 @lru_cache(maxsize=65536)
 def value_of(literal: str) -> DataValue | None:
-    """Return the value that a literal denotes; None where its datatype is not known.
+    """Return the value that a literal denotes, or None if its datatype is not known.
 
-    Raises IllFormedError where its text is none of its datatype.
+    Raises IllFormedError if its text is not in the lexical space of its datatype.
     """
     found = _PARTS.fullmatch(literal)
     if found is None:
@@ -262,12 +262,12 @@ def value_of(literal: str) -> DataValue | None:
     datatype = DATATYPES.get(found[3] or _STRING)
     if datatype is None or (datatype.space is ValueSpace.REAL and len(text) > MOST_DIGITS):
         return None
-    spaced = datatype.space is not ValueSpace.STRING  # of all other datatypes, white space around the text is ignored
+    spaced = datatype.space is not ValueSpace.STRING  # all other datatypes ignore white space around the text
     return DataValue(datatype.space, datatype.read(text.strip(" \t\n\r") if spaced else text))
 
 
 def is_in(value: DataValue, datatype: str) -> bool | None:
-    """Return whether a value belongs to a datatype (a term); None where the datatype is not known.
+    """Return whether a value belongs to a datatype (a term), or None if the datatype is not known.
 
     >>> one = value_of('"1"^^<http://www.w3.org/2001/XMLSchema#integer>')
     >>> [is_in(one, term(name)) for name in ("xsd:byte", "xsd:negativeInteger", "xsd:string")]

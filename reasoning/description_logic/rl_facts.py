@@ -1,6 +1,6 @@
-"""Facts as triples of whole numbers, indexed; and the joins of a rule's patterns with them.
+"""Facts as indexed triples of integers, and joins of the patterns of a rule with them.
 
-In a pattern a number from 0 is a term, and a negative one a variable.
+In a pattern, a number from 0 on is a term, and a negative one is a variable.
 """
 
 from __future__ import annotations
@@ -15,14 +15,14 @@ Binding = dict[int, int]
 
 
 class FactIndex(TermIndex[int]):
-    """An index over facts that joins the patterns of a rule with them."""
+    """An index of facts that joins the patterns of a rule with them."""
 
     def __contains__(self, fact: Fact) -> bool:
         subject, predicate, obj = fact
         return obj in self.objects(subject, predicate)
 
     def matches(self, atom: Atom) -> Iterator[Fact]:
-        """Yield the facts that fit a pattern, each variable standing for anything."""
+        """Yield the facts that match a pattern, in which each variable matches anything."""
         s, p, o = atom
         for predicate in (p,) if p >= 0 else tuple(self._objects):
             if predicate not in self._objects:
@@ -38,8 +38,7 @@ class FactIndex(TermIndex[int]):
                 yield from [(x, predicate, y) for x, ys in self._objects[predicate].items() for y in ys]
 
     def solutions(self, atoms: Sequence[Atom], binding: Binding, found: dict[Atom, Fact]) -> Iterator[Binding]:
-        """Yield the bindings under which every pattern is a fact; ``found`` says which, for as long as one is looked
-        at."""
+        """Yield the bindings under which every pattern is a fact; ``found`` has the facts of the current binding."""
         if not atoms:
             yield binding
             return
@@ -53,13 +52,13 @@ class FactIndex(TermIndex[int]):
 
 
 def substituted(atom: Atom, binding: Binding) -> Atom:
-    """Return a pattern with what its variables are bound to."""
+    """Return a pattern with its variables replaced by their values."""
     s, p, o = atom
     return binding.get(s, s), binding.get(p, p), binding.get(o, o)
 
 
 def unified(atom: Atom, fact: Fact, binding: Binding) -> Binding | None:
-    """Return the binding, extended so that the pattern is the fact; None where that cannot be."""
+    """Return the binding extended so that the pattern equals the fact, or None if that is impossible."""
     bound = dict(binding)
     for want, have in zip(atom, fact, strict=True):
         if want >= 0:
@@ -71,9 +70,9 @@ def unified(atom: Atom, fact: Fact, binding: Binding) -> Binding | None:
 
 
 def copy_of(head: Atom, atom: Atom) -> Atom | None:
-    """Return what follows from one fact, as a copy of its parts: place 0, 1 or 2 of the fact as -1, -2 or -3.
+    """Return the conclusion from one fact as a copy of its parts: place 0, 1 or 2 of the fact as -1, -2 or -3.
 
-    None where fitting the pattern takes more than its predicate and object, so that it has to be looked at.
+    The result is None if matching the pattern needs more than its predicate and object.
     """
     s, p, o = atom
     if s >= 0 or p < 0 or s == o:
@@ -84,6 +83,6 @@ def copy_of(head: Atom, atom: Atom) -> Atom | None:
 
 
 def copied(copy: Atom, fact: Fact) -> Fact:
-    """Return the fact that a copy makes of another."""
+    """Return the fact that a copy makes from another fact."""
     a, b, c = copy
     return fact[~a] if a < 0 else a, fact[~b] if b < 0 else b, fact[~c] if c < 0 else c

@@ -1,17 +1,16 @@
-"""The rules of OWL 2 RL under their W3C names: as data, and those whose premises are lists.
+"""The rules of OWL 2 RL under their W3C names: a table of rules, and expansions of the rules over lists.
 
 Source: OWL 2 Web Ontology Language Profiles (second edition), section 4.3, tables 4 to 9. A rule is written ``name:
-schema | facts => conclusion``; ``schema`` is matched once for each axiom, and leaves a rule about the axiom's own
-properties and classes; ``false`` is a contradiction. Rules over lists are in
-:mod:`deixis.reasoning.description_logic.rl_rules`.
+schema | facts => conclusion``. The ``schema`` is matched once for each axiom, and leaves a rule about the properties
+and classes of the axiom; ``false`` is a contradiction.
 
-The datatype rules (table 8) are in :mod:`deixis.reasoning.description_logic.rl_chaining`, since they look at values.
-Left out are rules that only state tautologies (``eq-ref``, ``prp-ap``, ``cls-thing``,
-``cls-nothing1``, ``scm-cls``, ``scm-op``, ``scm-dp``). Where another rule needs such a tautology as a premise, a
-second line with the same name says what then follows.
+Rules over lists are expanded for each list: ``cls-int1``, ``cls-int2``, ``cls-uni``, ``cls-oo``, ``scm-int``,
+``scm-uni``, ``prp-spo2``, ``prp-key``, ``prp-adp``, ``cax-adc``, ``eq-diff2``, ``eq-diff3``.
 
-Source: OWL 2 Profiles, section 4.3: ``cls-int1``, ``cls-int2``, ``cls-uni``, ``cls-oo``, ``scm-int``, ``scm-uni``,
-``prp-spo2``, ``prp-key``, ``prp-adp``, ``cax-adc``, ``eq-diff2``, ``eq-diff3``.
+The datatype rules (table 8) are in :mod:`deixis.reasoning.description_logic.rl_chaining`, since they depend on values.
+Rules that only state tautologies are left out (``eq-ref``, ``prp-ap``, ``cls-thing``, ``cls-nothing1``, ``scm-cls``,
+``scm-op``, ``scm-dp``). If another rule needs such a tautology as a premise, a second line with the same name gives the
+conclusion.
 """
 
 from __future__ import annotations
@@ -103,11 +102,11 @@ scm-avf2: ?c owl:allValuesFrom ?y , ?c owl:onProperty ?p , ?d owl:allValuesFrom 
 """
 
 TermAtom = tuple[str, str, str]
-"""A pattern: three terms, each an N-Triples spelling or a variable such as ``?x``."""
+"""A pattern of three terms, each in N-Triples spelling or a variable such as ``?x``."""
 
 
 class TextRule(NamedTuple):
-    """A rule of the table; a conclusion of None is a contradiction."""
+    """A rule of the table; its head is None for a contradiction."""
 
     name: str
     schema: tuple[TermAtom, ...]
@@ -116,7 +115,7 @@ class TextRule(NamedTuple):
 
 
 def rules() -> Iterator[TextRule]:
-    """Yield the table's rules, in its order.
+    """Yield the rules of the table, in its order.
 
     >>> next(rules()).name
     'eq-sym'
@@ -145,7 +144,7 @@ def _term(word: str) -> str:
 
 
 Expansion = Callable[[str, Sequence[str]], Iterator[TextRule]]
-"""From the node that has a list, and the list's members, to rules without lists."""
+"""Function from the node that has a list, and the members of the list, to rules without lists."""
 
 
 def _rule(name: str, body: Sequence[TermAtom], head: TermAtom | None) -> TextRule:
@@ -209,13 +208,13 @@ EXPANSIONS: dict[tuple[str, str | None], Expansion] = {
     (MEMBERS, term("owl:AllDifferent")): _different("eq-diff2"),
     (DISTINCT_MEMBERS, term("owl:AllDifferent")): _different("eq-diff3"),
 }
-"""By the predicate that leads to the list and, where it takes one, the type of the node that has it."""
+"""Expansions by the predicate that refers to the list and, if needed, the type of the node that has it."""
 
 
 def list_members(
     index: FactIndex, head: int, first: int, rest: int, nil: int
 ) -> tuple[list[int], tuple[Fact, ...]] | None:
-    """Return the members of a list and the facts that make it; None where it is not whole, or a ring."""
+    """Return the members of a list and the facts that define it, or None for an incomplete or cyclic list."""
     members, links, seen = [], [], set()
     while head != nil:
         member = min(index.objects(head, first), default=None)

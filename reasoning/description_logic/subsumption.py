@@ -1,11 +1,11 @@
-"""Subsumption and satisfiability in the part of OWL in which lessons speak, decided without a reasoner's process.
+"""Subsumption and satisfiability in the fragment of OWL that lessons use, decided without a reasoner's process.
 
-A class has named super-classes and existential restrictions (``some things that it shows are forks``); classes may be
-disjoint; properties have super-properties, inverses, domains and ranges. In this fragment of the profile OWL 2 EL (plus
-ranges and inverses, which fillers without restrictions of their own do not turn into more), what is told and what
-domains add, followed upwards, is every super-class there is: no rule leads back down. A class is impossible where two
-disjoint classes are above it, or above what it must show. Anything beyond is refused (:exc:`BeyondLessonsError`), never
-guessed; a differential test holds the answers to HermiT's.
+A class has named super-classes and existential restrictions (``some things that it shows are forks``). Classes may be
+disjoint; properties have super-properties, inverses, domains and ranges. The fragment is within OWL 2 EL plus ranges
+and inverses, which imply nothing more here, since fillers have no restrictions of their own. All super-classes are
+found by following the stated ones and those from domains upwards, since no rule leads downwards. A class is
+unsatisfiable if two disjoint classes are above it, or above a class that it must show. Other axioms are refused
+(:exc:`BeyondLessonsError`). A differential test compares the answers with HermiT's.
 """
 
 from __future__ import annotations
@@ -28,16 +28,16 @@ BEYOND = tuple(
         "datatypeComplementOf", "sourceIndividual",
     )
 )  # fmt: skip
-"""The properties (IRIs) that take an ontology out of the fragment."""
+"""The properties (IRIs) that are outside of the fragment."""
 
 
 class BeyondLessonsError(ReasonerError):
-    """An ontology says more than lessons do; a description-logic reasoner must decide."""
+    """An ontology outside of the fragment of lessons, which a description-logic reasoner must decide."""
 
 
 @dataclass(frozen=True)
 class ToldClass:
-    """What is said of a class: its named super-classes, and pairs of a property and the class of what it leads to."""
+    """The axioms of a class: its named super-classes, and its restrictions as pairs of a property and a class."""
 
     broader: frozenset[str] = frozenset()
     shows: frozenset[tuple[str, str]] = frozenset()
@@ -45,7 +45,7 @@ class ToldClass:
 
 @dataclass(frozen=True)
 class PropertyEnds:
-    """What holds of both ends of a property, super-properties and inverses included; whether it leads to one thing."""
+    """Domains and ranges of a property, including those of super-properties and inverses, and its functionality."""
 
     domains: frozenset[str] = frozenset()
     ranges: frozenset[str] = frozenset()
@@ -53,9 +53,9 @@ class PropertyEnds:
 
 
 class Subsumption:
-    """The super-classes of classes, from what ``told`` says of each; only classes that are asked about are looked at.
+    """The super-classes of classes, computed on demand from ``told``, a function from a class to its axioms.
 
-    ``ends`` says the same of properties; ``disjoint`` are groups of classes no two of which have a thing in common.
+    ``ends`` is such a function for properties; ``disjoint`` are groups of pairwise disjoint classes.
 
     >>> said = {"fork": ToldClass(frozenset({"cutlery"})), "cutlery": ToldClass(frozenset({"thing"}))}
     >>> sorted(Subsumption(lambda name: said.get(name, ToldClass())).broader("fork"))
@@ -73,16 +73,16 @@ class Subsumption:
         self._broader: dict[str, frozenset[str]] = {}
 
     def broader(self, name: str) -> frozenset[str]:
-        """Return every named super-class but the class itself and owl:Thing; of an impossible class the told ones."""
+        """Return every named super-class except the class itself and owl:Thing; stated ones if it is unsatisfiable."""
         known = self._broader.get(name)
         if known is None:
             known = self._broader[name] = frozenset(self._above([name]) - {name, THING})
         return known
 
     def satisfiable(self, *names: str) -> bool:
-        """Return whether a thing can belong to all of these classes at once.
+        """Return whether all of these classes can have a common member.
 
-        Raises BeyondLessonsError where that cannot be decided here.
+        Raises BeyondLessonsError if the axioms are outside of the fragment.
         """
         above = self._above(names)
         if NOTHING in above or any(len(group & above) > 1 for group in self._disjoint):
@@ -95,11 +95,11 @@ class Subsumption:
             raise BeyondLessonsError(f"<{prop}> is functional, and a class is restricted by it")
         fillers = [filler, *ends.ranges]
         if any(self._class(name).shows for name in self._above(fillers)):
-            raise BeyondLessonsError(f"a class shows <{filler}>, which shows something in its turn")
+            raise BeyondLessonsError(f"a class shows <{filler}>, which has a restriction of its own")
         return self.satisfiable(*fillers)
 
     def _above(self, names: Iterable[str]) -> set[str]:
-        """Return these classes and all above them."""
+        """Return these classes and all their super-classes."""
         todo = list(names)
         above = set(todo)
         while todo:

@@ -63,7 +63,7 @@ _IRI = re.compile(r"[^<>\"{}|^`\\\s\x00-\x20]*")
 
 
 class Triple(NamedTuple):
-    """A statement; each term in its N-Triples spelling."""
+    """A statement of three terms in N-Triples spelling."""
 
     subject: str
     predicate: str
@@ -74,7 +74,7 @@ class Triple(NamedTuple):
 
 
 def read_ntriples(text: str) -> list[Triple]:
-    """Return the triples of a document, in its order; raises TriplesError, with the line, for what is no N-Triples."""
+    """Return the triples of a document, in its order; raise TriplesError, with the line, if it is not N-Triples."""
     triples = []
     for number, line in enumerate(text.split("\n"), 1):
         if not line.strip() or line.lstrip().startswith("#"):
@@ -88,28 +88,30 @@ def read_ntriples(text: str) -> list[Triple]:
 
 
 def _unescaped(term: str, number: int) -> str:
-    """Return an IRI with its escapes read, so that one name has one spelling."""
+    """Return an IRI with its escapes decoded, so that each IRI has one spelling."""
     if "\\" not in term or is_literal(term):
         return term
     iri = _ESCAPE.sub(lambda found: chr(min(int(found[0][2:], 16), sys.maxunicode)), term[1:-1])
     if not _IRI.fullmatch(iri):
-        raise TriplesError(f"line {number} has an IRI with characters that none may have: {term[:80]}")
+        raise TriplesError(f"line {number} has an IRI with characters that are not allowed: {term[:80]}")
     return f"<{iri}>"
 
 
 def write_ntriples(triples: Iterable[Triple]) -> str:
-    """Return a document of these triples, a line each."""
+    """Return a document of the triples, one line each."""
     return "".join(f"{triple}\n" for triple in triples)
 
 
 def iri_of(term: str) -> str | None:
-    """Return the IRI that a term spells, or None where it is a blank node or a literal."""
+    """Return the IRI of a term, or None for a blank node or a literal."""
     return term[1:-1] if term.startswith("<") else None
 
 
 def is_literal(term: str) -> bool:
+    """Return whether a term is a literal."""
     return term.startswith('"')
 
 
 def is_blank(term: str) -> bool:
+    """Return whether a term is a blank node."""
     return term.startswith("_:")

@@ -1,4 +1,4 @@
-"""Axioms and statements in words: plain English over the labels of an ontology.
+"""Put axioms and statements into plain English, with the labels of an ontology.
 
 >>> from deixis.reasoning.description_logic.terms import Triple
 >>> from deixis.reasoning.description_logic.terms import SUB_CLASS_OF
@@ -37,9 +37,9 @@ _STATEMENTS = {
     term("owl:disjointWith"): "{0} and {1} have nothing in common",
     term("owl:complementOf"): "whatever is not {1} is {0}",
     term("rdfs:subPropertyOf"): "whatever is related by '{0}' is related by '{1}'",
-    term("owl:equivalentProperty"): "'{0}' and '{1}' say the same",
+    term("owl:equivalentProperty"): "'{0}' and '{1}' are equivalent",
     term("owl:propertyDisjointWith"): "nothing is related by both '{0}' and '{1}'",
-    term("owl:inverseOf"): "'{0}' is '{1}' the other way round",
+    term("owl:inverseOf"): "'{0}' is the inverse of '{1}'",
     term("rdfs:domain"): "whatever is '{0}' of something is {1}",
     term("rdfs:range"): "whatever something is '{0}' of is {1}",
     term("owl:sameAs"): "{0} and {1} are one thing",
@@ -80,7 +80,7 @@ _JOINED = {term("owl:unionOf"): " or ", term("owl:intersectionOf"): " and ", ter
 
 
 def labels_of(triples: Iterable[Triple]) -> dict[str, str]:
-    """Return the label of each thing that has one, an English one or one in no language rather than another."""
+    """Return the label of each labelled term, preferably in English or without a language."""
     found: dict[str, tuple[bool, str]] = {}
     for subject, predicate, obj in triples:
         if predicate == LABEL and is_literal(obj):
@@ -91,7 +91,7 @@ def labels_of(triples: Iterable[Triple]) -> dict[str, str]:
 
 
 class Words:
-    """Words for axioms and statements, with a label for each term that has one."""
+    """A verbaliser of axioms and statements, which uses the labels of terms."""
 
     def __init__(self, labels: Mapping[str, str]) -> None:
         self._labels = labels
@@ -105,7 +105,7 @@ class Words:
         return _Sentence(self, (triple,)).of(triple)
 
     def name(self, name: str) -> str:
-        """Return what people call a term: its label, or else the last part of its IRI; a literal's own text."""
+        """Return the name of a term: its label, or else the last part of its IRI, or the text of a literal."""
         if name in self._labels:
             return self._labels[name]
         if is_literal(name):
@@ -117,7 +117,7 @@ class Words:
 
 
 class _Sentence:
-    """One axiom's triples, put into words."""
+    """The triples of one axiom, put into words."""
 
     def __init__(self, words: Words, triples: Iterable[Triple]) -> None:
         self._words = words
@@ -165,7 +165,7 @@ class _Sentence:
         if term("owl:complementOf") in said:
             return f"something that is not {self._expression(said[term('owl:complementOf')])}"
         if term("owl:inverseOf") in said:
-            return f"{self._expression(said[term('owl:inverseOf')])} the other way round"
+            return f"the inverse of {self._expression(said[term('owl:inverseOf')])}"
         for predicate, between in _JOINED.items():
             if predicate in said:
                 return f"({self._listed(said[predicate], between)})"

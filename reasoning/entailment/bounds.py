@@ -1,12 +1,12 @@
-"""What a relation says of end points: every convex Allen relation is a conjunction of bounds between them.
+"""The meaning of relations as bounds between end points of boxes.
 
-On each axis a box has a low and a high edge, the low one before the high one. A *bound* says that one edge lies before
-another, or not after it. A set of Allen relations that is convex (:mod:`deixis.reasoning.geometry.allen`) is a
-conjunction of bounds, any other one a disjunction of such conjunctions, its *alternatives*. A relation word is one
-product of Allen relations, so that it is a conjunction of bounds over two axes, or three: what lies *on* something lies
-within its outline and reaches higher. The denial of a conjunction is the disjunction of the bounds' denials.
+On each axis a box has a low and a high edge, the low one before the high one. A *bound* states that one edge lies
+before another, or not after it. A convex set of Allen relations (:mod:`deixis.reasoning.geometry.allen`) is a
+conjunction of bounds; any other set is a disjunction of such conjunctions, its *alternatives*. A relation word is one
+product of Allen relations, so it is a conjunction of bounds over two or three axes: an object *on* another lies within
+its outline and reaches higher. The denial of a conjunction is the disjunction of the denials of its bounds.
 
-A *point* is a number: ``(2 * axis + side) * n + object`` for n objects, side 0 low and 1 high.
+A *point* is a number: ``(2 * axis + side) * n + object`` for n objects, with side 0 for low and 1 for high.
 """
 
 from __future__ import annotations
@@ -25,33 +25,33 @@ from deixis.reasoning.constraints.difference import STRICT, ZERO, Difference
 from deixis.reasoning.geometry.allen import EndOrder, admitted, convex_hull, convex_pieces
 
 AXES = 3
-"""x to the viewer's right, y away from the viewer, z up."""
+"""Number of axes: x to the viewer's right, y away from the viewer, z up."""
 
 EDGES = (("left edge", "right edge"), ("near edge", "far edge"), ("underside", "top side"))
-"""What the low and the high edge of a box are called on each axis."""
+"""Names of the low and the high edge of a box on each axis."""
 
 
 @dataclass(frozen=True, slots=True, order=True)
 class Bound:
-    """One edge is before another (``strict``) or not after it; 0 is the subject of the relation, 1 its object."""
+    """The order of two edges: one is before the other (``strict``) or not after it; 0 is the subject, 1 the object."""
 
     axis: int
-    tail: int  # whose edge comes first
+    tail: int  # the owner of the first edge
     tail_side: int
     head: int
     head_side: int
     strict: bool
 
     def denied(self) -> Bound:
-        """Return what holds where this does not."""
+        """Return the negation of the bound."""
         return Bound(self.axis, self.head, self.head_side, self.tail, self.tail_side, not self.strict)
 
     def reversed(self) -> Bound:
-        """Return the same with subject and object exchanged."""
+        """Return the bound with subject and object exchanged."""
         return Bound(self.axis, 1 - self.tail, self.tail_side, 1 - self.head, self.head_side, self.strict)
 
     def points(self, subject: int, obj: int, n: int) -> tuple[int, int]:
-        """Return the two points for given objects, of n."""
+        """Return the two points of the bound for given objects, of n."""
         ends = (subject, obj)
         return (
             (2 * self.axis + self.tail_side) * n + ends[self.tail],
@@ -59,8 +59,7 @@ class Bound:
         )
 
     def difference(self, subject: int, obj: int, n: int) -> Difference:
-        """Return the same as a difference constraint; on each axis object k of n has the points k (low) and n + k
-        (high)."""
+        """Return the difference constraint; on each axis, object k of n has the points k (low) and n + k (high)."""
         ends = (subject, obj)
         code = STRICT if self.strict else ZERO
         return Difference(self.axis, self.head_side * n + ends[self.head], self.tail_side * n + ends[self.tail], code)
@@ -68,12 +67,12 @@ class Bound:
 
 Conjunction = tuple[Bound, ...]
 Alternatives = tuple[Conjunction, ...]
-"""A disjunction of conjunctions of bounds; empty where nothing can hold."""
+"""A disjunction of conjunctions of bounds; empty if it cannot hold."""
 
 
 @dataclass(frozen=True, slots=True)
 class Order:
-    """A bound between the edges of two named things, as a claim that can be derived."""
+    """A bound between the edges of two named objects, as a claim that can be derived."""
 
     subject: str
     object: str
@@ -89,9 +88,9 @@ class Order:
 
 @dataclass(frozen=True, eq=False)
 class EndpointBounds:
-    """k bounds between points: ``tail`` is before ``head``, or not after it where not ``strict``.
+    """k bounds between points: ``tail`` is before ``head``, or not after it if not ``strict``.
 
-    ``premise`` says which premise each comes from, as a position in a list of the caller's.
+    ``premise`` is the premise that each bound comes from, as a position in a list of the caller.
     """
 
     tail: NDArray[np.int64]  # (k,)
@@ -108,6 +107,7 @@ class EndpointBounds:
         return EndpointBounds(self.tail[keep], self.head[keep], self.strict[keep], self.premise[keep])
 
     def joined(self, other: EndpointBounds) -> EndpointBounds:
+        """Return these bounds and others."""
         return EndpointBounds(
             np.concatenate([self.tail, other.tail]),
             np.concatenate([self.head, other.head]),
@@ -127,15 +127,14 @@ def bounds_of(rows: list[tuple[int, int, bool, int]]) -> EndpointBounds:
 def order_differences(
     tail: NDArray[np.int64], head: NDArray[np.int64], strict: NDArray[np.bool_], n: int
 ) -> NDArray[np.int64]:
-    """Return bounds between points of n objects as difference constraints, shape (k, 4), as :meth:`Bound.difference`
-    says."""
+    """Return bounds between points of n objects as difference constraints (k, 4); see :meth:`Bound.difference`."""
     codes = np.where(strict, STRICT, ZERO)
     return np.stack([tail // (2 * n), head % (2 * n), tail % (2 * n), codes], axis=1).astype(np.int64)
 
 
 @lru_cache(maxsize=256)
 def meaning(relation: Relation) -> Alternatives:
-    """Return what a relation says: one conjunction of bounds where it is convex on every axis.
+    """Return the meaning of a relation: one conjunction of bounds if it is convex on every axis.
 
     >>> from deixis.ontology.tbox import default_ontology
     >>> r = default_ontology().relations
@@ -149,14 +148,14 @@ def meaning(relation: Relation) -> Alternatives:
 
 @lru_cache(maxsize=256)
 def denial(relation: Relation) -> Alternatives:
-    """Return what the denial of a relation says: of every alternative one bound fails."""
+    """Return the meaning of the denial of a relation: one bound of every alternative fails."""
     parts = product(*([bound.denied() for bound in conjunction] for conjunction in meaning(relation)))
     return tuple(tuple(dict.fromkeys(part)) for part in parts)
 
 
 @lru_cache(maxsize=1024)
 def common(alternatives: Alternatives) -> Conjunction:
-    """Return what holds whichever alternative does, as far as bounds can say it: the convex hull on every axis.
+    """Return the bounds that hold in all alternatives: the convex hull on every axis.
 
     >>> from deixis.ontology.tbox import default_ontology
     >>> r = default_ontology().relations
@@ -173,7 +172,7 @@ def common(alternatives: Alternatives) -> Conjunction:
 
 
 def claims(fact: Fact) -> tuple[Alternatives, ...]:
-    """Return what a fact demands, each of which must hold: one demand, but one for every relation that it denies."""
+    """Return the demands of a fact, all of which must hold: one demand, or one for every relation that it denies."""
     if not fact.positive:
         return tuple(denial(relation) for relation in fact.relations)
     return (tuple(dict.fromkeys(part for relation in fact.relations for part in meaning(relation))),)
@@ -181,8 +180,7 @@ def claims(fact: Fact) -> tuple[Alternatives, ...]:
 
 @lru_cache(maxsize=1024)
 def convex_parts(axis: int, mask: int) -> Alternatives:
-    """Return a set of Allen relations as a disjunction of conjunctions of bounds on an axis, the largest parts
-    first."""
+    """Return a set of Allen relations on an axis as a disjunction of conjunctions of bounds, largest parts first."""
     return tuple(tuple(_bound(axis, order) for order in piece.orders) for piece in convex_pieces(mask))
 
 
@@ -192,6 +190,5 @@ def _end_order(bound: Bound) -> EndOrder:
 
 
 def _bound(axis: int, order: EndOrder) -> Bound:
-    """Return an order of two of the four end points: two are the subject's, then two the object's, the low one
-    first."""
+    """Return the bound of an order of two of four end points: the subject's, then the object's, each low one first."""
     return Bound(axis, *divmod(order.lesser, 2), *divmod(order.greater, 2), order.strict)

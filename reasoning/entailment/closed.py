@@ -1,10 +1,10 @@
-"""Orders on the axes, closed by bit sets: what bounds between edges imply of every pair of edges.
+"""Closure of orders on the axes by bit sets: the implications of bounds for every pair of edges.
 
-Bounds of the kinds < and <= between points are the convex part of the point algebra, for which reachability, with or
-without a strict step, is the whole truth (Vilain, Kautz and van Beek 1990): two points are related in every picture
-just as a path says. The points of objects that no fact connects are never compared, so that each connected group has
-bit rows of its own; they are closed in one pass from the last points to the first, a point's row being the union of
-the rows it leads to. Time grows with bounds times objects / 64, memory with the square of a group's objects.
+Bounds of the kinds < and <= between points are the convex part of the point algebra. Reachability, with or without a
+strict step, decides it (Vilain, Kautz and van Beek 1990): an order of two points holds in every picture exactly if
+there is a path for it. Objects that no facts connect are never compared, so each connected group has its own bit rows.
+They are closed in one pass from the last points to the first: the row of a point is the union of the rows of its
+successors. Time grows with bounds times objects / 64, memory with the square of the number of objects in a group.
 """
 
 from __future__ import annotations
@@ -21,47 +21,49 @@ from deixis.reasoning.entailment.bounds import AXES, Bound, EndpointBounds, mean
 from deixis.reasoning.errors import LimitError
 
 MAX_CONNECTED = 12_000
-"""Objects that facts connect to one another, at the most: memory grows with the square of this."""
+"""Maximum number of objects that facts connect to one another; memory grows with its square."""
 
 Words = NDArray[np.uint64]
 
 
 @dataclass(frozen=True, eq=False)
 class Groups:
-    """n objects in g connected groups, each group's objects side by side."""
+    """n objects in g connected groups; the objects of a group are contiguous."""
 
     label: NDArray[np.int64]  # (n,): the group of each object
-    place: NDArray[np.int64]  # (n,): where in its group each object stands
-    nodes: NDArray[np.int64]  # (n,): the objects by group
-    start: NDArray[np.int64]  # (g + 1,): where each group begins in ``nodes``
+    place: NDArray[np.int64]  # (n,): the position of each object in its group
+    nodes: NDArray[np.int64]  # (n,): the objects, sorted by group
+    start: NDArray[np.int64]  # (g + 1,): the start of each group in ``nodes``
 
     @cached_property
     def sizes(self) -> NDArray[np.int64]:
+        """Number of objects in each group, shape (g,)."""
         return np.diff(self.start)
 
     @cached_property
     def words(self) -> NDArray[np.int64]:
-        """How many words hold one bit an object, by group."""
+        """Number of 64-bit words with one bit per object, by group, shape (g,)."""
         return (self.sizes + 63) >> 6
 
     @cached_property
     def pair_start(self) -> NDArray[np.int64]:
-        """Where each group's (objects, objects) bit matrix begins, shape (g + 1,)."""
+        """Start of the (objects, objects) bit matrix of each group, shape (g + 1,)."""
         return np.concatenate([[0], np.cumsum(self.sizes * self.words)])
 
     def members(self, group: int) -> NDArray[np.int64]:
+        """Return the objects of a group."""
         return self.nodes[self.start[group] : self.start[group + 1]]
 
 
 def groups_of(subjects: NDArray[np.integer], objects: NDArray[np.integer], n: int) -> Groups:
-    """Return the connected groups of n objects; raises LimitError where one has more than ``MAX_CONNECTED``."""
+    """Return the connected groups of n objects; raise LimitError if one has more than ``MAX_CONNECTED``."""
     from deixis.reasoning.entailment.kernels import connected
 
     label, count = connected(subjects.astype(np.int64), objects.astype(np.int64), n)
     sizes = np.bincount(label, minlength=count)
     if n and sizes.max() > MAX_CONNECTED:
         raise LimitError(
-            f"the facts connect {sizes.max()} objects to one another; what follows is worked out for up to "
+            f"the facts connect {sizes.max()} objects to one another; inference allows at most "
             f"{MAX_CONNECTED}: describe the table in parts"
         )
     nodes = np.argsort(label, kind="stable")
@@ -75,23 +77,23 @@ def groups_of(subjects: NDArray[np.integer], objects: NDArray[np.integer], n: in
 class AxisRows:
     """The closed bit rows of one axis, all groups in one flat array.
 
-    Group k has 2 m rows for its m objects, the low edges first, of 2 ``words[k]`` words: the low edges, then the high.
+    Group k has 2 m rows for its m objects, low edges first. A row has 2 ``words[k]`` words: low edges, then high edges.
     """
 
     weak: Words  # bit set: the row's point is not after the column's
     strong: Words  # bit set: the row's point is before the column's
-    start: NDArray[np.int64]  # (g + 1,): where each group begins
+    start: NDArray[np.int64]  # (g + 1,): the start of each group
 
 
 @dataclass(frozen=True, eq=False)
 class Orders:
-    """What bounds imply. ``axes[k]`` is None where nothing is said of axis k."""
+    """The orders that bounds imply; ``axes[k]`` is None if there are no bounds on axis k."""
 
     groups: Groups
     axes: tuple[AxisRows | None, ...]
 
     def implies(self, bound: Bound, subject: int, obj: int) -> bool:
-        """Return whether the bound holds of two objects in every picture."""
+        """Return whether the bound holds between two objects in every picture."""
         rows = self.axes[bound.axis]
         label, place = self.groups.label, self.groups.place
         if rows is None or label[subject] != label[obj]:
@@ -105,10 +107,10 @@ class Orders:
         return bool(int(bits) >> (column & 63) & 1)
 
     def relation_bits(self, relation: Relation) -> Words:
-        """Return for which pairs the relation holds in every picture: every group's (objects, objects) bit matrix,
-        flat.
+        """Return the pairs that have the relation in every picture, as the flat bit matrices of all groups.
 
-        Nothing bears a relation to itself here. A relation that is no single conjunction of bounds is found of no pair.
+        The matrix of a group has shape (objects, objects). Its diagonal is empty. A relation that is not a single
+        conjunction of bounds has no pairs.
         """
         if relation not in self._found:
             self._found[relation] = self._relation_bits(relation)
@@ -137,7 +139,7 @@ class Orders:
         return bits
 
     def pairs(self, relation: Relation) -> NDArray[np.int64]:
-        """Return the pairs of which the relation holds in every picture, shape (k, 2), by subject, then by object."""
+        """Return the pairs that have the relation in every picture, shape (k, 2), by subject, then by object."""
         from deixis.reasoning.entailment.kernels import count_bits, list_pairs
 
         bits = self.relation_bits(relation)
@@ -149,15 +151,14 @@ class Orders:
         return pairs
 
     def count(self, relation: Relation) -> int:
-        """Return for how many pairs the relation holds in every picture."""
+        """Return the number of pairs that have the relation in every picture."""
         from deixis.reasoning.entailment.kernels import count_bits
 
         return int(count_bits(self.relation_bits(relation)))
 
 
 def order_graph(bounds: EndpointBounds, n: int) -> OrderGraph:
-    """Return the graph of bounds between the 6 n points of n objects; every object's low edge is before its high
-    edge."""
+    """Return the graph of bounds between the 6 n points of n objects; each low edge is before its high edge."""
     low = (np.arange(AXES)[:, None] * 2 * n + np.arange(n)).ravel()
     return OrderGraph.of(
         2 * AXES * n,
@@ -169,7 +170,7 @@ def order_graph(bounds: EndpointBounds, n: int) -> OrderGraph:
 
 
 def orders_of(bounds: EndpointBounds, groups: Groups) -> Orders | None:
-    """Close bounds between the edges of objects; None where no picture satisfies them."""
+    """Close bounds between the edges of objects; return None if they have no picture."""
     axes: list[AxisRows | None] = []
     n = len(groups.label)
     axis_of = bounds.tail // (2 * n) if n else bounds.tail
@@ -183,7 +184,7 @@ def orders_of(bounds: EndpointBounds, groups: Groups) -> Orders | None:
 
 
 def _axis_rows(bounds: EndpointBounds, chosen: NDArray[np.bool_], axis: int, groups: Groups) -> AxisRows | None:
-    """Return the closed rows of an axis; None where its bounds contradict each other."""
+    """Return the closed rows of an axis, or None if its bounds are inconsistent."""
     from deixis.reasoning.entailment.kernels import close
 
     n = len(groups.label)

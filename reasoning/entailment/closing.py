@@ -1,9 +1,9 @@
-"""Closing what facts demand: orders by bit sets, and in the groups where there are choices, what all pictures share.
+"""Close the demands of facts: orders by bit sets, and in groups with choices, the orders common to all pictures.
 
-A disjunction such as *left or above*, or the denial of *top left*, is no conjunction of bounds but a choice between
-several, which :mod:`deixis.reasoning.constraints.disjunctive` decides. What every picture shares is found by
-refutation: a bound holds in all of them where its denial has no picture, and every picture found on the way strikes out
-the bounds that fail in it.
+A disjunction such as *left or above*, or the denial of *top left*, is not a conjunction of bounds but a choice between
+several, which :mod:`deixis.reasoning.constraints.disjunctive` decides. The common orders are found by refutation: a
+bound holds in all pictures if its denial has no picture. Every picture found on the way excludes the bounds that fail
+in it.
 """
 
 from __future__ import annotations
@@ -25,21 +25,21 @@ from deixis.reasoning.errors import OutOfTimeError
 
 @dataclass(frozen=True, eq=False)
 class Closed:
-    """What demands imply.
+    """The implications of demands.
 
-    ``orders`` is None where they contradict each other. ``complete`` says that everything that all pictures share is in
-    ``orders``, ``decided`` that it is known whether there is a picture; both are so unless the time limit struck.
+    ``orders`` is None if the demands are inconsistent. ``complete`` is True if ``orders`` has everything that all
+    pictures share, ``decided`` if it is known whether a picture exists; both are True unless time ran out.
     """
 
     groups: Groups
     orders: Orders | None
     complete: bool = True
     decided: bool = True
-    contradictory: int = -1  # the group whose choices leave nothing, or -1
+    contradictory: int = -1  # the group whose choices have no picture, or -1
 
 
 def close(demands: Demands, deadline: Deadline) -> Closed:
-    """Return everything that the demands imply; searches end at ``deadline``."""
+    """Return all implications of the demands; searches end at ``deadline``."""
     graph, firm = demands.graph, demands.firm
     groups = groups_of(graph.subjects[firm], graph.objects[firm], len(graph.nodes))
     orders = orders_of(demands.bounds, groups)
@@ -65,20 +65,22 @@ def close(demands: Demands, deadline: Deadline) -> Closed:
 
 
 Codes = NDArray[np.int8]
-"""Closed orders of the points of n objects, shape (3, 2 n, 2 n): STRICT where the column's point is before the row's,
-ZERO where it is not after it."""
+"""Closed orders of the points of n objects, shape (3, 2 n, 2 n).
+
+STRICT if the column's point is before the row's, ZERO if it is not after it.
+"""
 
 
 @dataclass(frozen=True, eq=False)
 class LocalProblem:
-    """The demands among n objects, which are numbered by their place in ``nodes``."""
+    """The demands among n objects, which are numbered by their positions in ``nodes``."""
 
     nodes: NDArray[np.int64]
     differences: NDArray[np.int64]  # (k, 4)
     clauses: Clauses
 
     def network(self) -> DifferenceNetwork | None:
-        """Return what is demanded without the choices; None where that contradicts itself."""
+        """Return the network of the demands without choices, or None if they are inconsistent."""
         n = len(self.nodes)
         network = DifferenceNetwork(2 * n, AXES, ORDERS)
         axis, low = np.divmod(np.arange(AXES * n), max(n, 1))
@@ -86,7 +88,7 @@ class LocalProblem:
         return network if network.add_all(np.concatenate([own, self.differences])) else None
 
     def picture(self, deadline: Deadline) -> Codes | None:
-        """Return the orders of some picture; None where there is none. Raises OutOfTimeError."""
+        """Return the orders of one picture, or None if there is no picture; raise OutOfTimeError at the deadline."""
         network = self.network()
         return None if network is None else solution(network, self.clauses, self._nothing_taken(), deadline)
 
@@ -94,10 +96,10 @@ class LocalProblem:
         return np.full(len(self.clauses), -1, np.int64)
 
     def shared(self, deadline: Deadline) -> tuple[Codes | None, bool]:
-        """Return what all pictures share, and whether that is all of it; None where there is no picture.
+        """Return the orders common to all pictures, and whether they are complete; None if there is no picture.
 
-        At the deadline what has been proved so far is given, which is right, and False. Raises OutOfTimeError where not
-        even one picture was found.
+        At the deadline the result has the orders proved so far, which are correct, and False. Raises OutOfTimeError if
+        not even one picture was found.
         """
         known, last = self.network(), self._nothing_taken()
         common = None if known is None else solution(known, self.clauses, last, deadline)
@@ -121,7 +123,7 @@ class LocalProblem:
 
 
 def _candidate(known: Codes, common: Codes) -> Difference | None:
-    """Return a bound that holds in all pictures found and is not known to follow; strict ones first, they say more."""
+    """Return a bound that holds in all pictures found and is not known to follow; the stricter first."""
     for code in (STRICT, ZERO):
         seen = ((common <= code) & (known > code)).transpose(0, 2, 1)
         place = int(seen.argmax())
@@ -132,7 +134,7 @@ def _candidate(known: Codes, common: Codes) -> Difference | None:
 
 
 def local_problem(demands: Demands, nodes: NDArray[np.int64], choices: Sequence[Choice]) -> LocalProblem:
-    """Return what is demanded among the objects of a connected group."""
+    """Return the demands among the objects of a connected group."""
     n, m = len(demands.graph.nodes), len(nodes)
     place = np.full(n, -1)
     place[nodes] = np.arange(m)
@@ -146,7 +148,7 @@ def local_problem(demands: Demands, nodes: NDArray[np.int64], choices: Sequence[
 
 
 def _empty_rows(axis: int, groups: Groups) -> AxisRows:
-    """Return the rows of an axis of which nothing is said: every object's low edge is before its high edge."""
+    """Return the rows of an axis without bounds: every object's low edge is before its high edge."""
     n = len(groups.label)
     low = 2 * axis * n + np.arange(n)
     own = orders_of(bounds_of([(int(p), int(p) + n, True, -1) for p in low]), groups)
@@ -157,7 +159,7 @@ def _empty_rows(axis: int, groups: Groups) -> AxisRows:
 
 
 def _write(known: Codes, axes: Sequence[AxisRows], groups: Groups, group: int) -> None:
-    """Put a group's closed orders into the rows of every axis."""
+    """Write a group's closed orders into the rows of every axis."""
     size, words = int(groups.sizes[group]), int(groups.words[group])
     for axis in range(AXES):
         rows = axes[axis]
@@ -170,14 +172,14 @@ def _write(known: Codes, axes: Sequence[AxisRows], groups: Groups, group: int) -
 
 
 def consistent(demands: Demands, deadline: Deadline) -> bool:
-    """Return whether there is a picture of what is demanded. Raises OutOfTimeError."""
+    """Return whether the demands have a picture; raise OutOfTimeError at the deadline."""
     n = len(demands.graph.nodes)
     if order_graph(demands.bounds, n).contradictory:
         return False
     return not demands.choices or local_problem(demands, np.arange(n), demands.choices).picture(deadline) is not None
 
 
-# ---- pictures of consistent orders: boxes of small whole numbers that bear out every bound, and nothing about sizes
+# ---- pictures of consistent orders: boxes of small integers that satisfy every bound; their sizes mean nothing
 
 
 def picture_of(known: Codes) -> NDArray[np.float64]:
@@ -187,8 +189,10 @@ def picture_of(known: Codes) -> NDArray[np.float64]:
 
 
 def picture_of_group(orders: Orders, group: int) -> NDArray[np.float64]:
-    """Return the same for the objects of a connected group, in its order, by closed orders in which no choice is
-    left."""
+    """Return a picture of the objects of a connected group, in its order, by closed orders without open choices.
+
+    The boxes have shape (n, 2, 3): least and greatest corner.
+    """
     n, words = int(orders.groups.sizes[group]), int(orders.groups.words[group])
     after = np.tile(np.array([[1], [0]], np.int64), (AXES, 1, n))
     for axis, rows in enumerate(orders.axes):
@@ -199,10 +203,10 @@ def picture_of_group(orders: Orders, group: int) -> NDArray[np.float64]:
 
 
 def _boxes(after: NDArray[np.int64]) -> NDArray[np.float64]:
-    """Return boxes from how many edges must be after each, shape (axes, 2, n).
+    """Return boxes from the number of edges that must be after each edge, shape (axes, 2, n).
 
-    Every edge lies at minus that number, the levels counted from 0: where u must not be after v, all that is after v is
-    after u, so that u lies no farther; and where u must be before v, v itself is one more.
+    The position of every edge is minus that number, with levels counted from 0. If u must not be after v, all edges
+    after v are after u, so u is not farther; and if u must be before v, v itself counts as one more.
     """
     levels = [np.unique(-part, return_inverse=True)[1].reshape(part.shape) for part in after]
     return np.stack(levels).transpose(2, 1, 0).astype(np.float64)

@@ -1,7 +1,7 @@
-"""Contradictions in a relation graph: facts that no picture bears out together, none of which can be spared.
+"""Contradictions in a relation graph: minimal sets of facts that have no common picture.
 
-Facts that leave no choice contradict each other where the orders between edges that they demand go round in a circle,
-and the circle of the fewest facts is reported. Where there are choices, no combination of them has a picture.
+Facts without choices are contradictory if the orders of edges that they demand form a cycle; the cycle with the fewest
+facts is reported. Facts with choices are contradictory if no combination of the choices has a picture.
 """
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ from deixis.reasoning.entailment.implications import Implications
 
 @dataclass(frozen=True)
 class Conflict:
-    """Stated facts that cannot all hold, and in words why.
+    """Stated facts that cannot all hold, and the reason in words.
 
-    None of them is dispensable, unless ``minimal`` is False: then the time was up before that was seen.
+    ``minimal`` is True if all of them are needed, and False if the time limit was reached before that was proved.
     """
 
     facts: tuple[Fact, ...]
@@ -32,7 +32,7 @@ class Conflict:
 
 
 def compatible(a: Relation, b: Relation) -> bool:
-    """Return whether some two boxes bear both: their atoms meet on every axis.
+    """Return whether two boxes can have both relations: their atoms intersect on every axis.
 
     >>> from deixis.ontology.tbox import default_ontology
     >>> r = default_ontology().relations
@@ -44,10 +44,10 @@ def compatible(a: Relation, b: Relation) -> bool:
 
 
 def find_conflict(implied: Implications, deadline: Deadline | None = None) -> Conflict | None:
-    """Return a minimal contradiction; None where the facts are consistent, or where the time limit left that open.
+    """Return a minimal contradiction, or None if the facts are consistent or the time limit left that open.
 
-    Searches end at ``deadline`` (without one, after the time limit of ``implied``); where it passes before a
-    contradiction among choices is minimal, the one that was left then is returned, and says so.
+    Searches end at ``deadline``, by default after the time limit of ``implied``. If it passes before a contradiction
+    with choices is minimal, the facts left so far are returned with ``minimal`` False.
 
     >>> from deixis.ontology.tbox import default_ontology
     >>> r = default_ontology().relations
@@ -61,15 +61,15 @@ def find_conflict(implied: Implications, deadline: Deadline | None = None) -> Co
     until = Deadline.after(implied.time_limit) if deadline is None else deadline
     demands = implied.demands
     graph = implied.graph
-    circle = order_graph(demands.bounds, len(graph.nodes)).shortest_cycle()
-    edges = _group_edges(implied) if circle is None else sorted(circle)
+    cycle = order_graph(demands.bounds, len(graph.nodes)).shortest_cycle()
+    edges = _group_edges(implied) if cycle is None else sorted(cycle)
     facts, minimal = [graph.fact(edge) for edge in edges], True
-    if circle is None or not _minimal_circle(demands, edges):
+    if cycle is None or not _is_single_cycle(demands, edges):
         found = minimal_subset(facts, lambda chosen: _inconsistent(chosen, graph.vocabulary, until))
         facts, minimal = list(found.items), found.proved
     if graph.sources:
         facts.sort(key=lambda fact: (fact.source is None, fact.source))
-    reason = _reason(facts, graph.vocabulary) if minimal else "the facts below, among which some leave a choice"
+    reason = _reason(facts, graph.vocabulary) if minimal else "the facts below, some of which leave a choice"
     return Conflict(tuple(facts), reason, minimal)
 
 
@@ -81,8 +81,8 @@ def _group_edges(implied: Implications) -> list[int]:
     return edges
 
 
-def _minimal_circle(demands: Demands, edges: Sequence[int]) -> bool:
-    """Return whether nothing but one circle is in the facts' bounds, so that every fact is needed to close it."""
+def _is_single_cycle(demands: Demands, edges: Sequence[int]) -> bool:
+    """Return whether the bounds of the facts form a single cycle, so that every fact is needed."""
     few = demands.restricted(edges)
     return not few.choices and order_graph(few.bounds, len(demands.graph.nodes)).is_single_cycle
 
@@ -92,23 +92,23 @@ def _inconsistent(facts: list[Fact], vocabulary: Relations, deadline: Deadline) 
 
 
 def _reason(facts: Sequence[Fact], vocabulary: Relations) -> str:
-    """Return why one of the facts cannot hold beside the others: a choice, else a denial, else the first."""
+    """Return the reason why one of the facts cannot hold with the others: a choice, else a denial, else the first."""
     fact = next((f for f in facts if f.positive and len(f.relations) > 1), None)
     fact = fact or next((f for f in facts if not f.positive), facts[0])
     s, o = fact.subject, fact.object
     phrases = [relation.phrase for relation in fact.relations]
     if s == o:
-        return f"nothing can be related to itself, and '{s}' is"
+        return f"no object can be related to itself, but '{s}' is"
     if len(fact.relations) > 1 and fact.positive:
         return f"'{s}' can be neither {' nor '.join(phrases)} '{o}'"
     others = _implications([other for other in facts if other is not fact], (s, o), vocabulary)
     if not fact.positive:
         held = [relation.phrase for relation in fact.relations if others.holds(relation, s, o)]
-        return f"'{s}' is {' or '.join(held[:1] or phrases)} '{o}', and that is denied"
+        return f"'{s}' is {' or '.join(held[:1] or phrases)} '{o}', but that is denied"
     for other in vocabulary.values():
         if not compatible(other, fact.relations[0]) and others.holds(other, s, o):
             return f"'{s}' cannot be both {phrases[0]} and {other.phrase} '{o}'"
-    return f"'{s}' cannot be {phrases[0]} '{o}' where the other facts hold"
+    return f"'{s}' cannot be {phrases[0]} '{o}' if the other facts hold"
 
 
 def _implications(facts: Sequence[Fact], ends: tuple[str, str], vocabulary: Relations) -> Implications:

@@ -1,6 +1,6 @@
-"""What the firm facts of a relation graph demand: bounds between edges, and choices between several.
+"""The demands of the firm facts of a relation graph: bounds between edges, and choices between several.
 
-Firm is what is neither hedged (of weight below 1) nor optional; only that is a premise of inference.
+A fact is firm if it is neither hedged (of weight below 1) nor optional; only firm facts are premises of inference.
 """
 
 from __future__ import annotations
@@ -20,10 +20,10 @@ from deixis.reasoning.entailment.bounds import Alternatives, EndpointBounds, bou
 
 @dataclass(frozen=True)
 class Choice:
-    """One of the alternatives must hold between two objects; ``premise`` is the fact that says so.
+    """A choice between alternatives for two objects, one of which must hold; ``premise`` is the fact that demands it.
 
     Each alternative is a product of convex relations, the tractable pieces into which a rectangle-algebra relation is
-    split (Balbiani, Condotta and Fariñas del Cerro 1999), so that alternatives that agree have a picture.
+    split (Balbiani, Condotta and Fariñas del Cerro 1999), so consistent alternatives have a picture.
     """
 
     alternatives: Alternatives
@@ -43,18 +43,18 @@ class Choice:
 
 @dataclass(frozen=True, eq=False)
 class Demands:
-    """The demands of a graph's firm facts; premises are numbered as the graph's edges.
+    """The demands of a graph's firm facts; premises are numbered as the edges of the graph.
 
-    What all alternatives of a choice have in common is among the bounds, so that much follows without a search.
+    The bounds include those common to all alternatives of a choice, so that much follows without a search.
     """
 
     graph: RelationGraph
-    firm: NDArray[np.int64]  # the edges that demand something
+    firm: NDArray[np.int64]  # the edges of firm facts
     bounds: EndpointBounds
     choices: tuple[Choice, ...]
 
     def restricted(self, edges: Iterable[int]) -> Demands:
-        """Return what only these facts demand."""
+        """Return the demands of only these facts."""
         chosen = np.zeros(len(self.graph), np.bool_)
         chosen[list(edges)] = True
         return Demands(
@@ -66,7 +66,7 @@ class Demands:
 
 
 class EdgeFacts(Sequence[Fact]):
-    """A graph's edges as facts, each made when it is asked for and kept."""
+    """A graph's edges as facts, each made on first use and cached."""
 
     def __init__(self, graph: RelationGraph) -> None:
         self._graph = graph
@@ -90,7 +90,7 @@ class EdgeFacts(Sequence[Fact]):
 
 
 def demands_of(graph: RelationGraph) -> Demands:
-    """Return what the firm facts of a graph demand."""
+    """Return the demands of the firm facts of a graph."""
     firm = np.flatnonzero(~graph.optional & (graph.weights >= 1.0) & (graph.relation_sets != 0))
     single = graph.positive[firm] & (np.bitwise_count(graph.relation_sets[firm]) == 1)
     bounds = _plain_bounds(graph, firm[single])
@@ -109,13 +109,13 @@ def demands_of(graph: RelationGraph) -> Demands:
 
 
 def demands_of_facts(vocabulary: Relations, facts: Sequence[Fact]) -> Demands:
-    """Return the same for a list of facts and the objects that they name."""
+    """Return the demands of a list of facts among the objects that they name."""
     names = tuple(dict.fromkeys(name for fact in facts for name in (fact.subject, fact.object)))
     return demands_of(RelationGraph.from_facts(vocabulary, names, facts))
 
 
 def _relations(graph: RelationGraph, edges: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Return the index of each edge's only relation."""
+    """Return the index of each edge's single relation."""
     return np.round(np.log2(graph.relation_sets[edges])).astype(np.int64)
 
 
@@ -125,7 +125,7 @@ def _of_several_parts(graph: RelationGraph, edges: NDArray[np.int64]) -> list[in
 
 
 def _plain_bounds(graph: RelationGraph, edges: NDArray[np.int64]) -> EndpointBounds:
-    """Return the bounds of facts that affirm one relation which is a single conjunction; the order of edges is kept."""
+    """Return the bounds of facts that affirm one relation with a single conjunction, in the order of the edges."""
     n = len(graph.nodes)
     relations = _relations(graph, edges)
     subjects, objects = graph.subjects[edges].astype(np.int64), graph.objects[edges].astype(np.int64)

@@ -1,8 +1,8 @@
-"""Derivations over bounds: every bound of a conclusion has a shortest path of facts, and paths become steps in words.
+"""Derivations over bounds: the shortest path of facts to every bound of a conclusion, in words.
 
-A path whose facts link the subject to the object is a chain: the composition of their relations in the rectangle
-algebra, or transitivity where one word is all of it. A conclusion whose bounds go by different chains is their
-conjunction. Where facts leave a choice it is derived by cases, each of which leads to it or to a contradiction.
+A path whose facts link the subject to the object is a chain: composition of their relations in the rectangle algebra,
+or transitivity if all have one word. A conclusion whose bounds have different chains is their conjunction. With choices
+among the facts, it is derived by cases, each of which leads to it or to a contradiction.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from deixis.reasoning.errors import OutOfTimeError
 
 @dataclass(frozen=True, slots=True)
 class ImpossibleCase:
-    """The claim that an assumption cannot hold, and in words why."""
+    """The claim that an assumption cannot hold, with the reason in words."""
 
     reason: str
 
@@ -41,17 +41,17 @@ Claim = Fact | Order | ImpossibleCase
 Derivation = Proof[Claim]
 
 Path = tuple[int, ...]
-"""Premises in the order in which they lead from the subject of a bound to its object, or the other way round."""
+"""Premises in the order in which they link the subject of a bound to its object, or the reverse."""
 
 _MAX_TRIED = 40
-"""Facts of a union of paths that are tried one by one for being superfluous."""
+"""Maximum number of facts in a union of paths that are tested one by one for being needed."""
 
 
 class OrderDerivations:
     """Shortest derivations from premises that are conjunctions of bounds.
 
-    ``premises[k]`` is the fact whose bounds in ``bounds`` bear the number k; the last ones, from ``assumed`` on, are
-    assumptions. Facts name objects by ``names``.
+    ``premises[k]`` is the fact whose bounds have the number k in ``bounds``; those from ``assumed`` on are assumptions.
+    Facts refer to objects by ``names``.
     """
 
     def __init__(
@@ -71,16 +71,15 @@ class OrderDerivations:
         self._paths = ShortestPaths(self._graph)
 
     def prepare(self) -> None:
-        """Build both graphs in which paths are searched; the first search does it otherwise."""
+        """Build both graphs for the search of paths, which the first search would build otherwise."""
         assert self._paths.reverse is not None
 
-    def circle(self) -> Path | None:
-        """Return the premises of the contradiction that takes the fewest; None where they agree."""
+    def cycle(self) -> Path | None:
+        """Return the premises of the contradiction with the fewest premises, or None if they are consistent."""
         return self._graph.shortest_cycle()
 
     def costs(self, bound: Bound, subject: int, objects: NDArray[np.int64]) -> NDArray[np.int64]:
-        """Return how many premises a bound takes from a subject to each of some objects, ``FAR`` where it does not
-        follow."""
+        """Return the number of premises of a bound from a subject to some objects, ``FAR`` if it does not follow."""
         n, onward = len(self._names), bound.tail == 0
         root = bound.points(subject, subject, n)[0 if onward else 1]
         points = (2 * bound.axis + (bound.head_side if onward else bound.tail_side)) * n + objects
@@ -92,7 +91,7 @@ class OrderDerivations:
 
     @cached_property
     def _stated(self) -> dict[tuple[str, int, str], int]:
-        """Where a fact is firmly stated just so: by subject, relation set and object."""
+        """Premises that state a fact directly: by subject, relation set and object."""
         stated: dict[tuple[str, int, str], int] = {}
         for k in np.unique(self._bounds.premise).tolist():
             fact = self._premises[k]
@@ -101,7 +100,7 @@ class OrderDerivations:
         return stated
 
     def chains(self, relation: Relation, subject: str, obj: str) -> dict[Bound, Path] | None:
-        """Return for every bound of a relation the facts that lead to it, as few as found; None where one has none."""
+        """Return for every bound of a relation a short path of facts to it, or None if a bound has no path."""
         stated = self._stated.get((subject, relation.bit, obj))
         if stated is not None:
             return dict.fromkeys(meaning(relation)[0], (stated,))
@@ -122,7 +121,7 @@ class OrderDerivations:
         return found
 
     def _among(self, chosen: Sequence[int], relation: Relation, subject: str, obj: str) -> dict[Bound, Path] | None:
-        """Return the paths that use no other premises than these."""
+        """Return the paths that use only these premises."""
         mask = np.zeros(len(self._premises), np.bool_)
         mask[list(chosen)] = True
         few = self._bounds.of_premises(mask)
@@ -138,12 +137,12 @@ class OrderDerivations:
         return _chains(paths, meaning(relation), int(place[nodes[0]]), int(place[nodes[1]]), len(nodes))
 
     def derive(self, relation: Relation, subject: str, obj: str) -> Derivation | None:
-        """Return a derivation of the fact; None where no path leads to it."""
+        """Return a derivation of the fact, or None if no path leads to it."""
         found = self.chains(relation, subject, obj)
         return None if found is None else self.of_chains(found, relation, subject, obj)
 
     def of_chains(self, chains: dict[Bound, Path], relation: Relation, subject: str, obj: str) -> Derivation:
-        """Return the derivation whose bounds go by these chains."""
+        """Return the derivation by these chains."""
         groups: dict[Path, list[Bound]] = {}
         for bound, path in chains.items():
             groups.setdefault(path, []).append(bound)
@@ -158,14 +157,14 @@ class OrderDerivations:
         return Proof(goal, Rule.CONJUNCTION, tuple(parts))
 
     def _claims(self, bounds: list[Bound], subject: str, obj: str) -> list[tuple[Fact | Order, Relation | None]]:
-        """Return a relation that says just these bounds, or every bound by itself."""
+        """Return one relation that has exactly these bounds, or every bound by itself."""
         for relation in self._vocabulary.of_reading(Reading.WIDE):
             if len(meaning(relation)) == 1 and set(meaning(relation)[0]) == set(bounds):
                 return [(Fact(subject, (relation,), obj), relation)]
         return [(Order(subject, obj, bound), None) for bound in bounds]
 
     def _chain(self, claim: Fact | Order, relation: Relation | None, path: Path) -> Derivation:
-        """Return one claim from the facts that link its subject to its object."""
+        """Return the derivation of one claim from the facts that link its subject to its object."""
         steps, here = [], claim.subject
         for premise in path:
             fact = self._premises[premise]
@@ -192,7 +191,7 @@ class OrderDerivations:
 
 
 def _chains(paths: ShortestPaths, parts: Sequence[Conjunction], s: int, o: int, n: int) -> dict[Bound, Path] | None:
-    """Return the fewest premises by which each bound holds of two of n objects; None where one does not."""
+    """Return the fewest premises of each bound between two of n objects, or None if a bound does not hold."""
     if len(parts) != 1 or s == o:
         return None
     found: dict[Bound, Path] = {}
@@ -212,7 +211,7 @@ def _leaf(claim: Fact | Order, assumed: bool = False) -> Derivation:
 
 
 def _widened(step: Derivation, relation: Relation) -> Derivation | None:
-    """Return the step as one of the relation: itself, or what it is a sub-property of; None where it is neither."""
+    """Return the step as a derivation of the relation, if it is equal or a super-property; else None."""
     fact = step.claim
     if not isinstance(fact, Fact) or not fact.plain:
         return None
@@ -227,16 +226,16 @@ def _widened(step: Derivation, relation: Relation) -> Derivation | None:
 
 
 def follows(facts: Sequence[Fact], goal: Fact, vocabulary: Relations, deadline: Deadline) -> bool:
-    """Return whether a plain fact holds in every picture of the facts, of which there is one or none.
+    """Return whether a plain fact holds in every picture of the facts.
 
-    Exact for every relation: what the goal denies is a list of choices, and none of them may have a picture. Raises
-    OutOfTimeError.
+    The test is exact for every relation: the denial of the goal is a list of choices, none of which may have a picture.
+    Raises OutOfTimeError.
     """
     return not consistent(demands_of_facts(vocabulary, [*facts, replace(goal, positive=False)]), deadline)
 
 
 def needed_facts(facts: Sequence[Fact], goal: Fact, vocabulary: Relations, deadline: Deadline) -> list[Fact]:
-    """Return facts from which a goal that follows from all of them follows, and none of which can be spared.
+    """Return a minimal set of facts that imply a goal, given facts that all together imply it.
 
     Raises OutOfTimeError.
     """
@@ -245,9 +244,9 @@ def needed_facts(facts: Sequence[Fact], goal: Fact, vocabulary: Relations, deadl
 
 
 def derive_by_cases(facts: Sequence[Fact], goal: Fact, vocabulary: Relations, deadline: Deadline) -> Derivation | None:
-    """Return a proof of a plain fact from facts, among them choices; None where it does not follow.
+    """Return a proof of a plain fact from facts with choices, or None if it does not follow.
 
-    It rests on facts of which none can be spared. Raises OutOfTimeError.
+    The proof rests on a minimal set of facts. Raises OutOfTimeError.
     """
     if not follows(facts, goal, vocabulary, deadline):
         return None
@@ -269,7 +268,7 @@ class _Assumption:
 
 
 class _ProofSearch:
-    """Proves one goal from few facts, splitting choices until every case is settled by orders alone."""
+    """A search for a proof of one goal from few facts, which splits choices until orders alone settle every case."""
 
     def __init__(self, demands: Demands, goal: Fact, deadline: Deadline) -> None:
         self._demands = demands
@@ -284,12 +283,12 @@ class _ProofSearch:
 
     def _prove(self, assumed: list[_Assumption], choices: list[Choice]) -> Derivation:
         if self._deadline.passed:
-            raise OutOfTimeError("the time limit struck before every case was written down")
+            raise OutOfTimeError("time limit reached before every case was proved")
         orders = self._orders(assumed)
-        circle = orders.circle()
-        if circle is not None:
+        cycle = orders.cycle()
+        if cycle is not None:
             given = len(self._facts)
-            leaves = [_leaf(self._facts[k]) if k < given else _leaf(assumed[k - given].claim, True) for k in circle]
+            leaves = [_leaf(self._facts[k]) if k < given else _leaf(assumed[k - given].claim, True) for k in cycle]
             told = [str(leaf.claim) for leaf in leaves if leaf.rule is Rule.ASSUMED]
             return Proof(ImpossibleCase(" and ".join(told)), Rule.CONTRADICTION, tuple(leaves))
         goal = self._goal

@@ -1,10 +1,10 @@
-"""What a relation graph implies, and why: everything that all its pictures share.
+"""The implications of a relation graph, and their derivations: everything that all its pictures share.
 
-A picture gives every object a box, and bears out every firm fact: those that are neither optional nor hedged. The facts
-are orders between the edges of boxes (:mod:`deixis.reasoning.entailment`). Where they leave no choice they are closed
-by bit sets; the rest goes through the pieces of the rectangle algebra. Sound always; complete for facts that are convex
-on every axis, as every single relation of the TBox is, and with choices too, unless the time limit strikes
-(``complete`` says so).
+A picture gives every object a box, and satisfies every firm fact: those that are neither optional nor hedged. The facts
+are orders between the edges of boxes (:mod:`deixis.reasoning.entailment`). Facts without choices are closed by bit
+sets; the others are split into pieces of the rectangle algebra. The result is always sound. It is complete for facts
+that are convex on every axis, as every single relation of the TBox is, and for choices too unless the time limit is
+reached (see ``complete``).
 """
 
 from __future__ import annotations
@@ -28,32 +28,47 @@ from deixis.reasoning.entailment.demands import Demands, EdgeFacts, demands_of
 from deixis.reasoning.entailment.derivations import Derivation, OrderDerivations, derive_by_cases, needed_facts
 
 TIME_LIMIT = 10.0
-"""Seconds for weighing the choices in the facts; facts that leave no choice need no search."""
+"""Default time limit in seconds for deciding the choices in the facts; facts without choices need no search."""
 
 
 @dataclass(frozen=True, slots=True)
 class Support:
-    """What the shortest derivation of a fact rests on, without the derivation."""
+    """The rule and the premises of the shortest derivation of a fact, without the derivation."""
 
     rule: Rule
-    edges: tuple[int, ...]  # of the graph, in the order of use
+    edges: tuple[int, ...]  # edges of the graph, in the order of use
 
 
 class Implications:
-    """Everything that follows from a relation graph; closed at once, explained on demand.
+    r"""All implications of a relation graph, closed at once and explained on demand.
 
+    Parameters
+    ----------
+    graph
+        The facts.
+    time_limit
+        Time limit in seconds for deciding choices in the facts.
+
+    Raises
+    ------
+    LimitError
+        If the facts connect more than ``MAX_CONNECTED`` objects to one another.
+
+    Notes
+    -----
+    Nothing is inferred from contradictory facts (``consistent`` is False).
+
+    Examples
+    --------
     >>> from deixis.ontology.tbox import default_ontology
     >>> r = default_ontology().relations
     >>> facts = [Fact("fork", (r["left"],), "plate"), Fact("napkin", (r["on"],), "plate")]
     >>> implied = Implications(RelationGraph.from_facts(r, ["fork", "plate", "napkin"], facts))
-    >>> print(*implied.derive(r["left"], "fork", "napkin").lines(), sep="\\n")
+    >>> print(*implied.derive(r["left"], "fork", "napkin").lines(), sep="\n")
     left(fork, napkin)   by composition
         left(fork, plate)   by stated
         under(plate, napkin)   by inverse
             on(napkin, plate)   by stated
-
-    From facts that contradict each other nothing is inferred (``consistent`` is False). Raises LimitError where facts
-    connect more objects to one another than can be closed.
     """
 
     def __init__(self, graph: RelationGraph, time_limit: float = TIME_LIMIT) -> None:
@@ -65,17 +80,17 @@ class Implications:
 
     @property
     def consistent(self) -> bool:
-        """Whether there is a picture of the facts; True, too, where the time limit struck (see ``decided``)."""
+        """True if the facts have a picture, or if time ran out before that was known (see ``decided``)."""
         return self.closed.orders is not None
 
     @property
     def decided(self) -> bool:
-        """Whether it is known that there is a picture, or that there is none."""
+        """True if it is known whether the facts have a picture."""
         return self.closed.decided
 
     @property
     def complete(self) -> bool:
-        """Whether everything that all pictures share was found."""
+        """True if all implications were found."""
         return self.closed.complete
 
     def holds(self, relation: Relation, subject: str, obj: str) -> bool:
@@ -88,9 +103,9 @@ class Implications:
         return all(orders.implies(bound, s, o) for bound in alternatives[0])
 
     def derive(self, relation: Relation, subject: str, obj: str) -> Derivation | None:
-        """Return the shortest derivation found of a fact, or None where it does not follow.
+        """Return the shortest derivation found of a fact, or None if it does not follow.
 
-        Raises OutOfTimeError where it takes choices, and the time limit strikes.
+        Raises OutOfTimeError if it depends on choices and the time limit is reached.
         """
         if not self.holds(relation, subject, obj):
             return None
@@ -102,7 +117,7 @@ class Implications:
         return derive_by_cases(facts, goal, self.vocabulary, Deadline.after(self.time_limit))
 
     def _edges_around(self, name: str) -> list[int]:
-        """Return the firm facts of everything that is connected with an object."""
+        """Return the firm facts about all objects connected with an object."""
         label, firm = self.closed.groups.label, self.demands.firm
         edges: list[int] = firm[label[self.graph.subjects[firm]] == label[self.graph.index(name)]].tolist()
         return edges
@@ -113,12 +128,11 @@ class Implications:
         return OrderDerivations(self.vocabulary, self.graph.nodes, facts, self.demands.bounds, len(facts))
 
     def prepare_explanations(self) -> None:
-        """Build the graph in which derivations are searched; the first derivation does it otherwise."""
+        """Build the graph for the search of derivations, which the first derivation would build otherwise."""
         self._derivations.prepare()
 
     def pairs(self, relation: Relation) -> NDArray[np.int64]:
-        """Return the pairs of nodes of which the relation holds in every picture, shape (k, 2), by subject, then by
-        object."""
+        """Return the pairs of nodes that have the relation in every picture, shape (k, 2), by subject, then object."""
         orders = self.closed.orders
         return np.empty((0, 2), np.int64) if orders is None else orders.pairs(relation)
 
@@ -130,28 +144,26 @@ class Implications:
                 yield relation, nodes[subject], nodes[obj]
 
     def ntriples(self) -> str:
-        """Return every fact that is stated firmly or implied, a plain N-Triples line each, with the IRIs of the
-        Turtle."""
+        """Return every firmly stated or implied fact as a line of N-Triples, with the IRIs of the Turtle export."""
         iris = node_iris(self.graph)
         return "".join(pairs_to_ntriples(r, self.pairs(r), iris) for r in self.vocabulary.values())
 
     def inferred(self) -> Iterator[Derivation]:
-        """Yield every implied fact that is not stated itself, with its shortest derivation."""
+        """Yield every implied fact that is not stated, with its shortest derivation."""
         for fact in self.implied():
             derivation = self.derive(fact.relations[0], fact.subject, fact.object)
             assert derivation is not None
             yield derivation
 
     def implied(self) -> Iterator[Fact]:
-        """Yield every implied fact that is not stated itself, without its derivation: cheap, however long that may
-        be."""
+        """Yield every implied fact that is not stated, without its derivation, which is always fast."""
         nodes = self.graph.nodes
         for relation in self.vocabulary.values():
             for subject, obj in self._unstated(relation).tolist():
                 yield Fact(nodes[subject], (relation,), nodes[obj])
 
     def unstated(self) -> int:
-        """Return how many facts are implied without being stated."""
+        """Return the number of facts that are implied but not stated."""
         return sum(len(self._unstated(relation)) for relation in self.vocabulary.values())
 
     def _unstated(self, relation: Relation) -> NDArray[np.int64]:
@@ -162,9 +174,9 @@ class Implications:
         return pairs[~np.isin(pairs[:, 0] * n + pairs[:, 1], stated)]
 
     def implied_with_steps(self) -> Iterator[tuple[Fact, int]]:
-        """Yield every implied fact that is not stated, and how many facts the longest of its shortest paths takes.
+        """Yield every implied fact that is not stated, with the number of facts in the longest of its shortest paths.
 
-        0 stands for one that follows by no path, but by cases.
+        The number is 0 for a fact that follows by cases, without a path.
         """
         nodes = self.graph.nodes
         for relation in self.vocabulary.values():
@@ -180,10 +192,10 @@ class Implications:
                     yield Fact(nodes[subject], (relation,), nodes[obj]), count
 
     def support(self, fact: Fact, deadline: Deadline | None = None) -> Support:
-        """Return by what rule an implied fact follows last, and the edges of the graph that its derivation rests on.
+        """Return the last rule of an implied fact's derivation, and the edges of the graph that it rests on.
 
-        The same as :meth:`derive` says. A search ends at ``deadline`` (without one, after the time limit). Raises
-        GraphError where the fact does not follow, and OutOfTimeError.
+        The rule and the edges are those of :meth:`derive`. A search ends at ``deadline``, by default after the time
+        limit. Raises GraphError if the fact does not follow, and OutOfTimeError.
         """
         relation, subject, obj = fact.relations[0], fact.subject, fact.object
         if not self.holds(relation, subject, obj):
@@ -199,10 +211,10 @@ class Implications:
         return Support(Rule.CASES, tuple(e for e, f in zip(edges, facts, strict=True) if id(f) in needed))
 
     def counts(self) -> dict[Relation, int]:
-        """Return how many pairs are stated or implied to bear each relation."""
+        """Return the number of pairs stated or implied to have each relation."""
         orders = self.closed.orders
         return {relation: 0 if orders is None else orders.count(relation) for relation in self.vocabulary.values()}
 
     def count(self) -> int:
-        """Return how many facts are stated or implied."""
+        """Return the number of stated or implied facts."""
         return sum(self.counts().values())

@@ -1,7 +1,7 @@
-"""The loops under :mod:`deixis.reasoning.entailment.closed`, on plain arrays.
+"""Compiled loops of :mod:`deixis.reasoning.entailment.closed`, on plain arrays.
 
-A graph of points is in rows, as in :mod:`deixis.reasoning.constraints.path_kernels`. A row of bits holds points of one
-group: bit b of word w is point 64 w + b.
+A graph of points is in rows, as in :mod:`deixis.reasoning.constraints.path_kernels`. A row of bits has the points of
+one group: bit b of word w is point 64 w + b.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from deixis.reasoning.kernel import kernel
 
 @kernel()
 def connected(first_ends, second_ends, n):  # type: ignore[no-untyped-def]
-    """Return the connected part of each of n nodes, numbered in the order of their least nodes."""
+    """Return the connected component of each of n nodes, numbered in the order of their smallest nodes."""
     parent = np.arange(n)
     for k in range(len(first_ends)):
         a, b = first_ends[k], second_ends[k]
@@ -43,11 +43,11 @@ def connected(first_ends, second_ends, n):  # type: ignore[no-untyped-def]
 
 @kernel()
 def close(first, heads, strict, part, members, bit, start, width, weak, strong):  # type: ignore[no-untyped-def]
-    """Fill the bit rows of what lies not before (``weak``) and after (``strong``) each point.
+    """Fill the bit rows of the points that are not before (``weak``) and after (``strong``) each point.
 
-    ``bit[u]`` is point u's place in its group's rows, ``start[u]`` where its row begins in the flat arrays,
-    ``width[u]`` its length in words. Parts are taken in the order of ``members``, so that what they lead to is
-    complete.
+    ``bit[u]`` is the position of point u in the rows of its group, ``start[u]`` the start of its row in the flat
+    arrays, and ``width[u]`` its length in words. Components are taken in the order of ``members``, so that
+    their successors are complete.
     """
     n = len(members)
     begin = 0
@@ -83,7 +83,7 @@ def close(first, heads, strict, part, members, bit, start, width, weak, strong):
 def and_block(target, rows, sizes, target_start, rows_start, row_side, column_side, transposed):  # type: ignore[no-untyped-def]
     """Intersect each group's (objects, objects) bit matrix with a block of its (points, points) one.
 
-    The block's rows are the low (0) or high (1) edges, as are its columns; ``transposed`` exchanges the two.
+    The rows of the block are the low (0) or high (1) edges, and so are its columns; ``transposed`` exchanges the two.
     """
     one = np.uint64(1)
     for group in range(len(sizes)):
@@ -118,6 +118,7 @@ def and_block(target, rows, sizes, target_start, rows_start, row_side, column_si
 
 @kernel()
 def clear_diagonal(target, sizes, target_start):  # type: ignore[no-untyped-def]
+    """Clear the diagonal of each group's bit matrix."""
     for group in range(len(sizes)):
         words = (sizes[group] + 63) >> 6
         for i in range(sizes[group]):
@@ -126,6 +127,7 @@ def clear_diagonal(target, sizes, target_start):  # type: ignore[no-untyped-def]
 
 @kernel()
 def count_bits(target):  # type: ignore[no-untyped-def]
+    """Return the number of bits that are set."""
     total = 0
     for bits in target:
         while bits:
@@ -136,7 +138,7 @@ def count_bits(target):  # type: ignore[no-untyped-def]
 
 @kernel()
 def list_pairs(target, sizes, target_start, objects_start, nodes, pairs):  # type: ignore[no-untyped-def]
-    """Write the pairs of a flat bit matrix as node numbers into ``pairs``, by group and row."""
+    """Write the pairs in a flat bit matrix as node numbers into ``pairs``, by group and row."""
     found = 0
     for group in range(len(sizes)):
         n = sizes[group]

@@ -1,4 +1,4 @@
-"""Why a fact does not follow: because the facts exclude it, or because a picture of them does without it."""
+"""Explain why a fact does not follow: the facts exclude it, or they have a picture without it."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from deixis.reasoning.entailment.implications import Implications
 
 @dataclass(frozen=True, eq=False)
 class CounterExample:
-    """A picture in which every firm fact holds and the one asked about does not; whole numbers, of no unit."""
+    """A picture in which every firm fact holds but the questioned one does not; integers without a unit."""
 
     objects: tuple[str, ...]
     boxes: NDArray[np.float64]  # (objects, 2, 3): least and greatest corner
@@ -29,23 +29,36 @@ class CounterExample:
 
 @dataclass(frozen=True)
 class WhyNot:
-    """Why a fact does not follow; one of the last four says it, and ``follows`` that it does follow after all."""
+    """The reason why a fact does not follow, in one of the last four fields, or ``follows`` if it does follow."""
 
     fact: Fact
     follows: Derivation | None = None
-    against: Derivation | None = None  # a fact that follows and that no boxes bear together with it
-    conflict: Conflict | None = None  # stated facts with which it makes a minimal contradiction
+    against: Derivation | None = None  # an implied fact that no boxes satisfy together with it
+    conflict: Conflict | None = None  # stated facts with which it is a minimal contradiction
     picture: CounterExample | None = None
-    missing: tuple[Order, ...] = ()  # the orders of edges that it takes and that do not follow
-    known: tuple[Fact, ...] = ()  # what does follow of the two objects
+    missing: tuple[Order, ...] = ()  # the orders of edges that it needs and that do not follow
+    known: tuple[Fact, ...] = ()  # the implied facts about the two objects
 
 
 def why_not(implied: Implications, fact: Fact) -> WhyNot:
-    """Return why a plain fact does not follow from consistent facts.
+    """Explain why a plain fact does not follow from consistent facts.
 
-    Raises GraphError where the facts are not consistent or the fact is not plain or relates a thing to itself, and
-    OutOfTimeError where the time limit strikes.
+    Parameters
+    ----------
+    implied
+        The implications of the facts.
+    fact
+        One affirmed relation between two different objects.
 
+    Raises
+    ------
+    GraphError
+        If the facts are inconsistent, or the fact is not plain or relates an object to itself.
+    OutOfTimeError
+        At the time limit.
+
+    Examples
+    --------
     >>> from deixis.ontology.tbox import default_ontology
     >>> r = default_ontology().relations
     >>> graph = RelationGraph.from_facts(r, ["a", "b"], [Fact("a", (r["left"],), "b")])
@@ -53,7 +66,9 @@ def why_not(implied: Implications, fact: Fact) -> WhyNot:
     ['far edge of b <= near edge of a']
     """
     if not implied.consistent or not fact.plain or fact.subject == fact.object:
-        raise GraphError(f"'{fact}' cannot be asked about: that takes consistent facts, and one relation of two things")
+        raise GraphError(
+            f"'{fact}' cannot be explained: the facts must be consistent, and it must be one relation of two objects"
+        )
     relation, s, o = fact.relations[0], fact.subject, fact.object
     found = implied.derive(relation, s, o)
     if found is not None:

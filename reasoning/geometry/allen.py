@@ -1,13 +1,12 @@
-"""Allen's interval algebra: the relation of every pair of intervals as an array, and convex sets of relations as orders
-of end points.
+"""Allen's interval algebra: the relations of arrays of intervals, and convex sets as orders of end points.
 
-Intervals are closed and of any length, a single point included. Touching counts as meeting before anything else, so
-that a point at either end of an interval meets it or is met by it. Of the thirteen exactly one holds of every ordered
-pair, and the relation of (b, a) is the converse of that of (a, b).
+Intervals are closed and may be of any length, including single points. Touching counts as meeting before anything else,
+so a point at either end of an interval meets it or is met by it. Exactly one of the thirteen relations holds of every
+ordered pair, and the relation of (b, a) is the converse of that of (a, b).
 
-A set is convex where it is just what a choice of <, <=, =, >= and > between ends of the one and ends of the other says
-(Nökel 1989; an interval in the lattice of Ligozat 1996); there are 82 that are not empty. Closure decides networks of
-them and finds all that follows (van Beek 1992). Any other set is a union of convex ones.
+A set of relations is convex if it equals a conjunction of <, <=, =, >= and > between end points of the two intervals
+(Nökel 1989; an interval in the lattice of Ligozat 1996). There are 82 non-empty convex sets. Path consistency decides
+networks of them and gives all implied relations (van Beek 1992). Any other set is a union of convex ones.
 """
 
 from __future__ import annotations
@@ -29,10 +28,21 @@ def allen_relations(
     high_b: NDArray[np.float64],
     tolerance: float = 0.0,
 ) -> NDArray[np.int8]:
-    """The Allen code of interval a to interval b, elementwise; the four arrays broadcast.
+    """Return the Allen code of interval a to interval b, elementwise.
 
-    End points that differ by at most ``tolerance`` (in the unit of the intervals) count as equal.
+    Parameters
+    ----------
+    low_a, high_a, low_b, high_b
+        End points of the intervals; the four arrays broadcast.
+    tolerance
+        Distance up to which two end points count as equal, in the unit of the intervals.
 
+    Returns
+    -------
+    Codes of :class:`deixis.ontology.allen.Allen`, in the broadcast shape.
+
+    Examples
+    --------
     >>> a, b = np.array([0.0]), np.array([2.0])
     >>> Allen(allen_relations(a, a + 2, b, b + 1)[0]).symbol
     'm'
@@ -45,14 +55,14 @@ def allen_relations(
 
 
 def _sign(a: NDArray[np.float64], b: NDArray[np.float64], tolerance: float) -> NDArray[np.int8]:
-    """0 where a < b, 1 where equal, 2 where a > b."""
+    """Return 0 where a < b, 1 where they are equal, and 2 where a > b."""
     difference = a - b
     return (1 + (difference > tolerance).astype(np.int8) - (difference < -tolerance).astype(np.int8)).astype(np.int8)
 
 
 @lru_cache(maxsize=1)
 def _table() -> NDArray[np.int8]:
-    """Allen code by the order of begins, of ends, of a's end to b's begin, and of a's begin to b's end."""
+    """Return the Allen codes by the signs of begins, of ends, of a's end to b's begin, and of a's begin to b's end."""
     table = np.empty((3, 3, 3, 3), dtype=np.int8)
     for index in np.ndindex(3, 3, 3, 3):
         table[index] = _code(*(order - 1 for order in index))
@@ -60,7 +70,7 @@ def _table() -> NDArray[np.int8]:
 
 
 def _code(begins: int, ends: int, left: int, right: int) -> Allen:
-    """The relation from the signs of four end-point differences (a minus b)."""
+    """Return the relation with these signs of four differences of end points (a minus b)."""
     if begins == 0 and ends == 0:
         return Allen.EQUALS
     if left < 0:
@@ -91,7 +101,7 @@ _COMPARED = ((LOW_A, LOW_B), (HIGH_A, HIGH_B), (HIGH_A, LOW_B), (LOW_A, HIGH_B))
 
 
 class EndOrder(NamedTuple):
-    """One end point is before another (``strict``), or not after it."""
+    """The statement that one end point is before another (``strict``), or not after it."""
 
     lesser: int
     greater: int
@@ -99,7 +109,7 @@ class EndOrder(NamedTuple):
 
 
 class ConvexSet(NamedTuple):
-    """A convex set as a 13-bit mask, and as few orders of end points as say the same."""
+    """A convex set as a 13-bit mask, and as the fewest orders of end points that define it."""
 
     mask: int
     orders: tuple[EndOrder, ...]
@@ -107,7 +117,7 @@ class ConvexSet(NamedTuple):
 
 @cache
 def convex_sets() -> tuple[ConvexSet, ...]:
-    """All convex sets that are not empty, those of few orders first.
+    """Return all non-empty convex sets, those of the fewest orders first.
 
     >>> len(convex_sets())
     82
@@ -123,7 +133,7 @@ def convex_sets() -> tuple[ConvexSet, ...]:
 
 
 def _options(a: int, b: int) -> tuple[tuple[EndOrder, ...], ...]:
-    """Nothing, <, <=, >, >= and = between two end points."""
+    """Return the possible constraints between two end points: none, <, <=, >, >= and =."""
     before, after = EndOrder(a, b, False), EndOrder(b, a, False)
     strictly = (before._replace(strict=True),), (after._replace(strict=True),)
     return ((), *strictly, (before,), (after,), (before, after))
@@ -131,7 +141,7 @@ def _options(a: int, b: int) -> tuple[tuple[EndOrder, ...], ...]:
 
 @cache
 def convex_hull(mask: int) -> ConvexSet:
-    """The least convex set around a set that is not empty; convex sets meet in convex sets.
+    """Return the smallest convex set that contains a non-empty set; it is unique, since convex sets have convex meets.
 
     >>> from deixis.ontology.allen import allen_mask, members
     >>> [relation.symbol for relation in members(convex_hull(allen_mask([Allen.BEFORE, Allen.OVERLAPS])).mask)]
@@ -142,7 +152,7 @@ def convex_hull(mask: int) -> ConvexSet:
 
 @cache
 def convex_pieces(mask: int) -> tuple[ConvexSet, ...]:
-    """A set of Allen relations as a union of convex sets, greedily few of them, the largest first.
+    """Return a small union of convex sets that equals a set of Allen relations, found greedily, the largest first.
 
     >>> from deixis.ontology.allen import allen_mask, members
     >>> pieces = convex_pieces(allen_mask([Allen.AFTER, Allen.BEFORE, Allen.MEETS]))
@@ -160,11 +170,11 @@ def convex_pieces(mask: int) -> tuple[ConvexSet, ...]:
 
 
 _EXAMPLES = ((0, 1), (0, 2), (0, 3), (0, 5), (0, 6), (2, 3), (2, 5), (2, 6), (3, 4), (3, 5), (3, 6), (5, 6), (6, 7))
-"""An interval in each relation, by code, to the interval from 2 to 5."""
+"""One interval in each relation to the interval from 2 to 5, by code."""
 
 
 def admitted(orders: tuple[EndOrder, ...]) -> int:
-    """The Allen relations in which all orders hold, as a mask.
+    """Return the mask of the Allen relations in which all orders hold.
 
     >>> admitted((EndOrder(HIGH_A, LOW_B, strict=True),)) == 1 << Allen.BEFORE
     True
@@ -177,7 +187,7 @@ def admitted(orders: tuple[EndOrder, ...]) -> int:
 
 @cache
 def _admitted(order: EndOrder) -> int:
-    """The Allen relations in which one order holds, as a mask."""
+    """Return the Allen relations in which one order holds, as a mask."""
     mask = 0
     for relation, example in enumerate(_EXAMPLES):
         points = (*example, 2, 5)

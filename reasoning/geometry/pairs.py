@@ -1,9 +1,8 @@
-"""Scale-free geometry of all ordered pairs of boxes: what graded models look at.
+"""Scale-free geometry of all ordered pairs of boxes: the features of graded models.
 
-Lengths are measured against the sizes of the two boxes, never against a unit, so that nothing changes where a scene is
-moved or scaled. An *offset* of 1 on an axis is about where two boxes touch: centres apart by half the sum of the two
-extents, plus a tenth of the pair's mean size, so that thin boxes have a width too. Everything is finite, boxes without
-an extent included.
+Lengths are in units of the sizes of the two boxes, so that moving or scaling a scene changes nothing. An *offset* of 1
+on an axis is about where two boxes touch: their centres are apart by half the sum of their extents, plus a tenth of the
+mean size of the pair, so that thin boxes have a width too. All features are finite, even for boxes without an extent.
 """
 
 from __future__ import annotations
@@ -23,31 +22,31 @@ from deixis.reasoning.kernel import njit
 Array = NDArray[np.float64]
 
 ROW_CELLS = 1 << 18
-"""Pairs whose distances are held at a time."""
+"""Maximum number of pairs whose distances are in memory at a time."""
 
 SLACK = 0.1
-"""What is added to half the sum of two extents before offsets are divided by it, as a share of the pair's mean size."""
+"""Share of the mean size of a pair that is added to half the sum of their extents, before dividing offsets by it."""
 
 
 @dataclass(frozen=True, eq=False)
 class PairGeometry:
-    """Ordered pairs of boxes in the plan (and in height, where d is 3); row: subject, column: object.
+    """Ordered pairs of boxes seen from above, and their heights if d is 3; row: subject, column: object.
 
-    Built by :func:`pair_geometry`, of all pairs of n boxes, or by :class:`PairBlocks`, of a block of them: n subjects
-    and m objects. Arrays of pairs have shape (n, m), or (n, m, 2) with x and y last; what holds for one axis lies
-    together in memory, since that is how it is read.
+    :func:`pair_geometry` builds it of all pairs of n boxes, :class:`PairBlocks` of a block of them, with n subjects and
+    m objects. Arrays of pairs have shape (n, m), or (n, m, 2) with x and y last. The values of one axis are contiguous
+    in memory, in the order in which they are read.
     """
 
     boxes: Array  # (n, 2, d): the subjects
     objects: Array  # (m, 2, d)
-    crowd: Array  # (n, m): share of the other things nearer to one of the two than its partner is; mean over both
+    crowd: Array  # (n, m): share of the other things closer to one of the two than its partner is; mean over both
 
     def __len__(self) -> int:
         return len(self.boxes)
 
     @cached_property
     def reverse(self) -> PairGeometry:
-        """The same pairs the other way round, shape (m, n): of all pairs of n boxes these themselves."""
+        """Geometry of the reversed pairs, shape (m, n); this object itself for all pairs of n boxes."""
         if self.objects is self.boxes:
             return self
         other = PairGeometry(self.objects, self.boxes, self.crowd.T)
@@ -56,21 +55,21 @@ class PairGeometry:
 
     @cached_property
     def _corners(self) -> tuple[Array, Array, Array, Array]:
-        """Least and greatest corner in the plan, each of shape (2, n); those of the objects, (2, m)."""
+        """Least and greatest corners seen from above, each of shape (2, n); those of the objects (2, m)."""
         return tuple(side[:, corner, :2].T.copy() for side in (self.boxes, self.objects) for corner in (0, 1))  # type: ignore[return-value]
 
     @cached_property
     def pair_size(self) -> Array:
-        """Mean size of the two, shape (n, m): of their mean extents in the plan."""
+        """Mean size of both boxes, shape (n, m); the size of a box is its mean extent on x and y."""
         subjects, objects = _sizes(self.boxes), _sizes(self.objects)
         mean: Array = (subjects[:, None] + objects[None, :]) / 2
         return mean
 
     @cached_property
     def offset(self) -> Array:
-        """Subject's centre less object's, shape (n, m, 2), 1 about where the boxes touch; odd under exchange.
+        """Subject's centre minus object's centre, shape (n, m, 2), 1 about where the boxes touch; odd under exchange.
 
-        Between two points, the direction alone: length 1, or 0 where both are one.
+        Between two points, it is only the direction, of length 1, or 0 for equal points.
         """
         low, high, other_low, other_high = self._corners
         apart = ((low + high) / 2)[:, :, None] - ((other_low + other_high) / 2)[:, None, :]
@@ -87,7 +86,7 @@ class PairGeometry:
 
     @cached_property
     def gap(self) -> Array:
-        """Distance between the boxes, as g / (1 + g) with g in mean sizes of the pair: 0 touching, towards 1 afar."""
+        """Distance between the boxes as g / (1 + g), g in mean sizes of the pair: 0 if they touch, near 1 far away."""
         low, high, other_low, other_high = self._corners
         before, after = low[:, :, None] - other_high[:, None, :], other_low[:, None, :] - high[:, :, None]
         apart = np.hypot(*np.maximum(np.maximum(before, after), 0.0))
@@ -100,29 +99,29 @@ class PairGeometry:
 
     @cached_property
     def smaller(self) -> Array:
-        """How much smaller the subject is: (b - a) / (a + b) of the sizes, -1 to 1; odd under exchange."""
+        """Relative size difference (b - a) / (a + b), in [-1, 1], above 0 for a smaller subject; odd under exchange."""
         a, b = _sizes(self.boxes)[:, None], _sizes(self.objects)[None, :]
         return _ratio(b - a, a + b)
 
     @cached_property
     def edges(self) -> Array:
-        """Signed distances of edges in mean sizes, each as v / (1 + |v|), shape (3, n, m, 2).
+        """Signed distances v of edges in mean sizes, each as v / (1 + |v|), shape (3, n, m, 2).
 
-        Subject's lower edge less object's upper one; the two upper edges; the two lower edges.
+        They are the subject's lower edge minus the object's upper one, the two upper edges, and the two lower edges.
         """
         return _axes_last(_edges(*self._corners, self.pair_size))
 
     @cached_property
     def foot(self) -> Array:
-        """Height of the subject's lower edge on y within the object: 0 at its lower edge, 1 at its upper one.
+        """Position of the subject's lower edge on y within the object: 0 at its lower edge, 1 at its upper one.
 
-        Clipped to -1 and 2; beside an object without an extent on y, 0.5 at its place and -1 or 2 off it.
+        It is clipped to [-1, 2]. If the object has no extent on y, it is 0.5 at the object, and -1 or 2 elsewhere.
         """
         return _level(self.boxes[:, 0, 1], self.objects[:, 0, 1], self.objects[:, 1, 1])
 
     @cached_property
     def rise(self) -> Array | None:
-        """How far the subject reaches higher at both ends on z, in mean heights, as v / (1 + |v|); None in 2-D."""
+        """Height by which both ends of the subject are above the object's, as v / (1 + |v|); None in 2-D."""
         if self.boxes.shape[2] < 3:
             return None
         low, high = self.boxes[:, 0, 2], self.boxes[:, 1, 2]
@@ -135,9 +134,9 @@ class PairGeometry:
 
 @dataclass(frozen=True, eq=False)
 class PairBlocks:
-    """All pairs of n boxes (n, 2, d), a block at a time, so that no more than a block is held.
+    """All pairs of n boxes (n, 2, d), computed block by block, so that only one block is in memory.
 
-    Only how crowded a pair is depends on the other boxes: ``nearer`` (n, n) counts those nearer to the subject than
+    Only the crowding of a pair depends on the other boxes: ``nearer`` (n, n) counts those nearer to the subject than
     the object is.
     """
 
@@ -146,18 +145,16 @@ class PairBlocks:
 
     @classmethod
     def of(cls, boxes: Array, deadline: Deadline = Deadline.never()) -> PairBlocks:
-        """Return the blocks of boxes that are known to be some; raises OutOfTimeError at the ``deadline``."""
+        """Return the blocks of valid boxes; raise OutOfTimeError at the ``deadline``."""
         n = len(boxes)
         nearer = np.zeros((n, n), np.uint16 if n < 1 << 16 else np.uint32)
         rows = max(1, ROW_CELLS // max(n, 1))
         for start in range(0, n, rows):
             if start and deadline.passed:
-                raise OutOfTimeError(
-                    f"the time limit passed while {n} things were compared; raise it, or look at fewer"
-                )
+                raise OutOfTimeError(f"time limit reached while comparing {n} objects; raise it, or use fewer objects")
             some = boxes[start : start + rows]
             distance = PairGeometry(some, boxes, np.zeros((0, 0))).distance
-            distance = np.round(distance, 9)  # what is as far, as any two points are, is not nearer by rounding
+            distance = np.round(distance, 9)  # rounding errors make no box nearer than one at an equal distance
             distance[np.arange(len(some)), np.arange(start, start + len(some))] = np.inf
             for row, count in zip(distance, nearer[start : start + rows], strict=True):
                 count[:] = np.searchsorted(np.sort(row), row, side="left")
@@ -243,8 +240,20 @@ def shares_nearer(subjects, objects, apart, crowd):  # type: ignore[no-untyped-d
 
 
 def pair_geometry(boxes: NDArray[np.float64]) -> PairGeometry:
-    """Looks at boxes of shape (n, 2, d), least and greatest corner, d = 2 or 3; raises GraphError for any other.
+    """Compute the geometry of all pairs of boxes.
 
+    Parameters
+    ----------
+    boxes
+        Least and greatest corners, shape (n, 2, d), d = 2 or 3.
+
+    Raises
+    ------
+    GraphError
+        If the boxes have another shape, are not finite, or have a greatest corner below the least.
+
+    Examples
+    --------
     >>> fork, plate = [[0.0, 0.0], [0.02, 0.2]], [[0.05, -0.02], [0.32, 0.25]]
     >>> pairs = pair_geometry(np.array([fork, plate]))
     >>> pairs.offset[0, 1].round(2).tolist(), pairs.gap[0, 1].round(2).tolist()
@@ -256,14 +265,14 @@ def pair_geometry(boxes: NDArray[np.float64]) -> PairGeometry:
 
 
 def _sizes(boxes: Array) -> Array:
-    """Mean extents in the plan, shape (n,)."""
+    """Return the mean extents on x and y, shape (n,)."""
     sizes: Array = (boxes[:, 1, :2] - boxes[:, 0, :2]).mean(axis=1)
     return sizes
 
 
 def _ratio(part: Array, whole: Array) -> Array:
-    """part / whole, 0 where the whole is 0."""
-    if whole.all():  # as nearly always; twice as fast
+    """Return part / whole, or 0 where the whole is 0."""
+    if whole.all():  # in nearly all cases; twice as fast
         plain: Array = part / whole
         return plain
     result: Array = np.divide(part, whole, out=np.zeros(np.broadcast(part, whole).shape), where=whole > 0)
@@ -271,14 +280,14 @@ def _ratio(part: Array, whole: Array) -> Array:
 
 
 def _axes_last(pairs: Array) -> Array:
-    """(…, axes, n, n) as (…, n, n, axes), without moving a number."""
+    """Return pairs (…, axes, n, n) as a view (…, n, n, axes)."""
     return np.moveaxis(pairs, -3, -1)
 
 
 def _share_inside(low: Array, high: Array, other_low: Array, other_high: Array) -> Array:
-    """Shape (axes, n, m), of corners (axes, n) and (axes, m).
+    """Return the shares of extents inside, shape (axes, n, m), of corners (axes, n) and (axes, m).
 
-    Of a subject without an extent it is 1 where the object holds it, else 0.
+    For a subject without an extent, the share is 1 if the object contains it, else 0.
     """
     shared = np.minimum(high[:, :, None], other_high[:, None, :]) - np.maximum(low[:, :, None], other_low[:, None, :])
     extent = np.broadcast_to((high - low)[:, :, None], shared.shape)
@@ -290,7 +299,7 @@ def _share_inside(low: Array, high: Array, other_low: Array, other_high: Array) 
 
 
 def _edges(low: Array, high: Array, other_low: Array, other_high: Array, unit: Array) -> Array:
-    """Shape (3, axes, n, m), of corners (axes, n) and (axes, m)."""
+    """Return the signed edge distances, shape (3, axes, n, m), of corners (axes, n) and (axes, m)."""
     found = np.empty((3, len(low), *unit.shape))
     ends = ((low, other_high), (high, other_high), (low, other_low))
     for edges, (subject, object) in zip(found, ends, strict=True):
@@ -300,7 +309,7 @@ def _edges(low: Array, high: Array, other_low: Array, other_high: Array, unit: A
 
 
 def _level(low: Array, other_low: Array, other_high: Array) -> Array:
-    """Where each lower edge lies between two other edges, shape (n, m), clipped to -1 and 2."""
+    """Return the positions of lower edges between two other edges, shape (n, m), clipped to [-1, 2]."""
     above = low[:, None] - other_low[None, :]
     extent = np.broadcast_to((other_high - other_low)[None, :], above.shape)
     flat = np.where(above == 0, 0.5, np.where(above > 0, 2.0, -1.0))

@@ -1,13 +1,13 @@
-"""The rectangle algebra of boxes: every ordered pair's atom, and which of ten exact names it bears.
+"""The rectangle algebra of boxes: the atom of every ordered pair, and the one of ten exact relations that it has.
 
-An atom is a pair of Allen relations, one between the projections on x and one between those on y (Balbiani, Condotta
-and Fariñas del Cerro 1998); where heights are known there is a third on z. The name is read off the atom by what the
-TBox says each exact relation admits. Three kinds of pairs need more than the planar atom, and get it in this order:
+An atom is a pair of Allen relations, between the projections on x and on y (Balbiani, Condotta and Fariñas del Cerro
+1998), with a third one on z if heights are known. The exact relation is the one whose definition in the TBox admits the
+atom. Three kinds of pairs need more than the planar atom. They are handled in this order:
 
-1. projections that overlap on both axes, with known heights: *on* or *under*, where z settles it;
-2. boxes that overlap in part (neither within the other): the larger offset of the two centres names the pair, the x
-   axis where both are as large;
-3. boxes with the same centre that are alike or cross: the one listed later lies on the one listed earlier.
+1. Projections that overlap on both axes, with known heights: *on* or *under*, if z decides it.
+2. Boxes that overlap in part (neither within the other): the larger offset of the two centres names the pair, or the x
+   axis if both offsets are equal.
+3. Boxes with the same centre that are equal or cross: the one listed later lies on the one listed earlier.
 """
 
 from __future__ import annotations
@@ -27,20 +27,20 @@ from deixis.reasoning.errors import OutOfTimeError
 from deixis.reasoning.geometry.allen import allen_relations
 
 ROW_CELLS = 1 << 18
-"""Pairs that are related at a time."""
+"""Maximum number of pairs that are related at a time."""
 
 
 @dataclass(frozen=True, eq=False)
 class BoxRelations:
-    """The atoms and exact names of all ordered pairs of n boxes; row: subject, column: object."""
+    """The atoms and exact relations of all ordered pairs of n boxes; row: subject, column: object."""
 
     x: NDArray[np.int8]  # (n, n) Allen codes
     y: NDArray[np.int8]  # (n, n) Allen codes
-    z: NDArray[np.int8] | None  # (n, n) Allen codes, or None where heights are not known
+    z: NDArray[np.int8] | None  # (n, n) Allen codes, or None if heights are not known
     names: NDArray[np.int8]  # (n, n) relation indices of the exact reading; -1 on the diagonal
 
     def atom(self, subject: int, object: int) -> str:
-        """The atom as QSRlib writes it: the Allen signs on x and y (and z), with a comma between."""
+        """Return the atom in the notation of QSRlib: the Allen symbols on x and y (and z), separated by commas."""
         axes = (self.x, self.y) if self.z is None else (self.x, self.y, self.z)
         return ",".join(SYMBOLS[axis[subject, object]] for axis in axes)
 
@@ -51,13 +51,27 @@ def box_relations(
     tolerance: float = 0.0,
     ranks: NDArray[np.int64] | None = None,
 ) -> BoxRelations:
-    """Relates every ordered pair of boxes.
+    """Compute the atom and the exact relation of every ordered pair of boxes.
 
-    ``boxes`` has shape (n, 2, d): least and greatest corner, d = 2 or 3, x to the viewer's right, y away from the
-    viewer, z up, metres. End points that differ by at most ``tolerance`` count as equal. ``ranks`` (n,) stand for the
-    order of listing, where that has to decide. Raises GraphError for another shape, a corner that is not finite, or a
-    greatest corner below the least.
+    Parameters
+    ----------
+    boxes
+        Least and greatest corners, shape (n, 2, d), d = 2 or 3, in metres: x to the viewer's right, y away from the
+        viewer, z up.
+    vocabulary
+        The relations to name the pairs by.
+    tolerance
+        Distance in metres up to which two end points count as equal.
+    ranks
+        Order of the boxes for equal or crossing boxes of one centre, shape (n,); by default their positions.
 
+    Raises
+    ------
+    GraphError
+        If ``boxes`` have another shape, are not finite, or have a greatest corner below the least.
+
+    Examples
+    --------
     >>> from deixis.ontology.tbox import default_ontology
     >>> relations = default_ontology().relations
     >>> fork, plate = [[0.0, 0.0], [0.02, 0.2]], [[0.05, -0.02], [0.32, 0.25]]
@@ -73,10 +87,10 @@ def box_relations(
 
 @dataclass(frozen=True, eq=False)
 class SceneRelations:
-    """The things of a scene and the exact relation of every ordered pair: what grounding compares a description with.
+    """The objects of a scene and the exact relation of every ordered pair, which grounding compares a description with.
 
-    ``names`` holds codes, the indices of exact relations in ``vocabulary``, with the subject as the row. The complete
-    relation graph of n (n - 1) edges (:meth:`graph`) is a view for export.
+    ``names`` holds the indices of exact relations in ``vocabulary``; the row is the subject. The complete relation
+    graph of n (n - 1) edges (:meth:`graph`) is a view for export.
 
     >>> from deixis.ontology.tbox import default_ontology
     >>> relations = default_ontology().relations
@@ -97,7 +111,7 @@ class SceneRelations:
     def from_graph(cls, graph: RelationGraph) -> SceneRelations:
         """Read the relations of a complete relation graph.
 
-        Raises GraphError where an ordered pair has no exact relation, or more than one.
+        Raises GraphError if an ordered pair has no exact relation, or more than one.
         """
         n = len(graph.nodes)
         exact = sum(relation.bit for relation in graph.vocabulary.of_reading(Reading.EXACT))
@@ -113,18 +127,18 @@ class SceneRelations:
         return cls(graph.vocabulary, graph.nodes, names, graph.boxes, graph.kinds)
 
     def index(self, node: str) -> int:
-        """Return the position of a thing; raises GraphError where there is none of that name."""
+        """Return the position of an object; raise GraphError if no object has that name."""
         try:
             return self.nodes.index(node)
         except ValueError:
             raise GraphError(f"the scene has no object '{node}'") from None
 
     def relation(self, subject: int, object: int) -> Relation:
-        """Return the exact relation of one ordered pair of different things."""
+        """Return the exact relation of an ordered pair of different objects."""
         return self.vocabulary.members(1 << int(self.names[subject, object]))[0]
 
     def reordered(self, order: NDArray[np.int64]) -> SceneRelations:
-        """Return the same scene with its things in another order, or some of them."""
+        """Return the scene with its objects in another order, or with some of them."""
         return SceneRelations(
             self.vocabulary,
             tuple(self.nodes[i] for i in order),
@@ -134,7 +148,7 @@ class SceneRelations:
         )
 
     def graph(self) -> RelationGraph:
-        """Return the complete relation graph: one edge an ordered pair, by subject, then by object."""
+        """Return the complete relation graph: one edge per ordered pair, by subject, then by object."""
         subjects, objects = np.nonzero(~np.eye(len(self.nodes), dtype=bool))
         m = len(subjects)
         return RelationGraph(
@@ -151,7 +165,7 @@ class SceneRelations:
         )
 
     def paper_view(self) -> PaperGraph:
-        """Return the graph of Definition 1: the word of every ordered pair as the label of its edge."""
+        """Return the graph of Definition 1, with the word of every ordered pair as its edge label."""
         labels = tuple(relation.word for relation in self.vocabulary.of_reading(Reading.EXACT))
         label_of = np.array([labels.index(relation.word) for relation in self.vocabulary.values()], dtype=np.int8)
         subjects, objects = np.nonzero(self.names >= 0)
@@ -172,14 +186,33 @@ def scene_relations(
     tolerance: float = 0.0,
     deadline: Deadline = Deadline.never(),
 ) -> SceneRelations:
-    """Compute the exact relation of every ordered pair of the things of a scene.
+    """Compute the exact relation of every ordered pair of the objects of a scene.
 
-    ``boxes`` and ``tolerance`` are those of :func:`box_relations`. Where the order of listing has to decide, that of
-    the ids does, so that a scene means the same in whatever order it is listed. Raises GraphError for bad boxes, and
-    for ids that are not as many or not different; OutOfTimeError at the ``deadline``.
+    Parameters
+    ----------
+    ids
+        Names of the n objects. The order of the ids decides between equal or crossing boxes of one centre, so that the
+        order of listing does not matter.
+    boxes
+        Least and greatest corners in metres, shape (n, 2, d), d = 2 or 3.
+    vocabulary
+        The relations to name the pairs by.
+    kinds
+        Class IRIs of the objects, or empty.
+    tolerance
+        Distance in metres up to which two end points count as equal.
+    deadline
+        Time limit.
+
+    Raises
+    ------
+    GraphError
+        If the boxes are invalid, or the ids are not n different ones.
+    OutOfTimeError
+        At the ``deadline``.
     """
     if len(ids) != len(boxes) or len(set(ids)) != len(ids):
-        raise GraphError(f"a scene of {len(boxes)} boxes needs as many different ids, got {len(set(ids))}")
+        raise GraphError(f"a scene of {len(boxes)} boxes must have {len(boxes)} different ids, got {len(set(ids))}")
     require_boxes(boxes)
     n = len(boxes)
     ranks = np.argsort(np.argsort(np.array(ids, dtype=np.str_)))
@@ -187,15 +220,16 @@ def scene_relations(
     step = max(1, ROW_CELLS // max(n, 1))
     for start in range(0, n, step):
         if start and deadline.passed:
-            raise OutOfTimeError(f"the time limit passed while {n} things were related; raise it, or look at fewer")
+            raise OutOfTimeError(f"time limit reached while relating {n} objects; raise it, or use fewer objects")
         rows = slice(start, start + step)
         names[rows] = _related(boxes, ranks, rows, vocabulary, tolerance)[1]
     return SceneRelations(vocabulary, tuple(ids), names, boxes, tuple(kinds))
 
 
 def require_boxes(boxes: NDArray[np.float64]) -> None:
+    """Raise GraphError unless boxes have shape (n, 2, 2) or (n, 2, 3), finite corners, and ordered corners."""
     if boxes.ndim != 3 or boxes.shape[1] != 2 or boxes.shape[2] not in (2, 3):
-        raise GraphError(f"boxes must have shape (n, 2, 2) or (n, 2, 3), not {boxes.shape}")
+        raise GraphError(f"boxes must have shape (n, 2, 2) or (n, 2, 3), got {boxes.shape}")
     if not np.isfinite(boxes).all():
         bad = int(np.flatnonzero(~np.isfinite(boxes).all(axis=(1, 2)))[0])
         raise GraphError(f"box {bad} has a corner that is not finite")
@@ -251,7 +285,7 @@ def _related(
 
 
 def _name_table(exact: Sequence[Relation]) -> NDArray[np.int8]:
-    """The one exact relation that admits each planar atom, shape (13, 13); -1 where none or more than one does."""
+    """Return the exact relation that alone admits each planar atom, shape (13, 13); -1 for none or several."""
     admitted = np.stack([relation.admits() for relation in exact])
     table = np.full((13, 13), -1, dtype=np.int8)
     single = admitted.sum(axis=0) == 1
@@ -261,7 +295,7 @@ def _name_table(exact: Sequence[Relation]) -> NDArray[np.int8]:
 
 
 def _overlap_mask() -> NDArray[np.bool_]:
-    """Which Allen relations have more than an end point in common, shape (13,)."""
+    """Return which Allen relations share more than an end point, shape (13,)."""
     codes = np.arange(13)
     return (codes > Allen.MEETS) & (codes < Allen.MET_BY)
 
@@ -272,7 +306,7 @@ def _offset_names(
     table: NDArray[np.int8],
     ranks: tuple[NDArray[np.int64], NDArray[np.int64]],
 ) -> NDArray[np.int8]:
-    """A name by the larger offset of the centres on x and y; by rank where both are zero."""
+    """Return the relations by the larger offset of the centres on x and y, or by rank if both are zero."""
     here, there = subjects.mean(axis=1), objects.mean(axis=1)
     dx = here[:, None, 0] - there[None, :, 0]
     dy = here[:, None, 1] - there[None, :, 1]

@@ -1,4 +1,4 @@
-"""Boxes as seen from another side: turned about the vertical, and mirrored."""
+"""Boxes seen from another side: turned about the vertical axis, and mirrored."""
 
 from __future__ import annotations
 
@@ -12,13 +12,28 @@ from deixis.reasoning.geometry.rectangle import require_boxes
 Array = NDArray[np.float64]
 
 MAX_ROUND_CONTRAST = 0.05
-"""|W - H| / (W + H) below which a box is taken for that of a round thing."""
+"""Contrast |W - H| / (W + H) below which a box is taken for that of a round object."""
 
 
 def turned(boxes: Array, angle: float, mirrored: bool = False) -> Array:
-    """Return boxes (n, 2, d) as seen when the scene is turned about the origin; heights stay. Raises GraphError for
-    none.
+    """Return the boxes of a scene turned about the origin; heights stay.
 
+    Parameters
+    ----------
+    boxes
+        Least and greatest corners, shape (n, 2, d).
+    angle
+        Angle in radians, counterclockwise seen from above.
+    mirrored
+        Mirror the scene left to right before turning it.
+
+    Raises
+    ------
+    GraphError
+        If the boxes are invalid.
+
+    Examples
+    --------
     >>> cup = np.array([[[1.0, 0.0], [3.0, 1.0]]])
     >>> turned(cup, math.pi / 2).tolist()
     [[[-1.0, 1.0], [0.0, 3.0]]]

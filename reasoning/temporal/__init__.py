@@ -1,1 +1,1 @@
-"""Time: fluents whose ends are known within bounds, the simple temporal network under them, and what is certain."""
+"""Time: fluents whose ends are known within bounds, the simple temporal network under them, and their implications."""

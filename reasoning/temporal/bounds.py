@@ -1,7 +1,7 @@
-"""Bounds on times and on differences of times, exact: whole microseconds, each with a flag for *strictly less*.
+"""Exact bounds on times and on differences of times: whole microseconds, each with a flag for *strictly less*.
 
-An upper bound is a code of :mod:`deixis.reasoning.constraints.difference` in microseconds: *before* is really *less
-than*, without an epsilon. Integers add up without rounding, so a chain of 0.1 s never contradicts its sum.
+An upper bound is a code of :mod:`deixis.reasoning.constraints.difference` in microseconds, so that *before* means *less
+than*, without an epsilon. Integers add up without rounding, so a chain of 0.1 s steps never contradicts its sum.
 """
 
 from __future__ import annotations
@@ -14,26 +14,26 @@ from deixis.reasoning.constraints.difference import UNBOUNDED, ZERO, add
 from deixis.reasoning.errors import SettingError
 
 TICKS = 1_000_000
-"""Ticks in a second; a time between two ticks is rounded to the nearest."""
+"""Ticks per second; a time between two ticks is rounded to the nearest."""
 
 MAX_SECONDS = 4e9
-"""Seconds from the origin that a bound may lie at the most (some 126 years), so that all sums stay exact."""
+"""Maximum distance of a bound from the origin in seconds (about 126 years), so that all sums stay exact."""
 
 
 def to_ticks(seconds: float) -> int:
     """Return the nearest whole number of microseconds.
 
-    Raises SettingError where the time is no finite number, or farther away than ``MAX_SECONDS``.
+    Raises SettingError if the time is not finite, or farther away than ``MAX_SECONDS``.
     """
     if not math.isfinite(seconds):
-        raise SettingError(f"a time must be a finite number of seconds, not {seconds}")
+        raise SettingError(f"a time must be a finite number of seconds, got {seconds}")
     if abs(seconds) > MAX_SECONDS:
         raise SettingError(f"a time of {seconds:g} s is beyond {MAX_SECONDS:g} s; is the unit or the origin right?")
     return round(Fraction(seconds) * TICKS)
 
 
 def encode(seconds: float, strict: bool = False) -> int:
-    """Return the code of *x <= seconds*, or of *x < seconds*; infinity is no bound.
+    """Return the code of *x <= seconds*, or of *x < seconds*; infinity means no bound.
 
     >>> encode(0.0) == ZERO, encode(0.0, strict=True) < encode(0.0) < encode(0.000001, strict=True)
     (True, True)
@@ -44,7 +44,7 @@ def encode(seconds: float, strict: bool = False) -> int:
 
 
 def text_of_ticks(ticks: int) -> str:
-    """Return microseconds as seconds, as short as they can be written.
+    """Return microseconds as text in seconds, without trailing zeros.
 
     >>> text_of_ticks(2_500_000), text_of_ticks(-3_000_000), text_of_ticks(1700000000_250000)
     ('2.5', '-3', '1700000000.25')
@@ -55,7 +55,7 @@ def text_of_ticks(ticks: int) -> str:
 
 
 def bound_text(tail: str, head: str, code: int, origin: str) -> str:
-    """Say in words that ``head - tail`` is bounded by a code; a difference to the origin is a time.
+    """Return in words that ``head - tail`` is bounded by a code; a difference to the origin is a time.
 
     >>> bound_text("a.finish", "b.start", encode(5), "origin"), bound_text("a.start", "origin", encode(-2), "origin")
     ('b.start <= a.finish + 5', 'a.start >= 2')
@@ -71,10 +71,10 @@ def bound_text(tail: str, head: str, code: int, origin: str) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Bounds:
-    """What is known of a time or of a difference of times: it lies between ``lower`` and ``upper``, in seconds.
+    """The interval of a time, or of a difference of times, from ``lower`` to ``upper`` in seconds.
 
-    An infinite bound is an unknown one; a bound that is open is not reached. Raises SettingError where nothing lies
-    between the two, or a bound is no number.
+    An infinite bound is unknown; an open bound does not belong to the interval. Raises SettingError if the interval is
+    empty, or a bound is not a number.
 
     >>> str(Bounds(0, 5)), str(Bounds(2.5)), str(Bounds(0, 5, upper_open=True))
     ('[0, 5]', '[2.5, ∞)', '[0, 5)')
@@ -91,17 +91,17 @@ class Bounds:
 
     @property
     def at_most(self) -> int:
-        """The code of the upper bound."""
+        """Code of the upper bound."""
         return encode(self.upper, self.upper_open)
 
     @property
     def at_least(self) -> int:
-        """The code of the lower bound, as an upper one of the negated value."""
+        """Code of the lower bound, as an upper bound of the negated value."""
         return encode(-self.lower, self.lower_open)
 
     @classmethod
     def from_codes(cls, at_least: int, at_most: int) -> Bounds:
-        """Return the bounds that two codes stand for."""
+        """Return the bounds with these two codes."""
         lower = -math.inf if at_least >= UNBOUNDED else -(at_least >> 1) / TICKS
         upper = math.inf if at_most >= UNBOUNDED else (at_most >> 1) / TICKS
         return cls(lower, upper, at_least < UNBOUNDED and not at_least & 1, at_most < UNBOUNDED and not at_most & 1)
@@ -114,4 +114,4 @@ class Bounds:
 
 
 UNKNOWN = Bounds()
-"""Nothing is known."""
+"""The bounds of an unknown time."""

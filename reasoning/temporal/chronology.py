@@ -1,7 +1,7 @@
-"""What follows of the times of fluents, and the questions that can be asked of it.
+"""The implications of statements about fluents, and queries over them.
 
-A fluent holds at t where start <= t < finish. A *scenario* is a choice of times that agrees with all that is stated.
-What is said plainly here (*held*) is so in every scenario; what *may* be is so in some.
+A fluent holds at t if start <= t < finish. A *scenario* is a choice of times that is consistent with all statements.
+Names such as *held* mean in every scenario, names such as *may have held* in at least one.
 """
 
 from __future__ import annotations
@@ -27,14 +27,14 @@ _FOLLOWS = 1 << Allen.AFTER | 1 << Allen.MET_BY
 
 
 class Status(StrEnum):
-    """Whether all that is stated can hold together; what cannot raises TemporalConflictError instead."""
+    """The consistency of all statements; an inconsistency raises TemporalConflictError instead."""
 
     CONSISTENT = "consistent"
-    UNDECIDED = "undecided"  # the time limit came first
+    UNDECIDED = "undecided"  # the time limit was reached first
 
 
 class TemporalOrder(StrEnum):
-    """What is certain of the order of two fluents."""
+    """The order of two fluents that holds in every scenario."""
 
     PRECEDES = "precedes"  # the first has finished when the second starts
     FOLLOWS = "follows"
@@ -45,7 +45,7 @@ class TemporalOrder(StrEnum):
 class Window:
     """The times t with ``begin <= t < end``, in seconds since the origin.
 
-    Raises SettingError where there is no such time, or a bound is not finite.
+    Raises SettingError if the window is empty, or an end is not finite.
     """
 
     begin: float
@@ -53,19 +53,20 @@ class Window:
 
     def __post_init__(self) -> None:
         if not (isfinite(self.begin) and isfinite(self.end)):
-            raise SettingError(f"a window goes from one finite time to another, not from {self.begin} to {self.end}")
+            raise SettingError(f"a window must have finite ends, got {self.begin} and {self.end}")
         if not to_ticks(self.begin) < to_ticks(self.end):
-            raise SettingError(f"a window begins before it ends, and this one goes from {self.begin:g} to {self.end:g}")
+            raise SettingError(f"a window must begin before it ends, got {self.begin:g} and {self.end:g}")
 
 
 @dataclass(frozen=True)
 class Chronology:
-    """What follows of n fluents.
+    """The implied times and relations of n fluents.
 
-    ``spans`` (k, n, 3, 3), int64: for each of k cases that disjunctions leave, and each fluent, the minimal distances
+    ``spans`` (k, n, 3, 3), int64, holds for each of k cases of the disjunctions and each fluent the minimal distances
     among origin, start and finish, as codes of :mod:`deixis.reasoning.constraints.difference`. ``masks`` (n, n),
-    uint16: the Allen relations that the row's fluent may bear to the column's. Where ``exact``, both are as tight as
-    can be; else disjunctions were left out of account, and what is certain is still certain, but what may be may not.
+    uint16, holds the Allen relations that the row's fluent may have to the column's. If ``exact``, both are as tight as
+    possible. Otherwise some disjunctions were ignored: what is certain is still certain, but what is possible may not
+    be.
     """
 
     fluents: tuple[Fluent, ...]
@@ -85,15 +86,15 @@ class Chronology:
             raise UnknownFluentError("fluent", fluent_id, self._places) from None
 
     def start(self, fluent_id: str) -> Bounds:
-        """Return the tightened bounds of a fluent's start, in seconds."""
+        """Return the tightest bounds of a fluent's start, in seconds."""
         return self._bounds(fluent_id, _ORIGIN, _START)
 
     def finish(self, fluent_id: str) -> Bounds:
-        """Return the tightened bounds of a fluent's finish, in seconds."""
+        """Return the tightest bounds of a fluent's finish, in seconds."""
         return self._bounds(fluent_id, _ORIGIN, _FINISH)
 
     def duration(self, fluent_id: str) -> Bounds:
-        """Return the tightened bounds of the time from a fluent's start to its finish, in seconds."""
+        """Return the tightest bounds of the time from a fluent's start to its finish, in seconds."""
         return self._bounds(fluent_id, _START, _FINISH)
 
     def _bounds(self, fluent_id: str, tail: int, head: int) -> Bounds:
@@ -103,7 +104,7 @@ class Chronology:
     def held_at(self, time: float, pattern: Pattern = ANYTHING) -> tuple[Fluent, ...]:
         """Return the fluents that certainly held at a time: start <= time < finish in every scenario.
 
-        Raises SettingError for a time that is not finite, as :meth:`may_have_held` does.
+        Raises SettingError if the time is not finite, as :meth:`may_have_held` does.
         """
         return self._chosen(self._certain(*_at(time)), pattern)
 
@@ -112,33 +113,43 @@ class Chronology:
         return self._chosen(self._possible(*_at(time)), pattern)
 
     def held_throughout(self, window: Window, pattern: Pattern = ANYTHING) -> tuple[Fluent, ...]:
-        """Return the fluents that certainly held all the window: start <= begin and end <= finish in every scenario."""
+        """Return the fluents that certainly held throughout a window, in every scenario.
+
+        That is, start <= begin and end <= finish.
+        """
         return self._chosen(self._certain(*_throughout(window)), pattern)
 
     def may_have_held_throughout(self, window: Window, pattern: Pattern = ANYTHING) -> tuple[Fluent, ...]:
-        """Return the fluents that may have held all the window: start <= begin and end <= finish in some scenario."""
+        """Return the fluents that may have held throughout a window, in some scenario.
+
+        That is, start <= begin and end <= finish.
+        """
         return self._chosen(self._possible(*_throughout(window)), pattern)
 
     def held_within(self, window: Window, pattern: Pattern = ANYTHING) -> tuple[Fluent, ...]:
-        """Return the fluents that certainly held at some time in the window: start < end and begin < finish in every
-        one."""
+        """Return the fluents that certainly held at some time in a window, in every scenario.
+
+        That is, start < end and begin < finish.
+        """
         return self._chosen(self._certain(*_within(window)), pattern)
 
     def may_have_held_within(self, window: Window, pattern: Pattern = ANYTHING) -> tuple[Fluent, ...]:
-        """Return the fluents that may have held at some time in the window: start < end and begin < finish in some
-        one."""
+        """Return the fluents that may have held at some time in a window, in some scenario.
+
+        That is, start < end and begin < finish.
+        """
         return self._chosen(self._possible(*_within(window)), pattern)
 
     def _certain(self, start: int, finish: int) -> NDArray[np.bool_]:
-        """Return whether start is under a bound, and the negated finish under another, in all cases: shape (n,)."""
+        """Return whether all cases have start under a bound, and the negated finish under another, shape (n,)."""
         below = self.spans[:, :, _ORIGIN, _START] <= start
         certain = below & (self.spans[:, :, _FINISH, _ORIGIN] <= finish)
         return np.asarray(certain.all(axis=0))
 
     def _possible(self, start: int, finish: int) -> NDArray[np.bool_]:
-        """Return whether both bounds can be added without a negative cycle in some case: shape (n,).
+        """Return whether both bounds can be added without a negative cycle in some case, shape (n,).
 
-        There are three simple cycles through new constraints: through the one, through the other, through both.
+        There are three simple cycles through the new constraints: through the first, the second, or both.
         """
         first = add_arrays(self.spans[:, :, _START, _ORIGIN], start) >= ZERO
         second = add_arrays(self.spans[:, :, _ORIGIN, _FINISH], finish) >= ZERO
@@ -151,14 +162,14 @@ class Chronology:
         )
 
     def relations(self, a: str, b: str) -> tuple[Allen, ...]:
-        """Return the Allen relations that fluent a may bear to fluent b; where it is one, it is certain."""
+        """Return the Allen relations that fluent a may have to fluent b; a single one is certain."""
         return members(int(self.masks[self._place(a), self._place(b)]))
 
     def certain_order(self, a: str, b: str) -> TemporalOrder | None:
-        """Return what is certain of the order of two fluents; None where nothing is.
+        """Return the certain order of two fluents, or None if no order is certain.
 
-        PRECEDES where a.finish <= b.start in every scenario, FOLLOWS where b.finish <= a.start, CONCURRENT where they
-        share a time in every scenario.
+        The order is PRECEDES if a.finish <= b.start in every scenario, FOLLOWS if b.finish <= a.start, and CONCURRENT
+        if they share a time in every scenario.
         """
         mask = int(self.masks[self._place(a), self._place(b)])
         if not mask & ~_PRECEDES:
@@ -170,9 +181,9 @@ class Chronology:
     def certain_orders(
         self, window: Window | None = None, pattern: Pattern = ANYTHING
     ) -> tuple[tuple[Fluent, TemporalOrder, Fluent], ...]:
-        """Return the certain order of each two fluents; given a window, of those that may have held at some time in it.
+        """Return the certain order of each two fluents, or of those that may have held at some time in a window.
 
-        Each two fluents come once, the first as listed first, unless it follows: then they are exchanged.
+        Each two fluents come once, in the order of listing, or reversed if the first follows the second.
         """
         everything = tuple(fluent for fluent in self.fluents if pattern.matches(fluent.statement))
         chosen = everything if window is None else self.may_have_held_within(window, pattern)
@@ -188,17 +199,17 @@ class Chronology:
 
 
 def _at(time: float) -> tuple[int, int]:
-    """Return the bounds on start and on the negated finish that say: at the time."""
+    """Return the bounds on start and on the negated finish for holding at a time."""
     if not isfinite(time):
-        raise SettingError(f"a time is a finite number of seconds, not {time}")
+        raise SettingError(f"a time must be a finite number of seconds, got {time}")
     return encode(time), encode(-time, strict=True)
 
 
 def _throughout(window: Window) -> tuple[int, int]:
-    """Return the bounds on start and on the negated finish that say: throughout the window."""
+    """Return the bounds on start and on the negated finish for holding throughout a window."""
     return encode(window.begin), encode(-window.end)
 
 
 def _within(window: Window) -> tuple[int, int]:
-    """Return the bounds on start and on the negated finish that say: at some time in the window."""
+    """Return the bounds on start and on the negated finish for holding at some time in a window."""
     return encode(window.end, strict=True), encode(-window.begin, strict=True)

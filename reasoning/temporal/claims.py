@@ -1,4 +1,4 @@
-"""What is stated of time as difference constraints: fluents, differences, and Allen relations, disjunctive ones too."""
+"""Statements about time as difference constraints: fluents, differences, and Allen relations, also disjunctive ones."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from deixis.reasoning.temporal.network import DifferenceConstraint, SimpleTempor
 
 @dataclass(frozen=True, slots=True)
 class Disjunction:
-    """A set of Allen relations between fluents a and b that is not convex, as a union of convex pieces."""
+    """A non-convex set of Allen relations between fluents a and b, as a union of convex pieces."""
 
     a: str
     relations: int
@@ -26,20 +26,21 @@ class Disjunction:
 
     @property
     def points(self) -> tuple[str, str, str, str]:
-        """The ends of a, then of b."""
+        """Names of the ends of a, then of b."""
         return ends(self.a) + ends(self.b)
 
     @property
     def pieces(self) -> tuple[int, ...]:
-        """Convex masks whose union the relations are."""
+        """Convex masks whose union is the set of relations."""
         return tuple(piece.mask for piece in convex_pieces(self.relations))
 
 
 @dataclass(frozen=True, slots=True)
 class Claim:
-    """What is stated at one place: both bounds of a time, or a relation, as constraints or as a disjunction of such.
+    """The content of one statement, as constraints or as a disjunction of constraints.
 
-    ``why`` is the statement as a whole; explanations rest on the part of it that they need, one of ``leaves``.
+    A statement gives both bounds of a time, or a relation. ``why`` is the whole statement; explanations rest on those
+    of its ``leaves`` that they need.
     """
 
     why: Proof[str]
@@ -48,12 +49,12 @@ class Claim:
 
     @property
     def leaves(self) -> frozenset[Proof[str]]:
-        """The stated leaves of explanations that rest on it."""
+        """Stated leaves of the explanations that rest on the claim."""
         return frozenset(leaf for constraint in self.constraints for leaf in constraint.why.leaves()) | {self.why}
 
     @property
     def fluents(self) -> tuple[str, ...]:
-        """The ids of the fluents that it is about."""
+        """Ids of the fluents that the claim is about."""
         if self.disjunction is not None:
             return self.disjunction.a, self.disjunction.b
         named = (point for c in self.constraints for point in (c.tail, c.head) if point != ORIGIN)
@@ -61,7 +62,7 @@ class Claim:
 
 
 def ends(fluent: str) -> tuple[str, str]:
-    """Return the names of a fluent's two ends."""
+    """Return the names of the two ends of a fluent."""
     return f"{fluent}.start", f"{fluent}.finish"
 
 
@@ -72,7 +73,7 @@ def proper_interval(fluent: str) -> DifferenceConstraint:
 
 
 def allen_constraints(a: str, relations: int, b: str, why: Proof[str]) -> tuple[DifferenceConstraint, ...]:
-    """Return the difference constraints that a convex set of Allen relations is, by definition of it."""
+    """Return the difference constraints that define a convex set of Allen relations."""
     names = ends(a) + ends(b)
     found = []
     for tail, head, code in necessary_orders(relations):
@@ -82,7 +83,7 @@ def allen_constraints(a: str, relations: int, b: str, why: Proof[str]) -> tuple[
 
 
 def claims_of(item: Fluent | AllenStatement | EndDifference) -> tuple[Claim, ...]:
-    """Return what a fluent's bounds, a difference or a relation claim, statement by statement."""
+    """Return the claims of a fluent's bounds, of a difference or of a relation, one per statement."""
     if isinstance(item, AllenStatement):
         return (_allen_claim(item),) if item.relations != ALL_ALLEN else ()
     if isinstance(item, EndDifference):
@@ -96,7 +97,7 @@ def claims_of(item: Fluent | AllenStatement | EndDifference) -> tuple[Claim, ...
 
 
 def _bounds_claim(tail: str, head: str, bounds: Bounds, text: str, source: str | None) -> tuple[Claim, ...]:
-    """Return the claim that a difference lies within bounds; none where nothing bounds it."""
+    """Return the claim that a difference lies within bounds, or no claim if both bounds are infinite."""
     constraints = difference(tail, head, bounds, source)
     if len(constraints) < 2:
         return tuple(Claim(constraint.why, (constraint,)) for constraint in constraints)
@@ -119,12 +120,12 @@ def network_of(fluents: Iterable[str]) -> SimpleTemporalNetwork:
 
 
 def add_fluent(network: SimpleTemporalNetwork, fluent: str) -> None:
-    """Add a fluent's two ends, of which nothing else is known."""
+    """Add the two ends of a fluent, with no other constraints."""
     for point in ends(fluent):
         network.add_point(point)
     network.add([proper_interval(fluent)])
 
 
 def disjunctions(claims: Iterable[Claim]) -> Iterator[Disjunction]:
-    """Return the claims that are disjunctions."""
+    """Yield the disjunctions among claims."""
     return (claim.disjunction for claim in claims if claim.disjunction is not None)

@@ -1,7 +1,7 @@
-"""Allen's relations as orders of end points, and which of them given distances admit.
+"""Allen's relations as orders of end points, and the relations that given distances admit.
 
-A convex set of Allen relations (:mod:`deixis.reasoning.geometry.allen`) is a few orders of end points, and each of them
-a difference constraint. Any other set is a union of convex ones.
+A convex set of Allen relations (:mod:`deixis.reasoning.geometry.allen`) is a conjunction of a few orders of end points,
+each of them a difference constraint. Any other set is a union of convex ones.
 """
 
 from __future__ import annotations
@@ -17,15 +17,15 @@ from deixis.reasoning.geometry.allen import HIGH_A, HIGH_B, LOW_A, LOW_B, convex
 from deixis.reasoning.temporal.bounds import Bounds
 
 START_A, FINISH_A, START_B, FINISH_B = LOW_A, HIGH_A, LOW_B, HIGH_B
-"""The four points of two fluents, in the order of all arrays here."""
+"""Numbers of the four end points of two fluents, in the order of all arrays here."""
 
 Constraint = tuple[int, int, int]
-"""Tail, head, code: head minus tail is bounded."""
+"""Tail, head and code: an upper bound of head minus tail."""
 
 
 @cache
 def necessary_orders(mask: int) -> tuple[Constraint, ...]:
-    """Return as few orders of end points as say the convex hull of a mask, as difference constraints.
+    """Return the fewest orders of end points that define the convex hull of a mask, as difference constraints.
 
     >>> necessary_orders(1 << Allen.BEFORE) == ((START_B, FINISH_A, 0),)  # a.finish - b.start < 0
     True
@@ -44,12 +44,20 @@ def _definitions() -> NDArray[np.int64]:
 
 
 def masks_of_pairs(distances: NDArray[np.int64], pairs: NDArray[np.int64]) -> NDArray[np.uint16]:
-    """Return the Allen relations that pairs of fluents may bear to each other, by minimal distances between points.
+    """Return the Allen relations that pairs of fluents may have, by the minimal distances between points.
 
-    ``distances`` (m, m) must be closed; ``pairs`` (p, 4) holds the indices of START_A, FINISH_A, START_B, FINISH_B.
-    Returns 13-bit masks, shape (p,). A relation is in the mask just where some choice of times within the distances
-    realises it: minimal distances among four points are all that a network says of them (Dechter, Meiri & Pearl 1991),
-    so each relation is tried on these four.
+    Parameters
+    ----------
+    distances
+        Closed distances between points, shape (m, m).
+    pairs
+        Indices of START_A, FINISH_A, START_B and FINISH_B, shape (p, 4).
+
+    Returns
+    -------
+    13-bit masks, shape (p,). A relation is in the mask exactly if some choice of times within the distances realises
+    it. The minimal distances among four points hold all that a network implies of them (Dechter, Meiri & Pearl 1991),
+    so each relation is tested on these four.
     """
     from deixis.reasoning.temporal.kernels import admitted
 
@@ -60,7 +68,7 @@ def masks_of_pairs(distances: NDArray[np.int64], pairs: NDArray[np.int64]) -> ND
 def allen_masks(
     distances: NDArray[np.int64], starts: NDArray[np.int64], finishes: NDArray[np.int64]
 ) -> NDArray[np.uint16]:
-    """Return the same for all ordered pairs of n fluents, given the points of their ends: shape (n, n)."""
+    """Return the Allen relations of all ordered pairs of n fluents, given the points of their ends, shape (n, n)."""
     n = len(starts)
     first, second = np.triu_indices(n, 1)
     pairs = np.stack([starts[first], finishes[first], starts[second], finishes[second]], axis=1).astype(np.int64)
@@ -71,7 +79,7 @@ def allen_masks(
 
 
 def converse_masks(masks: NDArray[np.uint16]) -> NDArray[np.uint16]:
-    """Return the converse of each mask: bit i goes to bit 12 - i."""
+    """Return the converse of each mask, which moves bit i to bit 12 - i."""
     found = np.zeros_like(masks)
     for code in range(13):
         found |= ((masks >> code) & 1) << (12 - code)
@@ -79,7 +87,7 @@ def converse_masks(masks: NDArray[np.uint16]) -> NDArray[np.uint16]:
 
 
 def distances_from_bounds(starts: list[Bounds], finishes: list[Bounds]) -> NDArray[np.int64]:
-    """Return closed distances among the origin (0), n starts (1 to n) and n finishes: shape (2 n + 1, 2 n + 1)."""
+    """Return closed distances among the origin (0), n starts (1 to n) and n finishes, shape (2 n + 1, 2 n + 1)."""
     n = len(starts)
     upper = np.array([ZERO, *(b.at_most for b in (*starts, *finishes))], dtype=np.int64)
     lower = np.array([ZERO, *(b.at_least for b in (*starts, *finishes))], dtype=np.int64)

@@ -1,4 +1,4 @@
-"""The errors of reasoning about time."""
+"""Errors of reasoning about time."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from deixis.reasoning.errors import InconsistencyError
 
 
 class FluentError(DeixisError, ValueError):
-    """A fluent or a relation between fluents that contradicts itself; the message names it."""
+    """A fluent, or a relation between fluents, that contradicts itself; the message names it."""
 
 
 class UnknownFluentError(UnknownTermError):
-    """A fluent or a time point that nobody stated; the message suggests the nearest of those that were."""
+    """An unknown fluent or time point; the message suggests the nearest known one."""
 
     def __init__(self, kind: str, name: str, names: Iterable[str]) -> None:
         close = get_close_matches(name[:100], list(names), n=1)
@@ -26,9 +26,8 @@ class TemporalConflictError(InconsistencyError):
     """Statements about time that cannot all hold.
 
     ``explanation`` is the proof: a negative cycle of the simple temporal network, or one for every alternative of the
-    disjunctions in question. ``statements`` are what it rests on, each with all that is stated at its place. Where
-    ``minimal``, any one of them may be left out and the rest is consistent; else time was up before that was made
-    sure, and the proof alone stands.
+    disjunctions. ``statements`` are those that the proof rests on, each with everything stated at its place. If
+    ``minimal``, leaving out any one of them makes the rest consistent; otherwise time ran out before that was proved.
     """
 
     def __init__(self, explanation: Proof[str], minimal: bool, statements: tuple[Proof[str], ...] = ()) -> None:

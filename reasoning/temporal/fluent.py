@@ -1,8 +1,8 @@
-"""Fluents: statements that hold for a time, and what may be stated of when.
+"""Fluents: statements that hold for a time, and statements about that time.
 
-A fluent is as the blackboard of RACE has it (Rockel et al. 2013): an instance with a statement and with a start and a
-finish, each known only to lie in an interval of seconds since an origin, or not known at all. It holds from its start
-on and no longer at its finish, so that of two fluents that meet just one holds at the instant between them.
+A fluent is as on the blackboard of RACE (Rockel et al. 2013): an instance with a statement, a start and a finish, each
+known only to lie in an interval of seconds since an origin, or not known at all. It holds from its start on, but not at
+its finish, so that of two fluents that meet, exactly one holds at the instant between them.
 """
 
 from __future__ import annotations
@@ -15,12 +15,12 @@ from deixis.reasoning.temporal.bounds import UNKNOWN, Bounds
 from deixis.reasoning.temporal.errors import FluentError
 
 ORIGIN = "origin"
-"""The point from which times are counted."""
+"""Name of the point from which times are counted."""
 
 
 @dataclass(frozen=True, slots=True)
 class Statement:
-    """What holds: a subject, a predicate, and an object where there is one.
+    """The content of a fluent: a subject, a predicate, and possibly an object.
 
     >>> str(Statement("cup", "on", "table")), str(Statement("door", "open"))
     ('on(cup, table)', 'open(door)')
@@ -36,7 +36,7 @@ class Statement:
 
 @dataclass(frozen=True, slots=True)
 class Pattern:
-    """Which statements are meant: those with this subject, predicate and object, None standing for any.
+    """A pattern of statements, by subject, predicate and object; None matches everything.
 
     >>> Pattern(predicate="on").matches(Statement("cup", "on", "table"))
     True
@@ -47,7 +47,7 @@ class Pattern:
     object: str | None = None
 
     def matches(self, statement: Statement) -> bool:
-        """Return whether a statement is one of them."""
+        """Return whether a statement matches the pattern."""
         return (
             self.subject in (None, statement.subject)
             and self.predicate in (None, statement.predicate)
@@ -62,8 +62,7 @@ ANYTHING = Pattern()
 class Fluent:
     """A statement that holds from some time to some later time, both known within bounds.
 
-    ``source`` says where it was stated. Raises FluentError, which names the fluent, where its bounds leave no start
-    that is before a finish.
+    ``source`` is the place where it was stated. Raises FluentError if the bounds leave no start before a finish.
 
     >>> str(Fluent("f1", Statement("cup", "on", "table"), Bounds(0, 2), Bounds(5)))
     'f1: on(cup, table) from [0, 2] to [5, ∞)'
@@ -79,13 +78,13 @@ class Fluent:
         longest = add(self.start.at_least, self.finish.at_most)
         if longest <= ZERO:
             raise FluentError(
-                f"{_place(self.source)}the fluent '{self.id}' starts in {self.start} and finishes in {self.finish}, "
-                "and a fluent starts before it finishes"
+                f"{_place(self.source)}the fluent '{self.id}' must start before it finishes, "
+                f"got a start in {self.start} and a finish in {self.finish}"
             )
 
     @property
     def points(self) -> tuple[str, str]:
-        """The names of its two ends."""
+        """Names of its two ends."""
         return f"{self.id}.start", f"{self.id}.finish"
 
     def __str__(self) -> str:
@@ -94,9 +93,9 @@ class Fluent:
 
 @dataclass(frozen=True, slots=True)
 class AllenStatement:
-    """That fluent ``a`` bears one of a set of Allen relations, a 13-bit mask, to fluent ``b``.
+    """The statement that fluent ``a`` has one of a set of Allen relations, a 13-bit mask, to fluent ``b``.
 
-    Raises FluentError where the set is empty, or a fluent is related to itself.
+    Raises FluentError if the set is empty, or a fluent is related to itself.
 
     >>> str(AllenStatement("f1", 0b11, "f2"))
     'before or meets(f1, f2)'
@@ -110,13 +109,13 @@ class AllenStatement:
     def __post_init__(self) -> None:
         where = _place(self.source)
         if not 0 < self.relations <= ALL_ALLEN:
-            raise FluentError(f"{where}'{self.a}' and '{self.b}' must bear one or more of the thirteen relations")
+            raise FluentError(f"{where}'{self.a}' and '{self.b}' must have at least one of the thirteen relations")
         if self.a == self.b:
             raise FluentError(f"{where}the fluent '{self.a}' is related to itself")
 
     @property
     def fluents(self) -> tuple[str, ...]:
-        """The ids of the fluents that it is about."""
+        """Ids of the two fluents."""
         return self.a, self.b
 
     def __str__(self) -> str:
@@ -125,9 +124,9 @@ class AllenStatement:
 
 @dataclass(frozen=True, slots=True)
 class EndDifference:
-    """That the time from one point to another lies within bounds, in seconds.
+    """The statement that the time from one point to another lies within bounds, in seconds.
 
-    A point is ``ID.start`` or ``ID.finish`` of a fluent, or ``origin``. Raises FluentError where both are the same.
+    A point is ``ID.start`` or ``ID.finish`` of a fluent, or ``origin``. Raises FluentError if the points are equal.
 
     >>> str(EndDifference("f1.finish", "f2.start", Bounds(0, 5)))
     'f2.start - f1.finish in [0, 5]'
@@ -144,7 +143,7 @@ class EndDifference:
 
     @property
     def fluents(self) -> tuple[str, ...]:
-        """The ids of the fluents that it is about."""
+        """Ids of the fluents of the points."""
         points = (point for point in (self.tail, self.head) if point != ORIGIN)
         return tuple(dict.fromkeys(point.rpartition(".")[0] for point in points))
 

@@ -1,4 +1,4 @@
-"""Why a bound or a relation between fluents is certain, disjunctions included."""
+"""Explain why a bound or a relation between fluents is certain, with disjunctions."""
 
 from __future__ import annotations
 
@@ -22,72 +22,78 @@ from deixis.reasoning.temporal.search import ScenarioSearch
 
 
 class TimeQuestion(Protocol):
-    """Something certain that a network can be asked for, as an integer, and the reasons for it."""
+    """A question to a network, with an integer as the answer, and the explanation of the answer."""
 
     def answer(self, network: SimpleTemporalNetwork) -> int:
-        """Return what the network says."""
+        """Return the answer by a network."""
 
     def joined(self, answers: Sequence[int]) -> int:
-        """Return what can still be said where it is one of several answers."""
+        """Return the answer that holds if one of several answers does."""
 
     def text(self, answer: int) -> str:
         """Return an answer in words."""
 
     def explain(self, network: SimpleTemporalNetwork) -> Proof[str] | None:
-        """Return why the network says so; None where it says nothing."""
+        """Return the explanation of the network's answer, or None without any information."""
 
     def restricted(
         self, why: Proof[str] | None, network: SimpleTemporalNetwork, undecided: Sequence[Disjunction]
     ) -> Proof[str] | None:
-        """Return the explanation by the network, and by open disjunctions taken each by itself."""
+        """Return the explanation by the network, and by each open disjunction on its own."""
 
 
 @dataclass(frozen=True, slots=True)
 class BoundQuestion:
-    """By how much ``head`` is later than ``tail`` at the most."""
+    """The question of the upper bound of ``head`` minus ``tail``."""
 
     tail: str
     head: str
 
     def answer(self, network: SimpleTemporalNetwork) -> int:
+        """Return the answer by a network."""
         return network.code(self.tail, self.head)
 
     def joined(self, answers: Sequence[int]) -> int:
+        """Return the answer that holds if one of several answers does."""
         return max(answers)
 
     def text(self, answer: int) -> str:
+        """Return an answer in words."""
         return bound_text(self.tail, self.head, answer, ORIGIN)
 
     def explain(self, network: SimpleTemporalNetwork) -> Proof[str] | None:
+        """Return the explanation of the network's answer, or None without any information."""
         return network.explain(self.tail, self.head)
 
     def restricted(
         self, why: Proof[str] | None, network: SimpleTemporalNetwork, undecided: Sequence[Disjunction]
     ) -> Proof[str] | None:
-        """Leave the answer as it is: an open choice by itself bounds no time."""
+        """Return the explanation unchanged, since an open disjunction on its own bounds no time."""
         return why
 
 
 @dataclass(frozen=True, slots=True)
 class RelationQuestion:
-    """Which Allen relations fluent ``a`` may bear to fluent ``b``."""
+    """The question of the Allen relations that fluent ``a`` may have to fluent ``b``."""
 
     a: str
     b: str
 
     def answer(self, network: SimpleTemporalNetwork) -> int:
+        """Return the answer by a network."""
         pair = np.array([[network.index(point) for point in ends(self.a) + ends(self.b)]], dtype=np.int64)
         return int(masks_of_pairs(network.distances, pair)[0]) if self.a != self.b else 1 << Allen.EQUALS
 
     def joined(self, answers: Sequence[int]) -> int:
+        """Return the answer that holds if one of several answers does."""
         return int(np.bitwise_or.reduce(np.array(answers)))
 
     def text(self, answer: int) -> str:
+        """Return an answer in words."""
         return allen_text(self.a, answer, self.b)
 
     def explain(self, network: SimpleTemporalNetwork) -> Proof[str] | None:
-        """Return the orders of end points that say it; a relation that only several orders exclude together is
-        refuted."""
+        """Return the orders of end points that give the answer, with refutations of single excluded relations."""
         mask = self.answer(network)
         if self.a == self.b:
             return Proof(self.text(mask), Rule.DEFINITION)
@@ -107,7 +113,7 @@ class RelationQuestion:
     def restricted(
         self, why: Proof[str] | None, network: SimpleTemporalNetwork, undecided: Sequence[Disjunction]
     ) -> Proof[str] | None:
-        """Return the answer that counts what is stated of the two fluents too."""
+        """Return the answer that takes statements about the two fluents into account."""
         left = before = self.answer(network)
         premises = [] if why is None else [why]
         for disjunction in undecided:
@@ -128,11 +134,10 @@ def justify(
     deadline: Deadline,
     most: int,
 ) -> Proof[str] | None:
-    """Return why the answer to a question is what it is; None where there is nothing to say, or the disjunctions
-    conflict.
+    """Return the explanation of the answer to a question, or None without information or with conflicting disjunctions.
 
-    Disjunctions that stay open are gone through case by case, up to ``most`` cases and until the deadline, and where
-    the cases agree on more than the network alone says, they are the explanation. The network is changed.
+    Open disjunctions are split case by case, up to ``most`` cases and until the deadline. If the cases agree on more
+    than the network alone implies, they are the explanation. The network is changed.
     """
     forced = ScenarioSearch(network, disjunctions, deadline, explain=True)
     if forced.propagate() is SearchOutcome.REFUTED:

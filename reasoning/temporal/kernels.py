@@ -1,4 +1,4 @@
-"""The compiled loop of :mod:`deixis.reasoning.temporal.endpoints`: which Allen relations distances admit."""
+"""Compiled loop of :mod:`deixis.reasoning.temporal.endpoints`: the Allen relations that distances admit."""
 
 from __future__ import annotations
 
@@ -12,8 +12,7 @@ _UNBOUNDED = 1 << 62
 
 @kernel()
 def _realisable(four, constraints):  # type: ignore[no-untyped-def]
-    """Return whether constraints (k, 3: tail, head, code) can be added to a closed network of four points; changes
-    it."""
+    """Return whether constraints (k, 3: tail, head, code) can be added to a closed network of four points, in place."""
     for k in range(len(constraints)):
         tail, head, code = constraints[k]
         if code >= _UNBOUNDED or code >= four[tail, head]:
@@ -31,11 +30,11 @@ def _realisable(four, constraints):  # type: ignore[no-untyped-def]
 
 @kernel(lambda distances, pairs, definitions: 800 * len(pairs))
 def admitted(distances, pairs, definitions):  # type: ignore[no-untyped-def]
-    """Return the Allen relations that each pair of fluents may bear: masks, shape (p,) uint16.
+    """Return the Allen relations that each pair of fluents may have: masks, shape (p,) uint16.
 
     ``distances`` (m, m) are the tightest bounds on *column point minus row point*, as codes. ``pairs`` (p, 4) holds the
-    points of start and finish of the first fluent and of the second; ``definitions`` (13, k, 3) the constraints that
-    define each relation on these four, padded with unbounded ones.
+    start and finish of the first fluent and of the second; ``definitions`` (13, k, 3) holds the constraints that define
+    each relation on these four points, padded with unbounded ones.
     """
     masks = np.zeros(len(pairs), np.uint16)
     four, trial = np.empty((4, 4), np.int64), np.empty((4, 4), np.int64)

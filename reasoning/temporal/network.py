@@ -1,8 +1,8 @@
 """The simple temporal network (Dechter, Meiri & Pearl 1991): time points under difference constraints.
 
-Minimal distances between all points are kept. A constraint that is added updates them in O(m^2) for m points; one that
-closes a negative cycle is refused, with the cycle, and nothing is changed. To take constraints away all is worked out
-again. Bounds are exact, and strict ones are strict (:mod:`deixis.reasoning.constraints.difference`).
+Minimal distances between all points are kept. Adding a constraint updates them in O(m^2) for m points; a constraint
+that closes a negative cycle is refused, with the cycle, and changes nothing. Removing constraints recomputes
+everything. Bounds are exact, and strict ones are strict (:mod:`deixis.reasoning.constraints.difference`).
 """
 
 from __future__ import annotations
@@ -21,15 +21,15 @@ from deixis.reasoning.temporal.errors import TemporalConflictError, UnknownFluen
 from deixis.reasoning.temporal.fluent import ORIGIN
 
 MAX_POINTS = 8191
-"""Points of one network: its distances take 8 bytes a pair, 512 MB at this size."""
+"""Maximum number of points of a network; its distances take 8 bytes per pair, 512 MB at this size."""
 
 MAX_TOTAL = 1 << 59
-"""The most that all differences stated between points may add up to, so that no sum overflows: 9,000 years."""
+"""Maximum sum of all differences stated between points, 9,000 years, so that no sum overflows."""
 
 
 @dataclass(frozen=True, slots=True)
 class DifferenceConstraint:
-    """That ``head - tail`` is at most, or less than, what ``code`` says; ``why`` explains it."""
+    """The constraint that ``head - tail`` is at most, or less than, the bound ``code``; ``why`` explains it."""
 
     tail: str
     head: str
@@ -38,7 +38,7 @@ class DifferenceConstraint:
 
 
 class SimpleTemporalNetwork:
-    """Named time points, the origin among them, and the tightest bounds on their differences.
+    """Named time points, including the origin, and the tightest bounds on their differences.
 
     >>> network = SimpleTemporalNetwork(["a", "b"])
     >>> network.add(difference("origin", "a", Bounds(1, 2)) + difference("a", "b", Bounds(3, 4)))
@@ -53,39 +53,39 @@ class SimpleTemporalNetwork:
         self.differences = DifferenceNetwork(1)
         self._index = {ORIGIN: 0}
         self._constraints: list[DifferenceConstraint] = []
-        self._between = 0  # what the constraints between points other than the origin add up to
+        self._between = 0  # the sum of the constraints between points other than the origin
         for point in points:
             self.add_point(point)
 
     @property
     def points(self) -> tuple[str, ...]:
-        """The names of all points, in the order of the distances' rows; the origin is the first."""
+        """Names of all points, in the order of the rows of distances; the origin is the first."""
         return tuple(self._index)
 
     @property
     def constraints(self) -> tuple[DifferenceConstraint, ...]:
-        """All that was added."""
+        """All constraints, in the order of adding."""
         return tuple(self._constraints)
 
     @property
     def distances(self) -> NDArray[np.int64]:
-        """The tightest bounds on column minus row as codes, shape (m, m); a view, not to be written to."""
+        """Tightest bounds on column minus row as codes, shape (m, m); a view, do not write to it."""
         distances: NDArray[np.int64] = self.differences.distances[0]
         return distances
 
     def index(self, point: str) -> int:
-        """Return the row of a point; raises UnknownFluentError where there is none."""
+        """Return the row of a point; raise UnknownFluentError if there is no such point."""
         try:
             return self._index[point]
         except KeyError:
             raise UnknownFluentError("time point", point, self._index) from None
 
     def add_point(self, point: str) -> None:
-        """Add a point, if it is not there yet; raise LimitError beyond ``MAX_POINTS``."""
+        """Add a point if it is new; raise LimitError beyond ``MAX_POINTS``."""
         if point in self._index:
             return
         if len(self._index) == MAX_POINTS:
-            raise LimitError(f"a temporal network has at most {MAX_POINTS} points; tell of the time in parts")
+            raise LimitError(f"a temporal network has at most {MAX_POINTS} points; describe the time in parts")
         self._index[point] = len(self._index)
         self.differences.add_point()
 
@@ -98,19 +98,19 @@ class SimpleTemporalNetwork:
         return Bounds.from_codes(self.code(head, tail), self.code(tail, head))
 
     def add(self, constraints: Sequence[DifferenceConstraint]) -> None:
-        """Take in constraints, all or none.
+        """Add all constraints, or none.
 
-        Raises TemporalConflictError, with the negative cycle, where they contradict what is there; LimitError where
-        differences add up to more than can be told exactly. Nothing is changed then.
+        Raises TemporalConflictError, with the negative cycle, if they contradict the network, and LimitError if
+        differences add up to more than can be computed exactly. The network is not changed then.
         """
         if not self.try_add(constraints):
             raise TemporalConflictError(self.refutation(constraints), minimal=False)
 
     def try_add(self, constraints: Sequence[DifferenceConstraint]) -> bool:
-        """Return the same; False, and nothing changed, where a negative cycle would close."""
+        """Add all constraints and return True; return False and change nothing if a negative cycle would close."""
         for each in constraints:
             self.index(each.tail), self.index(each.head)
-        # a simple path passes every constraint at most once, so their sum bounds its length
+        # a simple path has every constraint at most once, so their sum bounds its length
         total = self._between + sum(map(_size, constraints))
         if total > MAX_TOTAL or any(abs(c.code >> 1) > MAX_SECONDS * TICKS for c in constraints):
             raise LimitError("the stated times are too long to be added up exactly; is the unit right?")
@@ -137,18 +137,18 @@ class SimpleTemporalNetwork:
         del self._constraints[length:]
 
     def keep(self) -> None:
-        """Forget how to take back what was added so far, and the memory that it takes."""
+        """Make the constraints so far permanent, which frees the memory for taking them back."""
         self.differences.keep()
 
     def retract(self, constraints: Iterable[DifferenceConstraint]) -> None:
-        """Take constraints away, each once, and work everything out again."""
+        """Remove constraints, each once, and recompute everything."""
         for constraint in constraints:
             self._constraints.remove(constraint)
         self._between = sum(map(_size, self._constraints))
         self.differences.replace([self._difference(constraint) for constraint in self._constraints])
 
     def copy(self) -> SimpleTemporalNetwork:
-        """Return a network with the same points and constraints, that changes by itself."""
+        """Return an independent network with the same points and constraints."""
         other = SimpleTemporalNetwork()
         other.differences = self.differences.copy()
         other._index = dict(self._index)
@@ -157,8 +157,7 @@ class SimpleTemporalNetwork:
         return other
 
     def explain(self, tail: str, head: str) -> Proof[str] | None:
-        """Return why ``head - tail`` is bounded as it is: the fewest constraints that add up to it; None where it is
-        not."""
+        """Return the fewest constraints that add up to the upper bound of ``head - tail``, or None without a bound."""
         code = self.code(tail, head)
         if code >= UNBOUNDED or tail == head:
             return None
@@ -167,7 +166,7 @@ class SimpleTemporalNetwork:
         return path[0] if len(path) == 1 and path[0].claim == text else Proof(text, Rule.SHORTEST_PATH, tuple(path))
 
     def refutation(self, constraints: Sequence[DifferenceConstraint]) -> Proof[str]:
-        """Return the negative cycle that constraints would close, which :meth:`try_add` refuses; changes nothing.
+        """Return the negative cycle that constraints would close, which :meth:`try_add` refuses; change nothing.
 
         The cycle is simple: it passes each of its points once.
         """
@@ -178,24 +177,24 @@ class SimpleTemporalNetwork:
         return proof
 
     def cycle(self, refused: DifferenceConstraint) -> Proof[str]:
-        """Return the negative cycle that a constraint closes with those that are there."""
+        """Return the negative cycle that a constraint closes with those of the network."""
         cycle = [refused, *(self._constraints[k] for k in self.differences.cycle(self._difference(refused)))]
         code = add(self.code(refused.head, refused.tail), refused.code)
         point = next((c.tail for c in cycle if c.tail != ORIGIN), ORIGIN)
         return Proof(bound_text(point, point, code, ORIGIN), Rule.NEGATIVE_CYCLE, tuple(c.why for c in cycle))
 
     def record(self, length: int, constraints: Sequence[DifferenceConstraint]) -> None:
-        """Say what the differences are, from the one of that number on, that a search has added by itself."""
+        """Set the constraints, from number ``length`` on, for differences that a search has added directly."""
         self._constraints[length:] = constraints
 
 
 def _size(constraint: DifferenceConstraint) -> int:
-    """Return what a constraint can add to a path beyond the two that touch the origin."""
+    """Return the length that a constraint can add to a path beyond the two constraints at the origin."""
     return 0 if ORIGIN in (constraint.tail, constraint.head) else abs(constraint.code >> 1)
 
 
 def difference(tail: str, head: str, bounds: Bounds, source: str | None = None) -> tuple[DifferenceConstraint, ...]:
-    """Return the constraints, at most two, that say that ``head - tail`` lies within bounds, as stated ones."""
+    """Return the stated constraints, at most two, that ``head - tail`` lies within bounds."""
     found = []
     for start, end, code in ((tail, head, bounds.at_most), (head, tail, bounds.at_least)):
         if code < UNBOUNDED:

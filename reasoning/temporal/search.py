@@ -1,9 +1,9 @@
-"""Disjunctions over a simple temporal network: what they force, the scenarios that they leave, and why there is none.
+"""Disjunctions over a simple temporal network: forced pieces, the remaining scenarios, and proofs of inconsistency.
 
-Each disjunction is a choice between convex pieces, and each piece a conjunction of difference constraints, so that the
+Each disjunction is a choice between convex pieces, and each piece a conjunction of difference constraints, so the
 search is that of :mod:`deixis.reasoning.constraints.disjunctive` (the meta-search of temporal constraint satisfaction:
-Dechter, Meiri and Pearl 1991). Here it proves what it finds: a piece that is left over holds by elimination, and
-disjunctions exclude each other by cases.
+Dechter, Meiri and Pearl 1991). This module adds proofs: the last piece left holds by elimination, and disjunctions
+exclude each other by cases.
 """
 
 from __future__ import annotations
@@ -23,10 +23,10 @@ from deixis.reasoning.temporal.network import DifferenceConstraint, SimpleTempor
 
 
 class ScenarioSearch(Search):
-    """Goes through the scenarios: consistent choices of a piece for every disjunction.
+    """A search through the scenarios: consistent choices of a piece for every disjunction.
 
-    With ``explain`` every constraint that it adds to the network carries its proof, and ``proof`` says, after a search
-    that found none, why there is none.
+    With ``explain``, every constraint that it adds to the network has its proof, and ``proof`` is the proof of
+    inconsistency after a search without a scenario.
     """
 
     def __init__(
@@ -39,16 +39,16 @@ class ScenarioSearch(Search):
         super().__init__(network.differences, Clauses(_clause(network, d) for d in disjunctions), deadline)
         self.proof: Proof[str] | None = None
         self._temporal, self._disjunctions, self._explain = network, disjunctions, explain
-        self._against: dict[Level, list[Proof[str]]] = {}  # why the pieces that were tried fail
+        self._against: dict[Level, list[Proof[str]]] = {}  # proofs that the pieces tried so far fail
 
     def still_open(self) -> list[Disjunction]:
         """Return the disjunctions that are neither decided nor implied."""
         return [self._disjunctions[k] for k in self.open()]
 
     def visit(self, look: Callable[[], None], most: int) -> tuple[int, bool]:
-        """Call ``look`` while the network holds each scenario, ``most`` at the most.
+        """Call ``look`` while the network holds each scenario, at most ``most`` of them.
 
-        Returns how many there were, and whether these are all. The network is as before in the end.
+        Returns the number of scenarios visited, and whether these are all. The network is unchanged in the end.
         """
         found = 0
         while self.advance() is SearchOutcome.SOLVED and found < most:
@@ -110,7 +110,7 @@ def _clause(network: SimpleTemporalNetwork, disjunction: Disjunction) -> Clause:
 
 
 def refuted(claims: Sequence[Claim], deadline: Deadline) -> Proof[str] | None:
-    """Return the proof that claims cannot all hold; None where they can, or where the deadline comes first."""
+    """Return the proof that claims cannot all hold, or None if they can or the deadline comes first."""
     network = network_of(dict.fromkeys(fluent for claim in claims for fluent in claim.fluents))
     for claim in claims:
         if not network.try_add(claim.constraints):
@@ -120,10 +120,9 @@ def refuted(claims: Sequence[Claim], deadline: Deadline) -> Proof[str] | None:
 
 
 def minimal_conflict(claims: Sequence[Claim], proof: Proof[str], deadline: Deadline) -> TemporalConflictError:
-    """Return the error for claims that a proof refutes, with every claim dropped that the contradiction does without.
+    """Return the error for claims that a proof refutes, with a minimal set of claims.
 
-    Only what the proof rests on is looked at. At the deadline dropping stops, and the error says that
-    it may not be minimal.
+    Only claims that the proof rests on are considered. At the deadline, the error says that the set may not be minimal.
     """
 
     def resting(chosen: Sequence[Claim]) -> list[Claim]:

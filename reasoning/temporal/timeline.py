@@ -1,7 +1,7 @@
-"""A timeline: what is stated of when fluents hold, kept consistent as it grows, and what follows from it.
+"""A timeline: statements about the times of fluents, kept consistent as it grows, and their implications.
 
-Fluents and convex relations go into the simple temporal network at once, and what contradicts it is refused. Relations
-that are a matter of choice (before or after) wait until the timeline is asked.
+Fluents and convex relations are added to the simple temporal network at once, which refuses contradictions. Disjunctive
+relations (before or after) are decided when the timeline is queried.
 """
 
 from __future__ import annotations
@@ -23,11 +23,11 @@ from deixis.reasoning.temporal.network import SimpleTemporalNetwork
 from deixis.reasoning.temporal.search import ScenarioSearch, minimal_conflict, refuted
 
 MAX_SCENARIOS = 64
-"""Scenarios of undecided disjunctions over which what is certain is worked out exactly."""
+"""Maximum number of scenarios of undecided disjunctions over which the implications are computed exactly."""
 
 
 class Timeline:
-    """Fluents, and what is stated of their times.
+    """Fluents, and statements about their times.
 
     >>> from deixis.reasoning.temporal.bounds import Bounds
     >>> from deixis.reasoning.temporal.fluent import AllenStatement, EndDifference, Statement
@@ -38,8 +38,8 @@ class Timeline:
     >>> str(timeline.chronology().start("f2"))
     '[6, 11]'
 
-    Raises TemporalConflictError for a statement that contradicts the others, which is then not taken in; FluentError
-    where a fluent's id is taken; UnknownFluentError for a relation to a fluent that is not there.
+    Raises TemporalConflictError for a statement that contradicts the others, which is then not added; FluentError if
+    the id of a fluent is in use; UnknownFluentError for a relation to an unknown fluent.
     """
 
     def __init__(self, fluents: Iterable[Fluent] = (), relations: Iterable[TemporalRelation] = ()) -> None:
@@ -51,24 +51,24 @@ class Timeline:
 
     @property
     def fluents(self) -> tuple[Fluent, ...]:
-        """The fluents, in the order in which they were added."""
+        """Fluents in the order in which they were added."""
         return tuple(self._fluents.values())
 
     @property
     def network(self) -> SimpleTemporalNetwork:
-        """The network of all that is no matter of choice; not to be changed."""
+        """Network of all statements without disjunctions; do not change it."""
         return self._network
 
     def add(self, item: Fluent | TemporalRelation, time_limit: float = 10.0) -> None:
-        """Take in a fluent or a relation; one that is stated already changes nothing.
+        """Add a fluent or a relation; adding a statement again changes nothing.
 
-        The time limit, in seconds, is for making the explanation of a contradiction minimal.
+        ``time_limit`` in seconds is for making the explanation of a contradiction minimal.
         """
         if item in self._claims:
             return
         if isinstance(item, Fluent):
             if item.id in self._fluents:
-                raise FluentError(f"the fluent '{item.id}' is stated twice; give every fluent an id of its own")
+                raise FluentError(f"the fluent '{item.id}' is stated twice; give every fluent its own id")
             add_fluent(self._network, item.id)
         else:
             for fluent in item.fluents:
@@ -84,23 +84,23 @@ class Timeline:
             self._fluents[item.id] = item
 
     def fluent(self, fluent_id: str) -> Fluent:
-        """Return a fluent by its id; raises UnknownFluentError where there is none."""
+        """Return a fluent by its id; raise UnknownFluentError if there is no such fluent."""
         try:
             return self._fluents[fluent_id]
         except KeyError:
             raise UnknownFluentError("fluent", fluent_id, self._fluents) from None
 
     def retract(self, item: Fluent | TemporalRelation) -> None:
-        """Take back what was stated, and work the rest out again.
+        """Remove a statement, and recompute the rest.
 
-        Raises UnknownFluentError where it was not stated, FluentError for a fluent to which relations are stated.
+        Raises UnknownFluentError if it was not stated, and FluentError for a fluent that relations refer to.
         """
         if item not in self._claims:
             raise UnknownFluentError("statement", str(item), map(str, self._claims))
         if isinstance(item, Fluent):
             related = [other for other in self._claims if not isinstance(other, Fluent) and item.id in other.fluents]
             if related:
-                raise FluentError(f"take back '{related[0]}' first: it is about the fluent '{item.id}'")
+                raise FluentError(f"retract '{related[0]}' first: it refers to the fluent '{item.id}'")
             del self._fluents[item.id], self._claims[item]
             self._network = network_of(self._fluents)
             self._network.add([c for claim in self._all_claims() for c in claim.constraints])
@@ -111,11 +111,11 @@ class Timeline:
         return [claim for claims in self._claims.values() for claim in claims]
 
     def chronology(self, time_limit: float = 10.0) -> Chronology:
-        """Return what follows of the times of all fluents: tightened bounds, and the relations left to every pair.
+        """Return the implied bounds of all times, and the possible relations of every pair of fluents.
 
-        Raises TemporalConflictError where the disjunctions cannot be satisfied together; to prove it in as few
-        statements as can be may take as long again. Where the time limit, in seconds, comes before that is known, the
-        status is UNDECIDED, and the chronology holds what is certain without the disjunctions that are left open.
+        Raises TemporalConflictError if the disjunctions are inconsistent; making the proof minimal may take as long
+        again. If the time limit, in seconds, is reached before consistency is known, the status is UNDECIDED, and the
+        chronology holds what is certain without the open disjunctions.
         """
         deadline = Deadline.after(time_limit)
         claims = self._all_claims()
@@ -138,8 +138,7 @@ class Timeline:
         return views.chronology(Status.CONSISTENT if found else Status.UNDECIDED, complete)
 
     def _conflict(self, claims: list[Claim], time_limit: float) -> TemporalConflictError:
-        """Return the conflict between disjunctions: proved again with its reasons, then made minimal, as time
-        allows."""
+        """Return the conflict between disjunctions, proved again with reasons and made minimal as time allows."""
         deadline = Deadline.after(time_limit)
         proof = refuted(claims, deadline)
         if proof is None:
@@ -149,11 +148,11 @@ class Timeline:
         return minimal_conflict(claims, proof, deadline)
 
     def explain_relation(self, a: str, b: str, time_limit: float = 10.0) -> Proof[str] | None:
-        """Return why fluent a bears to fluent b one of the relations that are left to them; None where all are."""
+        """Return why fluent a must have one of its possible relations to fluent b; None if all are possible."""
         return self._justify(RelationQuestion(self.fluent(a).id, self.fluent(b).id), time_limit)
 
     def explain_bound(self, tail: str, head: str, time_limit: float = 10.0) -> Proof[str] | None:
-        """Return why ``head - tail`` is at most what it is, for two points; None where nothing bounds it.
+        """Return the explanation of the upper bound of ``head - tail``, or None without a bound.
 
         A point is ``ID.start`` or ``ID.finish``, or ``origin``: the upper bound of a fluent's start is
         ``explain_bound("origin", "f1.start")``, its lower bound ``explain_bound("f1.start", "origin")``.
@@ -167,7 +166,7 @@ class Timeline:
 
 
 class _Views:
-    """What the network says of the fluents in each scenario, gathered while it is in that scenario."""
+    """The implications of the network for the fluents, collected from each scenario while the network is in it."""
 
     def __init__(self, fluents: tuple[Fluent, ...], network: SimpleTemporalNetwork) -> None:
         self._fluents = fluents
@@ -187,7 +186,7 @@ class _Views:
         self._masks |= allen_masks(distances, self._starts, self._finishes)
 
     def restrict(self, disjunctions: Iterable[Disjunction]) -> None:
-        """Leave to the pairs of disjunctions no more than these say."""
+        """Restrict the pairs of disjunctions to the relations that these state."""
         places = {fluent.id: place for place, fluent in enumerate(self._fluents)}
         for disjunction in disjunctions:
             a, b = places[disjunction.a], places[disjunction.b]

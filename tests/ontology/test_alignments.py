@@ -1,4 +1,4 @@
-"""The alignments to other ontologies: careful in what they claim, of terms that exist, and consistent with the core."""
+"""The alignments to other ontologies: about existing terms, consistent with the core, and with few axioms."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ LOOKED_UP = {
     SUMO: "Object Artifact Process",
     POS: "relPosition PositionCoordinateSystem PositionMeasure",
 }
-"""Terms that their ontologies (of SOMA's vessels: programs that use them) were seen to have; rdflib knows the rest."""
+"""Terms seen in the other ontologies (SOMA's vessels: in programs that use them); rdflib knows the rest."""
 
 CLAIMS = {RDFS.subClassOf: OWL.Class, RDFS.subPropertyOf: OWL.ObjectProperty}
 MAPPINGS = {SKOS.closeMatch, SKOS.relatedMatch}
@@ -58,7 +58,7 @@ soma:DesignedFurniture rdfs:subClassOf dul:DesignedArtifact .
 geo:Feature owl:disjointWith geo:Geometry .
 sumo:Object owl:disjointWith sumo:Process, sumo:Abstract .
 """
-"""What the others say of the terms that ours are put under, so far as it could contradict us."""
+"""Axioms of the other ontologies about the superclasses of our terms, as far as they could contradict ours."""
 
 
 @pytest.fixture(scope="module")
@@ -71,7 +71,7 @@ def namespace(term: URIRef) -> str:
 
 
 def theirs(graph: Graph) -> set[URIRef]:
-    """The terms of others that an alignment mentions, without those that its header and its mappings are written in."""
+    """Return the foreign terms in an alignment, without the vocabulary of its header and mappings."""
     words = (BASE, str(OWL), str(RDF), str(RDFS), str(SKOS), str(DCTERMS), ONTOLOGY_IRI)
     terms = {s for s in graph.subjects(RDF.type) if s != header(graph)}
     terms |= {value for claim in (*CLAIMS, *MAPPINGS) for value in graph.objects(None, claim)}
@@ -92,32 +92,32 @@ def is_known(term: URIRef) -> bool:
     return str(term).removeprefix(space) in LOOKED_UP.get(space, "").split()
 
 
-def test_there_are_four_of_them() -> None:
+def test_there_are_four_alignments() -> None:
     assert list(FILES) == ["geosparql", "ieee-1872", "soma-dul", "sosa-ssn"]
 
 
 @pytest.mark.parametrize("path", FILES.values(), ids=FILES)
 class TestAlignment:
-    def test_it_has_a_header_of_its_own_and_imports_nothing(self, path: Path) -> None:
+    def test_an_alignment_has_its_own_header_and_imports_nothing(self, path: Path) -> None:
         graph = Graph().parse(path, format="turtle")
         assert header(graph) == URIRef(f"{ONTOLOGY_IRI}/alignments/{path.stem}")
         wanted = (DCTERMS.title, DCTERMS.description, DCTERMS.license, DCTERMS.creator, OWL.versionIRI)
         assert [term for term in wanted if graph.value(header(graph), term) is None] == []
         assert list(graph.subject_objects(OWL.imports)) == []
 
-    def test_it_mentions_only_declared_terms_of_ours(self, path: Path, core: Graph) -> None:
+    def test_an_alignment_mentions_only_declared_terms_of_ours(self, path: Path, core: Graph) -> None:
         graph = Graph().parse(path, format="turtle")
         own = {node for triple in graph for node in triple if isinstance(node, URIRef) and node.startswith(BASE)}
         assert own
         assert {term for term in own if (term, RDF.type, None) not in core} == set()
         assert [term for term in own if (term, RDF.type, None) in graph] == []
 
-    def test_it_mentions_only_known_terms_of_others_and_says_nothing_of_them(self, path: Path) -> None:
+    def test_foreign_terms_are_known_and_never_subjects(self, path: Path) -> None:
         graph = Graph().parse(path, format="turtle")
         assert {term for term in theirs(graph) if not is_known(term)} == set()
         assert {p for term in theirs(graph) for p in graph.predicates(term)} <= {RDF.type}
 
-    def test_what_it_claims_is_of_declared_terms_and_the_rest_is_annotation(self, path: Path, core: Graph) -> None:
+    def test_axioms_are_about_declared_terms_and_the_rest_annotates(self, path: Path, core: Graph) -> None:
         graph = Graph().parse(path, format="turtle")
         own = [(s, p, o) for s, p, o in graph if str(s).startswith(BASE)]
         assert {p for _, p, _ in own} <= {*CLAIMS, *MAPPINGS}
@@ -129,7 +129,7 @@ class TestAlignment:
 
 
 def unsatisfiable(*turtle: str) -> list[str]:
-    """The classes that HermiT finds can have no member; raises where the whole is inconsistent."""
+    """Return the classes that HermiT finds unsatisfiable; raise if the ontology is inconsistent."""
     quads = [quad.triple for text in turtle for quad in pyoxigraph.parse(text, format=pyoxigraph.RdfFormat.TURTLE)]
     ntriples = pyoxigraph.serialize(quads, format=pyoxigraph.RdfFormat.N_TRIPLES) or b""
     return sorted(classify(ntriples.decode("utf-8")).unsatisfiable)
@@ -146,7 +146,7 @@ def test_the_core_with_an_alignment_stays_consistent(path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_the_core_with_all_alignments_and_a_laid_table_stays_consistent() -> None:
+def test_the_core_with_all_alignments_and_a_table_is_consistent() -> None:
     table = f"""
     @prefix dx: <{BASE}> .
     <urn:t> a dx:Scene . <urn:r> a dx:Role .
@@ -157,6 +157,6 @@ def test_the_core_with_all_alignments_and_a_laid_table_stays_consistent() -> Non
 
 
 @pytest.mark.slow
-def test_a_wrong_alignment_would_have_been_noticed() -> None:
+def test_a_wrong_alignment_is_detected() -> None:
     wrong = f"<{BASE}Lesson> <{RDFS.subClassOf}> <{DUL}PhysicalObject> ."
     assert unsatisfiable(*texts(), THEIRS, wrong) == [f"{BASE}Lesson", f"{BASE}WordLesson"]

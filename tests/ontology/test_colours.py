@@ -1,4 +1,4 @@
-"""The colour terms: their words, the names that begin with one, and where prototypes and spreads come from."""
+"""The colour terms: their words, names that begin with one, and the source of prototypes and spreads."""
 
 from __future__ import annotations
 
@@ -69,12 +69,12 @@ def test_a_colour_comes_back_from_its_hexadecimal_digits(rgb: Rgb) -> None:
 
 
 @pytest.mark.parametrize("text", ["", "#fff", "ff0000", "#ff00001", "#ff000g", "#ff0000\n", "#١٢٣٤٥٦"])
-def test_what_is_no_colour_gives_none(text: str) -> None:
+def test_text_that_is_not_a_colour_gives_none(text: str) -> None:
     assert rgb_of_hex(text) is None
 
 
 def named(term: Colour) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
-    """CIELAB of the survey's names that end in a word, shape (n, 3); matplotlib ships the survey's table."""
+    """Return the CIELAB values of the survey's names that end in a word, shape (n, 3); the table is matplotlib's."""
     found = [rgb_of_hex(str(value)) for name, value in XKCD_COLORS.items() if name[5:].split()[-1] == term.label]
     return lab_of_srgb(np.array(found, dtype=np.float64))
 
@@ -87,7 +87,7 @@ def test_prototype_and_spread_are_those_of_the_survey(term: Colour) -> None:
     assert np.abs(term.matrix() - np.cov(seen.T)).max() <= 0.5 + 1e-6
 
 
-def test_black_and_white_are_the_survey_s_and_spread_as_grey_does() -> None:
+def test_black_and_white_have_the_spread_of_grey() -> None:
     black, white, grey = (colour for word in ("black", "white", "grey") if (colour := COLOURS.of_word(word)))
     assert (hex_of_rgb(black.prototype), hex_of_rgb(white.prototype)) == (
         XKCD_COLORS["xkcd:black"],
@@ -106,13 +106,13 @@ def test_a_colour_may_be_added() -> None:
 @pytest.mark.parametrize(
     ("wrong", "message"),
     [
-        (("#008080", "teal"), "a prototype is written as #rrggbb, not 'teal'"),
-        (("100 0 0 100 0 100", "100 100"), "a spread is six numbers"),
-        (("100 0 0 100 0 100", "a b c d e f"), "a spread is six numbers"),
-        (("100 0 0 100 0 100", "100 200 0 100 0 100"), "is not positive definite"),
-        (("100 0 0 100 0 100", "nan 0 0 100 0 100"), "is not positive definite"),
+        (("#008080", "teal"), "a prototype must be written as #rrggbb, got 'teal'"),
+        (("100 0 0 100 0 100", "100 100"), "a spread must be six numbers"),
+        (("100 0 0 100 0 100", "a b c d e f"), "a spread must be six numbers"),
+        (("100 0 0 100 0 100", "100 200 0 100 0 100"), "must be a positive definite matrix"),
+        (("100 0 0 100 0 100", "nan 0 0 100 0 100"), "must be a positive definite matrix"),
     ],
 )
-def test_what_a_colour_lacks_is_told(wrong: tuple[str, str], message: str) -> None:
+def test_an_error_names_the_wrong_part_of_a_colour(wrong: tuple[str, str], message: str) -> None:
     with pytest.raises(OntologyError, match=message):
         load_ontology(PREFIXES + TEAL.replace(*wrong))

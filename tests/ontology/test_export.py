@@ -1,4 +1,4 @@
-"""JSON, Turtle and DOT: what goes out says the same as what went in, whatever the names are."""
+"""Export as JSON, Turtle and DOT: the output has exactly the facts of the graph, whatever the names are."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ def odd_graph() -> RelationGraph:
     return RelationGraph.from_facts(R, ODD, facts)
 
 
-def test_a_colour_is_said_in_turtle_and_by_networkx() -> None:
+def test_turtle_and_networkx_contain_the_colours() -> None:
     graph = RelationGraph.from_facts(R, ["a", "b"], [], colours=["urn:c:red", None])
     told = Graph().parse(data=graph_to_turtle(graph), format="turtle")
     said = list(told.subject_objects(URIRef(DX.OF_COLOUR)))
@@ -88,14 +88,14 @@ def test_a_colour_is_said_in_turtle_and_by_networkx() -> None:
     assert graph.subgraph(["b", "a"]).colours == (None, "urn:c:red")
 
 
-def test_colours_are_one_a_node() -> None:
-    with pytest.raises(GraphError, match="one kind a node, or none at all, and so with colours"):
+def test_there_must_be_one_colour_per_node() -> None:
+    with pytest.raises(GraphError, match="`kinds` and `colours` must have one entry per node"):
         RelationGraph.from_facts(R, ["a", "b"], [], colours=["urn:c:red"])
 
 
 @settings(max_examples=60, deadline=None)
 @given(graphs())
-def test_json_says_what_the_graph_says(graph: RelationGraph) -> None:
+def test_json_has_all_facts_of_the_graph(graph: RelationGraph) -> None:
     data = json.loads(json.dumps(graph_to_dict(graph)))
     nodes = data["nodes"]
     assert [node["id"] for node in nodes] == list(graph.nodes)
@@ -109,7 +109,7 @@ def test_json_says_what_the_graph_says(graph: RelationGraph) -> None:
     assert data["facts"] == [fact_to_dict(fact) | span for fact, span in zip(graph.facts(), spans, strict=True)]
 
 
-def test_a_fact_says_in_json_what_qualifies_it() -> None:
+def test_json_has_the_qualifiers_of_a_fact() -> None:
     fact = Fact("a", (R["exactly_left"],), "b", True, True, 0.8, Source("x.layout", 3, 1, 3, 9))
     assert fact_to_dict(fact) == {
         "relation": "left",
@@ -126,7 +126,7 @@ def test_a_fact_says_in_json_what_qualifies_it() -> None:
     }
 
 
-def test_a_choice_is_one_text_in_json() -> None:
+def test_a_disjunction_is_one_string_in_json() -> None:
     entry = fact_to_dict(Fact("a", (R["left"], R["top_left"]), "b"))
     assert (entry["relation"], entry["relations"]) == ("left or top_left", ["left", "top_left"])
     assert "line" not in entry
@@ -135,7 +135,7 @@ def test_a_choice_is_one_text_in_json() -> None:
 @settings(max_examples=60, deadline=None)
 @given(graphs())
 @example(odd_graph())
-def test_turtle_says_exactly_what_the_graph_says(graph: RelationGraph) -> None:
+def test_turtle_has_exactly_the_facts_of_the_graph(graph: RelationGraph) -> None:
     text = graph_to_turtle(graph)
     read = Graph().parse(data=text, format="turtle")
     statements = set(read.subjects(RDF.type, STATEMENT))
@@ -152,7 +152,7 @@ def test_turtle_says_exactly_what_the_graph_says(graph: RelationGraph) -> None:
     assert sorted(labels) == sorted(graph.nodes)
 
 
-def test_turtle_states_what_qualifies_a_fact() -> None:
+def test_turtle_has_the_qualifiers_of_a_fact() -> None:
     fact = Fact("a", (R["left"],), "b", False, True, 0.8, Source('odd".layout', 3, 1, 3, 9))
     read = Graph().parse(data=graph_to_turtle(RelationGraph.from_facts(R, ["a", "b"], [fact])), format="turtle")
     (statement,) = read.subjects(RDF.type, STATEMENT)
@@ -166,13 +166,13 @@ def test_turtle_states_what_qualifies_a_fact() -> None:
     assert read.value(said[DX.OBJECT], RDFS.label) == Literal("b")
 
 
-def test_turtle_gives_an_object_its_kind_and_a_thing_otherwise() -> None:
+def test_turtle_types_an_object_by_its_kind_or_as_a_thing() -> None:
     graph = RelationGraph.from_facts(R, ["a", "b"], [], kinds=["urn:k:Plate", None])
     read = Graph().parse(data=graph_to_turtle(graph), format="turtle")
     assert {str(o) for o in read.objects(None, RDF.type)} == {"urn:k:Plate", DX.THING.value}
 
 
-def test_no_kind_can_add_a_statement_of_its_own() -> None:
+def test_no_kind_can_inject_a_statement() -> None:
     kind = f"urn:k> . <urn:x> a <{DX.RELATION_STATEMENT}> . <urn:y> a <urn:z"
     read = Graph().parse(data=graph_to_turtle(RelationGraph.from_facts(R, ["a"], [], kinds=[kind])), format="turtle")
     assert len(read) == 2
@@ -188,7 +188,7 @@ STRING = re.compile(r'"(?:[^"\\]|\\.)*"', re.DOTALL)
 @settings(max_examples=60, deadline=None)
 @given(graphs())
 @example(odd_graph())
-def test_dot_has_one_line_a_node_and_one_an_edge_outside_of_its_strings(graph: RelationGraph) -> None:
+def test_dot_has_one_line_per_node_and_per_edge(graph: RelationGraph) -> None:
     bare = STRING.sub("S", graph_to_dot(graph))
     assert '"' not in bare
     lines = bare.splitlines()
@@ -199,7 +199,7 @@ def test_dot_has_one_line_a_node_and_one_an_edge_outside_of_its_strings(graph: R
     assert len(lines) == 3 + len(graph.nodes) + len(graph)
 
 
-def test_dot_shows_denials_options_and_hedges() -> None:
+def test_dot_styles_denied_optional_and_hedged_facts() -> None:
     facts = [
         Fact("a", (R["left"], R["top"]), "b"),
         Fact("a", (R["on"],), "b", positive=False),

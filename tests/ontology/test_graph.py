@@ -1,4 +1,4 @@
-"""The relation graph: facts in and out, sub-graphs, views, Definitions 1 and 2 of the paper."""
+"""The relation graph: facts in and out, subgraphs, views, and Definitions 1 and 2 of the paper."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def graph(nodes: str, *stated: Fact) -> RelationGraph:
 
 @settings(max_examples=60, deadline=None)
 @given(st.lists(facts, max_size=8))
-def test_the_facts_of_a_graph_are_those_it_was_made_of(stated: list[Fact]) -> None:
+def test_a_graph_returns_the_facts_it_was_made_from(stated: list[Fact]) -> None:
     made = RelationGraph.from_facts(R, NODES, stated)
     assert list(made.facts()) == stated
     assert len(made) == len(stated)
@@ -49,7 +49,7 @@ def test_the_facts_of_a_graph_are_those_it_was_made_of(stated: list[Fact]) -> No
 
 @settings(max_examples=40, deadline=None)
 @given(st.lists(facts, max_size=8), st.permutations(NODES), st.integers(0, 4))
-def test_a_subgraph_has_the_facts_among_its_nodes_in_their_order(stated: list[Fact], order: list[str], k: int) -> None:
+def test_a_subgraph_keeps_the_facts_among_its_nodes_in_order(stated: list[Fact], order: list[str], k: int) -> None:
     made = RelationGraph.from_facts(
         R, NODES, stated, kinds=["urn:k:" + n for n in NODES], boxes=np.arange(16.0).reshape(4, 2, 2)
     )
@@ -76,20 +76,20 @@ def test_only_one_affirmed_relation_is_plain() -> None:
     assert not fact("left or right", "a", "b").plain
 
 
-def test_the_order_of_alternatives_does_not_matter_to_a_relation_set() -> None:
+def test_a_relation_set_ignores_the_order_of_alternatives() -> None:
     assert fact("left or on", "a", "b").relation_set == fact("on or left", "a", "b").relation_set
     assert fact("left", "a", "b").relation_set != fact("exactly_left", "a", "b").relation_set
 
 
-def test_an_object_that_is_in_the_graph_twice_is_an_error() -> None:
+def test_a_repeated_node_is_an_error() -> None:
     with pytest.raises(GraphError, match="'a' is in the graph twice") as caught:
         graph("a b a")
     assert isinstance(caught.value, DeixisError)
     assert isinstance(caught.value, ValueError)
 
 
-def test_a_fact_about_no_node_is_an_error_that_names_both() -> None:
-    with pytest.raises(GraphError, match=r"left\(a, z\) names 'z', which is no node"):
+def test_a_fact_about_an_unknown_node_is_an_error() -> None:
+    with pytest.raises(GraphError, match=r"left\(a, z\) names 'z', which is not a node"):
         graph("a b", fact("left", "a", "z"))
 
 
@@ -100,7 +100,7 @@ def test_an_unknown_node_is_an_error() -> None:
         graph("a b").subgraph(["a", "z"])
 
 
-def test_a_node_that_a_subgraph_names_twice_is_an_error() -> None:
+def test_a_repeated_node_of_a_subgraph_is_an_error() -> None:
     with pytest.raises(GraphError, match="twice"):
         graph("a b").subgraph(["a", "a"])
 
@@ -116,7 +116,7 @@ def test_edge_arrays_of_different_lengths_are_an_error(short: str) -> None:
         "weights": np.ones(2),
     }
     arrays[short] = arrays[short][:1]
-    with pytest.raises(GraphError, match="differ in length"):
+    with pytest.raises(GraphError, match="must all have the same length"):
         RelationGraph(vocabulary=R, nodes=("a", "b"), **arrays)
 
 
@@ -124,15 +124,15 @@ def test_too_few_sources_kinds_or_boxes_are_errors() -> None:
     whole = graph("a b", fact("left", "a", "b"), fact("left", "b", "a"))
     fields = ("subjects", "objects", "relation_sets", "positive", "optional", "weights")
     arrays = {name: getattr(whole, name) for name in fields}
-    with pytest.raises(GraphError, match="differ in length"):
+    with pytest.raises(GraphError, match="must all have the same length"):
         RelationGraph(R, ("a", "b"), **arrays, sources=(None,))
-    with pytest.raises(GraphError, match="one kind a node"):
+    with pytest.raises(GraphError, match="one entry per node"):
         RelationGraph(R, ("a", "b"), **arrays, kinds=("urn:k",))
-    with pytest.raises(GraphError, match="one box a node"):
+    with pytest.raises(GraphError, match="one box per node"):
         RelationGraph(R, ("a", "b"), **arrays, boxes=np.zeros((1, 2, 2)))
 
 
-def test_the_networkx_view_has_every_node_and_parallel_edges_with_their_attributes() -> None:
+def test_networkx_has_nodes_and_parallel_edges_with_attributes() -> None:
     stated = [
         fact("left or right", "a", "b", weight=0.8, source=Source("x.layout", 3, 1, 3, 9)),
         fact("on", "a", "b", positive=False, optional=True),
@@ -154,13 +154,13 @@ def test_the_networkx_view_has_every_node_and_parallel_edges_with_their_attribut
     assert second["source"] is None
 
 
-def test_the_networkx_view_carries_boxes() -> None:
+def test_networkx_nodes_have_boxes() -> None:
     made = RelationGraph.from_facts(R, ["a"], [], boxes=np.array([[[0.0, 1.0], [2.0, 3.0]]]))
     assert made.to_networkx().nodes["a"]["box"] == [[0.0, 1.0], [2.0, 3.0]]
 
 
 def labelled(made: RelationGraph) -> dict[tuple[str, str], str]:
-    """Definition 1's alpha as a dictionary."""
+    """Return the edge labels of Definition 1 (alpha), by pair of vertices."""
     view = made.paper_view()
     return {
         (view.vertices[s], view.vertices[o]): view.labels[label]
@@ -168,7 +168,7 @@ def labelled(made: RelationGraph) -> dict[tuple[str, str], str]:
     }
 
 
-def test_definition_1_has_the_ten_words_as_labels_and_names_as_vertex_labels() -> None:
+def test_definition_1_labels_edges_by_word_and_vertices_by_name() -> None:
     view = graph("a b").paper_view()
     assert len(view.labels) == len(set(view.labels)) == 10
     assert {"left", "bottom_right", "on"} <= set(view.labels)
@@ -182,7 +182,7 @@ def test_both_readings_of_a_word_are_one_label() -> None:
     assert labelled(made) == {("a", "b"): "left", ("b", "c"): "left"}
 
 
-def test_denials_and_choices_do_not_enter_definition_1_and_optional_and_likely_facts_do() -> None:
+def test_definition_1_leaves_out_denials_and_disjunctions() -> None:
     made = graph(
         "a b c d",
         fact("left", "a", "b", positive=False),
@@ -206,7 +206,7 @@ def test_denials_and_choices_do_not_enter_definition_1_and_optional_and_likely_f
         (["left", "exactly_top_left", "bottom_left"], "top_left"),
     ],
 )
-def test_the_most_telling_label_of_a_pair_stays_and_the_first_among_equals(stated: list[str], label: str) -> None:
+def test_the_most_specific_label_of_a_pair_is_kept(stated: list[str], label: str) -> None:
     assert labelled(graph("a b", *(fact(name, "a", "b") for name in stated))) == {("a", "b"): label}
 
 
@@ -215,7 +215,7 @@ def test_a_pair_has_one_label_in_each_direction() -> None:
     assert labelled(made) == {("a", "b"): "left", ("b", "a"): "right"}
 
 
-def test_the_adjacency_has_one_matrix_a_label() -> None:
+def test_the_adjacency_has_one_matrix_per_label() -> None:
     view = graph("a b c", fact("left", "a", "b"), fact("on", "c", "b")).paper_view()
     expected = np.zeros((10, 3, 3))
     expected[view.labels.index("left"), 0, 1] = 1
@@ -223,8 +223,8 @@ def test_the_adjacency_has_one_matrix_a_label() -> None:
     np.testing.assert_array_equal(view.adjacency(), expected)
 
 
-def test_definition_2_for_the_plate_of_figure_7_counted_by_hand() -> None:
-    """Into the plate: right three times (glass, two knives), on, top left, left twice, top twice; nothing goes out."""
+def test_definition_2_of_the_plate_in_figure_7_is_as_counted() -> None:
+    """Count the edges into the plate: 3 right (glass, two knives), 1 on, 1 top left, 2 left, 2 top; 0 outgoing."""
     stated = [
         fact("right", "water_glass", "dinner_plate"),
         fact("on", "napkin", "dinner_plate"),
@@ -265,7 +265,7 @@ def test_the_histograms_are_the_degrees_of_the_adjacency(stated: list[Fact]) -> 
     np.testing.assert_array_equal(counts[:, 1], matrices.sum(axis=2).T)
 
 
-def test_what_is_rarely_so_is_in_other_words_mostly_not_so() -> None:
+def test_a_rare_fact_becomes_a_denial_of_the_other_weight() -> None:
     rarely, usually = fact("left", "a", "b", weight=0.2), fact("on", "a", "b", weight=0.8)
     words = RelationGraph.from_facts(R, ["a", "b"], [rarely, usually]).affirming()
     assert [(one.positive, one.weight) for one in words.facts()] == [(False, 0.8), (True, 0.8)]

@@ -22,7 +22,7 @@ def test_a_kind_is_found_however_its_name_is_written(word: str) -> None:
     assert kind(word).name == "DinnerPlate"
 
 
-def test_a_word_that_names_no_kind_gives_none() -> None:
+def test_an_unknown_word_gives_no_kind() -> None:
     assert KINDS.of_word("spaceship") is None
     assert KINDS.of_word("") is None
 
@@ -46,7 +46,7 @@ def test_every_broader_class_of_a_kind_is_a_kind() -> None:
     assert len(known) == len(KINDS)
 
 
-def test_a_fork_is_no_spoon() -> None:
+def test_a_fork_is_not_a_spoon() -> None:
     assert not KINDS.is_a(kind("fork"), kind("spoon"))
 
 
@@ -58,7 +58,7 @@ def test_no_two_kinds_share_a_word() -> None:
     assert clashes == []
 
 
-def test_where_two_kinds_share_a_word_the_first_has_it() -> None:
+def test_the_first_of_two_kinds_keeps_a_shared_word() -> None:
     first = Kind("urn:x#First", "thing", ("thing",), frozenset())
     second = Kind("urn:x#Second", "thing", ("thing",), frozenset())
     assert Kinds((first, second)).of_word("Thing") is first

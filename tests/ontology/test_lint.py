@@ -1,7 +1,7 @@
-"""The TBox under the checks of ROBOT's report command: no ERROR and no WARN; and its header, as others read it.
+"""The TBox passes the checks of ROBOT's report command without ERROR or WARN, and its header is complete.
 
-The checks are in ``lint.toml``: names and levels from ROBOT's documentation, and for each whether it is adapted or is
-about OBO's own terms alone. ROBOT itself is not run.
+The checks are in ``lint.toml``: names and levels from ROBOT's documentation, and for each whether it is adapted or
+only about OBO's own terms. ROBOT itself is not run.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ def store(*turtle: str) -> ox.Store:
 
 
 def findings(name: str, graph: ox.Store) -> list[str]:
-    """What a check finds wrong: the entity and the value, a line each."""
+    """Return the findings of a check, one line each with the entity and the value."""
     rows = graph.query(CHECKS[name]["query"], prefixes=PREFIXES)
     assert isinstance(rows, ox.QuerySolutions)
     return sorted({f"{row['entity']} {row['value']}" for row in rows})
@@ -91,20 +91,20 @@ def test_the_tbox_with_every_alignment_passes(name: str, aligned: ox.Store) -> N
 
 
 @pytest.mark.parametrize("name", CHECKS)
-def test_a_check_finds_what_is_wrong_and_nothing_in_a_sound_ontology(name: str) -> None:
+def test_a_check_finds_errors_and_none_in_a_sound_ontology(name: str) -> None:
     assert findings(name, store(SOUND)) == []
     assert findings(name, store(SOUND, CHECKS[name]["bad"])) != []
 
 
-def test_what_is_only_worth_a_remark_is_known(tbox: ox.Store) -> None:
-    """Definitions that begin with the name of an interval, and classes at the top, are as they should be."""
+def test_the_findings_of_level_info_are_known(tbox: ox.Store) -> None:
+    """Definitions may begin with the name of an interval, and some classes have no superclass."""
     assert all(' "a ' in finding for finding in findings("lowercase_definition", tbox))
     tops = {finding.split(">", 1)[0].rsplit("#", 1)[-1] for finding in findings("missing_superclass", tbox)}
     assert {"Thing", "Scene", "AllenRelation"} <= tops
     assert not tops & {"Fork", "Layout", "PerceivedObject", "Lesson"}
 
 
-def test_the_header_is_whole() -> None:
+def test_the_header_is_complete() -> None:
     graph = Graph().parse(data=tbox_turtle(), format="turtle")
     header = URIRef(ONTOLOGY_IRI)
     assert list(graph.subjects(RDF.type, OWL.Ontology)) == [header]

@@ -1,4 +1,4 @@
-"""What the relation words mean: inverses, admitted atoms, degrees, words."""
+"""The meaning of the relation words: inverses, admitted atoms, degrees and phrases."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def test_the_inverse_of_an_inverse_is_the_relation_itself(relation: Relation) ->
     assert inverse != relation
 
 
-def test_the_inverses_are_those_that_everybody_expects() -> None:
+def test_the_inverses_are_golden() -> None:
     pairs = [("left", "right"), ("top", "bottom"), ("top_left", "bottom_right"), ("top_right", "bottom_left")]
     assert all(R[a].inverse == b for a, b in [*pairs, ("on", "under")])
 
@@ -50,21 +50,21 @@ def test_the_inverse_admits_the_converse_of_every_atom(relation: Relation) -> No
 
 
 @pytest.mark.parametrize("word", DIRECTIONS)
-def test_a_wide_direction_admits_what_its_exact_sub_properties_admit(word: str) -> None:
+def test_a_wide_direction_admits_the_atoms_of_its_sub_properties(word: str) -> None:
     parts = [r.admits() for r in EXACT if word in r.broader]
     assert len(parts) == (3 if word in ("left", "right", "top", "bottom") else 1)
     np.testing.assert_array_equal(np.logical_or.reduce(parts), R[word].admits())
 
 
-def test_the_ten_exact_relations_share_no_atom_but_that_of_equal_boxes() -> None:
+def test_exact_relations_share_only_the_atom_of_equal_boxes() -> None:
     for a, b in combinations(EXACT, 2):
         shared = set(zip(*(axis.tolist() for axis in np.nonzero(a.admits() & b.admits())), strict=True))
         expected = {(6, 6)} if {a.word, b.word} == {"on", "under"} else set()
         assert shared == expected, (a, b)
 
 
-def test_what_no_exact_relation_admits_overlaps_on_both_axes_and_neither_contains_the_other() -> None:
-    """Of the 9 x 9 atoms that overlap, 4 x 4 are those of on, 4 x 4 those of under, and one is both."""
+def test_atoms_of_no_exact_relation_are_partial_overlaps() -> None:
+    """Count the 9 x 9 overlapping atoms: 4 x 4 belong to on, 4 x 4 to under, and one to both."""
     admitted = np.logical_or.reduce([r.admits() for r in EXACT])
     assert admitted.sum() == 169 - (81 - 16 - 16 + 1)
     x, y = np.nonzero(~admitted)
@@ -88,7 +88,7 @@ def test_only_the_wide_relations_are_transitive() -> None:
     assert not any(r.transitive for r in EXACT)
 
 
-def test_what_a_relation_implies_is_golden() -> None:
+def test_the_broader_relations_are_golden() -> None:
     assert R["left"].broader == frozenset()
     assert R["top_left"].broader == {"top", "left"}
     assert R["exactly_left"].broader == {"left"}
@@ -96,7 +96,7 @@ def test_what_a_relation_implies_is_golden() -> None:
     assert R["exactly_on"].broader == {"on"}
 
 
-def test_both_readings_bear_the_same_word_and_lead_to_each_other() -> None:
+def test_the_two_readings_of_a_word_lead_to_each_other() -> None:
     for exact in EXACT:
         assert R.wide(exact).word == exact.word
         assert R.exact(R.wide(exact)) == exact
@@ -126,8 +126,8 @@ def test_degrees_are_golden(stated: str, name: str, degree: float) -> None:
     assert R.degrees[R[stated].index, R[name].index] == degree
 
 
-def test_the_degrees_table_has_nothing_but_what_the_golden_rows_say() -> None:
-    """Ten words exactly, ten widely at 1, and each of the four corners widely at 0.5 for its two sides."""
+def test_the_degrees_table_has_only_the_golden_entries() -> None:
+    """Ten exact relations at 1, ten wide ones at 1, and 0.5 for the two sides of each of the four corners."""
     values, counts = np.unique(R.degrees, return_counts=True)
     assert dict(zip(values.tolist(), counts.tolist(), strict=True)) == {0.0: 400 - 28, 0.5: 8, 1.0: 20}
 
@@ -143,13 +143,13 @@ def test_a_misspelt_name_is_an_error_with_a_suggestion(wrong: str, right: str) -
     assert isinstance(caught.value, DeixisError)
 
 
-def test_a_name_like_no_other_is_an_error_without_a_suggestion() -> None:
+def test_a_very_different_name_is_an_error_without_a_suggestion() -> None:
     with pytest.raises(UnknownTermError) as caught:
         R["zzzzzz"]
     assert str(caught.value) == "there is no relation 'zzzzzz'"
 
 
-def test_a_mapping_answers_about_unknown_names_without_raising() -> None:
+def test_membership_of_an_unknown_name_is_false() -> None:
     assert "nothing" not in R
     assert R.get("nothing") is None
     assert len(R) == 20
@@ -172,7 +172,7 @@ def test_members_are_in_the_order_of_their_bits() -> None:
         ("directly left of", "exactly_left"),
     ],
 )
-def test_the_words_of_scripts_lead_to_relations(phrase: str, name: str) -> None:
+def test_phrases_of_scripts_name_relations(phrase: str, name: str) -> None:
     assert R.by_word[phrase].name == name
 
 
@@ -182,33 +182,33 @@ def test_every_relation_is_found_by_its_label_and_by_its_phrase() -> None:
         assert R.by_word[plain_phrase(relation.phrase)] == relation
 
 
-def test_a_relation_that_refers_to_none_is_refused() -> None:
+def test_a_relation_that_refers_to_an_unknown_one_is_refused() -> None:
     with pytest.raises(OntologyError, match="refers to 'right'"):
         Relations((R["left"],))
 
 
-def test_a_phrase_is_compared_without_case_articles_and_underscores() -> None:
+def test_phrases_ignore_case_articles_and_underscores() -> None:
     assert plain_phrase("  To THE left_of  a ") == "to left of"
     assert plain_phrase("the") == ""
 
 
-def test_the_nearest_word_is_none_where_nothing_comes_near() -> None:
+def test_a_very_different_word_has_no_nearest_word() -> None:
     assert nearest("xyz", ["left", "right"]) is None
     assert nearest("lefft", []) is None
 
 
 @pytest.mark.parametrize("relation", Allen)
-def test_the_converse_of_a_converse_is_the_allen_relation_itself(relation: Allen) -> None:
+def test_the_converse_of_a_converse_is_the_relation_itself(relation: Allen) -> None:
     assert relation.converse.converse is relation
     assert (relation.converse is relation) == (relation is Allen.EQUALS)
 
 
-def test_the_signs_of_converses_are_those_of_the_literature() -> None:
+def test_the_symbols_of_converses_are_those_of_the_literature() -> None:
     pairs = {"<": ">", "m": "mi", "o": "oi", "fi": "f", "di": "d", "s": "si", "=": "="}
     assert {r.symbol: r.converse.symbol for r in Allen if r <= 6} == pairs
 
 
-def test_a_mask_and_its_members_are_each_others_inverse() -> None:
+def test_mask_and_members_are_inverse_functions() -> None:
     for mask in (0, 1, 0b1010101010101, ALL_ALLEN):
         assert allen_mask(members(mask)) == mask
         assert [Allen(int(i)) for i in np.flatnonzero(mask_array(mask))] == list(members(mask))

@@ -1,4 +1,4 @@
-"""Usual sizes: every kind has one, from a source, and none is larger than what is broader allows."""
+"""Usual sizes: every kind has one with a source, within the range of its broader kinds."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def kind(word: str) -> Kind:
 
 
 @pytest.mark.parametrize("some", list(KINDS), ids=lambda some: some.name)
-def test_every_kind_has_a_size_with_a_source_and_a_width_that_is_no_longer_than_the_length(some: Kind) -> None:
+def test_every_kind_has_a_size_with_a_source_and_ordered_sides(some: Kind) -> None:
     size = SIZES.of(some.iri)
     assert size.source
     assert size.stated_of == some.iri or size.stated_of in some.broader
@@ -35,7 +35,7 @@ def test_every_kind_has_a_size_with_a_source_and_a_width_that_is_no_longer_than_
 
 
 @pytest.mark.parametrize("some", list(KINDS), ids=lambda some: some.name)
-def test_a_kind_is_never_larger_or_smaller_than_a_broader_kind_can_be(some: Kind) -> None:
+def test_the_size_of_a_kind_lies_within_that_of_broader_kinds(some: Kind) -> None:
     size = SIZES.of(some.iri)
     for iri in some.broader - {DX.THING.value}:
         above = SIZES.of(iri)
@@ -54,12 +54,12 @@ def test_sizes_are_those_of_the_sources() -> None:
     assert bottle.height.admits(0.3)
 
 
-def test_a_soup_spoon_is_no_plate() -> None:
+def test_a_soup_spoon_does_not_have_the_size_of_a_plate() -> None:
     spoon, plate = SIZES.of(kind("soup spoon").iri), SIZES.of(kind("plate").iri)
     assert spoon.width.greatest < plate.width.least
 
 
-def test_a_kind_without_a_size_has_that_of_the_nearest_broader_kind_that_has_one() -> None:
+def test_a_kind_without_a_size_takes_that_of_a_broader_kind() -> None:
     assert SIZES.of(kind("salt shaker").iri) == SIZES.of(kind("shaker").iri)
     extra = load_ontology(
         PREFIX + OWL + "dx:Ladle a owl:Class ; rdfs:label 'ladle' ; rdfs:subClassOf dx:Spoon ."
@@ -69,7 +69,7 @@ def test_a_kind_without_a_size_has_that_of_the_nearest_broader_kind_that_has_one
 
 
 @pytest.mark.parametrize("some", [k for k in KINDS if k.broader & {TABLEWARE, SURFACE}], ids=lambda some: some.name)
-def test_an_unknown_thing_may_have_any_size_of_what_is_on_a_table_and_of_tables(some: Kind) -> None:
+def test_an_unknown_thing_may_have_any_size_of_known_kinds(some: Kind) -> None:
     unknown, size = SIZES.of(None), SIZES.of(some.iri)
     assert unknown == SIZES.of("https://example.org/Gadget")
     for narrow, broad in ((size.length, unknown.length), (size.width, unknown.width), (size.height, unknown.height)):
@@ -85,13 +85,13 @@ def test_everyday_things_are_in_order_of_size(smaller: str, larger: str) -> None
     assert small.length.typical * small.height.typical < large.length.typical * large.height.typical
 
 
-def test_what_has_a_handle_says_how_far_it_stands_out() -> None:
+def test_kinds_with_a_handle_have_a_reach() -> None:
     reach = SIZES.of(kind("mug").iri).reach
     assert reach is not None and 0.3 <= reach.least <= reach.typical <= reach.greatest <= 0.5
     assert SIZES.of(kind("dinner plate").iri).reach is None
 
 
-def test_a_size_of_an_extra_text_is_taken() -> None:
+def test_a_size_in_an_extra_text_is_used() -> None:
     numbers = " ; ".join(
         f"dx:{which}{end} {metres}"
         for end in ("Length", "Height")
@@ -105,7 +105,7 @@ def test_a_size_of_an_extra_text_is_taken() -> None:
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("dx:SaltShaker dx:outline 'star' .", "an outline is one of circle, rectangle, not 'star'"),
+        ("dx:SaltShaker dx:outline 'star' .", "an outline must be one of circle, rectangle, got 'star'"),
         ("dx:SaltShaker dx:outline 'circle' .", "must have exactly one <https://w3id.org/deixis/onto#leastLength>"),
         ("dx:Mug dx:typicalLength 2.0 .", "must have exactly one <https://w3id.org/deixis/onto#typicalLength>"),
         (
@@ -115,15 +115,15 @@ def test_a_size_of_an_extra_text_is_taken() -> None:
         ("dx:Bowl dx:typicalReach 0.2 .", "must have exactly one <https://w3id.org/deixis/onto#leastReach>"),
         (
             "dx:SaltShaker dx:outline 'circle' ; dx:leastLength 'wee' ; dx:typicalLength 0.5 ; dx:greatestLength 2.0 .",
-            "must be given in numbers, not as wee",
+            "must be three numbers, got wee",
         ),
     ],
 )
-def test_a_size_that_is_not_whole_is_an_ontology_error(text: str, message: str) -> None:
+def test_an_incomplete_size_is_an_ontology_error(text: str, message: str) -> None:
     with pytest.raises(OntologyError, match=message):
         load_ontology(PREFIX + text)
 
 
-def test_where_nothing_is_stated_of_all_things_an_unknown_thing_has_no_size() -> None:
+def test_without_a_size_of_all_things_unknown_things_have_none() -> None:
     with pytest.raises(OntologyError, match="state one"):
         Sizes({}, {}).of(None)

@@ -1,4 +1,4 @@
-"""The TBox as a file: terms and their annotations, readable by everyone, OWL 2 DL, consistent, and what code reads."""
+"""The TBox as a file: annotated terms, valid OWL 2 DL, consistent, and complete for the code that reads it."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def test_every_member_of_the_vocabulary_is_declared(declared: set[URIRef]) -> No
     assert sorted(term.name for term in DX if URIRef(term) not in declared) == []
 
 
-def test_every_own_iri_anywhere_in_the_tbox_is_a_declared_term(tbox: Graph, declared: set[URIRef]) -> None:
+def test_every_own_iri_in_the_tbox_is_declared(tbox: Graph, declared: set[URIRef]) -> None:
     used = {node for triple in tbox for node in triple if isinstance(node, URIRef) and node.startswith(BASE)}
     assert used - declared == set()
 
@@ -74,7 +74,7 @@ def test_every_reading_a_relation_uses_is_in_the_vocabulary(tbox: Graph) -> None
     assert {str(o) for o in tbox.objects(None, URIRef(DX.READING))} == {DX.WIDE.value, DX.EXACT.value}
 
 
-def test_every_atom_a_relation_admits_is_an_allen_relation_with_a_sign(tbox: Graph) -> None:
+def test_every_admitted_atom_is_an_allen_relation_with_a_symbol(tbox: Graph) -> None:
     for predicate in (DX.ADMITS_ON_X, DX.ADMITS_ON_Y, DX.DECIDED_ON_Z):
         for atom in tbox.objects(None, URIRef(predicate)):
             assert (atom, RDF.type, URIRef(BASE + "AllenRelation")) in tbox
@@ -82,14 +82,14 @@ def test_every_atom_a_relation_admits_is_an_allen_relation_with_a_sign(tbox: Gra
 
 
 def foreign_terms() -> Iterator[str]:
-    """The members of every closed vocabulary but our own."""
+    """Yield the members of every closed vocabulary except our own."""
     for kind in vars(vocabulary).values():
         if isinstance(kind, type) and issubclass(kind, StrEnum) and kind is not DX:
             yield from (str(term) for term in kind)
 
 
 @pytest.mark.parametrize("term", list(foreign_terms()), ids=str)
-def test_every_term_of_others_that_code_uses_is_one_that_rdflib_knows(term: str) -> None:
+def test_every_foreign_term_in_the_code_is_known_to_rdflib(term: str) -> None:
     spaces = [space for space in (RDF, RDFS, OWL, SKOS, DCTERMS, PROV) if term.startswith(str(space))]
     assert len(spaces) == 1
     assert URIRef(term) in spaces[0]
@@ -102,12 +102,12 @@ def test_the_vocabulary_is_closed() -> None:
 
 
 @pytest.mark.parametrize("predicate", [RDFS.label, SKOS.definition, RDFS.isDefinedBy])
-def test_every_term_has_exactly_one_of_what_documents_it(predicate: URIRef, tbox: Graph, declared: set[URIRef]) -> None:
+def test_every_term_has_exactly_one_label_and_definition(predicate: URIRef, tbox: Graph, declared: set[URIRef]) -> None:
     counts = {term: len(list(tbox.objects(term, predicate))) for term in declared}
     assert {term: count for term, count in counts.items() if count != 1} == {}
 
 
-def test_every_term_is_defined_by_this_ontology_and_its_texts_are_not_blank(tbox: Graph, declared: set[URIRef]) -> None:
+def test_every_term_names_this_ontology_and_has_no_blank_text(tbox: Graph, declared: set[URIRef]) -> None:
     for term in declared:
         assert tbox.value(term, RDFS.isDefinedBy) == URIRef(ONTOLOGY_IRI)
         assert all(str(tbox.value(term, p)).strip() for p in (RDFS.label, SKOS.definition))
@@ -126,8 +126,8 @@ def test_rdflib_and_oxigraph_read_the_same_number_of_triples(tbox: Graph, ntripl
     assert len(set(ntriples.splitlines())) == len(tbox) > 500
 
 
-def test_no_property_that_is_not_simple_is_declared_what_owl_dl_forbids_it(tbox: Graph) -> None:
-    """A transitive property, its inverse and every super-property of either are not simple."""
+def test_non_simple_properties_obey_owl_dl(tbox: Graph) -> None:
+    """Check transitive properties, their inverses and the super-properties of both, which are not simple."""
     transitive = {p for p in tbox.subjects(RDF.type, OWL.TransitiveProperty) if isinstance(p, URIRef)}
     assert len(transitive) == 10
     composed = transitive.union(*(inverses(tbox, p) for p in transitive))
@@ -144,27 +144,25 @@ def test_no_property_that_is_not_simple_is_declared_what_owl_dl_forbids_it(tbox:
     assert [group & not_simple for group in members(tbox, OWL.AllDisjointProperties) if group & not_simple] == []
 
 
-def test_the_ten_exact_relations_are_declared_disjoint_asymmetric_and_irreflexive(tbox: Graph) -> None:
+def test_exact_relations_are_disjoint_asymmetric_and_irreflexive(tbox: Graph) -> None:
     exact = {p for p in tbox.subjects(URIRef(DX.READING), URIRef(DX.EXACT)) if isinstance(p, URIRef)}
     assert list(members(tbox, OWL.AllDisjointProperties)) == [exact]
     assert all((p, RDF.type, OWL.AsymmetricProperty) in tbox for p in exact)
     assert all((p, RDF.type, OWL.IrreflexiveProperty) in tbox for p in exact)
 
 
-def test_no_term_is_declared_as_two_kinds_of_property_or_as_class_and_property(
-    tbox: Graph, declared: set[URIRef]
-) -> None:
+def test_no_term_is_declared_as_two_kinds_of_entity(tbox: Graph, declared: set[URIRef]) -> None:
     kinds = {OWL.Class, OWL.ObjectProperty, OWL.DatatypeProperty, OWL.AnnotationProperty, OWL.NamedIndividual}
     assert [t for t in declared if len(kinds & set(tbox.objects(t, RDF.type))) != 1] == []
 
 
-def test_no_relation_is_in_a_data_type_that_hermit_refuses(tbox: Graph) -> None:
+def test_no_literal_has_a_datatype_that_hermit_refuses(tbox: Graph) -> None:
     used = {o.datatype for o in tbox.objects() if isinstance(o, rdflib.Literal) and o.datatype is not None}
     assert rdflib.XSD.date not in used
 
 
 @pytest.mark.slow
-def test_hermit_finds_the_tbox_consistent_and_every_class_satisfiable(ntriples: bytes) -> None:
+def test_hermit_finds_the_tbox_consistent_and_satisfiable(ntriples: bytes) -> None:
     world = owlready2.World()
     ontology = world.get_ontology(ONTOLOGY_IRI).load(fileobj=io.BytesIO(ntriples))
     classes = list(ontology.classes())
@@ -177,8 +175,8 @@ def test_hermit_finds_the_tbox_consistent_and_every_class_satisfiable(ntriples: 
 
 
 @pytest.mark.slow
-def test_hermit_would_have_noticed_an_unsatisfiable_class(ntriples: bytes) -> None:
-    """The test above can fail: a class that is both a fork and a spoon is found."""
+def test_hermit_detects_an_unsatisfiable_class(ntriples: bytes) -> None:
+    """Check that the consistency test can fail, with a class that is both a fork and a spoon."""
     sub_class = "<http://www.w3.org/2000/01/rdf-schema#subClassOf>"
     own = f"<{BASE}Spork> <{RDF.type}> <{OWL.Class}> .\n"
     own += "".join(f"<{BASE}Spork> {sub_class} <{BASE}{parent}> .\n" for parent in ("Fork", "Spoon"))
@@ -210,9 +208,9 @@ def test_a_word_for_two_relations_is_an_error_that_names_both() -> None:
         _ = clashing.relations.by_word
 
 
-@pytest.mark.parametrize("text", ["this is no Turtle", "@prefix dx: <unclosed", "dx:left a dx:Right .", '<a> <b> "c'])
-def test_a_text_that_is_no_turtle_is_an_ontology_error(text: str) -> None:
-    with pytest.raises(OntologyError, match="no valid Turtle"):
+@pytest.mark.parametrize("text", ["this is not Turtle", "@prefix dx: <unclosed", "dx:left a dx:Right .", '<a> <b> "c'])
+def test_invalid_turtle_is_an_ontology_error(text: str) -> None:
+    with pytest.raises(OntologyError, match="not valid Turtle"):
         load_ontology(text)
 
 
@@ -220,24 +218,24 @@ def test_a_text_that_is_no_turtle_is_an_ontology_error(text: str) -> None:
     ("text", "message"),
     [
         ('dx:left rdfs:label "leftmost" .', "exactly one .*label"),
-        ("dx:left owl:inverseOf dx:top .", "exactly one owl:inverseOf, and has 2"),
+        ("dx:left owl:inverseOf dx:top .", "exactly one owl:inverseOf, got 2"),
         ('dx:left dx:phrase "leftish" .', "exactly one .*phrase"),
-        ("dx:exactlyLeft rdfs:subPropertyOf dx:top .", "sub-property of exactly one wide one"),
+        ("dx:exactlyLeft rdfs:subPropertyOf dx:top .", "sub-property of exactly one wide relation"),
         ('dx:near dx:reading dx:wide ; rdfs:label "near" .', "exactly one .*phrase"),
         ('dx:never a dx:Hedge ; rdfs:label "never" ; dx:hedgeWeight 0.0 .', "above 0 and at most 1"),
         ('dx:surely a dx:Hedge ; rdfs:label "surely" ; dx:hedgeWeight 1.5 .', "above 0 and at most 1"),
         ('dx:surely a dx:Hedge ; rdfs:label "surely" .', "exactly one .*hedgeWeight"),
-        ('dx:surely a dx:Hedge ; rdfs:label "surely" ; dx:hedgeWeight "much" .', "weighs a number, not 'much'"),
-        ('dx:odd dx:allenSymbol "?" . dx:left dx:admitsOnX dx:odd .', "admits '\\?', which is the sign of no"),
+        ('dx:surely a dx:Hedge ; rdfs:label "surely" ; dx:hedgeWeight "much" .', "must be a number, got 'much'"),
+        ('dx:odd dx:allenSymbol "?" . dx:left dx:admitsOnX dx:odd .', "admits '\\?', which is not the symbol"),
     ],
 )
-def test_an_extra_text_that_spoils_a_term_is_an_ontology_error(text: str, message: str) -> None:
+def test_an_extra_text_that_breaks_a_term_is_an_ontology_error(text: str, message: str) -> None:
     with pytest.raises(OntologyError, match=message) as caught:
         load_ontology(PREFIXES + text)
     assert isinstance(caught.value, DeixisError)
 
 
-def test_the_hedges_weigh_what_the_tbox_says() -> None:
+def test_the_hedges_have_the_weights_of_the_tbox() -> None:
     hedges = default_ontology().hedges
     expected = {"always": 1.0, "usually": 0.8, "probably": 0.7, "maybe": 0.5, "rarely": 0.2}
     assert {word: hedges[word] for word in expected} == expected
@@ -256,6 +254,6 @@ def test_the_default_ontology_is_read_once() -> None:
     assert default_ontology() is default_ontology()
 
 
-def test_no_word_of_a_relation_is_the_word_of_a_hedge() -> None:
+def test_no_word_is_both_a_relation_and_a_hedge() -> None:
     ontology = default_ontology()
     assert set(ontology.relations.by_word) & set(ontology.hedges) == set()

@@ -1,4 +1,4 @@
-"""The index over triples, beside a look through all of them."""
+"""The index over triples, compared with a scan of all triples."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def index() -> TripleIndex:
     return TripleIndex(ox.parse(TURTLE, format=ox.RdfFormat.TURTLE))
 
 
-def test_values_are_plain_sorted_and_each_once(index: TripleIndex) -> None:
+def test_values_are_plain_sorted_and_unique(index: TripleIndex) -> None:
     assert index.values("urn:fork", "urn:name") == ["fork", "salad fork"]
     assert index.value("urn:fork", "urn:name") == "fork"
     assert index.value("urn:fork", "urn:colour") is None
@@ -44,12 +44,12 @@ def test_values_are_plain_sorted_and_each_once(index: TripleIndex) -> None:
 
 
 @pytest.mark.parametrize(("predicate", "number"), [("urn:name", 2), ("urn:colour", 0)])
-def test_one_value_is_asked_of_none_or_several(index: TripleIndex, predicate: str, number: int) -> None:
-    with pytest.raises(OntologyError, match=rf"<urn:fork> must have exactly one <{predicate}>, and has {number}"):
+def test_only_refuses_none_or_several_values(index: TripleIndex, predicate: str, number: int) -> None:
+    with pytest.raises(OntologyError, match=rf"<urn:fork> must have exactly one <{predicate}>, got {number}"):
         index.only("urn:fork", predicate)
 
 
-def test_ancestors_leave_out_the_start_of_a_ring(index: TripleIndex) -> None:
+def test_ancestors_leave_out_the_start_of_a_cycle(index: TripleIndex) -> None:
     assert index.ancestors("urn:table", "urn:in") == {"urn:room", "urn:house"}
     assert index.ancestors("urn:room", "urn:in") == {"urn:house"}
     assert index.ancestors("urn:fork", "urn:in") == frozenset()

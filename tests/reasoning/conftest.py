@@ -1,4 +1,4 @@
-"""What the tests of reasoning share: relations, graphs from text, boxes, and the scripts of a formal dinner."""
+"""Shared fixtures of the tests of reasoning: relations, graphs from text, boxes, and scripts of a formal dinner."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ top(champagne_glass, white_wine_glass)"""
 
 
 def read(sentence: str, number: int) -> Fact:
-    """``optional 0.8 not left or top(a, b)`` as a fact, on the line of its number."""
+    """Return the fact of a sentence such as ``optional 0.8 not left or top(a, b)``, on the line of its number."""
     found = SENTENCE.fullmatch(sentence)
     assert found is not None, sentence
     optional, weight, denied, words, subject, object = found.groups()
@@ -69,13 +69,13 @@ def relations() -> Relations:
 
 @pytest.fixture(scope="session")
 def facts_of() -> Callable[..., list[Fact]]:
-    """Sentences as facts, line by line."""
+    """Function that reads sentences as facts, one per line."""
     return lambda *sentences: [read(sentence, number) for number, sentence in enumerate(sentences)]
 
 
 @pytest.fixture(scope="session")
 def graph_of() -> Callable[..., RelationGraph]:
-    """The graph of some sentences, its nodes those given, or those named in the order of naming."""
+    """Function that reads sentences as a graph; nodes are in the given order, or in the order of their first use."""
 
     def graph(*sentences: str, nodes: str | Sequence[str] = (), kinds: Sequence[str | None] = ()) -> RelationGraph:
         facts = [read(sentence, number) for number, sentence in enumerate(sentences)]
@@ -103,7 +103,7 @@ def absent_glasses() -> list[str]:
 
 @pytest.fixture(scope="session")
 def boxes_of() -> Callable[..., NDArray[np.float64]]:
-    """Boxes from their extents: ``boxes_of([(x0, x1), (y0, y1)], …)`` has shape (n, 2, d)."""
+    """Function that makes boxes from extents: ``boxes_of([(x0, x1), (y0, y1)], …)`` has shape (n, 2, d)."""
 
     def boxes(*extents: Sequence[tuple[float, float]]) -> NDArray[np.float64]:
         return np.array([np.array(axes, dtype=np.float64).T for axes in extents])
@@ -113,7 +113,7 @@ def boxes_of() -> Callable[..., NDArray[np.float64]]:
 
 @pytest.fixture(scope="session")
 def random_boxes() -> Callable[..., NDArray[np.float64]]:
-    """Boxes with whole corners from 0 to 6: ties are frequent, points and lines occur unless they are forbidden."""
+    """Function that draws boxes with integer corners from 0 to 6, with many ties; points and lines can be excluded."""
 
     def boxes(
         data: st.DataObject, least: int = 2, most: int = 5, axes: int = 2, shortest: int = 0

@@ -1,1 +1,1 @@
-"""From facts to a picture: boxes that satisfy every fact, or the proof that there are none."""
+"""Boxes that satisfy every fact of a script, or the proof that there are no such boxes."""

@@ -1,7 +1,7 @@
-"""Where the edges of boxes are best put among all places that the chosen constraints leave: a linear program.
+"""Find the best positions of box edges that the chosen constraints allow, by a linear program.
 
-What is liked: usual sizes, round things round, gaps between what is apart, things that a fact relates near and in
-line, what lies on a thing in its middle, and a small table. All of it is soft; the constraints are not.
+The preferences are usual sizes, round objects as long as wide, gaps between separate objects, related objects close and
+aligned, objects in the middle of their supports, and a small table. All preferences are soft; the constraints are hard.
 """
 
 from __future__ import annotations
@@ -18,41 +18,44 @@ from deixis.reasoning.entailment.realisation.demands import at_most, high, low
 from deixis.reasoning.entailment.realisation.things import Things
 
 SIZE, ROUND, GAP, NEAR, MIDDLE, INSIDE, IN_LINE, TABLE = 8.0, 30.0, 20.0, 1.0, 3.0, 5.0, 0.7, 0.8
-"""What a millimetre costs by which a wish is not met."""
+"""Cost of each millimetre by which a preference is missed."""
 
 MAX_PULLS = 4.0
-"""How many facts about one thing count in full for where it is: all together, more do not count for more. Else the
-many that want to be near would press together what lies between, which :data:`SIZE` should withstand."""
+"""Number of facts about one object whose pulls count in full.
+
+More facts count together as this many. Otherwise many related objects would compress the objects between them, against
+:data:`SIZE`.
+"""
 
 MIN_RIM = 5
-"""Millimetres that are liked between the edge of a thing and what lies on it."""
+"""Preferred distance in millimetres between the edge of an object and the objects on it."""
 
 
 @dataclass(frozen=True, eq=False)
 class Wishes:
-    """What a picture should look like, besides what it must."""
+    """The preferences for a picture."""
 
     things: Things
-    lengthwise: NDArray[np.bool_]  # (n,) whether the length is the side along y
-    related: tuple[tuple[int, int], ...]  # pairs of things that a fact relates
-    apart: tuple[tuple[int, int], ...]  # pairs of things that should not touch
-    gap: float  # millimetres liked between them
+    lengthwise: NDArray[np.bool_]  # (n,): whether the length is the side along y
+    related: tuple[tuple[int, int], ...]  # pairs of objects that a fact relates
+    apart: tuple[tuple[int, int], ...]  # pairs of objects that should not touch
+    gap: float  # preferred millimetres between them
 
 
 @dataclass(slots=True)
 class _Program:
-    """A linear program in the making: rows ``coefficients · x <= bound``, and the cost of each variable."""
+    """A linear program under construction: rows ``coefficients · x <= bound``, and the cost of each variable."""
 
     costs: list[float]
     rows: list[tuple[dict[int, float], float]] = field(default_factory=list)
 
     def at_least(self, terms: dict[int, float], bound: float, cost: float) -> None:
-        """Ask that the sum of terms be at least ``bound``, and charge for what lacks."""
+        """Prefer a sum of terms of at least ``bound``, at a cost per missing unit."""
         slack = self._variable(cost)
         self.rows.append(({**{v: -c for v, c in terms.items()}, slack: -1.0}, -bound))
 
     def equal(self, terms: dict[int, float], value: float, cost: float) -> None:
-        """Ask that the sum of terms be ``value``, and charge for what lacks or is too much."""
+        """Prefer a sum of terms equal to ``value``, at a cost per unit of difference."""
         slack = self._variable(cost)
         self.rows.append(({**terms, slack: -1.0}, value))
         self.rows.append(({**{v: -c for v, c in terms.items()}, slack: -1.0}, -value))
@@ -75,12 +78,11 @@ class _Program:
 
 
 def compose(network: DifferenceNetwork, wishes: Wishes, deadline: Deadline) -> NDArray[np.int64]:
-    """Return places of all edges in millimetres, shape (2, 2 n), which satisfy every constraint exactly.
+    """Return positions of all edges in millimetres, shape (2, 2 n), which satisfy every constraint exactly.
 
-    What the program finds is rounded, and then moved to the nearest solution of the constraints, so that nothing
-    rests on its arithmetic. Where it finds nothing before the deadline, the things stand where
-    they can.
-    Round things are made as long as wide where that can be; ``network`` has these constraints afterwards.
+    The solution of the program is rounded, and then moved to the nearest solution of the constraints, so that its
+    numerical errors do not matter. Without a solution before the deadline, the objects stand at any valid positions.
+    Round objects are made as long as wide if possible; ``network`` keeps these constraints.
     """
     points = 2 * len(wishes.things)
     if not points:
@@ -128,7 +130,7 @@ def _program(network: DifferenceNetwork, wishes: Wishes, points: int) -> _Progra
     partners = np.bincount(np.array(wishes.related, dtype=np.int64).reshape(-1), minlength=points // 2)
     pulls = np.minimum(1.0, MAX_PULLS / np.maximum(partners, 1))
     for axis in (0, 1):
-        # pairs (n, n) of things between which a third lies: it is near to both, and they need not be
+        # pairs (n, n) of objects with a third one between them, which is near to both, so that they need not be near
         before = network.distances[axis, 0::2, 1::2].T <= ZERO  # [first, second]: see _before
         chains = before.astype(np.float32) @ before.astype(np.float32)
         apart: NDArray[np.bool_] = (chains > 0) | (chains.T > 0)
@@ -155,7 +157,7 @@ def _wish_gap(program: _Program, network: DifferenceNetwork, a: int, b: int, gap
 def _wish_near(
     program: _Program, network: DifferenceNetwork, wishes: Wishes, axis: int, a: int, b: int, pull: float
 ) -> None:
-    """Wish two related things near where they are apart, else in line, or one in the middle of the other."""
+    """Prefer two related objects close if they are apart, else aligned, or one in the middle of the other."""
     points = network.points
     start = axis * points
     for first, second in ((a, b), (b, a)):
@@ -179,11 +181,11 @@ def _wish_near(
 
 
 def within(network: DifferenceNetwork, axis: int, inner: int, outer: int) -> bool:
-    """Return whether the constraints say that one projection lies within another."""
+    """Return whether the constraints imply that one projection lies within another."""
     begins = network.distances[axis, low(inner), low(outer)] <= ZERO
     return bool(begins and network.distances[axis, high(outer), high(inner)] <= ZERO)
 
 
 def in_line(pairs: Iterable[tuple[int, int]]) -> tuple[tuple[int, int], ...]:
-    """Return pairs each once, whichever way round."""
+    """Return the unordered pairs, each once."""
     return tuple(dict.fromkeys((min(pair), max(pair)) for pair in pairs if pair[0] != pair[1]))

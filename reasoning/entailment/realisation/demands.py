@@ -1,4 +1,4 @@
-"""What a picture must, or should, be like, as clauses over the edges of boxes in millimetres.
+"""The hard and soft demands on a picture, as clauses over the edges of boxes in millimetres.
 
 The box of object *i* has the points ``2 i`` (left or near edge) and ``2 i + 1`` (right or far edge) on each axis.
 """
@@ -21,26 +21,26 @@ from deixis.reasoning.entailment.realisation.pieces import Piece, choice, region
 from deixis.reasoning.entailment.realisation.things import Things
 
 MARGIN = 1
-"""Millimetres by which what is strictly less is less, and the least side of a box.
+"""Difference in millimetres that a strict inequality requires, and the least side of a box.
 
-Where sizes are free any margin is as good as another: inequalities of differences with 0 or with one margin on the
-right go on to hold when all is enlarged, so that a proof that there is no picture rests on no margin. Where sizes are
-given the margin is part of what is proved.
+With free sizes, every margin is equivalent: inequalities of differences with 0 or one margin on the right still hold
+when everything is enlarged, so that a proof that there is no picture does not depend on the margin. With given sizes,
+the margin is a part of what is proved.
 """
 
 
 class About(StrEnum):
-    """What a demand is about."""
+    """The subject of a demand."""
 
     FACT = "fact"  # key: the edge of the graph
-    NAME = "name"  # key: the edge of a denial, which the name of the pair must not contradict
+    NAME = "name"  # key: the edge of a denial, which the exact relation of the pair must not contradict
     SIZE = "size"  # key: the object
     APART = "apart"  # key: the two objects
 
 
 @dataclass(frozen=True, slots=True)
 class Demand:
-    """Clauses that hold together, what they are about, and how much that counts where it need not hold."""
+    """Clauses that hold together, their subject, and their weight if they are soft."""
 
     about: About
     key: tuple[int, ...]
@@ -49,25 +49,27 @@ class Demand:
 
 
 def low(thing: int) -> int:
+    """Return the point of the left or near edge of an object."""
     return 2 * thing
 
 
 def high(thing: int) -> int:
+    """Return the point of the right or far edge of an object."""
     return 2 * thing + 1
 
 
 def at_most(axis: int, tail: int, head: int, bound: int) -> Difference:
-    """Return ``x[head] - x[tail] <= bound`` on an axis, in whole millimetres."""
+    """Return the constraint ``x[head] - x[tail] <= bound`` on an axis, in whole millimetres."""
     return Difference(axis, tail, head, 2 * bound + 1)
 
 
 def proper_boxes(things: int) -> tuple[Clause, ...]:
-    """Return every box has sides of a millimetre at least."""
+    """Return the clauses that give every box sides of at least a millimetre."""
     return tuple(Clause(((at_most(axis, high(i), low(i), -MARGIN),),)) for i in range(things) for axis in (0, 1))
 
 
 def fact_demands(graph: RelationGraph) -> tuple[Demand, ...]:
-    """Return one demand for every edge of the graph, in their order."""
+    """Return one demand per edge of the graph, in their order."""
     facts = [graph.fact(edge) for edge in range(len(graph))]
     return tuple(
         Demand(About.FACT, (edge,), _clauses(graph, edge, region(fact)), fact.weight) for edge, fact in enumerate(facts)
@@ -75,12 +77,12 @@ def fact_demands(graph: RelationGraph) -> tuple[Demand, ...]:
 
 
 def name_demands(graph: RelationGraph, edges: Sequence[int]) -> tuple[Demand, ...]:
-    """Return for every denial among the edges: the pair's atom settles its exact name.
+    """Return for every denial among the edges the demand that the pair's atom determines its exact relation.
 
-    Boxes that overlap in part are named by the offset of their centres. That name may be one that is denied, though
-    the atom is not.
+    Boxes that overlap in part have the exact relation of the offset of their centres. This may be a relation that is
+    denied, although its atoms are not those of the pair.
     """
-    # the atoms (13, 13) that just one exact relation admits
+    # the atoms (13, 13) that exactly one exact relation admits
     exact = [relation.admits() for relation in graph.vocabulary.of_reading(Reading.EXACT)]
     settled: NDArray[np.bool_] = np.sum(exact, axis=0) == 1
     denials = [(edge, graph.fact(edge)) for edge in edges if not graph.positive[edge]]
@@ -105,8 +107,7 @@ def _differences(piece: Piece, subject: int, thing: int) -> tuple[Difference, ..
 
 
 def size_demands(things: Things) -> tuple[Demand, ...]:
-    """Return one demand for every thing: that its sides are usual, one way round or the other, the preferred way
-    first."""
+    """Return one demand per object for usual sides, in either orientation, the preferred one first."""
     return tuple(Demand(About.SIZE, (i,), _size_clauses(things, i)) for i in range(len(things)))
 
 
@@ -131,9 +132,9 @@ def _sides(thing: int, least: NDArray[np.int64], greatest: NDArray[np.int64]) ->
 
 
 def apart_demand(a: int, b: int, edges: NDArray[np.int64], noise: NDArray[np.float64]) -> Demand:
-    """Return the constraint that two boxes do not overlap: the side to which the least is to be moved comes first.
+    """Return the demand that two boxes do not overlap; the direction of the smallest move comes first.
 
-    ``edges`` (2, points) is where the boxes are now; ``noise`` (4,) is added to the four ways, in millimetres.
+    ``edges`` (2, points) are the current positions; ``noise`` (4,) is added to the four moves, in millimetres.
     """
     ways = [(axis, first, second) for axis in (0, 1) for first, second in ((a, b), (b, a))]
     moved = [int(edges[axis, high(first)] - edges[axis, low(second)]) for axis, first, second in ways]
@@ -143,5 +144,5 @@ def apart_demand(a: int, b: int, edges: NDArray[np.int64], noise: NDArray[np.flo
 
 
 def is_firm(fact: Fact) -> bool:
-    """Return whether a fact must hold: neither optional nor hedged."""
+    """Return whether a fact is neither optional nor hedged, so that it must hold."""
     return not fact.optional and fact.weight >= 1

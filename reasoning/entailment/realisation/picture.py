@@ -1,4 +1,4 @@
-"""Facts to a picture: the firm ones proved possible or not, the others where they fit, and boxes that show it."""
+"""Turn facts into a picture: decide whether the firm facts can hold, fit in the others, and lay out the boxes."""
 
 from __future__ import annotations
 
@@ -36,17 +36,20 @@ from deixis.reasoning.entailment.realisation.verification import (
 from deixis.reasoning.errors import LimitError
 
 ROUNDS = 25
-"""How often things that overlap are told apart before the rest is left as it is."""
+"""Maximum number of rounds of moving overlapping objects apart."""
 
 
 MAX_PICTURED = 500
-"""Objects of a picture: the memory grows with their square, the time somewhat faster."""
+"""Maximum number of objects in a picture; memory grows with its square, time a little faster."""
 
 
 @dataclass(frozen=True)
 class GivenUp:
-    """A fact that need not hold and does not, by its edge; the edges of facts, and the objects whose sizes, exclude
-    it: empty where it only was not found to fit."""
+    """A fact that is not firm and does not hold, by its edge.
+
+    ``because`` has the edges of the facts, and ``sizes`` the objects whose sizes, that exclude it. Both are empty if
+    it was only not found to fit.
+    """
 
     edge: int
     because: tuple[int, ...]
@@ -55,12 +58,12 @@ class GivenUp:
 
 @dataclass(frozen=True, eq=False)
 class Picture:
-    """A box for every object, and what it does not show.
+    """A box for every object, and the facts that it does not satisfy.
 
-    ``boxes`` (n, 2, 2) are least and greatest corners in metres, x to the right, y away from the viewer; every firm
-    fact was seen to hold of them. ``overlapping`` are pairs that overlap in part, ``named_otherwise`` denials that
-    hold though the exact name of such a pair says otherwise. ``finished`` is false where the time was up before all
-    that is only liked was tried.
+    ``boxes`` (n, 2, 2) are least and greatest corners in metres, x to the right, y away from the viewer; they are
+    checked to satisfy every firm fact. ``overlapping`` are pairs that overlap in part. ``named_otherwise`` are denials
+    that hold by the atoms of such a pair, but not by its exact relation. ``finished`` is False if the time ran out
+    before all preferences were tried.
     """
 
     boxes: NDArray[np.float64]
@@ -72,10 +75,10 @@ class Picture:
 
 @dataclass(frozen=True)
 class Impossible:
-    """There is no picture: firm facts, by their edges, and objects whose sizes do not go together.
+    """The proof that there is no picture: the edges of firm facts, and objects whose sizes are incompatible with them.
 
-    Without sizes, no table of whatever sizes satisfies the facts. ``minimal`` where the rest was seen to be possible
-    without any one of them.
+    Without sizes, no table with objects of any size satisfies the facts. ``minimal`` is True if leaving out any one of
+    the facts and sizes was found to make a picture possible.
     """
 
     edges: tuple[int, ...]
@@ -85,7 +88,7 @@ class Impossible:
 
 @dataclass(frozen=True)
 class Undecided:
-    """The time was up before a picture was found or proved impossible."""
+    """The answer if time runs out before a picture is found or proved impossible."""
 
 
 def realise(
@@ -97,16 +100,31 @@ def realise(
     deadline: Deadline = Deadline.never(),
     rng: np.random.Generator | None = None,
 ) -> Picture | Impossible | Undecided:
-    """Return boxes that satisfy every firm fact of a graph, in the stated reading; or the proof that there are none.
+    """Find boxes that satisfy every firm fact of a graph in its reading, or prove that no such boxes exist.
 
-    ``sizes`` has one range a node; with ``any_size`` they are only liked. ``lying`` says which things rather lie
-    along x. ``rng`` draws sizes, gaps and arrangements; without it the picture is the same each time. Facts that are
-    optional or hedged hold where they can, the heavier ones first. The answer comes at about the ``deadline`` at the
-    latest. Raises LimitError for more than ``MAX_PICTURED`` objects, whose edges cannot be related in bounded memory.
+    Parameters
+    ----------
+    graph
+        The facts. Optional and hedged facts hold if possible, the heavier ones first.
+    sizes
+        One size range per node.
+    lying
+        Whether each object preferably lies along x.
+    any_size
+        Treat the sizes as preferences only.
+    deadline
+        Time limit; the answer comes soon after it at the latest.
+    rng
+        Generator of sizes, gaps and arrangements. Without it, the picture is always the same.
+
+    Raises
+    ------
+    LimitError
+        If there are more than ``MAX_PICTURED`` objects, since the memory grows with their square.
     """
     if len(graph.nodes) > MAX_PICTURED:
         raise LimitError(
-            f"a picture of {len(graph.nodes)} objects is more than can be worked out; {MAX_PICTURED} are the most"
+            f"a picture must have at most {MAX_PICTURED} objects, got {len(graph.nodes)}; describe the table in parts"
         )
     things = things_of(sizes, lying if lying is not None else [False] * len(graph.nodes), rng)
     task = _Task(graph, things, any_size, rng)
@@ -126,8 +144,10 @@ class _Task:
         self.gap = 12.0 if rng is None else float(rng.uniform(8, 25))
 
     def impossible(self, deadline: Deadline) -> Impossible | Undecided | None:
-        """Return the proof that there is no picture: with whatever sizes if it can be, else with those that are
-        usual."""
+        """Return the proof that there is no picture, or None if there is one, or Undecided at the deadline.
+
+        The proof is for objects of any size if possible, else for usual sizes.
+        """
         found = satisfy(self.points, self.base, [*self.firm, *self.sizes], deadline)
         if found is None:
             return Undecided()
@@ -140,14 +160,14 @@ class _Task:
         return _impossible(minimised(self.points, self.base, found, deadline))
 
     def picture(self, deadline: Deadline) -> Picture:
-        """Return boxes, made better in rounds: what overlaps is told apart, and all is put in its place again."""
+        """Return boxes, improved in rounds that move overlapping boxes apart and arrange all boxes again."""
         named = name_demands(self.graph, [d.key[0] for d in self.firm])
         best = self._liked([*self.soft, *named], deadline)
         soft, apart = [d for d in best.kept if d.about is not About.APART], list[Demand]()
         edges, finished = self._composed(best, apart, deadline), best.finished
         dropped = list(best.dropped)
         for _ in range(ROUNDS):
-            # tell apart what overlaps, but for what is said to lie on one another and what was tried
+            # move overlapping boxes apart, except stacked ones and those tried before
             known = {d.key for d in apart}
             boxes = _boxes(edges)
             low_corner, high_corner = boxes[:, 0], boxes[:, 1]
@@ -174,15 +194,14 @@ class _Task:
         return self._checked(edges, dropped, finished)
 
     def _liked(self, soft: Sequence[Demand], deadline: Deadline) -> Relaxed:
-        """Return what of all that is liked holds; what is known to be possible where there is nothing more or no
-        time."""
+        """Return the soft demands that hold, or only the firm demands if there are no soft ones or no time."""
         found = self._relaxed(soft, deadline) if soft else Relaxed(self.solved, (), ())
         return Relaxed(self.solved, (), (), finished=False) if found is None else found
 
     def _relaxed(self, soft: Sequence[Demand], deadline: Deadline) -> Relaxed | None:
         found = relaxed(self.points, self.base, [*self.firm, *self.sizes], soft, deadline)
         if isinstance(found, tuple):
-            raise AssertionError("firm demands that were seen to be possible are not any more")
+            raise AssertionError("the firm demands were satisfiable before, and are not any more")
         return found
 
     def _composed(self, best: Relaxed, apart: Sequence[Demand], deadline: Deadline) -> NDArray[np.int64]:
@@ -193,7 +212,7 @@ class _Task:
             for edge in sorted(kept)
             if self.graph.positive[edge]
         ]
-        # which things have their length along y: as was chosen, or as is preferred where it was not
+        # objects with their length along y: as chosen, or else as preferred
         lengthwise = np.ones(len(self.things), dtype=np.bool_)
         for thing in range(len(self.things)):
             tall = -(network.distances[:, high(thing), low(thing)] >> 1)  # the least sides that follow
@@ -213,7 +232,7 @@ class _Task:
         return compose(network, wishes, deadline)
 
     def _checked(self, edges: NDArray[np.int64], dropped: Sequence[Dropped], finished: bool) -> Picture:
-        """Return the picture, after a look at every fact."""
+        """Return the picture after checking every fact."""
         boxes = _boxes(edges - edges.min(axis=1, keepdims=True) if self.points else edges) / 1000.0
         held, named = facts_that_hold(self.graph, boxes), facts_that_are_named(self.graph, boxes)
         wrong = [d.key[0] for d in self.firm if not held[d.key[0]]]
@@ -238,7 +257,7 @@ def _boxes(edges: NDArray[np.int64]) -> NDArray[np.int64]:
 
 
 def _keys(demands: Sequence[Demand]) -> tuple[tuple[int, ...], tuple[int, ...]]:
-    """Return the edges of the facts and the objects of the sizes among demands."""
+    """Return the edges of the facts and the objects of the sizes among the demands."""
     edges = sorted(d.key[0] for d in demands if d.about is About.FACT)
     return tuple(edges), tuple(sorted(d.key[0] for d in demands if d.about is About.SIZE))
 

@@ -1,7 +1,7 @@
-"""Relations as choices between conjunctions of end-point inequalities.
+"""Relations as choices between conjunctions of inequalities of end points.
 
-A set of rectangle-algebra atoms is covered by products of two
-convex sets, and each product is one *piece*: inequalities all of which hold. So every fact is a choice of pieces.
+A set of rectangle-algebra atoms is covered by products of two convex sets. Each product is one *piece*: a conjunction
+of inequalities. So every fact is a choice between pieces.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ X, Y = 0, 1
 
 
 class Inequality(NamedTuple):
-    """``greater`` is at least ``lesser``, and above it where ``strict``: end points of two boxes on one axis."""
+    """``greater`` is at least ``lesser``, or above it if ``strict``: end points of two boxes on one axis."""
 
     axis: int
     lesser: int
@@ -35,9 +35,9 @@ Piece = tuple[Inequality, ...]
 def region(fact: Fact) -> NDArray[np.bool_]:
     """Return the atoms that a fact admits, shape (13, 13), axes x and y, by Allen code.
 
-    Where a relation and its inverse share an atom, heights tell them apart: of two boxes that are alike one lies on
-    the other, and a plan does not say which. No fact is pictured by such an atom. Nothing is lost by that: where a
-    chain of *on* does not come back to where it began, its boxes can be made to shrink along it.
+    It leaves out atoms that a relation shares with its inverse, for which only heights can decide: of two equal boxes,
+    one lies on the other, but a plan does not show which. This loses no pictures: unless a chain of *on* is a cycle,
+    its boxes can be made smaller along it.
     """
     admitted = np.zeros((13, 13), dtype=np.bool_)
     shared = np.zeros((13, 13), dtype=np.bool_)
@@ -52,17 +52,17 @@ def region(fact: Fact) -> NDArray[np.bool_]:
 
 @dataclass(frozen=True, slots=True)
 class PieceChoice:
-    """What holds in any case, and pieces of which one holds besides: none where nothing is admitted."""
+    """The inequalities that always hold, and the pieces of which one must hold; no pieces if no atom is admitted."""
 
     always: Piece
     pieces: tuple[Piece, ...]
 
 
 def choice(wanted: NDArray[np.bool_]) -> PieceChoice:
-    """Return inequalities that admit just the wanted atoms (13, 13): those of the convex hull, and a choice of pieces.
+    """Return inequalities that admit exactly the wanted atoms (13, 13): the convex hull, and a choice of pieces.
 
-    Pieces may overlap, and the largest come first: the cover is greedy, each piece admits as many atoms that are not
-    yet covered as any can. What the hull says already is left out of them.
+    The cover is greedy: each piece admits as many uncovered atoms as possible, so that the largest come first. Pieces
+    may overlap. They leave out the inequalities of the hull.
 
     >>> from deixis.ontology.tbox import default_ontology
     >>> choice(default_ontology().relations["left"].admits())

@@ -1,4 +1,4 @@
-"""Demands that hold together: all of them, as many as can be, or the least of them that cannot."""
+"""Consistent sets of demands: all, as many as possible, or a minimal set that is inconsistent."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from deixis.reasoning.entailment.realisation.demands import Demand
 
 @dataclass(frozen=True, slots=True)
 class Dropped:
-    """A demand that was given up, and the demands beside which it cannot hold."""
+    """A demand that was given up, and the demands that exclude it."""
 
     demand: Demand
     because: tuple[Demand, ...]
@@ -22,8 +22,10 @@ class Dropped:
 
 @dataclass(frozen=True)
 class Relaxed:
-    """A solution of the firm demands and of the soft ones that were kept; ``finished`` where all soft ones that were
-    dropped were proved not to fit."""
+    """A solution of the firm demands and of the soft ones that were kept.
+
+    ``finished`` is True if all dropped soft demands were proved not to fit.
+    """
 
     network: DifferenceNetwork
     kept: tuple[Demand, ...]
@@ -34,7 +36,7 @@ class Relaxed:
 def satisfy(
     points: int, base: Sequence[Clause], demands: Sequence[Demand], deadline: Deadline
 ) -> DifferenceNetwork | tuple[Demand, ...] | None:
-    """Return a solution of the base and all demands; or demands that have none; or None where the time was up."""
+    """Return a solution of the base and all demands, or inconsistent demands, or None if time runs out."""
     clauses = [*base, *(clause for demand in demands for clause in demand.clauses)]
     owners = [-1] * len(base) + [position for position, demand in enumerate(demands) for _ in demand.clauses]
     found = solve(points, 2, clauses, deadline)
@@ -44,7 +46,7 @@ def satisfy(
 
 
 def minimised(points: int, base: Sequence[Clause], demands: Sequence[Demand], deadline: Deadline) -> Minimal[Demand]:
-    """Return demands that cannot all hold, made minimal as far as there is time."""
+    """Return inconsistent demands, minimal as far as time allows."""
 
     def refuted(chosen: Sequence[Demand]) -> tuple[Demand, ...] | None:
         found = satisfy(points, base, chosen, deadline)
@@ -56,12 +58,11 @@ def minimised(points: int, base: Sequence[Clause], demands: Sequence[Demand], de
 def relaxed(
     points: int, base: Sequence[Clause], firm: Sequence[Demand], soft: Sequence[Demand], deadline: Deadline
 ) -> Relaxed | tuple[Demand, ...] | None:
-    """Return a solution of all firm demands and of as many soft ones as can be kept, the first ones rather than the
-    last.
+    """Return a solution of all firm demands and of as many soft ones as possible, preferring the first ones.
 
-    Of soft demands that cannot hold beside the others the last one is given up, until the rest can; then those that
-    were given up are tried again. Firm demands that cannot hold by themselves are returned; None where the time was
-    up before anything was solved.
+    As long as soft demands are inconsistent with the others, the last one of a conflict is given up; then those given
+    up are tried again. The function returns inconsistent firm demands instead, or None if time runs out before anything
+    is solved.
     """
     kept, dropped = list(soft), list[Dropped]()
     while True:
@@ -79,7 +80,7 @@ def relaxed(
 
 
 def _retried(points: int, base: Sequence[Clause], firm: Sequence[Demand], best: Relaxed, deadline: Deadline) -> Relaxed:
-    """Take back in what was given up for the sake of something that was itself given up later."""
+    """Restore demands that were given up because of others that were given up later."""
     for dropped in _worth_trying(best):
         demands = [*firm, *best.kept, dropped.demand]
         found = satisfy(points, base, demands, deadline) if not deadline.passed else None

@@ -1,4 +1,4 @@
-"""Whether boxes satisfy facts: looked up from their atoms, without anything that the search has used."""
+"""Verify facts on boxes by their atoms, independently of the search."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from deixis.reasoning.geometry.rectangle import box_relations
 
 
 def facts_that_hold(graph: RelationGraph, boxes: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Return which edges of a graph hold of the boxes of its nodes (n, 2, 2), as what each relation admits says.
+    """Return which edges of a graph hold of the boxes of its nodes (n, 2, 2), by the atoms that each relation admits.
 
-    Of two boxes that are alike nothing holds that says which lies on the other.
+    Between two equal boxes, no relation holds that says which lies on the other.
     """
     a, b = boxes[graph.subjects], boxes[graph.objects]
     codes = [allen_relations(a[:, 0, axis], a[:, 1, axis], b[:, 0, axis], b[:, 1, axis]) for axis in (0, 1)]
@@ -29,9 +29,9 @@ def facts_that_hold(graph: RelationGraph, boxes: NDArray[np.float64]) -> NDArray
 
 
 def facts_that_are_named(graph: RelationGraph, boxes: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Return which edges hold as grounding and checking see it: by the one exact name of each pair.
+    """Return which edges hold by the one exact relation of each pair, as in grounding and checking.
 
-    It differs from :func:`facts_that_hold` only for boxes that overlap in part or are alike.
+    The result differs from :func:`facts_that_hold` only for boxes that overlap in part or are equal.
     """
     vocabulary = graph.vocabulary
     order = np.argsort(np.argsort(np.array(graph.nodes, dtype=np.str_)))
@@ -48,8 +48,7 @@ def facts_that_are_named(graph: RelationGraph, boxes: NDArray[np.float64]) -> ND
 
 
 def partly_overlapping(boxes: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Return which ordered pairs of boxes (n, 2, 2) share a part of the plan, neither within the other, shape (n,
-    n)."""
+    """Return which ordered pairs of boxes (n, 2, 2) overlap in part, neither within the other, shape (n, n)."""
     low, high = boxes[:, 0], boxes[:, 1]
     share = ((low[:, None] < high[None]) & (low[None] < high[:, None])).all(axis=2)
     inside = ((low[:, None] >= low[None]) & (high[:, None] <= high[None])).all(axis=2)

@@ -67,16 +67,16 @@ def test_what_is_missing_and_what_is_extra_is_named() -> None:
     assert roles(checked, RoleVerdict.MISSING) == {"water_glass"}
     assert {extra.perceived: extra.reason for extra in checked.table.extra} == {
         "n2": "one napkin too many",
-        "v": "the layout has no place left for a vase",
+        "v": "the layout has no unfilled role for a vase",
     }
 
 
 def test_a_thing_without_a_name_is_extra_for_want_of_a_place_or_for_fitting_none() -> None:
     scene = Scene((PerceivedObject("p", (0.0, 0.0), (0.27, 0.27)), PerceivedObject("q", (2.0, 2.0), (2.01, 2.01))))
     (extra,) = check(scene, "plate is a DinnerPlate").table.extra
-    assert (extra.perceived, extra.reason) == ("q", "there are more things than the layout has places")
+    assert (extra.perceived, extra.reason) == ("q", "the scene has more objects than the layout has roles")
     (extra,) = check(Scene(scene.objects[:1]), "dinner_fork left of dinner_knife").table.extra
-    assert (extra.perceived, extra.reason) == ("p", "it fits no place that is left in the layout")
+    assert (extra.perceived, extra.reason) == ("p", "it fits none of the unfilled roles of the layout")
 
 
 def box(id: str, low: tuple[float, ...], sides: tuple[float, ...], label: str | None = None) -> PerceivedObject:
@@ -91,7 +91,7 @@ def test_what_is_no_fork_by_its_size_nor_by_its_place_is_no_misplaced_fork() -> 
     checked = check(Scene((PLATE, box("o2", (0.3, 0.06, 0.0), CUBE))), "fork left of plate")
     assert roles(checked, RoleVerdict.MISSING) == {"fork"} and not roles(checked, RoleVerdict.MISPLACED)
     (extra,) = checked.table.extra
-    assert (extra.perceived, extra.reason) == ("o2", "it fits no place that is left in the layout")
+    assert (extra.perceived, extra.reason) == ("o2", "it fits none of the unfilled roles of the layout")
     assert not checked.table.well
 
 
@@ -175,8 +175,8 @@ def test_a_thing_of_a_narrower_name_fills_its_role() -> None:
     checked = check(Scene(objects), "2 fork left of plate")
     assert roles(checked, RoleVerdict.CORRECT) == {"fork_1", "fork_2", "plate"}
     assert {extra.perceived: extra.reason for extra in checked.table.extra} == {
-        "p": "the layout has no place left for a dinner plate",
-        "q": "the layout has no place left for a bread plate",
+        "p": "the layout has no unfilled role for a dinner plate",
+        "q": "the layout has no unfilled role for a bread plate",
     }
 
 

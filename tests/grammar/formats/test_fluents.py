@@ -113,13 +113,13 @@ def with_relation(relation: Any) -> str:
 ALLEN = {"a": "fetch", "allen": ["before"], "b": "serve"}
 BETWEEN = {"from": "fetch.start", "to": "serve.start", "bounds": [0, 1]}
 WRONG = [
-    ('{"origin": "o",\n "fluents": [,]}', ":2:14: this is no JSON"),
-    ("", ":1:1: this is no JSON"),
+    ('{"origin": "o",\n "fluents": [,]}', ":2:14: this is not valid JSON"),
+    ("", ":1:1: this is not valid JSON"),
     ("[" * 100_000, "nested too deeply"),
     ("[]", "an object {…} is expected here, not a list"),
     ("{}", "'origin' is missing"),
     ('{"origin": "o"}', "'fluents' is missing"),
-    ('{"origin": "o", "origin": "p", "fluents": []}', "the key 'origin' stands twice"),
+    ('{"origin": "o", "origin": "p", "fluents": []}', "the key 'origin' occurs twice"),
     ('{"origin": "o", "fluent": []}', "'fluent' is no key here; did you mean 'fluents'?"),
     ('{"origin": "o", "unit": "day", "fluents": []}', "unit: 'day' is not known; use one of s, ms, min, h"),
     ('{"origin": " ", "fluents": []}', "origin: a text in one line is expected"),
@@ -141,7 +141,7 @@ WRONG = [
     (with_fluent().replace('"f1"', '"f1", "start": [0, 1%s]' % ("0" * 5000)), "a number of 5001 digits is too large"),
     (with_fluent(start={"lower": 0, "uper": 1}), "fluents[0].start: 'uper' is no key here; did you mean 'upper'?"),
     (with_fluent(start={"lower": 0, "upper": 1, "upper_open": 1}), "start.upper_open: true or false is expected"),
-    (with_fluent(start=[5, 6], finish=[1, 5]), "fluents[0]: the fluent 'f1' starts in [5, 6] and finishes in [1, 5]"),
+    (with_fluent(start=[5, 6], finish=[1, 5]), "fluents[0]: the fluent 'f1' must start before it finishes"),
     (with_fluent(stop=[1, 5]), "fluents[0]: 'stop' is no key here"),
     (with_relation(ALLEN | {"a": "fetsch"}), "relations[0].a: there is no fluent 'fetsch'; did you mean 'fetch'?"),
     (with_relation(ALLEN | {"allen": ["befor"]}), "allen[0]: there is no relation 'befor'; did you mean 'before'?"),

@@ -1,4 +1,4 @@
-"""Lessons as triples and back: what was learned is what was said, and names cannot say more than themselves."""
+"""Lessons to triples and back: nothing is lost, and no name can inject a triple."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def lesson(names: list[str], id: str = "dinner-1", decided: bool = True) -> Less
 
 @settings(deadline=None, max_examples=60)
 @given(st.lists(NAMES, min_size=2, max_size=4, unique=True))
-def test_a_layout_read_back_from_its_triples_is_the_layout_that_was_learned(names: list[str]) -> None:
+def test_a_layout_survives_the_round_trip_through_triples(names: list[str]) -> None:
     taught = lesson(names)
     (again,) = layouts(learned_triples(taught, RELATIONS), RELATIONS)
     assert again == taught.layout
@@ -65,7 +65,7 @@ def test_a_layout_read_back_from_its_triples_is_the_layout_that_was_learned(name
 
 @settings(deadline=None, max_examples=40)
 @given(st.lists(NAMES, min_size=2, max_size=4, unique=True), st.booleans(), st.floats(0, 1))
-def test_a_record_read_back_holds_the_texts_and_how_sure_every_match_is(
+def test_a_lesson_record_keeps_texts_and_match_probabilities(
     names: list[str], decided: bool, probability: float
 ) -> None:
     plain = lesson(names, "dinner 1/x", decided)
@@ -80,7 +80,7 @@ def test_a_record_read_back_holds_the_texts_and_how_sure_every_match_is(
     assert {match.could_be for match in record.matches} == ({()} if decided else {("o1", "o0")})
 
 
-def test_a_match_without_a_probability_is_sure_where_it_is_decided_and_else_shares() -> None:
+def test_the_sureness_of_a_match_without_a_probability() -> None:
     other = (Alternative("o1"), Alternative(None))
     assert Match("fork", "o1", 1.0, math.nan, True, ()).sureness == 1
     assert Match("fork", "o1", 1.0, math.nan, False, ()).sureness == 0
@@ -88,15 +88,15 @@ def test_a_match_without_a_probability_is_sure_where_it_is_decided_and_else_shar
     assert Match("fork", "o2", 1.0, math.nan, False, other, 0.3).sureness == 0.3
 
 
-def test_a_match_of_which_the_likeliest_was_not_kept_is_none() -> None:
-    """Lessons of the first versions kept for what is not decided only what it could be."""
+def test_a_match_without_a_likeliest_object_is_not_read() -> None:
+    """Lessons of the first versions kept only the candidates of an undecided match."""
     taught = lesson(["fork", "plate"], decided=False)
     learned = [t for t in learned_triples(taught, RELATIONS) if t.predicate.value != DX.LIKELIEST]
     (record,) = lesson_records(learned, episode_triples(taught))
     assert record.matches == ()
 
 
-def test_a_lesson_without_its_texts_is_no_record() -> None:
+def test_a_lesson_without_its_texts_gives_no_record() -> None:
     taught = lesson(["fork", "plate"])
     told = [triple for triple in episode_triples(taught) if triple.predicate.value != DX.SCENE_TEXT]
     assert lesson_records(learned_triples(taught, RELATIONS), told) == ()
@@ -104,7 +104,7 @@ def test_a_lesson_without_its_texts_is_no_record() -> None:
 
 @settings(deadline=None, max_examples=40)
 @given(st.lists(NAMES, min_size=3, max_size=3, unique=True))
-def test_no_name_adds_a_triple_of_its_own(names: list[str]) -> None:
+def test_no_name_can_inject_a_triple(names: list[str]) -> None:
     plain = lesson(["fork", "plate", "spoon"])
     odd = lesson(names)
     for triples in (lambda x: learned_triples(x, RELATIONS), asserted_triples, episode_triples):
@@ -115,7 +115,7 @@ def test_no_name_adds_a_triple_of_its_own(names: list[str]) -> None:
 
 
 @given(NAMES)
-def test_an_iri_keeps_its_name_within_one_part(name: str) -> None:
+def test_a_name_stays_within_one_part_of_an_iri(name: str) -> None:
     iri = learned_iri("category", name)
     assert last_part(iri) == name
     assert iri.removeprefix(LEARNED).count("/") == 1
@@ -130,7 +130,7 @@ def test_only_decided_matches_teach_a_category() -> None:
     assert len(could_be) == 4
 
 
-def test_class_expressions_are_blank_nodes_outside_and_names_inside() -> None:
+def test_class_expressions_are_exported_as_blank_nodes() -> None:
     inside = list(learned_triples(lesson(["fork", "plate"]), RELATIONS))
     assert not any(isinstance(term, ox.BlankNode) for t in inside for term in (t.subject, t.object))
     outside = list(with_blank_nodes(inside))
@@ -138,10 +138,10 @@ def test_class_expressions_are_blank_nodes_outside_and_names_inside() -> None:
     assert set(with_names(outside)) == set(inside)
 
 
-def test_an_unknown_layout_is_told_with_the_nearest_name() -> None:
+def test_the_error_for_an_unknown_layout_suggests_a_name() -> None:
     assert "did you mean 'dinner'" in str(unknown_layout("diner", ["dinner", "dinner", "picnic"]))
-    assert "the learned ones are: dinner, picnic" in str(unknown_layout("x", ["picnic", "dinner"]))
-    assert "nor any other" in str(unknown_layout("diner", ()))
+    assert "the learned layouts are: dinner, picnic" in str(unknown_layout("x", ["picnic", "dinner"]))
+    assert "the memory has no layouts yet" in str(unknown_layout("diner", ()))
 
 
 def test_lesson_ids_are_never_used_twice() -> None:
@@ -158,7 +158,7 @@ def test_lesson_ids_are_never_used_twice() -> None:
     assert asked.total() < 30
 
 
-def test_numbers_keep_their_value_and_get_the_right_type() -> None:
+def test_numbers_keep_their_value_and_get_their_datatype() -> None:
     assert str(decimal(1e-7)).startswith('"0.0000001"')
     assert typed(True).value == "true"
     assert typed(3).datatype.value.endswith("#integer")

@@ -1,4 +1,4 @@
-"""Graded models as data: what a model must be, and triples to and from."""
+"""Graded models as data: their constraints, and the round trip through triples."""
 
 from __future__ import annotations
 
@@ -43,33 +43,33 @@ def test_the_whole_vocabulary_of_a_model_is_in_the_tbox() -> None:
     ("old", "new", "message"),
     [
         ("0.0 0.5 1.0", "0.0 half 1.0", "must be numbers"),
-        ("0.0 0.5 1.0", "0.5 0.0 1.0", "knots must rise"),
-        ("0.0 -0.1 -2.0", "0.0 -0.1", "one value a knot"),
+        ("0.0 0.5 1.0", "0.5 0.0 1.0", "knots must increase"),
+        ("0.0 -0.1 -2.0", "0.0 -0.1", "one value per knot"),
         ("0.0 -0.1 -2.0", "-2.0 -0.1 0.0", "must be falling"),
-        ("0.0 -0.1 -2.0", "0.1 -0.1 -2.0", "at the most"),
-        ("0.0 -0.1 -2.0", "nan -0.1 -2.0", "not finite"),
+        ("0.0 -0.1 -2.0", "0.1 -0.1 -2.0", "at most 0"),
+        ("0.0 -0.1 -2.0", "nan -0.1 -2.0", "must be finite"),
         ("dx:outlierRate", "dx:somethingElse", "must have exactly one"),
         ("dx:trend", "dx:somethingElse", "must have exactly one"),
-        ("@prefix", "prefix prefix", "no valid Turtle"),
+        ("@prefix", "prefix prefix", "not valid Turtle"),
     ],
 )
-def test_models_that_are_not_whole_are_refused(old: str, new: str, message: str) -> None:
+def test_incomplete_models_are_refused(old: str, new: str, message: str) -> None:
     turtle = models_to_turtle([MODEL])
     assert old in turtle
     with pytest.raises(OntologyError, match=message):
         models_from_turtle(turtle.replace(old, new))
 
 
-def test_a_trend_that_is_none_is_refused() -> None:
+def test_an_unknown_trend_is_refused() -> None:
     import re
 
     turtle = re.sub(r"dx:trend -?\d+", "dx:trend 5", models_to_turtle([MODEL]))
-    with pytest.raises(OntologyError, match="a trend is 1, 0 or -1, not 5"):
+    with pytest.raises(OntologyError, match="a trend must be 1, 0 or -1, got 5"):
         models_from_turtle(turtle)
 
 
 @pytest.mark.parametrize(("outliers", "chance"), [(0.0, 0.5), (1.0, 0.5), (0.1, 0.0), (0.1, 1.5)])
-def test_shares_that_are_none_are_refused(outliers: float, chance: float) -> None:
+def test_shares_outside_of_their_range_are_refused(outliers: float, chance: float) -> None:
     with pytest.raises(OntologyError, match="between 0 and 1"):
         RelationModel("horizontal", (), outliers, chance)
 
@@ -79,7 +79,7 @@ def test_two_terms_for_one_feature_are_refused() -> None:
         RelationModel("horizontal", (TERM, TERM), 0.01, 0.1)
 
 
-def test_models_that_are_not_all_there_are_refused() -> None:
+def test_missing_models_are_refused() -> None:
     with pytest.raises(OntologyError, match="no graded model 'diagonal'"):
         RelationModels({"horizontal": MODEL})
 

@@ -1,4 +1,4 @@
-"""Learned sizes as data: triples to and from, and what is refused."""
+"""Learned sizes as data: the round trip through triples, and invalid triples."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def test_sizes_come_back_from_their_triples_to_six_digits() -> None:
         assert (found[kind].relative, found[kind].views) == (model.relative, model.views)
 
 
-def test_a_size_says_in_metres_what_a_person_would_and_from_which_scenes() -> None:
+def test_size_triples_are_in_metres_and_name_their_scenes() -> None:
     said = {(t.predicate.value, getattr(t.object, "value", "")) for t in size_triples(PLATE, MODEL, ["urn:a", "urn:b"])}
     assert {(str(DX.MEDIAN_LENGTH), "0.27"), (str(DX.MEDIAN_ASPECT), "0.98"), (str(DX.VIEW_COUNT), "4")} <= said
     assert {(str(PROV.WAS_DERIVED_FROM), "urn:a"), (str(PROV.WAS_DERIVED_FROM), "urn:b")} <= said
@@ -36,14 +36,14 @@ def test_a_size_says_in_metres_what_a_person_would_and_from_which_scenes() -> No
 @pytest.mark.parametrize(
     ("predicate", "value", "message"),
     [
-        (DX.MEDIAN_LENGTH, text("long"), "must be a number above 0, not 'long'"),
-        (DX.LENGTH_DEVIATION, typed(0.0), "must be a number above 0, not '0.0'"),
-        (DX.VIEW_COUNT, typed(math.inf), "must be a number above 0, not 'inf'"),
+        (DX.MEDIAN_LENGTH, text("long"), "must be a number above 0, got 'long'"),
+        (DX.LENGTH_DEVIATION, typed(0.0), "must be a number above 0, got '0.0'"),
+        (DX.VIEW_COUNT, typed(math.inf), "must be a number above 0, got 'inf'"),
         (DX.MEDIAN_ASPECT, None, "must have exactly one"),
         (DX.OF_KIND, iri("urn:other"), "must have exactly one"),
     ],
 )
-def test_sizes_that_are_not_whole_are_refused(predicate: str, value: ox.Literal | None, message: str) -> None:
+def test_incomplete_sizes_are_refused(predicate: str, value: ox.Literal | None, message: str) -> None:
     triples = list(size_triples(PLATE, MODEL, []))
     if predicate != DX.OF_KIND:
         triples = [triple for triple in triples if triple.predicate.value != predicate]

@@ -273,12 +273,12 @@ def test_a_malformed_scene_is_refused_with_the_place_and_the_reason(data: Any, m
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("", ":1:1: this is no JSON: Expecting value"),
-        ("{", ":1:2: this is no JSON: "),
-        ('{"objects": [],}', ": this is no JSON: "),
-        ('{\n  "objects": [}\n', ":2:15: this is no JSON: Expecting value"),
-        ('{"objects": []} x', ":1:17: this is no JSON: Extra data"),
-        ("{'objects': []}", ":1:2: this is no JSON: "),
+        ("", ":1:1: this is not valid JSON: Expecting value"),
+        ("{", ":1:2: this is not valid JSON: "),
+        ('{"objects": [],}', ": this is not valid JSON: "),
+        ('{\n  "objects": [}\n', ":2:15: this is not valid JSON: Expecting value"),
+        ('{"objects": []} x', ":1:17: this is not valid JSON: Extra data"),
+        ("{'objects': []}", ":1:2: this is not valid JSON: "),
         ('{"objects": [{"id": "o1", "min": [0, NaN], "max": [1, 1]}]}', ": objects[0]: 'min': NaN is no number"),
         ('{"objects": [{"id": "o1", "min": [0, 0], "max": [Infinity, 1]}]}', "'max': Infinity is no number"),
         ('{"objects": [{"id": "o1", "min": [-Infinity, 0], "max": [1, 1]}]}', "'min': -Infinity is no number"),
@@ -287,7 +287,7 @@ def test_a_malformed_scene_is_refused_with_the_place_and_the_reason(data: Any, m
         ('{"objects": [{"id": "o1", "min": [0, 0], "max": [' + "9" * 5000 + ", 1]}]}", ": "),
         ("[" * 200_000, ": "),
         ('{"objects": ' * 100_000, ": "),
-        ("nul\x00", ": this is no JSON: "),
+        ("nul\x00", ": this is not valid JSON: "),
     ],
     ids=range(15),
 )
@@ -339,7 +339,7 @@ def test_keys_that_are_no_texts_are_unknown_ones() -> None:
 @pytest.mark.parametrize(
     ("content", "message"),
     [
-        ('{"objects": [], "objects": []}', "the key 'objects' stands twice in one object"),
+        ('{"objects": [], "objects": []}', "the key 'objects' occurs twice in one object"),
         ("[" * 100_000, "the JSON is nested too deeply"),
         ('{"objects": ' + "9" * 5000 + "}", "a number of 5000 digits is too large"),
     ],

@@ -34,7 +34,7 @@ def layout(text: str, name: str = "layout") -> Described:
 
 
 def table(seed: int, n: int, name: str = "scene", labelled: bool = True) -> SceneRelations:
-    """n boxes in the unit square, of kinds drawn at random."""
+    """Return a scene of n boxes in the unit square, of random kinds."""
     rng = np.random.default_rng(seed)
     low = rng.uniform(0, 1, (n, 2))
     boxes = np.stack([low, low + rng.uniform(0.02, 0.3, (n, 2))], axis=1)
@@ -43,7 +43,7 @@ def table(seed: int, n: int, name: str = "scene", labelled: bool = True) -> Scen
 
 
 def script(seed: int, n: int, facts: int) -> Described:
-    """A few facts of a table drawn at random, in the wide reading."""
+    """Return a few random facts of a table, in the wide reading."""
     rng, graph = np.random.default_rng(seed), table(seed, n).graph()
     chosen = rng.permutation(len(graph))[:facts]
     wide = [
@@ -59,7 +59,7 @@ def likeness(description: Described, scene: SceneRelations) -> Likeness:
 
 @given(st.integers(0, 10**6), st.integers(1, 6))
 @settings(max_examples=25, deadline=None)
-def test_a_scene_is_wholly_similar_to_the_layout_that_it_shows(seed: int, n: int) -> None:
+def test_a_scene_has_similarity_one_to_its_own_layout(seed: int, n: int) -> None:
     graph = table(seed, n)
     assert likeness(Described("itself", graph.graph()), graph).similarity == pytest.approx(1.0, abs=1e-5)
     few = script(seed, n, n)
@@ -68,7 +68,7 @@ def test_a_scene_is_wholly_similar_to_the_layout_that_it_shows(seed: int, n: int
 
 @given(st.integers(0, 10**6), st.integers(2, 5), st.integers(2, 5))
 @settings(max_examples=40, deadline=None)
-def test_two_scenes_with_relations_are_as_similar_either_way(seed: int, n: int, m: int) -> None:
+def test_the_similarity_of_two_scenes_is_symmetric(seed: int, n: int, m: int) -> None:
     one, other = table(seed, n, "a"), table(seed + 1, m, "b")
     there, back = likeness(Described("one", one.graph()), other), likeness(Described("other", other.graph()), one)
     assert there.similarity == pytest.approx(back.similarity, abs=1e-5)
@@ -76,9 +76,7 @@ def test_two_scenes_with_relations_are_as_similar_either_way(seed: int, n: int, 
 
 @given(st.integers(0, 10**6), st.integers(1, 4), st.integers(0, 4), st.integers(0, 8))
 @settings(max_examples=40, deadline=None)
-def test_the_similarity_is_the_largest_over_all_groundings_and_below_its_bounds(
-    seed: int, n1: int, n2: int, facts: int
-) -> None:
+def test_the_similarity_is_the_maximum_and_below_its_bounds(seed: int, n1: int, n2: int, facts: int) -> None:
     description, scene = script(seed, n1, facts), table(seed + 7, n2, labelled=seed % 2 == 0)
     ready = seen("scene", scene)
     problem = COMPARISON.problem(description, ready)
@@ -94,7 +92,7 @@ def test_the_similarity_is_the_largest_over_all_groundings_and_below_its_bounds(
     assert assignment_bound(COMPARISON, description, ready) >= found.similarity - 1e-5
 
 
-def test_what_is_missing_and_what_is_extra_both_make_less_similar() -> None:
+def test_missing_and_extra_objects_lower_the_similarity() -> None:
     graph, full = table(3, 5), Described("five", table(3, 5).graph())
     fewer = graph.reordered(np.arange(4))
     whole, missing = likeness(full, graph).similarity, likeness(full, fewer).similarity
@@ -104,8 +102,8 @@ def test_what_is_missing_and_what_is_extra_both_make_less_similar() -> None:
     assert missing == pytest.approx(extra, abs=1e-5)
 
 
-def test_dice_by_hand_for_a_missing_object() -> None:
-    """Three objects, two facts; two of the objects are seen, and one of the facts can hold."""
+def test_the_similarity_with_a_missing_object_by_hand() -> None:
+    """Compare three objects and two facts with a scene of two of the objects, where one of the facts can hold."""
     description = layout("dinner_fork left of dinner_plate; dinner_knife right of dinner_plate")
     boxes = np.array([[[0.0, 0.0], [0.02, 0.2]], [[0.1, 0.0], [0.37, 0.27]]])
     kinds = [kind.iri for word in ("dinner fork", "dinner plate") if (kind := ONTOLOGY.kinds.of_word(word))]
@@ -129,18 +127,18 @@ def test_dice_by_hand_for_a_missing_object() -> None:
         ("left", "exactly_right", 0.25),
     ],
 )
-def test_relations_are_as_close_as_their_tiles(said: str, name: str, expected: float) -> None:
+def test_the_closeness_of_relations_is_that_of_their_tiles(said: str, name: str, expected: float) -> None:
     assert Closeness(RELATIONS)(RELATIONS[said].bit, True)[RELATIONS[name].index] == expected
 
 
-def test_a_denied_relation_corresponds_to_every_other() -> None:
+def test_a_denied_relation_corresponds_to_all_others() -> None:
     close = Closeness(RELATIONS)(RELATIONS["left"].bit, False)
     assert close[RELATIONS["exactly_right"].index] == 1.0
     assert close[RELATIONS["exactly_top_left"].index] == 0.5
     assert close[RELATIONS["exactly_left"].index] == 0.25
 
 
-def test_what_is_rarely_so_makes_the_opposite_arrangement_the_more_similar_one() -> None:
+def test_rare_facts_favour_the_opposite_arrangement() -> None:
     right, left = ([[x, 0.1], [x + 0.08, 0.18]] for x in (0.5, -0.3))
     scenes = [
         scene_relations(["o1", "o2"], np.array([[[0.0, 0.0], [0.27, 0.27]], glass]), RELATIONS)
@@ -150,7 +148,7 @@ def test_what_is_rarely_so_makes_the_opposite_arrangement_the_more_similar_one()
     assert opposite > said
 
 
-def test_a_neighbouring_arrangement_is_more_similar_than_the_opposite_one() -> None:
+def test_neighbouring_arrangements_beat_opposite_ones() -> None:
     description = layout("water_glass left of dinner_plate")
     plate = [[0.0, 0.0], [0.27, 0.27]]
 
@@ -161,7 +159,7 @@ def test_a_neighbouring_arrangement_is_more_similar_than_the_opposite_one() -> N
     assert with_glass(-0.2, 0.1) == with_glass(-0.2, 0.5) > with_glass(0.1, 0.5) > with_glass(0.5, 0.1) - 1e-9
 
 
-def test_sizes_speak_where_nothing_is_labelled() -> None:
+def test_sizes_count_for_unlabelled_objects() -> None:
     scene = formal_setting().without_labels().relations(RELATIONS)
     plates = likeness(layout("3 dinner_plate left of bread_plate"), scene)
     setting = likeness(
@@ -179,13 +177,13 @@ def test_sizes_speak_where_nothing_is_labelled() -> None:
         ("gasket flange", 0.0),
     ],
 )
-def test_words_of_no_known_kind_correspond_to_themselves_alone(words: str, expected: float) -> None:
+def test_unknown_words_correspond_only_to_themselves(words: str, expected: float) -> None:
     boxes = np.array([[[0, 0], [0.1, 0.1]], [[0.2, 0], [0.3, 0.1]]])
     scene = scene_relations(["p", "q"], boxes, RELATIONS, [category_of(word) for word in words.split()])
     assert likeness(layout("glimp left of florb_2"), scene).objects == expected
 
 
-def test_a_known_kind_is_nothing_like_a_word_that_is_not_known() -> None:
+def test_a_known_kind_is_not_similar_to_an_unknown_word() -> None:
     fork = ONTOLOGY.kinds.words["fork"].iri
     boxes = np.array([[[0, 0], [0.02, 0.2]], [[0.2, 0], [0.22, 0.2]]])
     scene = scene_relations(["p", "q"], boxes, RELATIONS, [category_of("gasket"), fork])
@@ -194,13 +192,13 @@ def test_a_known_kind_is_nothing_like_a_word_that_is_not_known() -> None:
 
 
 def in_pixels(scale: float, metric: bool = False) -> Seen:
-    """The formal setting without labels, as an image of it from above shows it."""
+    """Return the formal setting without labels, in pixels of an image from above."""
     scene = formal_setting().without_labels().relations(RELATIONS)
     assert scene.boxes is not None
     return seen("image", replace(scene, boxes=scene.boxes[:, :, :2] * scale), metric=metric)
 
 
-def test_in_pixels_sizes_speak_beside_each_other_at_any_scale() -> None:
+def test_sizes_in_pixels_are_compared_at_any_scale() -> None:
     plates = layout("9 dinner_plate left of dinner_fork; dinner_fork left of dinner_knife")
     setting = layout("dinner_fork left of dinner_plate; dinner_plate left of dinner_knife; napkin on dinner_plate")
     told = {scale: [COMPARISON.likeness(one, in_pixels(scale)) for one in (plates, setting)] for scale in (10.0, 900.0)}
@@ -211,7 +209,7 @@ def test_in_pixels_sizes_speak_beside_each_other_at_any_scale() -> None:
     assert told[900.0][1].objects == COMPARISON.likeness(setting, replace(in_pixels(900.0), boxes=None)).objects
 
 
-def test_what_images_taught_of_sizes_counts_in_pixels() -> None:
+def test_sizes_learned_from_images_count_in_pixels() -> None:
     plate = layout("layout x; dinner_plate is a dinner plate")
     kind = str(plate.graph.kinds[0])
     scene = scene_relations(
@@ -226,13 +224,13 @@ def test_what_images_taught_of_sizes_counts_in_pixels() -> None:
     assert unary[100.0].max() < 0.01
 
 
-def test_a_scene_of_nothing_is_similar_to_nothing() -> None:
+def test_an_empty_scene_has_similarity_zero() -> None:
     found = likeness(layout("fork left of plate"), table(1, 0))
     assert (found.similarity, found.assignment.tolist()) == (0.0, [-1, -1])
 
 
 @pytest.mark.parametrize("top", [1, 3, 30])
-def test_ranks_are_those_of_comparing_everything_in_any_order(top: int) -> None:
+def test_ranks_equal_those_of_comparing_all_pairs(top: int) -> None:
     layouts = [script(seed, 4 + seed % 3, 6) for seed in range(12)]
     scenes = [seen(f"scene{seed:03}", table(seed, 3 + seed % 4)) for seed in range(12)]
     rng = np.random.default_rng(2)
@@ -252,7 +250,7 @@ def test_ranks_are_those_of_comparing_everything_in_any_order(top: int) -> None:
     assert [one.scene for one in found] == [one.scene for one in every[:top]]
 
 
-def test_most_pairs_are_ruled_out_by_their_bounds(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_most_pairs_are_excluded_by_their_bounds(monkeypatch: pytest.MonkeyPatch) -> None:
     compared = []
     plain = Comparison.likeness
 
@@ -267,12 +265,12 @@ def test_most_pairs_are_ruled_out_by_their_bounds(monkeypatch: pytest.MonkeyPatc
     assert len(compared) < 15
 
 
-def test_to_look_for_none_is_refused() -> None:
-    with pytest.raises(SettingError, match="1 or more"):
+def test_a_top_of_zero_is_refused() -> None:
+    with pytest.raises(SettingError, match="`top` must be at least 1, got 0"):
         rank_layouts(seen("scene", table(1, 2)), [], COMPARISON, top=0)
 
 
-def test_a_learned_size_takes_the_place_of_the_usual_one_unless_it_is_relative() -> None:
+def test_a_learned_size_replaces_the_usual_one_unless_relative() -> None:
     scene = scene_relations(["a"], np.array([[[0.0, 0.0], [0.9, 0.45]]]), RELATIONS)
     plate = layout("layout x; dinner_plate is a dinner plate")
     kind = plate.graph.kinds[0]

@@ -1,4 +1,4 @@
-"""The engine of difference constraints, against Floyd-Warshall on codes."""
+"""The engine of difference constraints, compared with Floyd-Warshall on codes."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from deixis.reasoning.constraints.difference import ORDERS, Difference, Differen
 )
 @settings(max_examples=100, deadline=None)
 @given(data=st.data())
-def test_distances_are_shortest_paths_and_refusals_are_negative_cycles(
+def test_distances_are_shortest_paths_refusals_negative_cycles(
     one: st.SearchStrategy[Difference], dtype: np.dtype[np.int64], data: st.DataObject
 ) -> None:
     network, taken = DifferenceNetwork(POINTS, AXES, dtype), list[Difference]()
@@ -42,7 +42,7 @@ def test_distances_are_shortest_paths_and_refusals_are_negative_cycles(
 
 @settings(max_examples=80, deadline=None)
 @given(st.lists(DIFFERENCE, max_size=15), st.lists(DIFFERENCE, max_size=15))
-def test_what_is_taken_back_leaves_no_trace(first: list[Difference], more: list[Difference]) -> None:
+def test_taking_back_constraints_restores_the_distances(first: list[Difference], more: list[Difference]) -> None:
     network, once = DifferenceNetwork(POINTS, AXES), DifferenceNetwork(POINTS, AXES)
     for difference in first:
         network.add(difference)
@@ -60,7 +60,7 @@ def test_what_is_taken_back_leaves_no_trace(first: list[Difference], more: list[
 
 @settings(max_examples=80, deadline=None)
 @given(st.lists(DIFFERENCE, max_size=20))
-def test_all_at_once_is_the_same_as_one_by_one(constraints: list[Difference]) -> None:
+def test_adding_all_at_once_equals_adding_one_by_one(constraints: list[Difference]) -> None:
     network, taken = DifferenceNetwork(POINTS, AXES), list[Difference]()
     for difference in constraints:
         if network.add(difference):
@@ -81,7 +81,7 @@ def test_all_at_once_is_the_same_as_one_by_one(constraints: list[Difference]) ->
 
 @settings(max_examples=80, deadline=None)
 @given(st.lists(DIFFERENCE, max_size=20), st.lists(st.integers(-20, 20), min_size=10, max_size=10))
-def test_the_nearest_solution_is_one_and_is_its_own(constraints: list[Difference], wanted: list[int]) -> None:
+def test_the_nearest_solution_is_a_solution_and_a_fixed_point(constraints: list[Difference], wanted: list[int]) -> None:
     network = DifferenceNetwork(POINTS, AXES)
     for difference in constraints:
         network.add(difference._replace(code=difference.code | 1))
@@ -92,7 +92,7 @@ def test_the_nearest_solution_is_one_and_is_its_own(constraints: list[Difference
 
 
 @given(DIFFERENCE)
-def test_a_difference_and_its_denial_exclude_each_other(difference: Difference) -> None:
+def test_a_difference_and_its_denial_are_inconsistent(difference: Difference) -> None:
     assert difference.denied().denied() == difference
     network = DifferenceNetwork(POINTS, AXES)
     assert network.add(difference)

@@ -1,4 +1,4 @@
-"""The search for a choice of pieces, against trying all of them."""
+"""The search for a choice of pieces, compared with trying all choices."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def at_most(tail: int, head: int, bound: int) -> Difference:
 
 
 def satisfiable(clauses: list[Clause]) -> bool:
-    """Whether some choice of pieces has a solution: all are tried."""
+    """Return whether some choice of pieces has a solution, by trying all."""
     choices: list[list[Difference]] = [[]]
     for clause in clauses:
         choices = [[*taken, *piece] for taken in choices for piece in clause.pieces]
@@ -40,7 +40,7 @@ def satisfiable(clauses: list[Clause]) -> bool:
 
 @settings(max_examples=150, deadline=None)
 @given(st.lists(CLAUSE, max_size=6))
-def test_a_choice_is_found_just_where_there_is_one(clauses: list[Clause]) -> None:
+def test_the_search_succeeds_exactly_if_a_choice_exists(clauses: list[Clause]) -> None:
     found = solve(POINTS, AXES, clauses, in_time())
     if satisfiable(clauses):
         assert found.outcome is SearchOutcome.SOLVED
@@ -58,7 +58,7 @@ def holds(clause: Clause, network: DifferenceNetwork) -> bool:
 
 @settings(max_examples=100, deadline=None)
 @given(st.lists(DIFFERENCE, max_size=4), st.lists(CLAUSE, max_size=5))
-def test_every_solution_is_visited_and_the_network_given_back(base: list[Difference], clauses: list[Clause]) -> None:
+def test_every_solution_is_visited_and_the_network_restored(base: list[Difference], clauses: list[Clause]) -> None:
     network = DifferenceNetwork(POINTS, AXES)
     stated = [difference for difference in base if network.add(difference)]
     before = network.distances.copy()
@@ -85,7 +85,7 @@ def test_every_solution_is_visited_and_the_network_given_back(base: list[Differe
 
 @settings(max_examples=60, deadline=None)
 @given(st.lists(CLAUSE.filter(lambda clause: len(clause.pieces) > 0), max_size=5))
-def test_what_is_forced_holds_in_every_solution(clauses: list[Clause]) -> None:
+def test_forced_pieces_hold_in_every_solution(clauses: list[Clause]) -> None:
     network = DifferenceNetwork(POINTS, AXES)
     search = Search(network, Clauses(clauses), in_time())
     outcome, forced, left = search.propagate(), network.distances.copy(), search.open()
@@ -105,8 +105,8 @@ def test_the_first_piece_is_preferred() -> None:
 
 
 @pytest.mark.parametrize("size", [4, 5])
-def test_a_proof_by_exhaustion_of_more_things_than_places(size: int) -> None:
-    """So many points in a row, a step apart in any order, do not fit where there is a step too little."""
+def test_the_pigeonhole_problem_is_refuted(size: int) -> None:
+    """Refute that points at least one step apart, in any order, fit in a range that is one step too short."""
     apart = [Clause(((at_most(i, j, -1),), (at_most(j, i, -1),))) for i in range(size) for j in range(i)]
     room = [Clause(((at_most(i, j, size - 2),),)) for i in range(size) for j in range(size) if i != j]
     assert solve(size, 1, apart + room, in_time()).outcome is SearchOutcome.REFUTED
@@ -114,7 +114,7 @@ def test_a_proof_by_exhaustion_of_more_things_than_places(size: int) -> None:
     assert solve(size, 1, apart + enough, in_time()).outcome is SearchOutcome.SOLVED
 
 
-def test_a_search_ends_when_its_time_is_up() -> None:
+def test_a_search_ends_at_its_deadline() -> None:
     size = 11
     apart = [Clause(((at_most(i, j, -1),), (at_most(j, i, -1),))) for i in range(size) for j in range(i)]
     room = [Clause(((at_most(i, j, size - 2),),)) for i in range(size) for j in range(size) if i != j]

@@ -1,4 +1,4 @@
-"""Minimal subsets, against families of sets that are minimal by construction."""
+"""Minimal subsets, compared with sets that are minimal by construction."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ Test = Callable[[list[int]], list[int] | None]
 
 
 def holding(cores: list[set[int]], narrow: bool) -> Test:
-    """A test that is true of what contains a core, and names the core where it is to narrow."""
+    """Return a test that holds for supersets of a core, and names the core if ``narrow``."""
 
     def test(chosen: list[int]) -> list[int] | None:
         core = next((core for core in cores if core <= set(chosen)), None)
@@ -36,7 +36,7 @@ def assert_minimal(found: Minimal[int], cores: list[set[int]]) -> None:
 
 @pytest.mark.parametrize("narrow", [False, True])
 @given(cores=CORES, more=st.integers(0, 60))
-def test_no_item_can_be_spared(cores: list[set[int]], more: int, narrow: bool) -> None:
+def test_no_item_can_be_left_out(cores: list[set[int]], more: int, narrow: bool) -> None:
     test = holding(cores, narrow)
     items = list(range(40 + more))
     assert_minimal(minimal_subset(items, test), cores)
@@ -49,7 +49,7 @@ def test_no_item_can_be_spared(cores: list[set[int]], more: int, narrow: bool) -
 
 
 @given(CORES)
-def test_without_a_core_the_first_or_last_ones_are_kept(cores: list[set[int]]) -> None:
+def test_the_first_or_the_last_items_are_kept(cores: list[set[int]]) -> None:
     kept = list(range(40))
     test = holding(cores, narrow=False)
     for item in reversed(range(40)):
@@ -60,7 +60,7 @@ def test_without_a_core_the_first_or_last_ones_are_kept(cores: list[set[int]]) -
     assert minimal_subset(range(40), mirrored, keep_last=True).items == tuple(39 - item for item in reversed(kept))
 
 
-def test_few_of_many_are_found_with_few_questions() -> None:
+def test_few_items_of_many_take_few_tests() -> None:
     asked = 0
 
     def test(chosen: list[int]) -> list[int] | None:
@@ -72,10 +72,10 @@ def test_few_of_many_are_found_with_few_questions() -> None:
     assert asked < 100
 
 
-def test_what_holds_of_nothing_needs_nothing() -> None:
+def test_a_property_of_the_empty_set_needs_no_items() -> None:
     for size in (0, 1, 5, 20):
         assert minimal_subset(range(size), lambda chosen: chosen) == Minimal((), True)
 
 
-def test_when_time_is_up_what_is_left_is_given() -> None:
+def test_at_the_deadline_the_items_left_are_returned() -> None:
     assert minimal_subset(range(20), lambda chosen: chosen, Deadline.after(-1.0)) == Minimal(tuple(range(20)), False)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from deixis.reasoning.constraints.proof import Proof, Rule
 
 
-def test_shared_parts_are_not_written_out_again() -> None:
+def test_shared_parts_are_written_once() -> None:
     leaf = Proof("a <= 1", Rule.STATED, source="f.json: fluents[0].start")
     why = Proof("step 0", Rule.SHORTEST_PATH, (leaf,))
     for k in range(1, 200):

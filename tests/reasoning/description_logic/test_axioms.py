@@ -1,4 +1,4 @@
-"""Axioms out of triples, in whole groups; and axioms in words."""
+"""Axioms as complete groups of triples, and axioms in words."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from deixis.reasoning.errors import TriplesError
 SHOWS = ":Laid a owl:Class ; rdfs:subClassOf [ a owl:Restriction ; owl:onProperty :on ; owl:someValuesFrom :Fork ] ."
 
 
-def test_a_class_expression_stays_with_the_axiom_that_it_is_in() -> None:
+def test_a_class_expression_stays_with_its_axiom() -> None:
     (axiom,) = split_axioms(triples(SHOWS)).axioms
     assert len(axiom.triples) == 4
     assert {"<urn:t#Laid>", "<urn:t#on>", "<urn:t#Fork>"} <= axiom.signature
@@ -38,13 +38,13 @@ def test_nested_expressions_and_lists_stay_whole() -> None:
         "[ a owl:Restriction ; owl:onProperty :p ; owl:someValuesFrom :C ] rdfs:subClassOf :D .",
     ],
 )
-def test_an_axiom_that_begins_with_a_blank_node_is_one_group_with_its_type_first(text: str) -> None:
+def test_an_axiom_of_a_blank_node_is_one_group(text: str) -> None:
     (axiom,) = split_axioms(triples(text)).axioms
     assert len(axiom.triples) == len(triples(text))
     assert axiom.root.predicate.endswith("#type>")
 
 
-def test_an_individual_without_a_name_is_no_syntax() -> None:
+def test_an_unnamed_individual_is_not_syntax() -> None:
     found = split_axioms(triples("_:x a :Fork ; :left _:y . :plate :right _:x ."))
     assert [len(axiom.triples) for axiom in found.axioms] == [1, 1, 1]
 
@@ -61,7 +61,7 @@ def test_no_triple_of_the_core_ontology_is_lost_or_in_two_parts() -> None:
         assert {part for t in axiom.triples for part in t if is_blank(part)} <= inside
 
 
-def test_a_property_that_nobody_declared_is_declared_and_imports_are_dropped() -> None:
+def test_undeclared_properties_are_declared_and_imports_dropped() -> None:
     text = ":o a owl:Ontology ; owl:imports <http://example.org/far> . :f :left :g ; :width 3 ."
     found = split_axioms(triples(text))
     declared = {str(t) for t in found.declarations}
@@ -76,7 +76,7 @@ def test_a_property_that_nobody_declared_is_declared_and_imports_are_dropped() -
         (":Fork rdfs:subClassOf owl:Nothing", "nothing can be a fork"),
         (":Fork owl:disjointWith :Spoon", "fork and Spoon have nothing in common"),
         (":left a owl:TransitiveProperty", "'left' is transitive"),
-        (":left owl:inverseOf :right", "'left' is 'right' the other way round"),
+        (":left owl:inverseOf :right", "'left' is the inverse of 'right'"),
         (":left rdfs:domain :Thing", "whatever is 'left' of something is Thing"),
         (":x a :Fork", "x is a fork"),
         (":x a :Apple", "x is an Apple"),
@@ -114,12 +114,12 @@ def test_reading_and_writing_triples_is_the_identity() -> None:
     assert write_ntriples(read_ntriples(text)) == text
 
 
-def test_escapes_in_an_iri_are_read_as_what_they_stand_for() -> None:
+def test_escapes_in_an_iri_are_decoded() -> None:
     (found,) = read_ntriples(r"<urn:a> <http://www.w3.org/2002/07/owl#\u0069mports> <urn:b> .")
     assert found.predicate == "<http://www.w3.org/2002/07/owl#imports>"
 
 
 @pytest.mark.parametrize("line", ["rubbish", "<a> <b>", '"x" <p> <o> .', "<a> _:p <b> .", r"<a\u003e> <p> <o> ."])
-def test_what_is_no_triple_is_refused_with_its_line(line: str) -> None:
+def test_text_that_is_not_a_triple_is_refused_with_its_line(line: str) -> None:
     with pytest.raises(TriplesError, match="line 2"):
         read_ntriples(f"<urn:a> <urn:b> <urn:c> .\n{line}\n")

@@ -1,4 +1,4 @@
-"""The engines of description logic behind one call: what each decides, and what each says it has not decided."""
+"""The engines of description logic behind one call: what each decides, and what it reports as undecided."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ TRAY = (
 
 
 @pytest.mark.parametrize("engine", list(LogicEngine))
-def test_every_engine_finds_what_rules_find(engine: LogicEngine) -> None:
+def test_every_engine_finds_the_consequences_of_the_rules(engine: LogicEngine) -> None:
     found = entail(ntriples(CUTLERY + ":f a :DessertFork ."), engine)
     assert found.consistent and found.unsatisfiable == ()
     assert set(found.inferred) == {triple(":DessertFork rdfs:subClassOf :Cutlery"), *triples(":f a :Fork, :Cutlery .")}
@@ -31,7 +31,7 @@ def test_every_engine_finds_what_rules_find(engine: LogicEngine) -> None:
     ("engine", "impossible"),
     [("rl", ("Spork",)), ("auto", ("Spork", "Tray"))],
 )
-def test_only_rules_miss_what_needs_somebody_unnamed(engine: str, impossible: tuple[str, ...]) -> None:
+def test_only_the_rules_miss_unnamed_individuals(engine: str, impossible: tuple[str, ...]) -> None:
     text = ntriples(CUTLERY + SPORK + TRAY)
     found = explained(text, entail(text, engine), Deadline.never())
     assert found.unsatisfiable == tuple(f"urn:t#{name}" for name in impossible)
@@ -39,7 +39,7 @@ def test_only_rules_miss_what_needs_somebody_unnamed(engine: str, impossible: tu
     assert found.consistent
 
 
-def test_facts_that_only_a_tableau_contradicts_are_left_undecided_by_the_rules() -> None:
+def test_the_rules_leave_tableau_contradictions_undecided() -> None:
     text = ntriples(CUTLERY + SPORK + TRAY + ":t a :Tray .")
     assert not is_consistent(text)
     by_rules = entail(text, "rl")
@@ -54,24 +54,24 @@ def test_an_inconsistency_is_found_and_justified(engine: str) -> None:
     assert found.inferred == ()
 
 
-def test_a_verdict_outlasts_an_explanation_out_of_time() -> None:
+def test_the_verdict_stays_if_the_explanation_runs_out_of_time() -> None:
     text = ntriples(CUTLERY + ":x a :Fork, :Spoon .")
     found = explained(text, entail(text, "hermit"), Deadline.after(0))
     assert not found.consistent and found.inconsistency == ()
-    assert found.unexplained is not None and "the time was up" in found.unexplained
+    assert found.unexplained is not None and "time limit reached" in found.unexplained
 
 
-def test_of_many_impossible_classes_each_is_named_by_the_rules() -> None:
+def test_the_rules_name_every_unsatisfiable_class() -> None:
     many = "".join(f":S{i} a owl:Class ; rdfs:subClassOf :Fork, :Spoon . " for i in range(8))
     assert unsatisfiable_by_rules(triples(CUTLERY + many)) == tuple(f"urn:t#S{i}" for i in range(8))
 
 
 @pytest.mark.parametrize("engine", list(LogicEngine))
-def test_no_engine_is_allowed_more_than_its_time(engine: LogicEngine) -> None:
+def test_every_engine_keeps_its_time_limit(engine: LogicEngine) -> None:
     with pytest.raises(LimitError, match="undecided"):
         entail(ntriples(CUTLERY), engine, time_limit=0.0)
 
 
-def test_an_engine_of_another_name_is_refused() -> None:
+def test_an_unknown_engine_is_refused() -> None:
     with pytest.raises(SettingError, match="one of auto, rl, hermit, pellet"):
         entail("", "racer")

@@ -1,4 +1,4 @@
-"""A reasoner with its classes kept: the same answers, and none the worse where nothing can be kept."""
+"""A reasoner with dumped classes gives the same answers, and runs without them if they cannot be dumped."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ pytestmark = pytest.mark.slow
 
 @pytest.fixture(scope="module")
 def kept(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder in which the classes for a small ontology are kept."""
+    """Folder with the dumped classes for a small ontology."""
     folder = tmp_path_factory.mktemp("kept") / "classes"
     with pytest.MonkeyPatch.context() as patched:
         patched.setattr(java_classes, "_KEPT", folder)
@@ -23,7 +23,7 @@ def kept(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def test_kept_classes_change_no_answer(kept: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_dumped_classes_change_no_answer(kept: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     text = ntriples(CUTLERY + ":Spork rdfs:subClassOf :Fork, :Spoon . :f a :DessertFork .")
     monkeypatch.setattr(java_classes, "_KEPT", Path("/nowhere"))
     expected = classify(text, properties=True)
@@ -31,14 +31,14 @@ def test_kept_classes_change_no_answer(kept: Path, monkeypatch: pytest.MonkeyPat
     assert classify(text, properties=True) == expected
 
 
-def test_classes_that_were_damaged_are_done_without(kept: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_damaged_dumps_are_ignored(kept: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(java_classes, "_KEPT", kept)
     (classes,) = kept.glob("*.jsa")
     classes.write_bytes(classes.read_bytes()[:1_000_000])
     assert "Cutlery" in classify(ntriples(CUTLERY)).inferred
 
 
-def test_where_nothing_can_be_written_nothing_is_kept(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_without_write_access_nothing_is_dumped(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     (tmp_path / "file").touch()
     monkeypatch.setattr(java_classes, "_KEPT", tmp_path / "file" / "classes")
     assert not prepare(Reasoner.HERMIT, ntriples(CUTLERY))

@@ -1,4 +1,4 @@
-"""Justifications: minimal, whole axioms, for what rules find and for what only a tableau finds."""
+"""Justifications: minimal sets of complete axioms, for entailments found by rules or only by a tableau."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ TABLE = """
 
 
 def assert_minimal(found: Justification, text: str) -> None:
-    """The axioms entail the statement, and no set of all of them but one does."""
+    """Assert that the axioms entail the statement, and that leaving out any one of them does not."""
     parts = split_axioms(read_ntriples(text))
     background = [*parts.declarations, *(denial(found.entailed) if found.entailed else ())]
     assert set(found.axioms) <= set(parts.axioms)
@@ -37,7 +37,7 @@ def assert_minimal(found: Justification, text: str) -> None:
 
 CASES = [
     (":Spork rdfs:subClassOf owl:Nothing", 3),
-    (":Tray rdfs:subClassOf owl:Nothing", 4),  # through someValuesFrom: no rule of OWL 2 RL finds it
+    (":Tray rdfs:subClassOf owl:Nothing", 4),  # through someValuesFrom, which no rule of OWL 2 RL finds
     (":f a dx:Tableware", 3),
     (":f dx:left :k", 4),
     ("dx:left rdfs:domain dx:Thing", 3),
@@ -45,7 +45,7 @@ CASES = [
 
 
 @pytest.mark.parametrize(("statement", "axioms"), CASES, ids=[case[0] for case in CASES])
-def test_what_follows_from_the_core_ontology_has_a_minimal_justification(statement: str, axioms: int) -> None:
+def test_entailments_of_the_core_have_minimal_justifications(statement: str, axioms: int) -> None:
     text = core() + ntriples(TABLE)
     found = justify(text, triple(statement))
     assert len(found.axioms) == axioms
@@ -60,7 +60,7 @@ def test_an_inconsistency_has_a_minimal_justification() -> None:
     assert_minimal(found, text)
 
 
-def test_an_inconsistency_that_no_rule_finds_is_justified_out_of_many_axioms() -> None:
+def test_an_inconsistency_beyond_the_rules_is_justified() -> None:
     others = "".join(f":C{i} a owl:Class ; rdfs:subClassOf :C{i + 1} . :i{i} a :C{i} ." for i in range(12))
     table = TABLE.replace("dx:Fork", ":Fork").replace("dx:Spoon", ":Spoon")
     text = ntriples(CUTLERY + others + table + ":x a :Tray .")
@@ -69,7 +69,7 @@ def test_an_inconsistency_that_no_rule_finds_is_justified_out_of_many_axioms() -
     assert_minimal(found, text)
 
 
-def test_all_justifications_are_all_minimal_contradictory_subsets() -> None:
+def test_all_minimal_contradictory_subsets_are_justifications() -> None:
     said = ":Spork rdfs:subClassOf :Fork, :Spoon . :x a :Spork, :Fork . :y a :Fork, :Spoon ."
     text = ntriples(CUTLERY + said)
     parts = split_axioms(read_ntriples(text))
@@ -97,7 +97,7 @@ def test_a_justification_is_turtle_with_its_blank_nodes_whole() -> None:
     assert rdflib.URIRef("https://w3id.org/deixis/onto#Spoon") in rdflib.collection.Collection(graph, members)
 
 
-def test_what_does_not_follow_is_told_apart_from_what_is_not_known_in_time() -> None:
+def test_not_entailed_differs_from_not_known_in_time() -> None:
     text = ntriples(CUTLERY)
     with pytest.raises(NotEntailedError, match="does not follow"):
         justify(text, triple(":Cutlery rdfs:subClassOf :Fork"))
@@ -110,5 +110,5 @@ def test_what_does_not_follow_is_told_apart_from_what_is_not_known_in_time() -> 
 @pytest.mark.parametrize("statement", [":Fork a owl:Class", ":p owl:inverseOf :q", ":a :p []"])
 def test_a_statement_that_cannot_be_denied_is_refused(statement: str) -> None:
     asked: Triple = triples(f"{statement} .")[0]
-    with pytest.raises(SettingError, match=r"cannot be explained|named things"):
+    with pytest.raises(SettingError, match=r"cannot be explained|named resources"):
         justify(ntriples(CUTLERY), asked)

@@ -1,4 +1,4 @@
-"""OWL 2 RL: each rule by hand, everything against owlrl, the core ontology against HermiT, and adding step by step."""
+"""OWL 2 RL: each rule by hand, comparison with owlrl and HermiT, and adding triples step by step."""
 
 from __future__ import annotations
 
@@ -165,7 +165,7 @@ CONTRADICTS = [
 
 
 @pytest.mark.parametrize(("rule", "premises", "conclusion"), FOLLOWS, ids=[case[0] for case in FOLLOWS])
-def test_each_rule_gives_its_conclusion_and_says_why(rule: str, premises: str, conclusion: str) -> None:
+def test_each_rule_gives_its_conclusion_with_a_derivation(rule: str, premises: str, conclusion: str) -> None:
     stated, wanted = triples(f"{premises} ."), triple(conclusion)
     known = Materialisation(stated)
     assert wanted in known and wanted in known.inferred
@@ -197,31 +197,31 @@ OVER_LISTS = (
     "cax-adc", "cls-int1", "cls-int2", "cls-oo", "cls-uni", "eq-diff2", "eq-diff3", "prp-adp", "prp-key", "prp-spo2",
     "scm-int", "scm-uni",
 )  # fmt: skip
-"""Rules whose premises are lists, which are written out for each list and stand in no table."""
+"""Rules whose premises are lists, which are expanded for each list and are in no table."""
 
 
-def test_every_rule_of_the_table_is_tried_by_one_of_the_cases() -> None:
+def test_every_rule_of_the_table_has_a_case() -> None:
     tried = {case[0] for case in FOLLOWS} | {case[0] for case in CONTRADICTS}
     assert tried == {rule.name for rule in rules()} | set(OVER_LISTS)
 
 
-def test_what_does_not_follow_has_no_derivation() -> None:
+def test_a_triple_that_does_not_follow_has_no_derivation() -> None:
     with pytest.raises(NotEntailedError, match="does not follow"):
         Materialisation(triples(":a :p :b .")).derivation([triple(":b :p :a")])
 
 
-def test_a_list_that_never_ends_is_no_list() -> None:
+def test_a_cyclic_list_is_not_a_list() -> None:
     ring = ":C owl:intersectionOf _:l . _:l rdf:first :D ; rdf:rest _:l . :a a :D ."
     assert triple(":a a :C") not in Materialisation(triples(ring))
 
 
-def test_a_time_limit_that_strikes_is_told() -> None:
+def test_the_time_limit_raises_an_error() -> None:
     links = "".join(f":x{i} :p :x{i + 1} ." for i in range(300))
-    with pytest.raises(LimitError, match="undecided: the time was up"):
+    with pytest.raises(LimitError, match="undecided: time limit reached"):
         Materialisation(triples(":p a owl:TransitiveProperty . " + links), deadline=Deadline.after(0.0))
 
 
-# ---- against owlrl
+# ---- compared with owlrl
 
 CLASSES, PROPERTIES, THINGS = "CDEF", "pqr", "abcd"
 
@@ -255,13 +255,13 @@ DECLARED = "".join(f":{n} a owl:Class . " for n in CLASSES) + "".join(
 
 @settings(max_examples=30, deadline=None)
 @given(st.lists(_statement(), min_size=4, max_size=14))
-def test_random_ontologies_come_to_what_owlrl_makes_of_them(statements: list[str]) -> None:
+def test_random_ontologies_give_the_same_triples_as_owlrl(statements: list[str]) -> None:
     turtle = DECLARED + " ".join(f"{statement} ." for statement in statements)
     ours = Materialisation(triples(turtle))
     assert telling(triples_of(ours)) == telling(owlrl_closure(turtle))
 
 
-def test_the_core_ontology_with_a_table_comes_to_what_owlrl_makes_of_it() -> None:
+def test_the_core_with_a_table_gives_the_same_triples_as_owlrl() -> None:
     assert telling(triples_of(Materialisation(read_ntriples(core() + ntriples(TABLE))))) == telling(
         owlrl_closure(core() + write_ntriples(triples(TABLE)))
     )
@@ -285,13 +285,13 @@ def owlrl_closure(turtle: str) -> set[Triple]:
 
 
 def _nt(found: Iterable[tuple[rdflib.term.Node, rdflib.term.Node, rdflib.term.Node]]) -> str:
-    """Those triples that RDF has: owlrl also makes some whose subject is a literal."""
+    """Return the valid RDF triples as N-Triples: owlrl also makes triples whose subject is a literal."""
     plain = (t for t in found if not isinstance(t[0], rdflib.Literal) and isinstance(t[1], rdflib.URIRef))
     return "".join(f"{' '.join(part.n3() for part in t)} .\n" for t in plain)
 
 
 def telling(found: set[Triple]) -> set[Triple]:
-    """What is said of named things and is no tautology; what owlrl leaves out or adds on purpose is left out too."""
+    """Return the triples of named resources, without tautologies and known differences from owlrl."""
     reflexive = (SAME_AS, SUB_CLASS_OF, SUB_PROPERTY_OF, EQUIVALENT_CLASS, EQUIVALENT_PROPERTY)
     return {
         t
@@ -310,7 +310,7 @@ def telling(found: set[Triple]) -> set[Triple]:
 
 @settings(max_examples=40, deadline=None)
 @given(st.lists(_statement(), min_size=3, max_size=14), st.randoms(use_true_random=False))
-def test_added_one_by_one_in_any_order_facts_come_to_the_same(statements: list[str], random: Random) -> None:
+def test_adding_facts_in_any_order_gives_the_same_triples(statements: list[str], random: Random) -> None:
     stated = triples(DECLARED + " ".join(f"{statement} ." for statement in statements))
     at_once = Materialisation(stated)
     shuffled = list(stated)
@@ -328,7 +328,7 @@ def test_added_one_by_one_in_any_order_facts_come_to_the_same(statements: list[s
         assert {s.triple for s in step_by_step.derivation([one]) if s.rule is None} <= set(stated)
 
 
-def test_adding_a_fact_gives_only_what_it_entails() -> None:
+def test_adding_a_fact_returns_only_its_consequences() -> None:
     known = Materialisation(read_ntriples(core()))
     new = known.add(triples(":f a dx:Fork ."))
     assert {t.subject for t in new} == {"<urn:t#f>"}
@@ -336,11 +336,11 @@ def test_adding_a_fact_gives_only_what_it_entails() -> None:
     assert known.add(triples(":f a dx:Cutlery .")) == ()
 
 
-# ---- against HermiT
+# ---- compared with HermiT
 
 
 @pytest.mark.slow
-def test_the_core_ontology_with_a_table_has_the_same_classes_types_and_relations_for_hermit() -> None:
+def test_the_core_with_a_table_agrees_with_hermit() -> None:
     stated = core() + ntriples(TABLE)
     known = set(Materialisation(read_ntriples(stated)).inferred)
     hermit = set(read_ntriples(classify(stated, properties=True).inferred))

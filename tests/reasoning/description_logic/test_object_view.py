@@ -1,4 +1,4 @@
-"""An ontology as owlready2's objects: what the triples say, in a world of its own."""
+"""An ontology as owlready2's objects: the content of the triples, in its own world."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def test_imports_are_not_followed() -> None:
         assert view.ontology.imported_ontologies == []
 
 
-def test_a_closed_view_and_bad_triples_are_told() -> None:
+def test_a_closed_view_and_invalid_triples_are_errors() -> None:
     view = ObjectView.of(TEXT, BASE)
     view.close()
     view.close()

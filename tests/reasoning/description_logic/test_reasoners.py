@@ -1,4 +1,4 @@
-"""HermiT and Pellet through their adapter: what follows, what is impossible, what cannot be, and what goes wrong."""
+"""HermiT and Pellet through their adapter: entailments, unsatisfiable classes, inconsistency and errors."""
 
 from __future__ import annotations
 
@@ -30,14 +30,14 @@ def test_broader_classes_of_classes_and_individuals_follow(reasoner: Reasoner) -
 
 
 @BOTH
-def test_a_class_that_nothing_can_belong_to_is_named(reasoner: Reasoner) -> None:
+def test_unsatisfiable_classes_are_named(reasoner: Reasoner) -> None:
     assert classify(ntriples(CUTLERY + SPORK), reasoner).unsatisfiable == ("urn:t#Spork",)
-    with pytest.raises(InconsistencyError, match="nothing can satisfy it"):
+    with pytest.raises(InconsistencyError, match="no model satisfies it"):
         classify(ntriples(CUTLERY + SPORK + ":x a :Spork ."), reasoner)
 
 
 @BOTH
-def test_relations_between_individuals_follow_where_they_are_asked_for(reasoner: Reasoner) -> None:
+def test_relations_between_individuals_are_returned_on_request(reasoner: Reasoner) -> None:
     text = ntriples(
         ":left a owl:ObjectProperty, owl:TransitiveProperty ; owl:inverseOf :right ; rdfs:subPropertyOf :beside . "
         ":right a owl:ObjectProperty . :beside a owl:ObjectProperty . :a :left :b . :b :left :c ."
@@ -52,8 +52,8 @@ def test_relations_between_individuals_follow_where_they_are_asked_for(reasoner:
 
 
 @BOTH
-def test_consistency_is_decided_beyond_what_rules_can(reasoner: Reasoner) -> None:
-    # every A has a fork that is a spoon, or is a B; and nothing is a B: no rule of OWL 2 RL finds that
+def test_consistency_is_decided_beyond_the_rules(reasoner: Reasoner) -> None:
+    # every A has a fork that is a spoon, or is a B, but nothing is a B; no rule of OWL 2 RL finds this
     text = CUTLERY + (
         ":has a owl:ObjectProperty . :A a owl:Class ; rdfs:subClassOf [ a owl:Class ; owl:unionOf ( :B "
         "[ a owl:Restriction ; owl:onProperty :has ; owl:someValuesFrom "
@@ -63,7 +63,7 @@ def test_consistency_is_decided_beyond_what_rules_can(reasoner: Reasoner) -> Non
     assert not is_consistent(ntriples(text + ":a a :A ."), reasoner)
 
 
-def test_the_first_inconsistent_of_several_ontologies_is_found_in_one_run() -> None:
+def test_one_run_finds_the_first_inconsistent_ontology() -> None:
     good, bad = triples(CUTLERY), triples(CUTLERY + SPORK + ":x a :Spork .")
     assert first_inconsistent([good, good, bad, good]) == 2
     assert first_inconsistent([good, good]) is None
@@ -71,7 +71,7 @@ def test_the_first_inconsistent_of_several_ontologies_is_found_in_one_run() -> N
 
 
 @BOTH
-def test_runs_in_threads_know_nothing_of_each_other_and_leave_nothing_behind(
+def test_runs_in_threads_are_independent_and_leave_no_files(
     reasoner: Reasoner, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
@@ -85,7 +85,7 @@ def test_runs_in_threads_know_nothing_of_each_other_and_leave_nothing_behind(
 
 
 @BOTH
-def test_a_run_ends_when_its_time_is_up_and_takes_its_process_with_it(
+def test_a_run_and_its_process_end_at_the_time_limit(
     reasoner: Reasoner, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
@@ -102,9 +102,7 @@ def test_imports_are_not_followed(reasoner: Reasoner) -> None:
     assert classify(ntriples(text), reasoner).unsatisfiable == ()
 
 
-def test_what_the_reasoner_cannot_read_is_told_in_its_words_and_leaves_nothing_behind(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_refused_ontology_is_reported_with_the_reason(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     text = ':day a owl:DatatypeProperty . :f :day "2026-01-01"^^xsd:date .'
     with pytest.raises(ReasonerError, match=r"hermit refused the ontology: .*datatype"):
@@ -112,13 +110,13 @@ def test_what_the_reasoner_cannot_read_is_told_in_its_words_and_leaves_nothing_b
     assert list(tmp_path.iterdir()) == []
 
 
-def test_annotations_do_not_trouble_a_reasoner() -> None:
+def test_annotations_do_not_reach_a_reasoner() -> None:
     text = CUTLERY + r':Fork rdfs:comment "a\n\"b\\\u0000c"@en ; rdfs:seeAlso "2026-01-01"^^xsd:date .'
     assert classify(ntriples(text)).unsatisfiable == ()
 
 
-def test_settings_that_cannot_be_and_text_that_is_none_are_refused() -> None:
-    with pytest.raises(SettingError, match="one of hermit, pellet, not 'racer'"):
+def test_invalid_settings_and_texts_are_refused() -> None:
+    with pytest.raises(SettingError, match="one of hermit, pellet, got 'racer'"):
         classify("", "racer")
     with pytest.raises(SettingError, match="0 or more seconds"):
         classify("", time_limit=-1)
@@ -126,7 +124,7 @@ def test_settings_that_cannot_be_and_text_that_is_none_are_refused() -> None:
         classify("rubbish")
 
 
-def test_without_java_it_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_missing_java_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(description_logic, "_java", lambda arguments: ["/nowhere/java"])
     with pytest.raises(ReasonerError, match="hermit cannot be run"):
         classify(ntriples(CUTLERY))

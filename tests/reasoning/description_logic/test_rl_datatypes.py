@@ -1,4 +1,4 @@
-"""Literals as data values: equal values, ill-formed texts, datatypes, and the rules of table 8 against HermiT."""
+"""Literals as data values: equal values, ill-formed texts, datatypes, and the rules of table 8, as in HermiT."""
 
 from __future__ import annotations
 
@@ -88,18 +88,18 @@ def test_integers_belong_to_a_datatype_within_its_bounds(number: int, datatype: 
 
 
 @given(st.text(alphabet="0123456789+-.eEINFatruefls", max_size=8), st.sampled_from(["integer", "decimal", "boolean"]))
-def test_what_is_well_formed_is_so_for_rdflib(text: str, datatype: str) -> None:
+def test_well_formed_literals_agree_with_rdflib(text: str, datatype: str) -> None:
     theirs = rdflib.Literal(text, datatype=rdflib.XSD[datatype])
     try:
         ours = value_of(literal(text, datatype))
     except IllFormedError:
-        return  # rdflib reads more: 'Infinity', '1e5' as decimals
+        return  # rdflib accepts more: 'Infinity', '1e5' as decimals
     assert ours is not None
     assert theirs.ill_typed is False
     assert ours.value == theirs.value
 
 
-def test_of_an_unknown_datatype_nothing_is_known() -> None:
+def test_the_values_of_unknown_datatypes_are_unknown() -> None:
     assert value_of('"x"^^<urn:mine>') is None
     value = value_of(literal("1", "integer"))
     assert value is not None and is_in(value, "<urn:mine>") is None
@@ -107,7 +107,7 @@ def test_of_an_unknown_datatype_nothing_is_known() -> None:
 
 FUNCTIONAL = ":weight a owl:DatatypeProperty, owl:FunctionalProperty . "
 RANGED = ":weight a owl:DatatypeProperty ; rdfs:range xsd:decimal . "
-CASES = [  # contradictory or not, the rule that says so, and the ontology
+CASES = [  # contradictory or not, the rule, and the ontology
     (True, "dt-diff", FUNCTIONAL + ":a :weight 1, 2 ."),
     (False, "", FUNCTIONAL + ':a :weight 1, "01"^^xsd:int, 1.0 .'),
     (True, "dt-diff", FUNCTIONAL + ':a :weight "1", 1 .'),
@@ -133,7 +133,7 @@ CASES = [  # contradictory or not, the rule that says so, and the ontology
 
 
 @pytest.mark.parametrize(("contradictory", "rule", "turtle"), CASES)
-def test_rules_compare_literals_with_their_values(contradictory: bool, rule: str, turtle: str) -> None:
+def test_the_rules_compare_the_values_of_literals(contradictory: bool, rule: str, turtle: str) -> None:
     known = Materialisation(triples(turtle))
     assert {found.rule for found in known.contradictions} == ({rule} if contradictory else set())
     for found in known.contradictions:
@@ -152,14 +152,14 @@ def test_an_ill_formed_literal_is_a_contradiction() -> None:
     assert [found.rule for found in known.contradictions] == ["dt-not-type"]
 
 
-def test_equal_values_join_and_each_keeps_its_spelling() -> None:
+def test_equal_values_join_and_keep_their_spellings() -> None:
     known = Materialisation(triples(':Heavy owl:onProperty :weight ; owl:hasValue 10 . :a :weight "010"^^xsd:int .'))
     assert triple(":a a :Heavy") in known
     steps = known.derivation([triple(":a a :Heavy")])
     assert triple(':a :weight "010"^^xsd:int') in [step.triple for step in steps]
 
 
-def test_some_value_of_a_datatype_makes_a_class() -> None:
+def test_a_value_of_a_datatype_satisfies_a_restriction() -> None:
     said = ":Weighed owl:onProperty :weight ; owl:someValuesFrom xsd:integer . :a :weight 5.0 . :b :weight 5.5 ."
     known = Materialisation(triples(said))
     assert triple(":a a :Weighed") in known

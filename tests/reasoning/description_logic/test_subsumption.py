@@ -1,4 +1,4 @@
-"""Subsumption of what lessons say, without a reasoner's process: what follows, what is impossible, what is refused."""
+"""Subsumption of lessons without a reasoner's process: entailments, unsatisfiable classes and refusals."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def subsumption(said: dict[str, ToldClass], **ends: PropertyEnds) -> Subsumption
     return Subsumption(lambda name: said.get(name, ToldClass()), lambda p: ends.get(p, PropertyEnds()), disjoint)
 
 
-def test_super_classes_are_followed_through_circles_and_domains() -> None:
+def test_super_classes_are_followed_through_cycles_and_domains() -> None:
     found = subsumption(told(a="b", b="a", table=("shows", "fork")), shows=PropertyEnds(frozenset({"scene"})))
     assert found.broader("a") == {"b"}
     assert found.broader("table") == {"scene"}
@@ -60,12 +60,12 @@ def test_super_classes_are_followed_through_circles_and_domains() -> None:
         ({"x": ToldClass(shows=frozenset({("shows", "knife")}))}, True),
     ],
 )
-def test_disjoint_classes_above_or_shown_are_impossible(said: dict[str, ToldClass], possible: bool) -> None:
+def test_disjoint_super_classes_or_shown_classes_are_impossible(said: dict[str, ToldClass], possible: bool) -> None:
     found = subsumption(said, holds=PropertyEnds(ranges=frozenset({"fork"})))
     assert found.satisfiable("x") is possible
 
 
-def test_what_is_beyond_lessons_is_refused() -> None:
+def test_axioms_beyond_lessons_are_refused() -> None:
     nested = told(x=("shows", "y"), y=("shows", "fork"))
     with pytest.raises(BeyondLessonsError):
         subsumption(nested).satisfiable("x")
@@ -74,7 +74,7 @@ def test_what_is_beyond_lessons_is_refused() -> None:
 
 
 def memory_of(rng: random.Random, most: int = 1) -> ox.Store:
-    """A store with the ontology and learned classes: categories of so many kinds at most, layouts that show some."""
+    """Return a store of the ontology and learned classes: categories of at most ``most`` kinds, and layouts."""
     store, learned = ox.Store(), graph_iri(GraphName.LEARNED)
     store.bulk_extend(packaged_quads())
     kinds = [kind.iri for kind in ONTOLOGY.kinds]
@@ -99,7 +99,7 @@ def memory_of(rng: random.Random, most: int = 1) -> ox.Store:
 
 
 @pytest.mark.slow
-def test_hermit_says_the_same_of_generated_lessons() -> None:
+def test_hermit_agrees_on_generated_lessons() -> None:
     outcomes = set()
     for seed in range(8):
         after = After(memory_of(random.Random(seed), 1 + seed % 2))
@@ -115,7 +115,7 @@ def test_hermit_says_the_same_of_generated_lessons() -> None:
     assert outcomes == {set, str}  # some memories are possible, and some are not
 
 
-def test_more_than_lessons_say_is_left_to_hermit() -> None:
+def test_axioms_beyond_lessons_are_left_to_hermit() -> None:
     store = memory_of(random.Random(0))
     fork = iri(BASE + "Fork")
     store.add(ox.Quad(fork, iri(OWL + "equivalentClass"), iri("urn:gabel"), graph_iri(GraphName.ONTOLOGY)))

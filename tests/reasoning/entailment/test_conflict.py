@@ -1,4 +1,4 @@
-"""Contradictions: found exactly where there are some, minimal, and said in words."""
+"""Contradictions: found exactly if there are any, minimal, and explained in words."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def among(stated: list[Fact]) -> Conflict | None:
 
 
 def cyclic(stated: list[Triple]) -> bool:
-    """Whether the order that the facts demand on x or on y has a cycle: the only way directions can contradict."""
+    """Return whether the order of the facts on x or on y has a cycle, the only contradiction among directions."""
     for axis in (0, 1):
         before = {(s, o) if LOWER[r][axis] < 0 else (o, s) for r, s, o in stated if LOWER[r][axis]}
         new = True
@@ -47,7 +47,7 @@ def cyclic(stated: list[Triple]) -> bool:
 
 @settings(max_examples=150, deadline=None)
 @given(st.lists(directions, max_size=6))
-def test_a_contradiction_is_found_exactly_where_the_order_on_an_axis_is_cyclic(stated: list[Triple]) -> None:
+def test_facts_conflict_exactly_if_an_order_is_cyclic(stated: list[Triple]) -> None:
     found = among([Fact(s, (R[r],), o) for r, s, o in stated])
     assert (found is not None) == cyclic(stated)
 
@@ -80,7 +80,7 @@ def test_a_conflict_is_minimal_and_made_of_firm_stated_facts(stated: list[Fact])
 
 @settings(max_examples=60, deadline=None)
 @given(st.lists(anything, max_size=6), st.data())
-def test_what_contradicts_itself_still_does_when_more_is_said(stated: list[Fact], data: st.DataObject) -> None:
+def test_adding_facts_keeps_a_contradiction(stated: list[Fact], data: st.DataObject) -> None:
     if among(stated) is not None:
         more = data.draw(st.lists(anything, max_size=3))
         assert among([*more, *stated]) is not None
@@ -99,15 +99,15 @@ def test_what_contradicts_itself_still_does_when_more_is_said(stated: list[Fact]
         (["left(a, b)", "on(a, b)"], ["left(a, b)", "on(a, b)"], "'a' cannot be both left of and on 'b'"),
         (["on(a, b)", "on(b, a)"], ["on(a, b)", "on(b, a)"], "cannot be both"),
         (["exactly_left(a, b)", "top(a, b)"], ["exactly_left(a, b)", "top(a, b)"], "cannot be both"),
-        (["left(a, a)"], ["left(a, a)"], "nothing can be related to itself, and 'a' is"),
-        (["left or right(a, a)"], ["left or right(a, a)"], "nothing can be related to itself"),
-        (["left(a, b)", "not left(a, b)"], ["left(a, b)", "not left(a, b)"], "'a' is left of 'b', and that is denied"),
+        (["left(a, a)"], ["left(a, a)"], "no object can be related to itself, but 'a' is"),
+        (["left or right(a, a)"], ["left or right(a, a)"], "no object can be related to itself"),
+        (["left(a, b)", "not left(a, b)"], ["left(a, b)", "not left(a, b)"], "'a' is left of 'b', but that is denied"),
         (["right(b, a)", "not left(a, b)"], ["right(b, a)", "not left(a, b)"], "that is denied"),
         (["top_left(a, b)", "not left or on(a, b)"], ["top_left(a, b)", "not left or on(a, b)"], "that is denied"),
         (
             ["left(a, b)", "left(b, c)", "not right(c, a)"],
             ["left(a, b)", "left(b, c)", "not right(c, a)"],
-            "'c' is right of 'a', and that is denied",
+            "'c' is right of 'a', but that is denied",
         ),
         (
             ["left or top_left(a, b)", "right(a, b)"],
@@ -121,7 +121,9 @@ def test_what_contradicts_itself_still_does_when_more_is_said(stated: list[Fact]
         (["right or top_left(a, b)", "not left(a, b)", "not right(a, b)"], None, "neither right of nor top left of"),
     ],
 )
-def test_conflicts_by_hand(sentences: list[str], conflict: list[str] | None, reason: str, graph_of: MakeGraph) -> None:
+def test_conflicts_worked_out_by_hand(
+    sentences: list[str], conflict: list[str] | None, reason: str, graph_of: MakeGraph
+) -> None:
     found = conflict_of(graph_of(*sentences))
     assert found is not None
     assert [str(fact) for fact in found.facts] == (sentences if conflict is None else conflict)
@@ -146,7 +148,7 @@ def test_conflicts_by_hand(sentences: list[str], conflict: list[str] | None, rea
         ["left(a, b)", "not exactly_left(a, b)"],
     ],
 )
-def test_what_can_hold_together_is_no_conflict(sentences: list[str], graph_of: MakeGraph) -> None:
+def test_compatible_facts_have_no_conflict(sentences: list[str], graph_of: MakeGraph) -> None:
     assert conflict_of(graph_of(*sentences, nodes="a b c")) is None
 
 
@@ -162,7 +164,7 @@ def test_the_facts_of_a_conflict_are_in_the_order_of_their_lines(graph_of: MakeG
     assert [fact.source.line for fact in found.facts if fact.source] == [1, 2, 3]
 
 
-def test_what_is_said_twice_is_blamed_once(graph_of: MakeGraph) -> None:
+def test_a_repeated_fact_is_in_the_conflict_once(graph_of: MakeGraph) -> None:
     found = conflict_of(graph_of("left(a, b)", "left(a, b)", "left(b, a)"))
     assert found is not None
     assert len(found.facts) == 2
@@ -174,12 +176,12 @@ def test_compatibility_is_symmetric_and_reflexive() -> None:
     assert all(compatible(a, a) for a in R.values())
 
 
-def test_a_relation_is_compatible_with_what_it_implies_and_not_with_its_inverse() -> None:
+def test_a_relation_is_compatible_with_its_consequences() -> None:
     for relation in R.values():
         assert all(compatible(relation, R[name]) for name in relation.broader)
         assert not compatible(relation, R[relation.inverse])
 
 
-def test_exact_relations_are_compatible_with_themselves_only() -> None:
+def test_exact_relations_are_compatible_only_with_themselves() -> None:
     exact = [r for r in R.values() if r.name.startswith("exactly")]
     assert not any(compatible(a, b) for a, b in combinations(exact, 2))

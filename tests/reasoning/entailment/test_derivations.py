@@ -1,4 +1,4 @@
-"""Derivations of what is implied, step by step: each by its rule, from as few stated facts as there can be."""
+"""Derivations of implied facts: every step by its rule, from the fewest stated facts."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from deixis.reasoning.qualitative.calculi.calculus import ProductCalculus
 
 
 def claimed(claim: Fact | Order | ImpossibleCase) -> int:
-    """The atoms that a claim admits."""
+    """Return the atoms that a claim admits."""
     assert not isinstance(claim, ImpossibleCase)
     if isinstance(claim, Fact):
         wanted = 0
@@ -33,7 +33,7 @@ def claimed(claim: Fact | Order | ImpossibleCase) -> int:
 
 
 def check(derivation: Derivation, stated: list[Fact], assumed: tuple[object, ...] = ()) -> None:
-    """Re-checks a derivation rule by rule, down to stated facts, with the block algebra for what is composed."""
+    """Check a derivation rule by rule, down to stated facts, with the block algebra for compositions."""
     _, inverse, transitive = axioms()
     claim, rule = derivation.claim, derivation.rule
     premises = [premise.claim for premise in derivation.premises]
@@ -94,7 +94,7 @@ def _assumed(derivation: Derivation) -> list[object]:
 
 @settings(max_examples=60, deadline=None)
 @given(stated=facts)
-def test_every_derivation_is_right_rule_by_rule_and_rests_on_stated_facts(stated: list[Triple]) -> None:
+def test_every_derivation_is_correct_and_rests_on_stated_facts(stated: list[Triple]) -> None:
     implied = implications(stated)
     listed = list(implied.graph.facts())
     for relation, s, o in implied.triples():
@@ -108,7 +108,7 @@ def test_every_derivation_is_right_rule_by_rule_and_rests_on_stated_facts(stated
 
 @settings(max_examples=60, deadline=None)
 @given(stated=some_facts("abc", FLAT))
-def test_derivations_by_cases_are_right_and_need_every_fact_that_they_rest_on(stated: list[Fact]) -> None:
+def test_derivations_by_cases_are_correct_and_minimal(stated: list[Fact]) -> None:
     implied = Implications(RelationGraph.from_facts(R, list(NODES), stated))
     stated = list(implied.graph.facts())
     for relation, s, o in list(implied.triples())[:12]:
@@ -125,8 +125,8 @@ def test_derivations_by_cases_are_right_and_need_every_fact_that_they_rest_on(st
 
 @settings(max_examples=60, deadline=None)
 @given(stated=facts)
-def test_a_derivation_of_one_order_of_edges_takes_as_few_facts_as_there_can_be(stated: list[Triple]) -> None:
-    """Edges of things are points, facts are ways between them; networkx finds the shortest."""
+def test_the_derivation_of_an_order_takes_the_fewest_facts(stated: list[Triple]) -> None:
+    """Compare with shortest paths of networkx, where edges of boxes are nodes and facts are arcs."""
     implied = implications(stated)
     if not implied.consistent:
         return
@@ -152,7 +152,7 @@ def test_a_derivation_of_one_order_of_edges_takes_as_few_facts_as_there_can_be(s
                 assert len(derivation.stated()) == nx.dijkstra_path_length(ways, start, goal)
 
 
-def test_a_stated_fact_is_its_own_derivation_even_where_it_follows_too(graph_of: MakeGraph) -> None:
+def test_a_stated_fact_is_its_own_derivation(graph_of: MakeGraph) -> None:
     implied = Implications(graph_of("right(b, a)", "left(a, b)", "left(b, c)", "left(a, c)"))
     for subject, object in (("a", "b"), ("a", "c")):
         derivation = implied.derive(implied.vocabulary["left"], subject, object)
@@ -160,7 +160,7 @@ def test_a_stated_fact_is_its_own_derivation_even_where_it_follows_too(graph_of:
         assert derivation.rule is Rule.STATED
 
 
-def test_a_derivation_reads_as_text_with_places(graph_of: MakeGraph) -> None:
+def test_a_derivation_prints_with_source_locations(graph_of: MakeGraph) -> None:
     implied = Implications(graph_of("top_left(a, b)", "right(c, b)"))
     derivation = implied.derive(implied.vocabulary["left"], "a", "c")
     assert derivation is not None
@@ -173,7 +173,7 @@ def test_a_derivation_reads_as_text_with_places(graph_of: MakeGraph) -> None:
     ]
 
 
-def test_the_inverse_of_a_sub_property_goes_by_both_rules(graph_of: MakeGraph) -> None:
+def test_the_inverse_of_a_sub_property_takes_both_rules(graph_of: MakeGraph) -> None:
     implied = Implications(graph_of("exactly_left(a, b)"))
     derivation = implied.derive(implied.vocabulary["right"], "b", "a")
     assert derivation is not None

@@ -1,4 +1,4 @@
-"""What a graph implies, against all pictures of it and the TBox's own triples."""
+"""The implications of a graph, compared with all its pictures and with the triples of the TBox."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from deixis.reasoning.geometry.rectangle import box_relations
 
 
 def forward_chained(stated: set[Triple]) -> set[Triple]:
-    """Inverses, sub-properties and transitivity until nothing is new."""
+    """Apply inverses, sub-properties and transitivity until nothing is new."""
     broader, inverse, transitive = axioms()
     known: set[Triple] = set()
     new = set(stated)
@@ -47,7 +47,7 @@ def named(implied: Implications) -> set[Triple]:
 
 @settings(max_examples=80, deadline=None)
 @given(stated=facts)
-def test_all_that_forward_chaining_over_the_tbox_finds_is_implied(stated: list[Triple]) -> None:
+def test_all_consequences_of_the_tbox_rules_are_implied(stated: list[Triple]) -> None:
     implied = implications(stated)
     if implied.consistent:
         assert named(implied) >= proper(forward_chained(set(stated)))
@@ -56,7 +56,7 @@ def test_all_that_forward_chaining_over_the_tbox_finds_is_implied(stated: list[T
 @pytest.mark.parametrize(("names", "words", "axes"), [("abc", FLAT, 2), ("ab", list(R.values()), 3)])
 @settings(max_examples=60, deadline=None)
 @given(data=st.data())
-def test_exactly_what_all_pictures_share_is_implied(
+def test_a_fact_is_implied_exactly_if_all_pictures_share_it(
     names: str, words: list[Relation], axes: int, data: st.DataObject
 ) -> None:
     stated = data.draw(some_facts(names, words))
@@ -77,8 +77,8 @@ def test_exactly_what_all_pictures_share_is_implied(
 
 @settings(max_examples=40, deadline=None)
 @given(stated=facts)
-def test_the_bit_sets_and_the_block_algebra_give_the_same_answer(stated: list[Triple]) -> None:
-    """The same facts through the constraint network of another module: what its closure leaves is what is implied."""
+def test_bit_sets_and_block_algebra_agree(stated: list[Triple]) -> None:
+    """Compare with the closure of the constraint network of another module."""
     from deixis.reasoning.qualitative.networks.closure import close
     from deixis.reasoning.qualitative.networks.network import Constraint, Network
 
@@ -93,7 +93,7 @@ def test_the_bit_sets_and_the_block_algebra_give_the_same_answer(stated: list[Tr
                 assert implied.holds(relation, NODES[s], NODES[o]) == (left & ~atoms(relation) == 0)
 
 
-def test_what_lies_on_something_stands_where_that_stands(graph_of: MakeGraph) -> None:
+def test_an_object_shares_the_relations_of_its_support(graph_of: MakeGraph) -> None:
     implied = Implications(graph_of("on(napkin, plate)", "left(fork, plate)"))
     derivation = implied.derive(R["left"], "fork", "napkin")
     assert derivation is not None
@@ -105,7 +105,7 @@ def test_what_lies_on_something_stands_where_that_stands(graph_of: MakeGraph) ->
     ]
 
 
-def test_different_words_compose_and_exact_ones_follow_where_they_are_forced(graph_of: MakeGraph) -> None:
+def test_different_words_compose(graph_of: MakeGraph) -> None:
     implied = Implications(graph_of("left(a, b)", "top_left(b, c)", "top(a, b)"))
     assert implied.holds(R["left"], "a", "c")
     assert implied.holds(R["exactly_top_left"], "a", "b")
@@ -115,7 +115,7 @@ def test_different_words_compose_and_exact_ones_follow_where_they_are_forced(gra
     assert derivation.rule is Rule.CONJUNCTION
 
 
-def test_a_choice_of_which_one_case_is_left_is_taken(graph_of: MakeGraph) -> None:
+def test_a_choice_with_one_possible_case_is_decided(graph_of: MakeGraph) -> None:
     implied = Implications(graph_of("left or top(a, b)", "not left(a, b)"))
     derivation = implied.derive(R["top"], "a", "b")
     assert derivation is not None
@@ -129,20 +129,20 @@ def test_a_choice_of_which_one_case_is_left_is_taken(graph_of: MakeGraph) -> Non
     ]
 
 
-def test_what_is_exactly_left_need_not_be_so_of_the_next(graph_of: MakeGraph) -> None:
+def test_exactly_left_is_not_transitive(graph_of: MakeGraph) -> None:
     implied = Implications(graph_of("exactly_left(a, b)", "exactly_left(b, c)"))
     assert implied.holds(implied.vocabulary["left"], "a", "c")
     assert not implied.holds(implied.vocabulary["exactly_left"], "a", "c")
 
 
-def test_what_is_inferred_is_implied_and_not_stated(graph_of: MakeGraph) -> None:
+def test_inferred_facts_are_implied_and_not_stated(graph_of: MakeGraph) -> None:
     implied = Implications(graph_of("left(a, b)", "left(b, c)"))
     inferred = sorted(str(derivation.claim) for derivation in implied.inferred())
     assert inferred == ["left(a, c)", "right(b, a)", "right(c, a)", "right(c, b)"]
 
 
 @pytest.mark.parametrize("sentence", ["0.8 left(a, b)", "optional left(a, b)", "not left(a, b)", "left or top(a, b)"])
-def test_what_is_not_firm_or_leaves_all_open_concludes_nothing(sentence: str, graph_of: MakeGraph) -> None:
+def test_facts_that_are_not_firm_imply_nothing(sentence: str, graph_of: MakeGraph) -> None:
     implied = Implications(graph_of(sentence, "left(b, c)"))
     assert named(implied) == {("left", "b", "c"), ("right", "c", "b")}
 
@@ -153,7 +153,7 @@ def test_an_empty_graph_and_one_without_facts_imply_nothing(graph_of: MakeGraph)
     assert not Implications(graph_of(nodes="a b")).holds(R["left"], "a", "b")
 
 
-def test_nothing_is_implied_between_parts_that_no_fact_connects(graph_of: MakeGraph) -> None:
+def test_nothing_is_implied_between_unconnected_objects(graph_of: MakeGraph) -> None:
     implied = Implications(graph_of("left(a, b)", "left(c, d)"))
     assert implied.derive(R["left"], "a", "d") is None
 
@@ -163,12 +163,12 @@ def test_more_connected_objects_than_the_limit_are_an_error(
 ) -> None:
     monkeypatch.setattr(module, "MAX_CONNECTED", 3)
     Implications(graph_of("left(a, b)", "left(b, c)", "left(d, e)"))
-    with pytest.raises(LimitError, match=r"connect 4 objects .* up to 3") as caught:
+    with pytest.raises(LimitError, match=r"connect 4 objects .* at most 3") as caught:
         Implications(graph_of("left(a, b)", "left(b, c)", "left(c, d)"))
     assert isinstance(caught.value, OverflowError)
 
 
-def test_what_all_alternatives_of_a_choice_say_follows_without_a_search(graph_of: MakeGraph) -> None:
+def test_consequences_of_all_alternatives_need_no_search(graph_of: MakeGraph) -> None:
     sentences = [f"left or top_left(a{k}, a{k + 1})" for k in range(30)]
     implied = Implications(graph_of(*sentences), time_limit=0.0)
     assert implied.holds(R["left"], "a0", "a30")
@@ -177,7 +177,7 @@ def test_what_all_alternatives_of_a_choice_say_follows_without_a_search(graph_of
     assert (derivation.rule, len(derivation.stated())) == (Rule.COMPOSITION, 30)
 
 
-def test_where_the_time_limit_strikes_what_follows_without_choices_is_known(graph_of: MakeGraph) -> None:
+def test_at_the_limit_consequences_without_choices_are_known(graph_of: MakeGraph) -> None:
     implied = Implications(graph_of("left or top(a, b)", "not top(a, b)", "left(b, c)"), time_limit=0.0)
     assert not implied.complete and not implied.decided
     assert named(implied) == {("left", "b", "c"), ("right", "c", "b")}
@@ -186,7 +186,7 @@ def test_where_the_time_limit_strikes_what_follows_without_choices_is_known(grap
 
 @settings(max_examples=30, deadline=None)
 @given(stated=some_facts("abcd", list(R.values())), order=st.permutations("abcd"))
-def test_what_is_implied_does_not_depend_on_the_order_of_nodes(stated: list[Fact], order: list[str]) -> None:
+def test_implications_do_not_depend_on_the_order_of_nodes(stated: list[Fact], order: list[str]) -> None:
     one = Implications(RelationGraph.from_facts(R, list("abcd"), stated))
     other = Implications(RelationGraph.from_facts(R, order, stated[::-1]))
     assert one.consistent == other.consistent
@@ -194,7 +194,7 @@ def test_what_is_implied_does_not_depend_on_the_order_of_nodes(stated: list[Fact
 
 
 def geometry(a: NDArray[np.float64], b: NDArray[np.float64]) -> set[str]:
-    """The wide relations that hold of two different boxes, from their corners."""
+    """Return the wide relations of two different boxes, from their corners."""
     found = {"left": a[1, 0] <= b[0, 0], "right": b[1, 0] <= a[0, 0], "bottom": a[1, 1] <= b[0, 1]}
     found |= {"top": b[1, 1] <= a[0, 1]}
     corners = {f"{y}_{x}": found[y] and found[x] for y in ("top", "bottom") for x in ("left", "right")}
@@ -205,7 +205,7 @@ def geometry(a: NDArray[np.float64], b: NDArray[np.float64]) -> set[str]:
 
 @settings(max_examples=80, deadline=None)
 @given(data=st.data())
-def test_whatever_follows_from_facts_that_hold_of_boxes_holds_of_them_and_contradicts_nothing(
+def test_consequences_of_true_facts_hold_of_the_boxes(
     data: st.DataObject, random_boxes: Callable[..., NDArray[np.float64]], relations: Relations
 ) -> None:
     boxes = np.unique(random_boxes(data, most=6, shortest=1), axis=0)
@@ -229,7 +229,7 @@ def test_whatever_follows_from_facts_that_hold_of_boxes_holds_of_them_and_contra
 
 @settings(deadline=None, max_examples=40)
 @given(stated=facts)
-def test_what_is_listed_with_steps_is_what_is_derived(stated: list[Triple]) -> None:
+def test_facts_listed_with_steps_are_the_derived_ones(stated: list[Triple]) -> None:
     implied = implications(stated)
     graph = implied.graph
     listed = list(implied.implied_with_steps())

@@ -1,4 +1,4 @@
-"""Why a fact does not follow: pictures bear out every firm fact but it, and what excludes it does exclude it."""
+"""Reasons why a fact does not follow: pictures satisfy all firm facts but not it, and conflicts exclude it."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ some_facts = st.lists(
 
 
 def bears(boxes: NDArray[np.float64], s: int, relation: Relation, o: int) -> bool:
-    """By the atoms of two boxes, axis by axis."""
+    """Return whether a relation holds of two boxes, by their atoms on each axis."""
     masks = (relation.x_atoms, relation.y_atoms, relation.z_atoms or ALL_ALLEN)
     codes = allen_relations(boxes[s, 0], boxes[s, 1], boxes[o, 0], boxes[o, 1])
     return all(mask >> int(code) & 1 for mask, code in zip(masks, codes, strict=True))
@@ -47,7 +47,7 @@ def bears(boxes: NDArray[np.float64], s: int, relation: Relation, o: int) -> boo
 @given(
     stated=some_facts, ends=st.sampled_from(list(permutations(NAMES, 2))), relation=st.sampled_from(list(R.values()))
 )
-def test_the_reason_is_right(stated: list[Fact], ends: tuple[str, str], relation: Relation) -> None:
+def test_the_reason_is_correct(stated: list[Fact], ends: tuple[str, str], relation: Relation) -> None:
     implied = Implications(RelationGraph.from_facts(R, list(NAMES), stated))
     if not implied.consistent:
         return
@@ -73,11 +73,11 @@ def test_the_reason_is_right(stated: list[Fact], ends: tuple[str, str], relation
         assert found.missing
 
 
-def test_nothing_can_be_asked_of_facts_that_contradict_each_other(graph_of: MakeGraph) -> None:
-    with pytest.raises(GraphError, match="takes consistent facts"):
+def test_contradictory_facts_are_refused(graph_of: MakeGraph) -> None:
+    with pytest.raises(GraphError, match="the facts must be consistent"):
         why_not(Implications(graph_of("left(a, b)", "left(b, a)")), Fact("a", (R["top"],), "b"))
 
 
-def test_a_thing_is_not_asked_about_itself(graph_of: MakeGraph) -> None:
-    with pytest.raises(GraphError, match="one relation of two things"):
+def test_a_relation_of_an_object_to_itself_is_refused(graph_of: MakeGraph) -> None:
+    with pytest.raises(GraphError, match="one relation of two objects"):
         why_not(Implications(graph_of("left(a, b)")), Fact("a", (R["top"],), "a"))

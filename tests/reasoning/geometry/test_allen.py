@@ -1,4 +1,4 @@
-"""The thirteen relations between intervals, against a chain of conditions written from the definitions."""
+"""The thirteen relations between intervals, compared with their textbook definitions."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ intervals = st.tuples(st.integers(0, 6), st.integers(0, 4)).map(lambda e: (e[0],
 
 
 def definitions(a: Interval, b: Interval) -> list[Allen]:
-    """Every relation whose textbook definition holds; touching is looked at before what lies inside."""
+    """Return all relations whose textbook definition holds; touching comes before lying inside."""
     (p, q), (r, s) = a, b
     if (p, q) == (r, s):
         return [Allen.EQUALS]
@@ -45,11 +45,11 @@ def relation(a: Interval, b: Interval, tolerance: float = 0.0) -> Allen:
 
 @settings(max_examples=300, deadline=None)
 @given(intervals, intervals)
-def test_exactly_one_of_the_thirteen_holds_and_it_is_the_one_defined(a: Interval, b: Interval) -> None:
+def test_the_only_relation_that_holds_is_the_defined_one(a: Interval, b: Interval) -> None:
     assert definitions(a, b) == [relation(a, b)]
 
 
-def test_all_pairs_of_small_intervals_agree_with_the_definitions_and_all_thirteen_occur() -> None:
+def test_all_pairs_of_small_intervals_match_the_definitions() -> None:
     small = [(p, q) for p in range(5) for q in range(p, 5)]
     low = np.array([p for p, _ in small], dtype=float)
     high = np.array([q for _, q in small], dtype=float)
@@ -62,7 +62,7 @@ def test_all_pairs_of_small_intervals_agree_with_the_definitions_and_all_thirtee
 @pytest.mark.parametrize("tolerance", [0.0, 1.0, 2.5])
 @settings(max_examples=100, deadline=None)
 @given(a=intervals, b=intervals)
-def test_the_relation_the_other_way_is_the_converse(a: Interval, b: Interval, tolerance: float) -> None:
+def test_the_relation_of_the_reversed_pair_is_the_converse(a: Interval, b: Interval, tolerance: float) -> None:
     assert relation(b, a, tolerance) is relation(a, b, tolerance).converse
 
 
@@ -88,11 +88,11 @@ def test_the_relation_the_other_way_is_the_converse(a: Interval, b: Interval, to
         ((2, 2), (2, 2), "="),
     ],
 )
-def test_the_thirteen_and_points_by_hand(a: Interval, b: Interval, symbol: str) -> None:
+def test_intervals_and_points_worked_out_by_hand(a: Interval, b: Interval, symbol: str) -> None:
     assert relation(a, b).symbol == symbol
 
 
-def test_ends_that_differ_by_no_more_than_the_tolerance_are_equal() -> None:
+def test_ends_within_the_tolerance_are_equal() -> None:
     def code(shift: float) -> str:
         low_a, high_a, low_b, high_b = (np.array([v]) for v in (0.0, 1.0, 1.0 + shift, 2.0))
         return Allen(int(allen_relations(low_a, high_a, low_b, high_b, tolerance=0.25)[0])).symbol

@@ -1,4 +1,4 @@
-"""Bounds as codes: order, sums and words, exactly."""
+"""Bounds as codes: exact order, exact sums, and text."""
 
 from __future__ import annotations
 
@@ -29,20 +29,20 @@ def test_sums_do_not_depend_on_their_order(a: int, b: int, c: int) -> None:
     assert add_arrays(np.array([a]), b)[0] == add(a, b)
 
 
-def test_tenths_add_up_to_what_they_should() -> None:
+def test_tenths_of_a_second_add_up_exactly() -> None:
     assert 0.1 + 0.2 != 0.3
     assert add(encode(0.1), encode(0.2)) == encode(0.3)
     assert add(encode(0.1, strict=True), encode(0.2)) == encode(0.3, strict=True)
 
 
 @given(MICROSECONDS)
-def test_a_number_of_seconds_comes_back_as_it_was(ticks: int) -> None:
+def test_seconds_survive_the_round_trip_through_ticks(ticks: int) -> None:
     assert encode(ticks / 1_000_000) >> 1 == ticks
     assert round(float(text_of_ticks(ticks)) * 1e6) == pytest.approx(ticks, abs=1)
 
 
 @given(CODES, CODES)
-def test_bounds_and_codes_are_the_same(at_least: int, at_most: int) -> None:
+def test_bounds_survive_the_round_trip_through_codes(at_least: int, at_most: int) -> None:
     if add(at_least, at_most) < 1:
         with pytest.raises(SettingError, match="no time lies in"):
             Bounds.from_codes(at_least, at_most)
@@ -51,13 +51,13 @@ def test_bounds_and_codes_are_the_same(at_least: int, at_most: int) -> None:
         assert (bounds.at_least, bounds.at_most) == (at_least, at_most)
 
 
-def test_openness_shows() -> None:
+def test_open_bounds_are_printed_as_open() -> None:
     assert str(Bounds(0, 2, lower_open=True)) == "(0, 2]"
     assert str(Bounds()) == "(-∞, ∞)"
 
 
 @pytest.mark.parametrize("bounds", [(1, 0), (math.nan, 1), (0, math.nan), (math.inf, math.inf), (0, 1e30)], ids=str)
-def test_bounds_that_are_none_are_refused(bounds: tuple[float, float]) -> None:
+def test_invalid_bounds_are_refused(bounds: tuple[float, float]) -> None:
     with pytest.raises(SettingError):
         Bounds(*bounds)
 

@@ -1,4 +1,4 @@
-"""Questions of what held when: against every choice of times, and as the definitions have them."""
+"""Queries of fluents that held at a time, compared with all choices of times and with the definitions."""
 
 from __future__ import annotations
 
@@ -29,10 +29,10 @@ def some_bounds() -> st.SearchStrategy[Bounds]:
     st.integers(0, 2 * LAST),
     st.integers(1, LAST),
 )
-def test_answers_are_what_every_choice_of_times_gives(
+def test_answers_match_the_enumeration_of_all_times(
     ends: tuple[Bounds, Bounds], longest: int, begin: int, length: int
 ) -> None:
-    """Times in quarters: bounds are whole and questions in halves, so nothing else can happen between."""
+    """Enumerate times in quarters, which suffice for integer bounds and questions in halves."""
     start, finish = ends
     choices = [
         (s / 4, f / 4)
@@ -57,15 +57,15 @@ def test_answers_are_what_every_choice_of_times_gives(
     assert bool(chronology.may_have_held_throughout(window)) == any(throughout)
 
 
-def test_of_two_that_meet_one_holds_at_the_instant_between() -> None:
+def test_of_two_meeting_fluents_one_holds_at_the_instant_between() -> None:
     timeline = Timeline([Fluent("a", CUP, Bounds(0, 0), Bounds(5, 5)), Fluent("b", CUP)])
     timeline.add(AllenStatement("a", 1 << Allen.MEETS, "b"))
     assert [f.id for f in timeline.chronology().held_at(5)] == ["b"]
     assert [f.id for f in timeline.chronology().may_have_held(5)] == ["b"]
 
 
-def test_what_is_possible_is_possible_in_one_scenario() -> None:
-    """b lasts 2 s within [0, 4) or within [10, 14): it may hold at 1 and at 11 but never from 3 to 11."""
+def test_a_possibility_needs_a_single_scenario() -> None:
+    """Let b last 2 s within [0, 4) or within [10, 14): it may hold at 1 and at 11, but never from 3 to 11."""
     a = Fluent("a", CUP, Bounds(4, 4), Bounds(10, 10))
     b = Fluent("b", CUP, Bounds(0), Bounds(upper=14))
     timeline = Timeline([a, b], [EndDifference("b.start", "b.finish", Bounds(2, 4))])
@@ -78,7 +78,7 @@ def test_what_is_possible_is_possible_in_one_scenario() -> None:
     assert chronology.may_have_held_throughout(Window(3, 11)) == ()
 
 
-def test_patterns_choose_statements() -> None:
+def test_patterns_select_statements() -> None:
     fluents = [
         Fluent("a", CUP, Bounds(0, 0), Bounds(9, 9)),
         Fluent("b", Statement("cup", "full"), Bounds(0, 0), Bounds(9, 9)),
@@ -90,7 +90,7 @@ def test_patterns_choose_statements() -> None:
     assert chronology.held_at(1, Pattern("cup", "on", "tray")) == ()
 
 
-def test_orders_are_certain_where_every_relation_left_agrees() -> None:
+def test_an_order_is_certain_if_all_possible_relations_agree() -> None:
     a = Fluent("a", CUP, Bounds(0, 1), Bounds(2, 3))
     b = Fluent("b", CUP, Bounds(3, 4), Bounds(8, 9))
     c = Fluent("c", CUP, Bounds(5, 7), Bounds(10))
@@ -110,9 +110,9 @@ def test_orders_are_certain_where_every_relation_left_agrees() -> None:
     assert early == [("a", "b")]
 
 
-def test_what_is_no_window_or_fluent_is_refused() -> None:
+def test_invalid_windows_and_unknown_fluents_are_refused() -> None:
     chronology = Timeline().chronology()
-    with pytest.raises(SettingError, match="begins before it ends"):
+    with pytest.raises(SettingError, match="must begin before it ends"):
         Window(2, 2)
     with pytest.raises(SettingError, match="finite"):
         Window(0, float("inf"))

@@ -1,4 +1,4 @@
-"""Allen's relations from bounds: exact, against every choice of end points on a grid that is fine enough."""
+"""Allen's relations from bounds, compared with all choices of end points on a sufficiently fine grid."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def fluent(draw: st.DrawFn) -> Fluent:
 
 
 def grid(bounds: Bounds) -> list[int]:
-    """The points of the grid within bounds."""
+    """Return the points of the grid within bounds."""
     low, high = int(bounds.lower * STEP), int(bounds.upper * STEP)
     return list(range(low + bounds.lower_open, high + 1 - bounds.upper_open))
 
@@ -51,7 +51,7 @@ def brute_force(a: Fluent, b: Fluent) -> int:
 
 
 def masks_from_bounds(starts: list[Bounds], finishes: list[Bounds]) -> NDArray[np.uint16]:
-    """The Allen relations that n fluents admit by the bounds of their starts and finishes alone: shape (n, n)."""
+    """Return the Allen relations of n fluents by the bounds of their starts and finishes alone, shape (n, n)."""
     n = len(starts)
     distances = distances_from_bounds(starts, finishes)
     points = np.arange(n, dtype=np.int64)
@@ -60,7 +60,7 @@ def masks_from_bounds(starts: list[Bounds], finishes: list[Bounds]) -> NDArray[n
 
 @settings(max_examples=60, deadline=None)
 @given(fluent(), fluent())
-def test_a_relation_is_admitted_just_where_some_end_points_realise_it(a: Fluent, b: Fluent) -> None:
+def test_a_relation_is_admitted_exactly_if_some_times_realise_it(a: Fluent, b: Fluent) -> None:
     masks = masks_from_bounds([a.start, b.start], [a.finish, b.finish])
     assert members(int(masks[0, 1])) == members(brute_force(a, b))
 
@@ -79,8 +79,8 @@ def test_unknown_bounds_admit_everything() -> None:
     assert masks_from_bounds([Bounds()] * 2, [Bounds()] * 2)[0, 1] == ALL_ALLEN
 
 
-def test_orders_that_are_possible_one_by_one_are_not_taken_together() -> None:
-    """a in [0, 1] to [1, 2], b the same: each start may be 1 and each finish 1, and no interval may be both."""
+def test_orders_possible_one_by_one_may_exclude_each_other() -> None:
+    """Let a and b go from [0, 1] to [1, 2]: a start or a finish may be 1, but not both of one interval."""
     masks = masks_from_bounds([Bounds(0, 1), Bounds(1, 1)], [Bounds(1, 2), Bounds(2, 2)])
     assert [relation.symbol for relation in members(int(masks[0, 1]))] == ["m", "o", "fi", "s", "="]
 
@@ -88,9 +88,9 @@ def test_orders_that_are_possible_one_by_one_are_not_taken_together() -> None:
 @pytest.mark.parametrize(
     ("relation", "count"), [(Allen.BEFORE, 1), (Allen.MEETS, 2), (Allen.OVERLAPS, 3), (Allen.EQUALS, 4)]
 )
-def test_a_relation_is_few_constraints(relation: Allen, count: int) -> None:
+def test_a_relation_takes_few_constraints(relation: Allen, count: int) -> None:
     assert len(necessary_orders(1 << relation)) == count
 
 
-def test_saying_nothing_takes_no_constraint() -> None:
+def test_the_full_set_of_relations_takes_no_constraint() -> None:
     assert necessary_orders(ALL_ALLEN) == ()

@@ -1,4 +1,4 @@
-"""The simple temporal network, against scipy's Floyd-Warshall with every strict bound a little tighter."""
+"""The simple temporal network, compared with scipy's Floyd-Warshall, where strict bounds are slightly tighter."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from deixis.reasoning.temporal.errors import TemporalConflictError, UnknownFluen
 from deixis.reasoning.temporal.network import DifferenceConstraint, SimpleTemporalNetwork, difference
 
 N = 6
-LITTLE = 2.0**-20  # far less than a second shared out among the points
+LITTLE = 2.0**-20  # far less than a second divided by the number of points
 POINTS = ("origin", *"abcde")
 
 
@@ -39,14 +39,15 @@ CONSTRAINTS = st.lists(
 
 
 def by_scipy(constraints: list[DifferenceConstraint]) -> NDArray[np.int64] | None:
-    """The codes of all minimal distances, None for a contradiction."""
+    """Return the codes of all minimal distances, or None for a contradiction."""
     weights = np.full((N, N), np.inf)
     for c in constraints:
         cell = POINTS.index(c.tail), POINTS.index(c.head)
         weights[cell] = min(weights[cell], (c.code >> 1) / 1e6 - (0 if c.code & 1 else LITTLE))
     known = np.isfinite(weights)
     try:
-        distances = floyd_warshall(csr_array((weights[known], np.nonzero(known)), shape=(N, N)))  # it knows 0 from none
+        # scipy distinguishes a weight of 0 from no edge
+        distances = floyd_warshall(csr_array((weights[known], np.nonzero(known)), shape=(N, N)))
     except NegativeCycleError:
         return None
     codes = np.full((N, N), UNBOUNDED, dtype=np.int64)
@@ -57,18 +58,14 @@ def by_scipy(constraints: list[DifferenceConstraint]) -> NDArray[np.int64] | Non
 
 
 def taken_in(constraints: list[DifferenceConstraint]) -> tuple[SimpleTemporalNetwork, list[DifferenceConstraint]]:
-    """A network, and those of the constraints that it did not refuse."""
+    """Return a network, and the constraints that it did not refuse."""
     network = SimpleTemporalNetwork(POINTS[1:])
-    kept: list[DifferenceConstraint] = []
-    for c in constraints:
-        if network.try_add([c]):
-            kept.append(c)
-    return network, kept
+    return network, [c for c in constraints if network.try_add([c])]
 
 
 @settings(deadline=None)
 @given(CONSTRAINTS)
-def test_one_by_one_gives_what_all_at_once_gives(constraints: list[DifferenceConstraint]) -> None:
+def test_adding_one_by_one_matches_the_batch_computation(constraints: list[DifferenceConstraint]) -> None:
     network = SimpleTemporalNetwork(POINTS[1:])
     kept: list[DifferenceConstraint] = []
     for c in constraints:
@@ -126,7 +123,9 @@ def test_every_bound_is_the_sum_of_its_explanation(constraints: list[DifferenceC
 
 @settings(deadline=None)
 @given(CONSTRAINTS, st.data())
-def test_what_is_taken_back_leaves_no_trace(constraints: list[DifferenceConstraint], data: st.DataObject) -> None:
+def test_taking_back_constraints_restores_the_network(
+    constraints: list[DifferenceConstraint], data: st.DataObject
+) -> None:
     network, kept = taken_in(constraints)
     before = network.distances.copy()
     if network.try_add([constraint(0, 1, 0, True)]):
@@ -141,7 +140,7 @@ def test_what_is_taken_back_leaves_no_trace(constraints: list[DifferenceConstrai
     assert expected is not None and np.array_equal(network.distances, expected)
 
 
-def test_the_fewest_constraints_explain() -> None:
+def test_an_explanation_has_the_fewest_constraints() -> None:
     network = SimpleTemporalNetwork("abc")
     for tail, head, seconds in (("a", "b", 1), ("b", "c", 1), ("a", "c", 2)):
         network.add(difference(tail, head, Bounds(upper=seconds)))
@@ -157,7 +156,7 @@ def test_points_may_be_added_at_any_time() -> None:
     assert network.bounds("origin", "p39") == Bounds(4, 4)
 
 
-def test_all_or_nothing_is_added() -> None:
+def test_constraints_are_added_all_or_none() -> None:
     network = SimpleTemporalNetwork("ab")
     with pytest.raises(TemporalConflictError, match=r"b <= a \+ 1; b >= 5; a <= 2"):
         network.add(
@@ -175,7 +174,7 @@ def test_unknown_points_are_refused() -> None:
         network.add(difference("origin", "cup.strat", Bounds(0)))
 
 
-def test_sums_that_would_not_be_exact_are_refused() -> None:
+def test_sums_that_are_not_exact_are_refused() -> None:
     points = [f"p{k}" for k in range(200)]
     network = SimpleTemporalNetwork(points)
     years = [c for tail, head in pairwise(points) for c in difference(tail, head, Bounds(4e9))]

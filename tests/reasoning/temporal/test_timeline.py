@@ -1,4 +1,4 @@
-"""Timelines: what follows of fluents with disjunctive relations, what contradicts, and why."""
+"""Timelines: implications of fluents with disjunctive relations, contradictions, and explanations."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def fluent(id: str, start: Bounds = Bounds(), finish: Bounds = Bounds()) -> Flue
 
 @cache
 def arrangements() -> NDArray[np.float64]:
-    """Every order of the ends of three proper intervals, shape (m, 3, 2)."""
+    """Return all orders of the ends of three proper intervals, shape (m, 3, 2)."""
     ends = np.stack(np.meshgrid(*[np.arange(6.0)] * 6, indexing="ij"), axis=-1).reshape(-1, 3, 2)
     return ends[(ends[:, :, 0] < ends[:, :, 1]).all(axis=1)]
 
@@ -57,8 +57,8 @@ RELATIONS = st.lists(
 
 @settings(max_examples=80, deadline=None)
 @given(RELATIONS)
-def test_orders_are_what_enumeration_finds(relations: list[AllenStatement]) -> None:
-    """Disjunctive networks of three fluents without any time in them: consistency and every pair's relations."""
+def test_orders_match_the_enumeration(relations: list[AllenStatement]) -> None:
+    """Compare disjunctive networks of three fluents without times: consistency, and the relations of every pair."""
     ends = arrangements()
     for stated in relations:
         ends = ends[(stated.relations >> relation(ends, stated.a, stated.b)) & 1 == 1]
@@ -76,7 +76,7 @@ def test_orders_are_what_enumeration_finds(relations: list[AllenStatement]) -> N
 
 @settings(max_examples=60, deadline=None)
 @given(RELATIONS, st.lists(st.tuples(st.sampled_from(IDS), st.integers(0, 5), st.integers(0, 5)), max_size=3))
-def test_a_conflict_is_a_contradiction_and_needs_all_of_it(
+def test_a_conflict_is_a_minimal_contradiction(
     relations: list[AllenStatement], times: list[tuple[str, int, int]]
 ) -> None:
     differences = [EndDifference("origin", f"{id}.start", Bounds(low, low + more)) for id, low, more in times] + [
@@ -94,8 +94,8 @@ def test_a_conflict_is_a_contradiction_and_needs_all_of_it(
         assert refuted([claim for claim in core if claim is not left_out], Deadline.never()) is None
 
 
-def test_a_conflict_names_each_place_once_and_needs_all_of_it() -> None:
-    """The two finishes exclude both alternatives already, so that no start is to be left out."""
+def test_a_conflict_names_each_statement_once() -> None:
+    """Let the two finishes exclude both alternatives, so that no start is in the conflict."""
     finish = Bounds(14, 14)
     fluents = [fluent("a", Bounds(0, 7), finish), fluent("b", Bounds(7, 7), finish)]
     relations = [AllenStatement("a", 1 << Allen.BEFORE | 1 << Allen.CONTAINS, "b")]
@@ -120,8 +120,8 @@ def conflict_of(items: list[TemporalRelation]) -> TemporalConflictError | None:
 
 @settings(max_examples=40, deadline=None)
 @given(st.lists(st.integers(0, 12), min_size=6, max_size=6), st.data())
-def test_what_is_true_is_never_excluded(numbers: list[int], data: st.DataObject) -> None:
-    """Statements that are made around a true course of events leave it possible, and its times within bounds."""
+def test_a_true_course_of_events_is_never_excluded(numbers: list[int], data: st.DataObject) -> None:
+    """Make true statements about a course of events, which must stay possible, with its times within bounds."""
     ends = [sorted((numbers[2 * k], numbers[2 * k + 1] + (numbers[2 * k] == numbers[2 * k + 1]))) for k in range(3)]
     blur = st.integers(0, 3)
     fluents = [
@@ -142,7 +142,7 @@ def test_what_is_true_is_never_excluded(numbers: list[int], data: st.DataObject)
         assert id in {f.id for f in chronology.may_have_held(s)}
 
 
-def test_of_two_choices_the_one_that_fits_is_taken_and_explained() -> None:
+def test_the_only_possible_choice_is_taken_and_explained() -> None:
     timeline = Timeline([fluent("a", Bounds(0, 1), Bounds(5, 6)), fluent("b", Bounds(2))])
     timeline.add(AllenStatement("a", NEVER_TOGETHER, "b", "t.json: r"))
     assert timeline.chronology().start("b") == Bounds(5, lower_open=True)
@@ -163,8 +163,8 @@ def test_of_two_choices_the_one_that_fits_is_taken_and_explained() -> None:
     )
 
 
-def test_what_every_choice_gives_is_explained_by_cases() -> None:
-    """b is before or after a, and c is later than either by far."""
+def test_a_consequence_of_every_choice_is_explained_by_cases() -> None:
+    """Let b be before or after a, and c much later than both."""
     timeline = Timeline([fluent("a", Bounds(10, 10), Bounds(20, 20)), fluent("b"), fluent("c")])
     timeline.add(EndDifference("b.start", "b.finish", Bounds(1, 2)))
     timeline.add(AllenStatement("a", NEVER_TOGETHER, "b"))
@@ -178,8 +178,8 @@ def test_what_every_choice_gives_is_explained_by_cases() -> None:
     assert {premise.claim for premise in why.premises} >= {"before(a, b)", "after(a, b)"}
 
 
-def test_disjunctions_that_leave_nothing_are_refuted_case_by_case() -> None:
-    """Three fluents of 10 s, of which no two may overlap, do not fit into 25 s."""
+def test_inconsistent_disjunctions_are_refuted_by_cases() -> None:
+    """Refute that three fluents of 10 s, no two of which may overlap, fit into 25 s."""
     timeline = Timeline([fluent(id, Bounds(0), Bounds(upper=25)) for id in IDS])
     for id in IDS:
         timeline.add(EndDifference(f"{id}.start", f"{id}.finish", Bounds(10)))
@@ -194,7 +194,7 @@ def test_disjunctions_that_leave_nothing_are_refuted_case_by_case() -> None:
     assert {f"{id}.start <= {id}.finish - 10" for id in IDS} <= texts
 
 
-def test_a_refused_statement_leaves_the_timeline_as_it_was() -> None:
+def test_a_refused_statement_leaves_the_timeline_unchanged() -> None:
     timeline = Timeline([fluent("a", Bounds(0, 1), Bounds(5, 6)), fluent("b", Bounds(0, 2))])
     before = timeline.network.distances.copy()
     with pytest.raises(TemporalConflictError, match=r"before\(a, b\).*b\.start in \[0, 2\]") as caught:
@@ -204,7 +204,7 @@ def test_a_refused_statement_leaves_the_timeline_as_it_was() -> None:
     timeline.add(AllenStatement("b", 1 << Allen.OVERLAPPED_BY, "a"))
 
 
-def test_a_long_chain_of_contradictions_is_told_in_time() -> None:
+def test_a_long_chain_of_contradictions_is_reported_in_time() -> None:
     fluents = [fluent(f"f{k}") for k in range(100)]
     chain = [AllenStatement(f"f{k}", 1, f"f{k + 1}") for k in range(99)]
     with pytest.raises(TemporalConflictError) as caught:
@@ -213,7 +213,7 @@ def test_a_long_chain_of_contradictions_is_told_in_time() -> None:
     assert not caught.value.minimal
 
 
-def test_without_time_it_stays_undecided_and_sound() -> None:
+def test_without_time_the_answer_is_undecided_and_sound() -> None:
     timeline = Timeline([fluent("a", Bounds(0, 1), Bounds(5, 6)), fluent("b")])
     timeline.add(AllenStatement("a", NEVER_TOGETHER, "b"))
     chronology = timeline.chronology(time_limit=0.0)
@@ -224,7 +224,7 @@ def test_without_time_it_stays_undecided_and_sound() -> None:
     assert chronology.start("a") == Bounds(0, 1)
 
 
-def test_more_scenarios_than_are_gone_through_are_said_to_be() -> None:
+def test_too_many_scenarios_make_the_answer_inexact() -> None:
     fluents = [fluent(f"f{k}") for k in range(14)]
     choices = [AllenStatement(f"f{k}", NEVER_TOGETHER, f"f{k + 1}") for k in range(0, 14, 2)]
     assert 2 ** len(choices) > MAX_SCENARIOS
@@ -244,10 +244,10 @@ def test_a_retracted_relation_is_gone(mask: int) -> None:
         timeline.retract(stated)
 
 
-def test_a_fluent_is_retracted_after_its_relations() -> None:
+def test_a_fluent_can_only_be_retracted_after_its_relations() -> None:
     a, b, stated = fluent("a", Bounds(0, 1)), fluent("b"), AllenStatement("a", 1, "b")
     timeline = Timeline([a, b], [stated])
-    with pytest.raises(FluentError, match=r"take back 'before\(a, b\)' first"):
+    with pytest.raises(FluentError, match=r"retract 'before\(a, b\)' first"):
         timeline.retract(b)
     timeline.retract(stated)
     timeline.retract(b)
@@ -262,8 +262,10 @@ def test_an_empty_timeline_has_an_empty_chronology() -> None:
     assert chronology.held_at(0) == ()
 
 
-def test_a_fluent_that_cannot_be_is_named() -> None:
-    with pytest.raises(FluentError, match=r"json: late: the fluent 'late' starts in \[5, 6\] and finishes in \[1, 5\]"):
+def test_an_impossible_fluent_is_named() -> None:
+    with pytest.raises(
+        FluentError, match=r"json: late: the fluent 'late' must start before it finishes, got a start in \[5, 6\] and"
+    ):
         fluent("late", Bounds(5, 6), Bounds(1, 5))
     with pytest.raises(FluentError, match="stated twice"):
         Timeline([fluent("a"), fluent("a", Bounds(1))])
@@ -271,7 +273,7 @@ def test_a_fluent_that_cannot_be_is_named() -> None:
         Timeline([fluent("a")], [AllenStatement("a", 1, "b")])
     with pytest.raises(FluentError, match="related to itself"):
         AllenStatement("a", 1, "a")
-    with pytest.raises(FluentError, match="one or more"):
+    with pytest.raises(FluentError, match="at least one"):
         AllenStatement("a", 0, "b")
     with pytest.raises(FluentError, match="always 0"):
         EndDifference("a.start", "a.start", Bounds())

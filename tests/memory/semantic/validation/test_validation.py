@@ -32,7 +32,7 @@ SH = "http://www.w3.org/ns/shacl#"
 BROKEN = {
     "no identifier": ("<L/scene/s1/o1> dx:identifier 'o1' .", "", "say|give it the name that its scene uses"),
     "two identifiers": ("", "<L/scene/s1/o1> dx:identifier 'again' .", "one dx:identifier"),
-    "in no scene": ("<L/scene/s1/o1> dx:inScene <L/scene/s1> .", "", "say dx:inScene once"),
+    "in no scene": ("<L/scene/s1/o1> dx:inScene <L/scene/s1> .", "", "give dx:inScene once"),
     "in something else": (
         "<L/scene/s1/o1> dx:inScene <L/scene/s1> .", "<L/scene/s1/o1> dx:inScene <L/viewpoint/chair> .", "dx:Scene",
     ),
@@ -54,10 +54,10 @@ BROKEN = {
     ),
     "a scene in inches": ("<L/scene/s1> dx:unit 'm' .", "<L/scene/s1> dx:unit 'in' .", "convert the boxes to metres"),
     "a role without a name": (
-        "<L/layout/dinner-1/role/fish_knife> rdfs:label 'fish_knife' .", "", "say rdfs:label once",
+        "<L/layout/dinner-1/role/fish_knife> rdfs:label 'fish_knife' .", "", "give rdfs:label once",
     ),
     "a role in no layout": (
-        "<L/layout/dinner-1/role/fish_knife> dx:inLayout <L/layout/dinner-1> .", "", "say dx:inLayout once",
+        "<L/layout/dinner-1/role/fish_knife> dx:inLayout <L/layout/dinner-1> .", "", "give dx:inLayout once",
     ),
     "a statement about itself": (
         "<L/layout/dinner-1/fact/1> dx:object <L/layout/dinner-1/role/dinner_plate> .",
@@ -83,11 +83,11 @@ BROKEN = {
         "<L/lesson/dinner-1/match/fish_knife> dx:perceivedAs <L/scene/s1/o2> .", "", "add dx:perceivedAs",
     ),
     "a match of nothing": (
-        "<L/lesson/dinner-1/match/fish_knife> dx:ofRole <L/layout/dinner-1/role/fish_knife> .", "", "say dx:ofRole",
+        "<L/lesson/dinner-1/match/fish_knife> dx:ofRole <L/layout/dinner-1/role/fish_knife> .", "", "give dx:ofRole",
     ),
     "a lesson that ends before it begins": (
         "<L/lesson/dinner-1> prov:endedAtTime '2026-11-21T10:00:02.5Z'^^xsd:dateTime .",
-        "<L/lesson/dinner-1> prov:endedAtTime '2026-11-21T09:00:00Z'^^xsd:dateTime .", "set the clock right",
+        "<L/lesson/dinner-1> prov:endedAtTime '2026-11-21T09:00:00Z'^^xsd:dateTime .", "correct the clock",
     ),
     "a lesson without a script": ("<L/lesson/dinner-1> dx:scriptText 'layout formal_dinner' .", "", "dx:scriptText"),
     "a layout of another lesson": (

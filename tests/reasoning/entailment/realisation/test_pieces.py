@@ -26,7 +26,7 @@ def admitted_by(piece: Piece) -> NDArray[np.bool_]:
 
 @settings(max_examples=100, deadline=None)
 @given(st.lists(st.integers(0, 168), max_size=40))
-def test_the_pieces_of_any_set_of_atoms_admit_just_that_set(cells: list[int]) -> None:
+def test_the_pieces_of_a_set_of_atoms_admit_exactly_that_set(cells: list[int]) -> None:
     wanted = np.zeros(169, dtype=np.bool_)
     wanted[cells] = True
     found = choice(wanted.reshape(13, 13))
@@ -42,7 +42,7 @@ def test_wide_relations_of_one_axis_are_one_inequality() -> None:
         assert (len(found.always), found.pieces) == (1, ((),))
 
 
-def test_the_atom_that_on_and_under_share_pictures_neither_of_them_nor_a_denial() -> None:
+def test_the_atom_shared_by_on_and_under_pictures_neither() -> None:
     for word in ("on", "under"):
         for positive in (True, False):
             assert not region(Fact("a", (R[word],), "b", positive))[Allen.EQUALS, Allen.EQUALS]

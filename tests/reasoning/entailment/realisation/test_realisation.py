@@ -1,4 +1,4 @@
-"""Pictures of facts: they satisfy them, or there is none; proofs and pictures against brute force."""
+"""Pictures of facts satisfy the facts or do not exist, as brute force confirms."""
 
 from __future__ import annotations
 
@@ -50,13 +50,12 @@ def picture(*facts: Fact, nodes: str = NAMES) -> Picture:
     return found
 
 
-# ---- against brute force ----------------------------------------------------------------------------------------
+# ---- compared with brute force ----------------------------------------------------------------------------------
 
 
 @lru_cache(maxsize=1)
 def scenarios() -> NDArray[np.int8]:
-    """The Allen relations of every three intervals, (409, 3, 3): all consistent atomic networks of three (by hand: no
-    more than six different end points are needed)."""
+    """Return all consistent atomic networks of three intervals, shape (409, 3, 3); six different end points suffice."""
     intervals = [(low, high) for low in range(6) for high in range(low + 1, 6)]
     ends = np.array(list(product(intervals, repeat=3)), dtype=np.float64)
     a, b = ends[:, :, None], ends[:, None]
@@ -64,9 +63,9 @@ def scenarios() -> NDArray[np.int8]:
 
 
 def possible(facts: list[Fact]) -> bool:
-    """Whether some three boxes, one above another in some order, satisfy the facts: all are tried.
+    """Return whether some three boxes, stacked in some order, satisfy the facts, by trying all.
 
-    Where the plan leaves open which of two boxes lies on the other, the order settles it.
+    If the plan leaves open which of two boxes lies on the other, the stacking order decides.
     """
     orders = np.array(list(permutations(range(3))))
     s = scenarios()
@@ -89,7 +88,7 @@ def test_three_intervals_have_409_scenarios() -> None:
 
 @settings(max_examples=60, deadline=None)
 @given(st.lists(FACTS, min_size=1, max_size=7))
-def test_there_is_a_picture_just_where_trying_everything_finds_one_and_conflicts_are_minimal(facts: list[Fact]) -> None:
+def test_pictures_and_minimal_conflicts_match_brute_force(facts: list[Fact]) -> None:
     found = realise(graph(*facts), [ANY] * 3, any_size=True)
     assert isinstance(found, Picture) == possible(facts)
     if isinstance(found, Impossible):
@@ -101,7 +100,7 @@ def test_there_is_a_picture_just_where_trying_everything_finds_one_and_conflicts
 
 
 def small(outline: Outline, length: tuple[int, int], width: tuple[int, int]) -> SizeRange:
-    """A thing of whole millimetres."""
+    """Return the size range of an object in whole millimetres."""
     ends = [Extent(low / 1000, low / 1000, high / 1000) for low, high in (length, width)]
     return SizeRange(outline, ends[0], ends[1], ends[0], "thing", "made up")
 
@@ -114,7 +113,7 @@ SMALL = st.one_of(
 
 
 def plans(size: SizeRange) -> list[tuple[int, int]]:
-    """The sides along x and y that a thing may have, either way round."""
+    """Return the possible sides along x and y, in both orientations."""
     (a, b), (c, d) = (
         (round(1000 * extent.least), round(1000 * extent.greatest)) for extent in (size.length, size.width)
     )
@@ -123,7 +122,7 @@ def plans(size: SizeRange) -> list[tuple[int, int]]:
 
 
 def fits(facts: list[Fact], sizes: list[SizeRange]) -> bool:
-    """Whether two boxes of these sizes satisfy the facts: all places that are whole millimetres are tried."""
+    """Return whether two boxes of these sizes satisfy the facts, by trying all positions in whole millimetres."""
     places = np.arange(-9, 10, dtype=np.float64)
     for (ax, ay), (bx, by) in product(plans(sizes[0]), plans(sizes[1])):
         x = allen_relations(np.zeros(19), np.full(19, float(ax)), places, places + bx)
@@ -143,9 +142,7 @@ def fits(facts: list[Fact], sizes: list[SizeRange]) -> bool:
 
 @settings(max_examples=60, deadline=None)
 @given(st.lists(FACTS.filter(lambda f: "c" not in (f.subject, f.object)), min_size=1, max_size=4), SMALL, SMALL)
-def test_with_given_sizes_there_is_a_picture_just_where_trying_everything_finds_one(
-    facts: list[Fact], first: SizeRange, second: SizeRange
-) -> None:
+def test_pictures_with_given_sizes_match_brute_force(facts: list[Fact], first: SizeRange, second: SizeRange) -> None:
     sizes = [first, second]
     found = realise(graph(*facts, nodes="ab"), sizes)
     if fits(facts, sizes):
@@ -161,7 +158,7 @@ def test_with_given_sizes_there_is_a_picture_just_where_trying_everything_finds_
 
 @settings(max_examples=60, deadline=None)
 @given(st.lists(FACTS, max_size=6), st.integers(0, 3))
-def test_every_firm_fact_of_a_picture_holds_as_boxes_and_as_names(facts: list[Fact], seed: int) -> None:
+def test_every_firm_fact_holds_in_the_picture(facts: list[Fact], seed: int) -> None:
     g = graph(*facts)
     found = realise(g, [ANY] * 3, any_size=True, rng=np.random.default_rng(seed) if seed else None)
     if isinstance(found, Picture):
@@ -172,7 +169,7 @@ def test_every_firm_fact_of_a_picture_holds_as_boxes_and_as_names(facts: list[Fa
         assert (found.boxes[:, 1] > found.boxes[:, 0]).all()
 
 
-def test_things_that_nothing_is_said_to_bear_do_not_overlap() -> None:
+def test_unrelated_objects_do_not_overlap() -> None:
     found = picture(*(fact(name, "left", "z") for name in "abcdefg"), nodes="abcdefgz")
     low, high = found.boxes[:, 0], found.boxes[:, 1]
     share = np.all((low[:, None] < high[None]) & (low[None] < high[:, None]), axis=2)
@@ -180,30 +177,30 @@ def test_things_that_nothing_is_said_to_bear_do_not_overlap() -> None:
     assert found.finished
 
 
-def test_what_facts_force_to_overlap_overlaps_and_is_told() -> None:
+def test_a_forced_overlap_is_reported() -> None:
     denied = [fact("a", word, "b", positive=False) for word in ("left", "right", "top", "bottom", "on", "under")]
     found = picture(*denied, nodes="ab")
     assert found.overlapping == ((0, 1),)
     assert facts_that_hold(graph(*denied, nodes="ab"), found.boxes).all()
 
 
-def test_a_hedged_fact_holds_where_it_can() -> None:
+def test_a_hedged_fact_holds_if_possible() -> None:
     found = picture(fact("a", "left", "b", weight=0.2), nodes="ab")
     assert found.given_up == ()
 
 
-def test_a_hedged_fact_that_goes_against_a_firm_one_is_given_up_with_the_reason() -> None:
+def test_a_hedged_fact_against_a_firm_one_is_given_up() -> None:
     found = picture(fact("a", "left", "b"), fact("a", "right", "b", weight=0.8), fact("c", "on", "a"))
     assert [(entry.edge, entry.because) for entry in found.given_up] == [(1, (0,))]
 
 
-def test_of_two_facts_that_exclude_each_other_the_heavier_one_holds() -> None:
+def test_of_two_exclusive_facts_the_heavier_one_holds() -> None:
     light, heavy = fact("a", "left", "b", weight=0.2), fact("b", "left", "a", weight=0.8)
     assert [entry.edge for entry in picture(light, heavy, nodes="ab").given_up] == [0]
     assert [entry.edge for entry in picture(heavy, light, nodes="ab").given_up] == [1]
 
 
-def test_what_was_given_up_for_something_that_was_given_up_too_is_taken_back() -> None:
+def test_a_demand_is_restored_after_its_rival_is_given_up() -> None:
     found = picture(
         fact("a", "left", "b"),
         fact("b", "left", "a", weight=0.7),
@@ -213,7 +210,7 @@ def test_what_was_given_up_for_something_that_was_given_up_too_is_taken_back() -
     assert [entry.edge for entry in found.given_up] == [1]
 
 
-def test_a_kind_that_is_round_is_as_long_as_wide() -> None:
+def test_round_kinds_are_as_long_as_wide() -> None:
     plate = ONTOLOGY.sizes.of(ONTOLOGY.kinds.of_word("dinner plate").iri)  # type: ignore[union-attr]
     found = realise(graph(fact("a", "left", "b"), nodes="ab"), [plate, plate])
     assert isinstance(found, Picture)
@@ -227,7 +224,7 @@ def test_an_empty_graph_has_an_empty_picture() -> None:
     assert found.boxes.shape == (0, 2, 2)
 
 
-def test_without_a_generator_the_picture_is_the_same_each_time_and_with_one_it_is_another() -> None:
+def test_only_a_random_generator_varies_the_picture() -> None:
     g = graph(fact("a", "left|top", "b"), fact("b", "left", "c"))
     first, again = (realise(g, [ANY] * 3) for _ in range(2))
     drawn = [realise(g, [ANY] * 3, rng=np.random.default_rng(seed)) for seed in (1, 1, 2)]
@@ -239,8 +236,8 @@ def test_without_a_generator_the_picture_is_the_same_each_time_and_with_one_it_i
     assert len(set(same)) == 3
 
 
-def test_fifty_things_of_a_table_that_there_is_are_laid_apart_in_a_few_seconds() -> None:
-    """Facts that hold of a random table of fifty things, some with an alternative that need not hold."""
+def test_fifty_objects_are_laid_apart_in_a_few_seconds() -> None:
+    """Picture facts that hold on a random table of fifty objects, some with a false alternative."""
     rng = np.random.default_rng(3)
     corners = np.stack(np.divmod(np.arange(50), 8), axis=1) * 0.3 + rng.uniform(0, 0.1, (50, 2))
     names = [f"thing_{i}" for i in range(50)]
@@ -258,17 +255,17 @@ def test_fifty_things_of_a_table_that_there_is_are_laid_apart_in_a_few_seconds()
     assert (found.finished, found.overlapping) == (True, ())
 
 
-def test_more_things_than_can_be_related_are_refused() -> None:
+def test_too_many_objects_are_refused() -> None:
     names = [f"thing_{i}" for i in range(MAX_PICTURED + 1)]
-    with pytest.raises(LimitError, match="501 objects"):
+    with pytest.raises(LimitError, match="got 501"):
         realise(RelationGraph.from_facts(R, names, []), [ANY] * len(names))
 
 
-# ---- none -------------------------------------------------------------------------------------------------------
+# ---- no picture -------------------------------------------------------------------------------------------------
 
 
-def test_a_contradiction_that_only_exhaustion_finds_is_proved_and_minimal() -> None:
-    """Every alternative of the choice closes a cycle with another fact; the fact about c has no part in it."""
+def test_a_contradiction_by_exhaustion_is_proved_and_minimal() -> None:
+    """Make every alternative of a choice close a cycle with another fact; the fact about c is not involved."""
     facts = [
         fact("a", "left|right|top|bottom", "b"),
         fact("a", "left", "b", positive=False),
@@ -281,18 +278,18 @@ def test_a_contradiction_that_only_exhaustion_finds_is_proved_and_minimal() -> N
     assert (found.edges, found.sizes, found.minimal) == ((0, 4), (), True)
 
 
-def test_things_cannot_lie_on_one_another_in_a_circle() -> None:
+def test_objects_cannot_lie_on_one_another_in_a_cycle() -> None:
     found = realise(graph(fact("a", "on", "b"), fact("b", "on", "c"), fact("c", "on", "a")), [ANY] * 3)
     assert isinstance(found, Impossible)
     assert found.edges == (0, 1, 2)
 
 
-def test_a_thing_that_is_related_to_itself_has_no_picture_and_one_that_is_not_has() -> None:
+def test_only_a_denied_relation_to_itself_has_a_picture() -> None:
     assert isinstance(realise(graph(fact("a", "left", "a")), [ANY] * 3), Impossible)
     assert isinstance(realise(graph(fact("a", "left", "a", positive=False)), [ANY] * 3), Picture)
 
 
-def test_sizes_that_do_not_go_together_are_named_and_only_they() -> None:
+def test_only_incompatible_sizes_are_reported() -> None:
     large, little = small(Outline.CIRCLE, (50, 60), (50, 60)), small(Outline.RECTANGLE, (30, 40), (10, 12))
     g = graph(fact("a", "on", "b"), fact("a", "left", "c"))
     found = realise(g, [large, little, little])
@@ -301,7 +298,7 @@ def test_sizes_that_do_not_go_together_are_named_and_only_they() -> None:
     assert isinstance(realise(g, [large, little, little], any_size=True), Picture)
 
 
-def test_an_oblong_thing_is_turned_where_that_is_the_only_way() -> None:
+def test_an_oblong_object_is_turned_if_necessary() -> None:
     tray = small(Outline.RECTANGLE, (50, 50), (12, 12))
     stick = small(Outline.RECTANGLE, (40, 40), (10, 10))
     g = graph(fact("a", "on", "b"), fact("c", "on", "b"), fact("a", "left", "c"))
@@ -312,5 +309,5 @@ def test_an_oblong_thing_is_turned_where_that_is_the_only_way() -> None:
     assert sides[1] == [50, 12]
 
 
-def test_where_the_time_is_up_before_anything_is_known_nothing_is_claimed() -> None:
+def test_at_an_early_deadline_the_answer_is_undecided() -> None:
     assert isinstance(realise(graph(fact("a", "left", "b")), [ANY] * 3, deadline=Deadline.after(0.0)), Undecided)
