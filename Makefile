@@ -10,7 +10,7 @@ FIND_PYTHON = for p in $(PYTHON) $(PYTHONS); do \
 	"$$p" -c 'import sys, venv, ensurepip; sys.exit(not (3, 11) <= sys.version_info[:2] < (3, 13))' >/dev/null 2>&1 \
 	&& { command -v "$$p"; break; }; done
 
-.PHONY: demo test lint lock bench clean
+.PHONY: demo test lint docs lock bench clean
 
 demo: $(STAMP)
 	@$(BIN)/deixis demo
@@ -23,6 +23,12 @@ lint: $(STAMP)
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+
+# Writes the documentation site anew, docs/_build/html/index.html. Warnings are errors; nothing is fetched.
+docs: $(STAMP)
+	@rm -rf docs/_build docs/_pictures
+	$(BIN)/python -m sphinx --quiet --fail-on-warning --keep-going --builder html docs docs/_build/html
+	$(BIN)/python tools/documentation/site_links.py docs/_build/html
 
 bench: $(STAMP)
 	@for b in benchmarks/bench_*.py; do echo "== $$b"; $(BIN)/python "$$b" || exit 1; done
@@ -45,4 +51,4 @@ lock:
 		--no-emit-index-url --no-emit-find-links --extra dev --quiet pyproject.toml --output-file requirements.lock
 
 clean:
-	rm -rf $(VENV) build dist out .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	rm -rf $(VENV) build dist out docs/_build docs/_pictures docs/reference/python .pytest_cache .mypy_cache .ruff_cache .hypothesis

@@ -118,7 +118,7 @@ def main() -> None:
         print(f"the core ontology and {size:,} facts")
         for name, engine in ENGINES.items():
             if name == "owlrl" and size > OWLRL_AT_MOST:
-                print(f"  {name:42} left out: see docs/description_logic.md")
+                print(f"  {name:42} left out: see docs/reference/description_logic.md")
                 continue
             measure(name, lambda engine=engine, text=text: engine(text))  # type: ignore[misc]
         grown(text, stated)

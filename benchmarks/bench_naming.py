@@ -4,7 +4,8 @@ DEIXIS_DATA leads to ``tabletop-meshes``. Things, their mends and exclusions are
 ``deixis.experiments.open_ended.mesh_list``; ``--all`` takes all meshes as they come. Half of the things of each
 category teach, by 3, 5 or 24 views a category. All views of the other half are asked for, each once as it is, and once
 with its category left out of what was taught, so that half of all answers should be *none of these*. What was chosen on
-what is in docs/open_ended.md. Figures are means over splits; the calibration error is over the answers of all splits.
+what is in docs/explanation/open_ended.md. Figures are means over splits; the calibration error is over the answers of
+all splits.
 
 ``--words`` names things on tables instead: twelve things that were never seen, at random places, with a description of
 20 facts. It prints how many are named rightly by their looks, by the words alone, and by both together.

@@ -1,4 +1,4 @@
-"""Write docs/licences.md, the licences of everything that Deixis needs: ``python tools/licences_page.py``.
+"""Write docs/reference/licences.md, the licences of everything that Deixis needs: ``python tools/licences_page.py``.
 
 With ``--sizes`` it prints how large the core and each extra are instead, and which packages make that up.
 
@@ -25,7 +25,7 @@ LEAST_SHOWN = 5
 """Megabytes from which a package is shown with ``--sizes``."""
 
 ROOT = Path(__file__).parents[1]
-PAGE = ROOT / "docs" / "licences.md"
+PAGE = ROOT / "docs" / "reference" / "licences.md"
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
 GROUPS = ("core", *PROJECT["optional-dependencies"])
 """The core and the extras; a package is listed under the first that needs it."""
@@ -97,6 +97,15 @@ LICENCES_OF_FILES = {
 }
 """Licences as these files have them, where the metadata say less."""
 
+LICENCES_OF_SOURCES = {
+    "docutils": "public domain; parts BSD-2-Clause, PSF-2.0, GPL-3.0-or-later",
+    **dict.fromkeys(
+        (f"sphinxcontrib-{part}" for part in ("applehelp", "devhelp", "htmlhelp", "qthelp", "serializinghtml")),
+        "BSD-2-Clause",
+    ),
+}
+"""Licences as the source repositories state them, where neither the metadata nor a file of the wheel does in full."""
+
 
 def needed(group: str) -> dict[str, Distribution]:
     """Return what a group needs in this environment, directly or not, by normalised name.
@@ -143,6 +152,8 @@ def licence(package: Distribution) -> str:
     if name in LICENCES_OF_FILES:
         require_said(package)
         return LICENCES_OF_FILES[name]
+    if name in LICENCES_OF_SOURCES:
+        return LICENCES_OF_SOURCES[name]
     said = package.metadata.json
     stated = str(said.get("license_expression") or said.get("license") or "").strip()
     classifiers = [

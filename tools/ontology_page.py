@@ -1,4 +1,4 @@
-"""Write docs/ontology.md, the ontology as a page to read, from the TBox: ``python tools/ontology_page.py``.
+"""Write docs/reference/ontology.md, the ontology as a page to read, from the TBox: ``python tools/ontology_page.py``.
 
 Generators such as pyLODE and Widoco write HTML, and know neither which Allen relations a word admits, nor usual sizes,
 nor colours; pyLODE 3.4.1 from its wheel cannot be imported.
@@ -14,7 +14,7 @@ from rdflib import DCTERMS, OWL, RDF, RDFS, SKOS, Graph, Namespace, URIRef
 from rdflib.term import Node
 
 ROOT = Path(__file__).parents[1]
-PAGE = ROOT / "docs" / "ontology.md"
+PAGE = ROOT / "docs" / "reference" / "ontology.md"
 DX = Namespace("https://w3id.org/deixis/onto#")
 CHARACTERISTICS = ("Functional", "InverseFunctional", "Transitive", "Symmetric", "Asymmetric", "Irreflexive")
 AXES = {DX.admitsOnX: "x", DX.admitsOnY: "y", DX.decidedOnZ: "z, where heights are known"}

@@ -1,7 +1,7 @@
 """Fluents as files: ``.fluents.json``, read with an error that names the place, and written.
 
 A file holds the origin from which times are counted, fluents with bounds on their starts and finishes, and relations
-between them: Allen's, or bounds on the time from one point to another. ``docs/time.md`` describes it.
+between them: Allen's, or bounds on the time from one point to another. ``docs/reference/time.md`` describes it.
 """
 
 from __future__ import annotations

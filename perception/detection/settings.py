@@ -2,7 +2,7 @@
 
 Lengths are metres, areas square metres, angles radians, differences of colour those of CIE L*a*b* (Euclidean, CIE76)
 with the lightness scaled by ``supervoxels.lightness_weight``. The values were chosen on the scenes 16, 34, 44, 46 and
-50 of mosd-tabletop and on simulated formal settings (``docs/detection.md`` has both).
+50 of mosd-tabletop and on simulated formal settings (``docs/explanation/detection.md`` has both).
 
 Under each threshold stand its unit, its reason, and what shows it: how many things, or in ``JoiningSettings`` parts
 before the table's outline is looked at, there are with another value in scenes of mosd-tabletop ("mosd 44") or in
@@ -276,7 +276,7 @@ class SupervoxelSettings(_Thresholds):
     thing more falls apart in mosd 54 at half resolution."""
     min_spacing: float = 0.008
     """Metres between seeds at least: patches are narrower than a handle. Doubled, mosd 34 has a thing too many at half
-    resolution; docs/detection.md (Limits) says what less does."""
+    resolution; docs/explanation/detection.md (Limits) says what less does."""
     max_spacing: float = 0.03
     """Metres between seeds at most, in much noise: a cup still has some patches. Halving or doubling it changes none of
     the scenes tried, which have less noise."""

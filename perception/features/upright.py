@@ -91,7 +91,7 @@ class UprightDescriber:
     that equation 1 over these descriptors sums squares of Hellinger's distances; ``profile`` and ``extents`` are the
     weights of these two. The large image says where on the thing a keypoint is, the small one what it is part of, and
     the whole, the same at all keypoints, of what size and build the thing is. Keypoints, normals and what else is set
-    as in :class:`.SpinImageDescriber`; how the numbers were chosen: docs/open_ended.md.
+    as in :class:`.SpinImageDescriber`; how the numbers were chosen: docs/explanation/open_ended.md.
     """
 
     supports: tuple[float, ...] = (0.2, 0.05)

@@ -70,7 +70,7 @@ class Calibration:
     tell, and one below counts as this (none: ``MIN_NORMALISED``).
     ``known`` and ``unknown`` count the held-out answers behind these.
 
-    With none the numbers are constants, measured once on simulated tableware (docs/recognition.md).
+    With none the numbers are constants, measured once on simulated tableware (docs/explanation/recognition.md).
     """
 
     threshold: float

@@ -1,7 +1,8 @@
 """Recognition by several descriptors together: the same views, described in several ways, and one answer.
 
 Each descriptor has its own :class:`.Recogniser` of the same categories, and so its own nearest view and its own ND of
-every category. The answer goes by the weighted geometric mean of these ND (:mod:`.calibration`).
+every category. The answer goes by the weighted geometric mean of these ND
+(:mod:`deixis.perception.recognition.calibration`).
 """
 
 from __future__ import annotations

@@ -12,7 +12,7 @@ from deixis.perception.recognition.spread import PRIOR_SPREADS
 
 SHRINKAGE = 30.0
 """Things that the median ICD counts for. From fewer things a category's own width says little, and a wide category that
-is divided by its width swallows views of all others (docs/open_ended.md)."""
+is divided by its width swallows views of all others (docs/explanation/open_ended.md)."""
 
 MIN_LABEL_PROBABILITY = 0.6
 """Probability from which a name is said; below it there are candidates, and no label."""

@@ -2,7 +2,7 @@
 
 ``rl`` runs the rules of OWL 2 RL, which handle tens of thousands of facts but do not find everything that OWL 2 DL
 entails. ``hermit`` and ``pellet`` are complete for OWL 2 DL, but slow with many facts. ``auto`` gives the facts to the
-rules and only the classes to HermiT; figures are in ``docs/description_logic.md``.
+rules and only the classes to HermiT; figures are in ``docs/reference/description_logic.md``.
 """
 
 from __future__ import annotations

@@ -41,7 +41,7 @@ DEFAULT_TIME_LIMIT = 10.0
 
 DECIDED = 0.99
 """Probability from which a match is called decided: where things are missing, somewhat less is right than was said, for
-an extra thing may fit all that is said of what is absent (docs/scoreboard.md)."""
+an extra thing may fit all that is said of what is absent (docs/explanation/scoreboard.md)."""
 
 
 DECIDED_LOWER_BOUND = 0.975

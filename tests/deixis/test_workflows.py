@@ -240,7 +240,9 @@ def test_the_stores_of_a_session_are_closed_with_it(tmp_path: Path) -> None:
             store.memory()
 
 
-@pytest.mark.skipif(not (PAGE := ROOT / "docs" / "description_logic.md").exists(), reason="there is no such page")
+@pytest.mark.skipif(
+    not (PAGE := ROOT / "docs" / "reference" / "description_logic.md").exists(), reason="there is no such page"
+)
 def test_the_page_on_objects_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("DEIXIS_MEMORY", str(tmp_path / "memory"))
     (program,) = [text for language, text in blocks(PAGE) if language == "python" and "session.owl()" in text]

@@ -1,4 +1,4 @@
-"""docs/asking.md: the dialogue that it shows is the one that is held."""
+"""docs/explanation/asking.md: the dialogue that it shows is the one that is held."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ import io
 import pytest
 from consoles import ROOT, shown
 
-PAGE = ROOT / "docs" / "asking.md"
+PAGE = ROOT / "docs" / "explanation" / "asking.md"
 
-pytestmark = pytest.mark.skipif(not PAGE.exists(), reason="there is no docs/asking.md")
+pytestmark = pytest.mark.skipif(not PAGE.exists(), reason="there is no docs/explanation/asking.md")
 
 
 def test_the_dialogue_is_as_shown(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,4 +1,4 @@
-"""docs/inference.md: every command prints what the page shows, and its Python runs."""
+"""docs/reference/inference.md: every command prints what the page shows, and its Python runs."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import pytest
 from commands import deixis
 
 ROOT = Path(__file__).parents[2]
-PAGE = (ROOT / "docs" / "inference.md").read_text(encoding="utf-8")
+PAGE = (ROOT / "docs" / "reference" / "inference.md").read_text(encoding="utf-8")
 CONSOLE = re.findall(r"^```console\n\$ deixis (.*?)\n(.*?)^```$", PAGE, re.MULTILINE | re.DOTALL)
 
 
@@ -28,4 +28,4 @@ def test_a_command_prints_what_the_page_shows(command: str, shown: str) -> None:
 
 def test_the_python_of_the_page_runs() -> None:
     (source,) = re.findall(r"^```python\n(.*?)^```$", PAGE, re.MULTILINE | re.DOTALL)
-    exec(compile(source, "docs/inference.md", "exec"), {})
+    exec(compile(source, "docs/reference/inference.md", "exec"), {})

@@ -1,4 +1,4 @@
-"""docs/queries.md: the queries run over what two shipped scripts teach."""
+"""docs/guides/queries.md: the queries run over what two shipped scripts teach."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import pytest
 from deixis.examples_data import example
 from deixis.session import Session
 
-PAGE = Path(__file__).parents[2] / "docs" / "queries.md"
+PAGE = Path(__file__).parents[2] / "docs" / "guides" / "queries.md"
 QUERIES = re.findall(r"^```sparql\n(.*?)^```", PAGE.read_text(encoding="utf-8"), re.M | re.S)
 
 

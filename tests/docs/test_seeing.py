@@ -1,4 +1,4 @@
-"""docs/seeing.md, one command after the other: each does what is shown, but for numbers."""
+"""docs/tutorial/seeing.md, one command after the other: each does what is shown, but for numbers."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 from consoles import ROOT, blocks, shown
 
-PAGE = ROOT / "docs" / "seeing.md"
+PAGE = ROOT / "docs" / "tutorial" / "seeing.md"
 
-pytestmark = pytest.mark.skipif(not PAGE.exists(), reason="there is no docs/seeing.md")
+pytestmark = pytest.mark.skipif(not PAGE.exists(), reason="there is no docs/tutorial/seeing.md")
 
 
 def without_numbers(line: str) -> str:
@@ -21,7 +21,7 @@ def without_numbers(line: str) -> str:
 
 def test_the_page_runs_as_it_stands(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
-    (layout,) = [text for language, text in blocks(PAGE) if not language and text.startswith("layout ")]
+    (layout,) = [text for language, text in blocks(PAGE) if language == "layout"]
     Path("tea.layout").write_text(layout, encoding="utf-8")
     ran = 0
     for entry in shown(PAGE):

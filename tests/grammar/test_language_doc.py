@@ -12,7 +12,7 @@ from deixis.grammar.format import format_script
 from deixis.grammar.parser import parse_script
 from deixis.ontology.tbox import default_ontology
 
-TEXT = (Path(__file__).parents[2] / "docs" / "language.md").read_text(encoding="utf-8")
+TEXT = (Path(__file__).parents[2] / "docs" / "reference" / "language.md").read_text(encoding="utf-8")
 BLOCKS = re.findall(r"^```([a-z-]+)\n(.*?)^```$", TEXT, re.MULTILINE | re.DOTALL)
 EXAMPLES = [(tag, text, BLOCKS[i + 1]) for i, (tag, text) in enumerate(BLOCKS) if tag in ("layout", "layout-error")]
 

@@ -14,7 +14,7 @@ from commands import deixis
 from deixis.examples_data import example
 
 FILE = "serving.fluents.json"
-PAGE = (Path(__file__).parents[3] / "docs" / "time.md").read_text(encoding="utf-8")
+PAGE = (Path(__file__).parents[3] / "docs" / "reference" / "time.md").read_text(encoding="utf-8")
 CONSOLE = re.findall(r"^```console\n\$ deixis (.*?)\n(.*?)^```$", PAGE, re.MULTILINE | re.DOTALL)
 NEVER = ["before", "after"]
 
@@ -56,7 +56,7 @@ def test_the_commands_of_the_page(command: str, answer: str) -> None:
 
 def test_the_python_of_the_page(capsys: pytest.CaptureFixture[str]) -> None:
     (program,) = re.findall(r"^```python\n(.*?)^```$", PAGE, re.MULTILINE | re.DOTALL)
-    exec(compile(program, "docs/time.md", "exec"), {})
+    exec(compile(program, "docs/reference/time.md", "exec"), {})
     assert capsys.readouterr().out.startswith("before(pouring, cleared)   by definition\n")
 
 

@@ -271,7 +271,7 @@ def test_no_name_in_a_picture_covers_another(name: str) -> None:
 
 # ---- the page ---------------------------------------------------------------------------------------------------
 
-PAGE = (Path(__file__).parents[3] / "docs" / "imagine.md").read_text(encoding="utf-8")
+PAGE = (Path(__file__).parents[3] / "docs" / "guides" / "imagine.md").read_text(encoding="utf-8")
 SHOWN = re.findall(r"```layout\n(.*?)```\n```text\n(.*?)```", PAGE, re.DOTALL)
 
 

@@ -1,4 +1,4 @@
-"""docs/clouds.md: its Python runs, and it names every column that is read and every error as it is."""
+"""docs/reference/clouds.md: its Python runs, and it names every column that is read and every error as it is."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from deixis.perception.clouds.columns import KNOWN
 from deixis.perception.clouds.depth import read_intrinsics
 from deixis.perception.errors import CloudError
 
-PAGE = (Path(__file__).parents[3] / "docs" / "clouds.md").read_text(encoding="utf-8")
+PAGE = (Path(__file__).parents[3] / "docs" / "reference" / "clouds.md").read_text(encoding="utf-8")
 TRIANGLE = "v 0 0 0\nv 1 0 0\nv 0 1 0\n"
 FACES = "element face 18\nproperty list uchar int vertex_index\nend_header\n"
 
@@ -27,7 +27,7 @@ def test_the_python_on_the_page_runs(tmp_path: Path, monkeypatch: pytest.MonkeyP
     programs = re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)
     assert len(programs) == 2
     for program in programs:
-        exec(compile(program, "docs/clouds.md", "exec"), {})
+        exec(compile(program, "docs/reference/clouds.md", "exec"), {})
     assert len(read_cloud("table.ply")) == 6
 
 

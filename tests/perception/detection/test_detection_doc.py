@@ -1,4 +1,4 @@
-"""docs/detection.md: its Python runs, and its settings are those that there are."""
+"""docs/explanation/detection.md: its Python runs, and its settings are those that there are."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ from pathlib import Path
 
 from deixis.perception.detection.settings import DetectionSettings
 
-PAGE = (Path(__file__).parents[3] / "docs" / "detection.md").read_text(encoding="utf-8")
+PAGE = (Path(__file__).parents[3] / "docs" / "explanation" / "detection.md").read_text(encoding="utf-8")
 
 
 def test_the_python_on_the_page_runs() -> None:
     programs = re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)
     assert len(programs) == 2
-    exec(compile("\n".join(programs), "docs/detection.md", "exec"), {})
+    exec(compile("\n".join(programs), "docs/explanation/detection.md", "exec"), {})
 
 
 def test_the_page_names_every_setting() -> None:

@@ -1,4 +1,4 @@
-"""docs/recognition.md: its Python runs, and its numbers are those of the code."""
+"""docs/explanation/recognition.md: its Python runs, and its numbers are those of the code."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from deixis.perception.recognition.held_out import MAX_HELD_OUT
 from deixis.perception.recognition.settings import DEFAULT
 from deixis.perception.recognition.spread import MIN_ICD_SHARE
 
-PAGE = (Path(__file__).parents[3] / "docs" / "recognition.md").read_text(encoding="utf-8")
+PAGE = (Path(__file__).parents[3] / "docs" / "explanation" / "recognition.md").read_text(encoding="utf-8")
 
 
 def test_the_python_on_the_page_runs() -> None:
     programs = re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)
     assert len(programs) == 1
     for program in programs:
-        exec(compile(program, "docs/recognition.md", "exec"), {})
+        exec(compile(program, "docs/explanation/recognition.md", "exec"), {})
 
 
 def test_the_constants_on_the_page_are_those_of_the_code() -> None:

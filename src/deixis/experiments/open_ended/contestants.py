@@ -21,7 +21,7 @@ SVDD = "SVDD"
 UPRIGHT = "upright"
 
 DRAWN = RecognitionSettings(shrinkage=5.0)
-"""ICD over things, drawn to the median one by five things: what docs/open_ended.md has figures of."""
+"""ICD over things, drawn to the median one by five things: what docs/explanation/open_ended.md has figures of."""
 
 Contestants = Mapping[str, Callable[[], Learner]]
 

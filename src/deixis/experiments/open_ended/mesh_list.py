@@ -1,4 +1,4 @@
-"""Which of the tabletop meshes are measured, and how: frozen before the first measurement (docs/open_ended.md).
+"""The tabletop meshes that are measured, frozen before the first measurement (docs/explanation/open_ended.md).
 
 Meshes come in their makers' units and poses. Most scales follow from the rule of
 :func:`deixis.experiments.open_ended.things.in_metres`. Where that rule, or the source's axis, is plainly wrong and the

@@ -27,7 +27,8 @@ DESCRIBERS: tuple[Describer, ...] = (
     D2ExtentsDescriber(),
     UprightDescriber(),
 )
-"""Settings are the same for all data. Those of the first and the last were chosen beforehand (docs/open_ended.md)."""
+"""Settings are the same for all data. Those of the first and the last were chosen beforehand
+(docs/explanation/open_ended.md)."""
 
 
 class ThingViews(NamedTuple):

@@ -1,4 +1,4 @@
-"""The queries of docs/queries.md run, and find what is there."""
+"""The queries of docs/guides/queries.md run, and find what is there."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from deixis.ontology.models.relations import Provenance, RelationModel, Term
 from deixis.ontology.models.sizes import SizeModel, size_triples
 from deixis.ontology.vocabulary import BASE
 
-PAGE = Path(__file__).parents[4] / "docs" / "queries.md"
+PAGE = Path(__file__).parents[4] / "docs" / "guides" / "queries.md"
 SECTIONS = re.findall(r"^## (.+?)\n\n(.+?)\n\n```sparql\n(.+?)```", PAGE.read_text(encoding="utf-8"), re.M | re.S)
 
 EXPECTED = {

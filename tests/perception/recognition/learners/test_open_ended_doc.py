@@ -1,4 +1,4 @@
-"""docs/open_ended.md: its Python runs, and it names every learner and every measure."""
+"""docs/explanation/open_ended.md: its Python runs, and it names every learner and every measure."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from deixis.perception.recognition.learners.teaching import Teaching
 from deixis.perception.recognition.learners.vector_quantisation import VectorQuantisation
 from deixis.perception.recognition.settings import SHRINKAGE
 
-PAGE = (Path(__file__).parents[4] / "docs" / "open_ended.md").read_text(encoding="utf-8")
+PAGE = (Path(__file__).parents[4] / "docs" / "explanation" / "open_ended.md").read_text(encoding="utf-8")
 
 
 def test_the_python_on_the_page_runs() -> None:
     for program in re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL):
-        exec(compile(program, "docs/open_ended.md", "exec"), {})
+        exec(compile(program, "docs/explanation/open_ended.md", "exec"), {})
 
 
 def test_the_page_names_every_learner() -> None:

@@ -1,4 +1,4 @@
-"""docs/calculi.md: every example is run, and its table of calculi is in step."""
+"""docs/reference/calculi.md: every example is run, and its table of calculi is in step."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from deixis.examples_data import example
 from deixis.reasoning.qualitative.calculi.registry import CALCULI, calculus
 from deixis.reasoning.qualitative.relate import RELATED
 
-PAGE = Path(__file__).parents[4] / "docs" / "calculi.md"
+PAGE = Path(__file__).parents[4] / "docs" / "reference" / "calculi.md"
 TEXT = PAGE.read_text(encoding="utf-8")
 CONSOLE = re.findall(r"^\$ deixis (.*)\n((?:[^$`].*\n)*)", TEXT, re.MULTILINE)
 

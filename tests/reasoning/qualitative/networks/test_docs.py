@@ -1,4 +1,4 @@
-"""The Python in docs/networks.md runs as it stands."""
+"""The Python in docs/reference/networks.md runs as it stands."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-DOCS = Path(__file__).parents[4] / "docs" / "networks.md"
+DOCS = Path(__file__).parents[4] / "docs" / "reference" / "networks.md"
 
 
 def test_the_examples_run(capsys: pytest.CaptureFixture[str]) -> None:
