@@ -5,8 +5,8 @@ once; things of a kind vary all of them. The embedding is the linear map of a di
 the form of a view and the mean and spread of its upright descriptors: within kinds, spread is made even, by ridge
 ``--ridge`` of the mean variance. Two thirds of the kinds teach it. The others, the meshes of ``DEIXIS_DATA`` and what
 is found on laid tables are named by what is nearest: by the descriptors together, by the embedding, and by all. What
-came of it, and why it is not shipped: docs/explanation/recognition.md. ``--kinds N`` (240) makes so many, eight things in two views
-each, in about eight minutes; ``--write FILE`` keeps the map (.npz).
+came of it, and why it is not shipped: docs/explanation/recognition.md. ``--kinds N`` (240) makes so many, eight things
+in two views each, in about eight minutes; ``--write FILE`` keeps the map (.npz).
 
 ``--unknown`` asks instead whether more than the least distance tells the unknown: how much nearer the nearest category
 is than the second, and than the median one, and whether both descriptors have the same one nearest. Their logistic

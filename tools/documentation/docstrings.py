@@ -20,7 +20,7 @@ from sphinx.ext.napoleon import Config
 from sphinx.ext.napoleon.docstring import NumpyDocstring
 from sphinx.util.nodes import find_pending_xref_condition
 
-SETTINGS = Config(napoleon_google_docstring=False, napoleon_use_rtype=False)
+SETTINGS: Any = Config(napoleon_google_docstring=False, napoleon_use_rtype=False)
 LITERAL_OR_BAR = re.compile(r"``.*?``|`[^`]*`|\|")
 ARRAY = re.compile(r"~?numpy\.ndarray\[tuple\[~?typing\.Any, \.\.\.\], ~?numpy\.dtype\[(?:~?numpy\.)?([\w.~]+)\]\]")
 
@@ -32,7 +32,7 @@ def read_sections(app: Sphinx, what: str, name: str, obj: object, options: Any, 
     sentence with a colon apart; here it is text. A vertical bar outside of code is a vertical bar and begins no
     substitution.
     """
-    kind = "object" if what in ("attribute", "data", "property") else what
+    kind: Any = "object" if what in ("attribute", "data", "property") else what
     sections = NumpyDocstring("\n".join(lines), SETTINGS, app, kind, name, obj, options).lines()
     lines[:] = [LITERAL_OR_BAR.sub(lambda found: r"\|" if found[0] == "|" else found[0], line) for line in sections]
 

@@ -25,7 +25,7 @@ SCENE = (
 )
 
 
-OPTIONS = ("-p", "no:dash", "-p", "deixis.testing.plugin")
+OPTIONS = ("-p", "no:dash")
 
 
 def test_each_expectation_is_a_test(pytester: pytest.Pytester) -> None:
