@@ -2,16 +2,19 @@
 
 Right pairs are generated tables and photographs (``$DEIXIS_DATA/vrd``) with their own descriptions; wrong ones are
 those tables with their things at each other's places, and photographs with another's description. Prints the powers of
-:mod:`deixis.reasoning.grounding.hypotheses` as fitted to tables, to photographs, and to both as much; the share of
-wrong descriptions noticed at each share of right ones accused, for photographs also in ten folds none of which is
-judged by what it taught; and how often ``fits`` is below a half on tables of 12 objects whose kinds are known, 22 facts
-and more.
+:mod:`deixis.reasoning.grounding.hypotheses` as they are fitted (:mod:`deixis.reasoning.grounding.fitting.fits`), and
+the likeliest ones on tables and on photographs alone. Then, on other tables than those: the share of wrong
+descriptions noticed at each share of right ones accused, for photographs also in ten folds none of which is judged by
+what it taught; what is decided of photographs, and right, by their own descriptions and by others'; and how often
+``fits`` is below a half on tables of 12 objects whose kinds are known, 22 facts and more.
 """
 
 from __future__ import annotations
 
 import argparse
+import math
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 from bench_faults import moved_to, shuffled
@@ -21,13 +24,14 @@ from numpy.typing import NDArray
 from deixis.deadline import Deadline
 from deixis.experiments.cross_validation import folds
 from deixis.experiments.generated_tables import GeneratedTable, generate
-from deixis.experiments.photographs import FOLDER, photographs
+from deixis.experiments.photographs import FOLDER, Photograph, photographs
 from deixis.ontology.graph import RelationGraph
 from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.geometry.rectangle import scene_relations
 from deixis.reasoning.grounding.evidence.evidence import evidence_from
-from deixis.reasoning.grounding.fitting.fits import fit_powers
+from deixis.reasoning.grounding.fitting.fits import fit_powers, likeliest_powers
 from deixis.reasoning.grounding.hypotheses import (
+    ANOTHER_PRIOR,
     AS_IT_STANDS,
     CHANCE_SHARE,
     FACTS_POWER,
@@ -39,10 +43,12 @@ from deixis.reasoning.grounding.hypotheses import (
 )
 from deixis.reasoning.grounding.map_engines import ExactEngine
 from deixis.reasoning.grounding.matching.problem import UNMATCHED
+from deixis.reasoning.grounding.options import is_decided
 
 Boxes = NDArray[np.float64]
 ACCUSED = (0.01, 0.03, 0.05, 0.1, 0.2, 0.3)
 NUMBER_OF_FOLDS = 10
+RESAMPLES = 100
 DRAWS = 200
 
 
@@ -89,15 +95,44 @@ def table_pairs(count: int, seed: int) -> Iterator[tuple[FitEvidence, bool]]:
                         yield verdict(said, moved).evidence, False
 
 
-def photograph_pairs() -> list[tuple[FitEvidence, FitEvidence]]:
-    """Return for each photograph the evidence with its own description, and with another's."""
+@dataclass(frozen=True, eq=False)
+class PhotographPair:
+    """A photograph, what is made of it with its own description, and with that of another."""
+
+    own: Photograph
+    other: Photograph
+    found: tuple[Verdict, Verdict]
+
+    @property
+    def evidence(self) -> tuple[FitEvidence, FitEvidence]:
+        """What tells whether the one and the other description are of the photograph."""
+        return self.found[0].evidence, self.found[1].evidence
+
+
+def photograph_pairs() -> list[PhotographPair]:
+    """Return the photographs, each with its own description and with another's."""
     folder = data_folder(FOLDER)
     images = [] if folder is None else [one for one in photographs(folder, default_ontology()) if len(one.boxes) <= 12]
     places = np.arange(len(images))
     return [
-        (verdict(said, boxes, False).evidence, verdict(images[other].description, boxes, False).evidence)
-        for (said, boxes), other in zip(images, np.roll(places, len(images) // 3), strict=True)
+        PhotographPair(
+            own,
+            images[other],
+            (
+                verdict(own.description, own.boxes, False, STATED_SIDES),
+                verdict(images[other].description, own.boxes, False, STATED_SIDES),
+            ),
+        )
+        for own, other in zip(images, np.roll(places, len(images) // 3), strict=True)
     ]
+
+
+def decided_things(found: Verdict) -> dict[int, int]:
+    """Return which object is decided to be which thing."""
+    probable = found.posterior
+    likeliest = probable.marginals[:, :-1].argmax(axis=1)
+    chosen = is_decided(probable.marginals[np.arange(len(likeliest)), likeliest], probable.errors)
+    return {int(i): int(likeliest[i]) for i in np.flatnonzero(chosen)}
 
 
 def curve(right: NDArray[np.float64], wrong: NDArray[np.float64]) -> str:
@@ -113,41 +148,80 @@ def main() -> None:
     parser.add_argument("--tables", type=int, default=60, help="tables for each rate of `fits`")
     parser.add_argument("--seed", type=int, default=1)
     options = parser.parse_args()
-    tables = list(table_pairs(options.count, options.seed))
-    images = photograph_pairs()
-    seen = [(told, right) for pair in images for told, right in zip(pair, (True, False), strict=True)]
-    print(f"shipped: FACTS_POWER {FACTS_POWER}, CHANCE_SHARE {CHANCE_SHARE}, KINDS_POWER {KINDS_POWER}")
-    for name, sets in {"tables": [tables], "photographs": [seen], "both": [tables, seen]}.items():
-        if all(sets):
-            pairs, right = zip(*(one for members in sets for one in members), strict=True)
-            share = np.concatenate([np.full(len(members), 1 / len(members)) for members in sets])
-            print(
-                f"fitted to {name}: {', '.join(f'{power:.3f}' for power in fit_powers(pairs, np.array(right), share))}"
-            )
-    _print_curves(tables, images, options.seed)
+    tables, images = list(table_pairs(options.count, options.seed)), photograph_pairs()
+    _print_powers(tables, images, options.seed)
+    _print_curves(list(table_pairs(1, options.seed + 1)), images, options.seed)  # other tables than were fitted to
+    if images:
+        _print_decided(images)
     _print_rates(options.tables, options.seed)
 
 
-def _print_curves(
-    tables: list[tuple[FitEvidence, bool]], images: list[tuple[FitEvidence, FitEvidence]], seed: int
-) -> None:
+def _print_powers(tables: list[tuple[FitEvidence, bool]], images: list[PhotographPair], seed: int) -> None:
+    """Print the powers that are shipped and those that are fitted; pairs of a table are drawn again together."""
+    print(f"shipped: FACTS_POWER {FACTS_POWER}, CHANCE_SHARE {CHANCE_SHARE}, KINDS_POWER {KINDS_POWER}")
+    told, right = [one for one, _ in tables], np.array([right for _, right in tables])
+    print(f"likeliest powers on tables alone: {_listed(likeliest_powers(told, right))}")
+    if not images:
+        return
+    shown, own = [one for pair in images for one in pair.evidence], np.tile([True, False], len(images))
+    print(f"likeliest powers on photographs alone: {_listed(likeliest_powers(shown, own))}")
+    print(f"fitted: {_listed(fit_powers(told, right, shown, own))}")
+    rng, drawn = np.random.default_rng(seed), []
+    for _ in range(RESAMPLES):
+        some, few = (2 * rng.integers(n, size=n)[:, None] + np.arange(2) for n in (len(told) // 2, len(images)))
+        again = [[pairs[i] for i in places.ravel()] for pairs, places in ((told, some), (shown, few))]
+        drawn.append(fit_powers(again[0], right[some.ravel()], again[1], own[few.ravel()]))
+    low, high = np.quantile(drawn, (0.025, 0.975), axis=0)
+    print(f"of {RESAMPLES} resamples 95 per cent are between {_listed(low)} and {_listed(high)}", flush=True)
+
+
+def _listed(powers: NDArray[np.float64]) -> str:
+    return ", ".join(f"{power:.2f}" for power in powers)
+
+
+def _print_curves(tables: list[tuple[FitEvidence, bool]], images: list[PhotographPair], seed: int) -> None:
     odds = np.array([told.log_odds for told, _ in tables])
     own = np.array([right for _, right in tables])
-    print(f"generated tables, wrong ones noticed: {curve(odds[own], odds[~own])}")
+    print(f"other generated tables, wrong ones noticed: {curve(odds[own], odds[~own])}")
+    least = math.log(ANOTHER_PRIOR / (1 - ANOTHER_PRIOR))
+    accused, noticed = (odds[own] < least).mean(), (odds[~own] < least).mean()
+    print(f"fits below 0.5 on {accused:.3f} of the right ones and on {noticed:.3f} of the wrong ones")
     if not images:
         return
     scores = np.zeros((len(images), 2))
     for test in folds(len(images), NUMBER_OF_FOLDS, seed):
-        taught = [images[i] for i in np.setdiff1d(np.arange(len(images)), test)]
-        told = [one for pair in taught for one in pair]
-        powers = fit_powers(told, np.tile([True, False], len(taught)))
+        learned = [images[i].evidence for i in np.setdiff1d(np.arange(len(images)), test)]
+        told = [one for pair in learned for one in pair]
+        powers = likeliest_powers(told, np.tile([True, False], len(learned)))
         for i in test.tolist():
-            scores[i] = [powers @ (one.facts, -one.most, one.kinds) for one in images[i]]
+            scores[i] = [powers @ (one.facts, -one.most, one.kinds) for one in images[i].evidence]
     print(f"photographs, cross-validated: {curve(scores[:, 0], scores[:, 1])}")
-    scores = np.array([[one.log_odds for one in pair] for pair in images])
-    print(f"photographs, by what is shipped: {curve(scores[:, 0], scores[:, 1])}")
-    facts = np.array([[one.facts for one in pair] for pair in images])
+    fits = np.array([[one.fits for one in pair.found] for pair in images])
+    print(f"photographs, by `fits`: {curve(fits[:, 0], fits[:, 1])}")
+    facts = np.array([[one.facts for one in pair.evidence] for pair in images])
     print(f"photographs, likelihood ratio of the facts alone: {curve(facts[:, 0], facts[:, 1])}")
+
+
+def _print_decided(images: list[PhotographPair]) -> None:
+    """Print what is decided of photographs described by their own descriptions, and by others'."""
+    described, decided, right = sum(len(pair.own.boxes) for pair in images), 0, 0
+    others, of_kind, touched, unfit = 0, 0, 0, 0
+    for pair in images:
+        for i, p in decided_things(pair.found[0]).items():
+            decided, right = decided + 1, right + (i == p)
+        wrong = decided_things(pair.found[1])
+        kinds, there = pair.other.description.kinds, pair.own.description.kinds
+        others, touched = others + len(wrong), touched + bool(wrong)
+        of_kind += sum(kinds[i] is not None and kinds[i] == there[p] for i, p in wrong.items())
+        unfit += pair.found[1].fits < 0.5
+    print(
+        f"{len(images)} photographs, own description: {decided} of {described} objects decided "
+        f"({decided / described:.3f}), {right} of them right"
+    )
+    print(
+        f"another's description: {others} decided on {touched} photographs, {of_kind} of them of the kind that was "
+        f"said; fits below 0.5 on {unfit}"
+    )
 
 
 def _print_rates(count: int, seed: int) -> None:

@@ -13,10 +13,12 @@ U0 sums what leaving out costs alone, n1 is the number of objects. Where somebod
 is free of error names it, the description is of this scene.
 
 The power of facts is below 1 since facts are counted as independent, and are not: places in one plane that please one
-fact please others. ``benchmarks/bench_fits.py`` fits the powers to right and wrong pairs of descriptions and scenes
-(:mod:`deixis.reasoning.grounding.fitting.fits`). FACTS_POWER is what tables alone give, where photographs
-give less than half; the ratio of CHANCE_SHARE to it, about a half, lies between those of the two, and is large enough
-that four of five tables whose things lie at shuffled places are noticed under the prior of another scene.
+fact please others. :mod:`deixis.reasoning.grounding.fitting.fits` says how the powers are fitted to right and wrong
+pairs of descriptions and scenes, and ``benchmarks/bench_fits.py`` prints the fit with its interval. What is shipped is
+near the lower ends of the intervals, for evidence that is taken for more than it is accuses right descriptions.
+
+A side, or a reading of the labels, is left out unsearched where an upper bound of the sum of its maps shows that its
+share of all hypotheses is below ``NEGLIGIBLE``.
 """
 
 from __future__ import annotations
@@ -33,7 +35,7 @@ from deixis.deadline import Deadline
 from deixis.reasoning.errors import OutOfTimeError
 from deixis.reasoning.grounding.evidence.evidence import Evidence, Whole, without_facts
 from deixis.reasoning.grounding.matching.permanents import entropy_without_facts, log_prior, log_sum_without_facts
-from deixis.reasoning.grounding.matching.posterior import Posterior, posterior
+from deixis.reasoning.grounding.matching.posterior import BOUND_CELLS, Posterior, log_sum_bound, posterior
 from deixis.reasoning.grounding.matching.problem import UNMATCHED
 from deixis.reasoning.grounding.matching.scalable import scalable
 
@@ -102,8 +104,11 @@ AS_IT_STANDS = (Side(0.0, False, 1.0),)
 MAX_THINGS = 150
 """Things up to which other sides are looked from; of larger scenes they are as likely as another scene."""
 
-NEGLIGIBLE = 1e-3
-"""Share of the likeliest side's weight below which a side's maps are not listed."""
+NEGLIGIBLE = 1e-5
+"""Share of all hypotheses that a side, or a reading of the labels, is left out below: where a bound shows that."""
+
+NOT_LISTED = 1e-3
+"""Share of the likeliest side's weight below which a side's maps are not listed, as far as a search tells."""
 
 SEARCH_EFFORT = 0.05
 """Effort of the search that shows whether a side is worth a look."""
@@ -115,12 +120,11 @@ least squares of a trial with 100 generated tables on which both are exact."""
 
 @dataclass(frozen=True, eq=False)
 class SeenSide:
-    """A side, its posterior probability, the evidence as seen from there, and the best map found (n1,)."""
+    """A side, its posterior probability, and the evidence as seen from there."""
 
     side: Side
     probability: float
     evidence: Evidence
-    assignment: NDArray[np.int64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -184,7 +188,7 @@ def weigh(
     >>> round(found.fits, 2), [round(one.probability, 3) for one in found.sides[:3]]
     (0.99, [0.992, 0.001, 0.001])
     """
-    first = _maps_of(evidence, assignment, deadline.share(0.6), 0.0, -math.inf)
+    first = _maps_of(evidence, assignment, deadline.share(0.6))
     if first.found is None or not (math.isfinite(first.found.error) or first.found.believed):
         return None
     problem, readings = evidence.problem, evidence.label_readings
@@ -196,6 +200,9 @@ def weigh(
         most,
         min(0.0, alone - log_prior(evidence.without_facts) + KINDS_SLACK * len(problem.absent)),
     )
+    elsewhere = math.log(another / (1 - another)) + told.beside
+    if evidence.present.any():  # what somebody pointed out is of this scene
+        elsewhere = -math.inf
     maps = [first]
     weights = [math.log(sides[0].prior) + FACTS_POWER * told.facts]
     rest = list(zip(sides[1:], seen[1:] if seen else (None,) * len(sides[1:]), strict=True))
@@ -203,25 +210,22 @@ def weigh(
         there = None
         if not (deadline.passed or evidence.scene.boxes is None or len(evidence.things) > MAX_THINGS):
             turned = evidence.seen_from(side.angle, side.mirrored) if known is None else known
-            least = (max(weights) + math.log(NEGLIGIBLE) - math.log(side.prior)) / FACTS_POWER + alone
             left = deadline.share(1 / (len(rest) - number))
+            known_so_far = _log_sum([*weights, elsewhere])
+            levels = [
+                (weight + math.log(share) - math.log(side.prior)) / FACTS_POWER + alone
+                for weight, share in ((known_so_far, NEGLIGIBLE), (max(weights), NOT_LISTED))
+            ]
             with suppress(OutOfTimeError):
-                there = _maps_of(turned, None, left, first.log_total - first.log_best, least)
-        if there is None:
-            maps.append(replace(first, found=None))
-            weights.append(math.log(side.prior) + CHANCE_SHARE * most)
-            continue
-        maps.append(there)
-        weights.append(math.log(side.prior) + FACTS_POWER * (there.log_total - alone))
-    elsewhere = math.log(another / (1 - another)) + told.beside
-    weights.append(-math.inf if evidence.present.any() else elsewhere)  # what somebody pointed out is of this scene
+                there = _maps_of(turned, None, left, first.log_total - first.log_best, *levels)
+        maps.append(replace(first, found=None) if there is None else there)
+        facts_there = CHANCE_SHARE * most if there is None else FACTS_POWER * (there.log_total - alone)
+        weights.append(math.log(side.prior) + facts_there)
+    weights.append(elsewhere)
     shares = np.exp(np.array(weights) - _log_sum(weights)).tolist()
     by_labels, labelled = _by_labels(evidence)
     parts = [(share, one.found) for share, one in zip(shares[:-1], maps, strict=True) if one.found is not None]
-    listed = tuple(
-        SeenSide(side, share, one.evidence, one.assignment)
-        for side, share, one in zip(sides, shares, maps, strict=False)
-    )
+    listed = tuple(SeenSide(side, share, one.evidence) for side, share, one in zip(sides, shares, maps, strict=False))
     return Verdict(_mixed([*parts, (shares[-1], labelled)]), 1 - shares[-1], told, listed, by_labels, labelled)
 
 
@@ -229,44 +233,67 @@ def weigh(
 class _Maps:
     """The maps of a description in a scene as seen from one side, over both readings of its labels.
 
-    ``evidence`` is that of the likelier reading, ``assignment`` (n1,) its best map, ``log_best`` what that is worth.
-    ``found`` is the posterior, None where the maps are not worth listing.
+    ``evidence`` is that of the likelier reading, ``log_best`` what its best map is worth. ``found`` is the posterior,
+    None where the maps are not listed.
     """
 
     evidence: Evidence
-    assignment: NDArray[np.int64]
     log_best: float
     log_total: float
     found: Posterior | None
 
 
 def _maps_of(
-    evidence: Evidence, assignment: NDArray[np.int64] | None, deadline: Deadline, spread: float, least: float
+    evidence: Evidence,
+    assignment: NDArray[np.int64] | None,
+    deadline: Deadline,
+    spread: float = 0.0,
+    negligible: float = -math.inf,
+    not_listed: float = -math.inf,
 ) -> _Maps:
-    """Return the maps of both readings of the labels; listed are those that come to a share of ``least`` or more.
+    """Return the maps of both readings of the labels.
 
-    ``assignment`` is the best map of the first reading, where it is known. ``spread`` is by how much the logarithm of
-    the sum is taken to be above that of the best map, where maps are not listed.
+    ``assignment`` is the best map of the first reading, where it is known. No maps are looked at where a bound shows
+    that the logarithm of their sum is not above ``negligible``, and none are listed where a search takes it to be below
+    ``not_listed``; ``spread`` is then by how much it is taken to be above that of the best map.
     """
-    seen: list[tuple[float, float, Evidence, NDArray[np.int64], Posterior | None]] = []
-    for weight, known in evidence.label_readings:
+    readings, parted = evidence.label_readings, math.log(len(evidence.label_readings))
+    if negligible > -math.inf:
+        bounds = [weight + _bound(one, negligible - parted - weight) for weight, one in readings]
+        if _log_sum(bounds) <= negligible:
+            return _Maps(replace(evidence), -math.inf, -math.inf, None)  # no tables are kept
+    seen: list[tuple[float, float, Evidence, Posterior | None]] = []
+    for weight, known in readings:
+        if seen:
+            enough = _log_sum([total for _, total, *_ in seen]) + math.log(NEGLIGIBLE) - weight
+            if _bound(known, enough) <= enough:
+                continue
         problem = known.problem
         best = assignment if assignment is not None and not seen else None
         if best is None:
             best = scalable(problem, deadline.share(0.5), effort=SEARCH_EFFORT).assignment
         value = problem.value(best)
         found, total = None, value + spread
-        enough = max([least, *(one[1] + math.log(NEGLIGIBLE) for one in seen)])
+        enough = max([not_listed, *(one[1] + math.log(NOT_LISTED) for one in seen)])
         if weight + total >= enough and (not seen or not deadline.passed):
             found = posterior(problem, deadline, start=best, chains=not known.frugal)
             total = log_total(found, value)
             if known.whole is not None:
-                found, total = _of_shortlist(found, known.whole), total - math.log1p(-_all_outside(known.whole))
-        seen.append((weight + value, weight + total, known, best, found))
+                found, total = _of_shortlist(found, known.whole), total + _log_outside(known)
+        seen.append((weight + value, weight + total, known, found))
     together = _log_sum([total for _, total, *_ in seen])
-    parts = [(math.exp(total - together), found) for _, total, _, _, found in seen if found is not None]
-    log_best, _, known, best, _ = max(seen, key=lambda one: one[0])
-    return _Maps(known, best, log_best, together, _mixed(parts) if parts else None)
+    parts = [(math.exp(total - together), found) for _, total, _, found in seen if found is not None]
+    log_best, _, known, _ = max(seen, key=lambda one: one[0])
+    return _Maps(known, log_best, together, _mixed(parts) if parts else None)
+
+
+def _bound(evidence: Evidence, enough: float) -> float:
+    """Return a number that the logarithm of the sum over all maps is not above, infinite where that takes long; see
+    :func:`log_sum_bound`."""
+    if 2 * len(evidence.facts) * (len(evidence.scene.nodes) + 1) ** 2 > BOUND_CELLS:
+        return math.inf  # before any tables are made for it
+    outside = _log_outside(evidence)
+    return log_sum_bound(evidence.upper_problem, enough - outside) + outside
 
 
 def _of_shortlist(found: Posterior, whole: Whole) -> Posterior:
@@ -279,9 +306,11 @@ def _of_shortlist(found: Posterior, whole: Whole) -> Posterior:
     )
 
 
-def _all_outside(whole: Whole) -> float:
-    """Return about how probable it is that some object is not on the shortlist, less than 1."""
-    return min(float(whole.outside.max(initial=0.0)), 1.0 - 1e-9)
+def _log_outside(evidence: Evidence) -> float:
+    """Return about how much is added to the logarithm of the sum by maps to what is not on a shortlist; 0 for none."""
+    if evidence.whole is None:
+        return 0.0
+    return -math.log1p(-min(float(evidence.whole.outside.max(initial=0.0)), 1.0 - 1e-9))
 
 
 def _mixed(parts: Sequence[tuple[float, Posterior]]) -> Posterior:

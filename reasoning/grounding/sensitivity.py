@@ -58,7 +58,7 @@ def leave_one_out(
         if not found.proved or deadline.passed:
             return
         better = rest.value(found.assignment) > rest.value(assignment) + TIE_BREAK_BONUS
-        known = exact_posterior(rest, deadline) if probable else None
+        known = exact_posterior(rest, deadline, start=found.assignment) if probable else None
         probability = np.full(len(assignment), np.nan)
         if known is not None:
             probability = known.marginals[np.arange(len(assignment)), found.assignment]

@@ -12,7 +12,8 @@ collapses to zero, which it does where the graphs share no label.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+import math
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -99,6 +100,7 @@ def _added(graph: RelationGraph) -> Iterator[tuple[Relation, NDArray[np.int64]]]
 
 TOLERANCE = 1e-8
 ITERATIONS = 500
+CARRIED_CELLS = 1 << 20  # numbers that the edges of labels taken together carry in one step
 
 
 @dataclass(frozen=True, eq=False)
@@ -155,40 +157,52 @@ def _normalised(matrices: NDArray[np.float64]) -> NDArray[np.float64]:
     return normalised
 
 
-MAX_LOOPED = 32
-"""Edges that are gone through in Python: loading sparse matrices takes longer."""
+MAX_DENSE = 1 << 18
+"""Products of numbers up to which edges are multiplied as a full matrix."""
+
+MAX_LOOPED = 256
+"""Edges that are gone through in Python where a full matrix is too much: loading sparse matrices takes longer."""
 
 
 @dataclass(frozen=True, eq=False)
 class _Edges:
-    """Edges among n nodes, sorted pairs of row and column: a sparse matrix (n, n) of ones."""
+    """Edges from n nodes to others, by row and column in rising order: a sparse matrix ``shape`` (r, n) of ones."""
 
-    size: int
-    pairs: Sequence[tuple[int, int]]
+    shape: tuple[int, int]
+    rows: NDArray[np.int64]
+    columns: NDArray[np.int64]
 
     def sums(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return the product with a matrix of values (n, m)."""
-        if len(self.pairs) > MAX_LOOPED:
-            product: NDArray[np.float64] = self._sparse @ values
-            return product
-        total = np.zeros_like(values)
-        for row, column in self.pairs:
-            total[row] += values[column]
-        return total
+        """Return the product with a matrix of values (n, m), shape (r, m)."""
+        product: NDArray[np.float64]
+        if math.prod(self.shape) * values.shape[1] <= MAX_DENSE:
+            product = self._dense @ values
+        elif len(self.rows) <= MAX_LOOPED:
+            product = np.zeros((self.shape[0], values.shape[1]))
+            for row, column in zip(self.rows.tolist(), self.columns.tolist(), strict=True):
+                product[row] += values[column]
+        else:
+            product = self._sparse @ values
+        return product
+
+    @cached_property
+    def _dense(self) -> NDArray[np.float64]:
+        dense = np.zeros(self.shape)
+        np.add.at(dense, (self.rows, self.columns), 1.0)
+        return dense
 
     @cached_property
     def _sparse(self) -> csr_array:
         from scipy.sparse import csr_array
 
-        rows, columns = np.array(self.pairs).T
-        return csr_array((np.ones(len(self.pairs)), (rows, columns)), shape=(self.size, self.size))
+        return csr_array((np.ones(len(self.rows)), (self.rows, self.columns)), shape=self.shape)
 
 
 class _Iteration:
     """Equations 5 to 7 on arrays of shape (n1, b, n2): b sub-graphs of the first graph, L shared labels.
 
-    Nodes of the first graph come first, so that what its edges of one label carry is two products of matrices, one of
-    them sparse.
+    Nodes of the first graph come first, so that what its edges carry is two products of matrices, one of them sparse.
+    Labels, each in both directions, are taken together as far as ``CARRIED_CELLS`` go.
     """
 
     def __init__(self, first: PaperGraph, second: PaperGraph, kept: NDArray[np.bool_]) -> None:
@@ -201,7 +215,6 @@ class _Iteration:
             for (start, end), label in zip(first.edges.tolist(), first.edge_labels.tolist(), strict=True)
             if label in position
         ]
-        self._forward, self._backward = self._by_label(len(shared))
         adjacency = second.adjacency()[shared]
         incoming, outgoing = np.zeros((2, len(shared), *self._kept.shape))
         for a, b, k in self._edges:
@@ -210,19 +223,29 @@ class _Iteration:
             outgoing[k, a] += present
         self._in1, self._out1 = incoming, outgoing
         self._in2, self._out2 = adjacency.sum(axis=1), adjacency.sum(axis=2)
-        self._into = adjacency * _inverse(self._in2)[:, None, :]
-        self._out_of = (adjacency * _inverse(self._out2)[:, :, None]).transpose(0, 2, 1).copy()
-        self._in_scale, self._out_scale = _inverse(self._in1), _inverse(self._out1)
+        into = adjacency * _inverse(self._in2)[:, None, :]
+        out_of = (adjacency * _inverse(self._out2)[:, :, None]).transpose(0, 2, 1)
+        self._across = np.concatenate([into, out_of])  # (2L, n2, n2): to the end of each edge, then to its start
+        self._scale = np.concatenate([_inverse(self._in1), _inverse(self._out1)])[:, :, :, None]
+        self._parts = self._carried(len(shared))
         self._both_zero = self._zero_pairs(self._in1, self._in2) + self._zero_pairs(self._out1, self._out2)
 
-    def _by_label(self, labels: int) -> tuple[list[_Edges], list[_Edges]]:
-        """Return the first graph's edges of each label, from start to end and back."""
-        n1, forward, backward = len(self._kept), [], []
-        for label in range(labels):
-            edges = [(start, end) for start, end, its_label in self._edges if its_label == label]
-            forward.append(_Edges(n1, sorted((end, start) for start, end in edges)))
-            backward.append(_Edges(n1, sorted(edges)))
-        return forward, backward
+    def _carried(self, labels: int) -> list[tuple[slice, _Edges]]:
+        """Return which of 2L labels and directions are taken together, and the first graph's edges of these k from the
+        node that has them (k n1) to the other one (n1)."""
+        n1, b = self._kept.shape
+        some = max(1, int(CARRIED_CELLS / max(1, n1 * b * self._across.shape[1])))
+        edges = np.array(self._edges, dtype=np.int64).reshape(-1, 3)
+        rows = np.concatenate([edges[:, 2] * n1 + edges[:, 1], (labels + edges[:, 2]) * n1 + edges[:, 0]])
+        columns = edges[:, :2].T.ravel()
+        order = np.lexsort([columns, rows])
+        rows, columns = rows[order], columns[order]
+        parts = []
+        for start in range(0, 2 * labels, some):
+            low, high = start * n1, min(start + some, 2 * labels) * n1
+            these = slice(*np.searchsorted(rows, [low, high]))
+            parts.append((slice(start, start + some), _Edges((high - low, n1), rows[these] - low, columns[these])))
+        return parts
 
     def _zero_pairs(self, degrees1: NDArray[np.float64], degrees2: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return for how many of the labels that a sub-graph uses both degrees are zero, shape (n1, b, n2)."""
@@ -233,7 +256,7 @@ class _Iteration:
 
     def degree_overlap(self) -> NDArray[np.float64]:
         """Return equation 5, shape (n1, b, n2)."""
-        total: NDArray[np.float64] = np.zeros((*self._kept.shape, self._into.shape[1]))
+        total: NDArray[np.float64] = np.zeros((*self._kept.shape, self._across.shape[1]))
         for degrees1, degrees2 in ((self._in1, self._in2), (self._out1, self._out2)):
             for one, two in zip(degrees1, degrees2, strict=True):
                 total += np.minimum(one[:, :, None], two)
@@ -245,11 +268,9 @@ class _Iteration:
         total: NDArray[np.float64] = mean[:, None] * self._both_zero
         n1, b, n2 = matrices.shape
         flat = matrices.reshape(n1, b * n2)
-        for label, (forward, backward) in enumerate(zip(self._forward, self._backward, strict=True)):
-            incoming = forward.sums(flat).reshape(n1 * b, n2) @ self._into[label]
-            outgoing = backward.sums(flat).reshape(n1 * b, n2) @ self._out_of[label]
-            total += self._in_scale[label][:, :, None] * incoming.reshape(n1, b, n2)
-            total += self._out_scale[label][:, :, None] * outgoing.reshape(n1, b, n2)
+        for part, edges in self._parts:
+            carried = edges.sums(flat).reshape(-1, n1 * b, n2) @ self._across[part]
+            total += (self._scale[part] * carried.reshape(-1, n1, b, n2)).sum(axis=0)
         total /= 2
         return total
 

@@ -2,8 +2,9 @@
 
 A *viewpoint* is how far the scene has to be turned, and whether it has to be mirrored, so that left is what the speaker
 calls left. For each the matching problem is built anew; its log evidence is the logarithm of the sum over all maps of
-the exponential of their values, as far as maps can be listed. With a prior (uniform over the circle; mirrored with
-probability ``MIRROR_PRIOR``, for speakers do not often stand behind a mirror) that is a posterior.
+the exponential of their values, as far as maps can be listed. Raised to the power by which facts weigh
+(:mod:`deixis.reasoning.grounding.hypotheses`), and with a prior (uniform over the circle; mirrored with probability
+``MIRROR_PRIOR``, for speakers do not often stand behind a mirror), that is a posterior.
 
 Quarter turns are exact. For any other angle centres are turned exactly; extents are those of the thing of which the box
 is the enclosing box, on the assumption that things lie parallel to the speaker's axes: of a rectangle w by h that is
@@ -27,6 +28,7 @@ from numpy.typing import NDArray
 from deixis.deadline import Deadline
 from deixis.reasoning.geometry.rectangle import require_boxes
 from deixis.reasoning.geometry.turning import turned
+from deixis.reasoning.grounding.hypotheses import FACTS_POWER
 from deixis.reasoning.grounding.matching.problem import Problem
 
 Array = NDArray[np.float64]
@@ -114,7 +116,7 @@ def recover_viewpoint(
     found = [_viewpoint(mode, mirror) for mode in modes]
     unseen = [math.log(_prior(one.mirrored, mirror) * one.share) for one in not_looked]
     best = max(view.log_evidence for view, _ in found)
-    total = _log_sum([score for _, score in found] + [best + prior for prior in unseen])
+    total = _log_sum([score for _, score in found] + [FACTS_POWER * best + prior for prior in unseen])
     views = [replace(view, probability=math.exp(score - total)) for view, score in found]
     views.sort(key=lambda view: (-round(view.probability, 9), view.mirrored, view.angle))
     return Viewpoints(tuple(views), everywhere and all(one.complete for one in looked), everywhere)
@@ -226,7 +228,7 @@ def _viewpoint(mode: list[_AngleEvidence], mirror: bool) -> tuple[Viewpoint, flo
     """Return a peak as one viewpoint at its mean angle, and the logarithm of its prior times its evidence."""
     prior = _prior(mode[0].tried.mirrored, mirror)
     peak = max(mode, key=lambda one: (round(one.log_evidence, 9), -one.tried.angle))
-    shares = [one.log_evidence + math.log(one.tried.share) for one in mode]
+    shares = [FACTS_POWER * one.log_evidence + math.log(one.tried.share) for one in mode]
     score = _log_sum(shares) + math.log(prior)
     angle, concentration = _mean_angle(mode)
     share = prior * sum(one.tried.share for one in mode)
@@ -244,7 +246,7 @@ def _mean_angle(mode: list[_AngleEvidence]) -> tuple[float, float]:
     if len(mode) == 1:
         return mode[0].tried.angle, 1.0
     most = max(one.log_evidence for one in mode)
-    weights = np.array([one.tried.share * math.exp(one.log_evidence - most) for one in mode])
+    weights = np.array([one.tried.share * math.exp(FACTS_POWER * (one.log_evidence - most)) for one in mode])
     angles = np.array([one.tried.angle for one in mode])
     x, y = float(weights @ np.cos(angles)), float(weights @ np.sin(angles))
     return round(math.atan2(y, x), 12) % (2 * math.pi), math.hypot(x, y) / float(weights.sum())

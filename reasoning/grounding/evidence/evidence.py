@@ -29,7 +29,7 @@ from deixis.reasoning.geometry.turning import turned
 from deixis.reasoning.grounding.evidence.candidates import Candidates, candidate_ratios
 from deixis.reasoning.grounding.evidence.colours import colour_evidence
 from deixis.reasoning.grounding.evidence.degrees import log_likelihood_ratio
-from deixis.reasoning.grounding.evidence.facts import fact_tables, hedged
+from deixis.reasoning.grounding.evidence.facts import FactEvidence, hedged
 from deixis.reasoning.grounding.evidence.labels import Label, classes
 from deixis.reasoning.grounding.evidence.meaning import OUTLIERS, SHIPPED, Meaning
 from deixis.reasoning.grounding.evidence.unary import LABEL_ERROR, label_ratios, size_evidence
@@ -44,6 +44,9 @@ PRESENT_LOG_ODDS = -30.0
 
 SECONDS_PER_CELL = 1e-8
 """Seconds that it takes to lay out a cell of the tables for an engine, which nothing interrupts."""
+
+MAX_KEPT_THINGS = 150
+"""Things up to which what the facts say of their pairs is kept beside the tables that are made of it."""
 
 UNRELIABLE_PRIOR, UNRELIABLE_ERROR = 0.01, 0.7
 """Probability that the labels of a scene are not to be trusted, and that one of them is wrong then: whoever is wrong
@@ -176,6 +179,8 @@ class Evidence:
         if whole is not None and whole.doubted is not None:
             whole = replace(whole, alone=whole.doubted)
         doubted = replace(self, labels=self.doubted_labels.ratios, doubted_labels=None, whole=whole)
+        if self.meaning.graded and self.scene.boxes is not None and len(self.scene.boxes) <= MAX_KEPT_THINGS:
+            doubted.__dict__["_facts_said"] = self._said()
         trusted = math.log1p(-UNRELIABLE_PRIOR)
         return ((trusted, self), (math.log(UNRELIABLE_PRIOR) + self.doubted_labels.log_likelihood, doubted))
 
@@ -196,19 +201,36 @@ class Evidence:
                 np.fill_diagonal(table, 0.0)
             ends = np.stack([graph.subjects[edges], graph.objects[edges]], axis=1).astype(np.int64)
             return Problem(ends, kinds.ravel().astype(np.int64), tables, self.unary, absent, self.allowed)
-        unary = self.unary
-        facts = fact_tables(
-            self.description,
-            boxes,
-            self.meaning.models,
-            unary=unary,
-            absent=absent,
-            allowed=self.allowed,
-            names=self.scene.names,
-            everything=None if self.whole is None else self.whole.boxes,
-            deadline=self.deadline.earlier(SECONDS_PER_CELL * different_facts(self.description) * len(boxes) ** 2),
-        )
+        spoken, unary = self._said(), self.unary
+        facts = spoken.tables(spoken.literal(unary, absent, self.allowed))
         return Problem(facts.ends, facts.kinds, facts.tables, unary, absent, self.allowed)
+
+    @cached_property
+    def upper_problem(self) -> Problem:
+        """A problem in which no map is worth less than in :attr:`problem`, and that is made without any search."""
+        if self.scene.boxes is None or not self.meaning.graded:
+            return self.problem
+        facts = self._said().most()
+        return Problem(facts.ends, facts.kinds, facts.tables, self.unary, self.absent, self.allowed)
+
+    def _said(self) -> FactEvidence:
+        """Return what the facts say of the boxes; of small scenes it is kept, for both readings of their labels."""
+        known = self.__dict__.get("_facts_said")
+        if known is None:
+            boxes = self.scene.boxes
+            assert boxes is not None
+            laying_out = SECONDS_PER_CELL * different_facts(self.description) * len(boxes) ** 2
+            known = FactEvidence.of(
+                self.description,
+                boxes,
+                self.meaning.models,
+                names=self.scene.names,
+                everything=None if self.whole is None else self.whole.boxes,
+                deadline=self.deadline.earlier(laying_out),
+            )
+            if len(boxes) <= MAX_KEPT_THINGS:
+                self.__dict__["_facts_said"] = known
+        return known
 
     @cached_property
     def facts(self) -> NDArray[np.int64]:

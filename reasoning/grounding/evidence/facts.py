@@ -17,8 +17,9 @@ A saying model gives the probability that a fact is said of a pair, up to a cons
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from math import prod
 
 import numpy as np
@@ -46,6 +47,9 @@ SIDE = 256
 
 FORESEEN_FROM, FORESEEN_EXCESS = 4, 1.5
 """Blocks after which it is foreseen how long all of them take, and times as long as is left that is too long."""
+
+TABLE_CELLS = 1 << 18
+"""Cells of tables that are worked out together."""
 
 IMPLIED = 0.1
 """How readily a literal speaker says *left* of a pair whose name is *top left*: nine times in ten, the name is said."""
@@ -97,62 +101,127 @@ def fact_tables(
     unary: Array | None = None,
     absent: Array | None = None,
     allowed: NDArray[np.bool_] | None = None,
-    names: NDArray[np.integer] | None = None,
-    everything: NDArray[np.float64] | None = None,
     deadline: Deadline = Deadline.never(),
 ) -> FactTables:
     """Return the evidence of every fact for every ordered pair of n2 boxes (n2, 2, d).
 
     ``saying`` takes into account which pairs people speak of; without it only the words count. ``literal`` is the share
-    of facts that are meant literally; where it is None, it is judged from the description by the shipped models, with
-    what is known of things by themselves (``unary``, shape (n1, n2), and the mask ``allowed``) and of their absence
-    (``absent``, (n1,)), as in :class:`deixis.reasoning.grounding.matching.problem.Problem`. ``names`` (n2, n2) are the
-    exact names of the pairs, where they are known already. ``everything`` (n, 2, d) are all boxes of the scene, where
-    those that are compared are some of them. Raises GraphError for boxes that are none, UnknownTermError
-    for a word that has no model, SettingError for a weight or a share beyond 0 to 1, OutOfTimeError at the deadline.
+    of facts that are meant literally; where it is None, it is judged (:meth:`FactEvidence.literal`) with what is known
+    of things by themselves (``unary``, shape (n1, n2), and the mask ``allowed``) and of their absence (``absent``,
+    (n1,)). Raises what :meth:`FactEvidence.of` raises, and SettingError for a share beyond 0 to 1.
     """
     if literal is not None and not 0 <= literal <= 1:
         raise SettingError(f"the share of facts that are meant literally lies between 0 and 1, not at {literal:g}")
-    edges, ends, kinds, distinct = compared_facts(description)
-    order = np.zeros(0, dtype=np.int64)  # of the boxes by their coordinates
-    if len(boxes):
-        order = np.lexsort(np.reshape(boxes, (len(boxes), -1)).T[::-1])
-    if names is None:
-        names = box_relations(np.asarray(boxes, dtype=np.float64), description.vocabulary).names
-    names, boxes = names[np.ix_(order, order)], np.asarray(boxes[order], dtype=np.float64)
-    require_boxes(boxes)
-    nearer = PairBlocks.of(boxes, deadline) if everything is None else Surroundings.of(boxes, everything, deadline)
+    said = FactEvidence.of(description, boxes, models, saying=saying, deadline=deadline)
+    return said.tables(said.literal(unary, absent, allowed) if literal is None else literal)
 
-    def ratios(known: RelationModels) -> _FactRatios:
-        return _FactRatios(nearer, names, SaidFacts(known, description.vocabulary, saying, distinct), deadline)
 
-    usual = ratios(shipped_models()) if models is None or literal is None else None
-    if literal is None:
-        assert usual is not None
-        shape = len(description.nodes), len(boxes)
-        alone = np.zeros(shape) if unary is None else np.ascontiguousarray(unary[:, order])
-        away = np.full(shape[0], ABSENT_LOG_ODDS) if absent is None else absent
-        may = np.ones(shape, dtype=bool) if allowed is None else allowed[:, order]
-        either = (Problem(ends, kinds, usual.tables(share), alone, away, may) for share in (0.0, LITERAL))
+@dataclass(frozen=True, eq=False)
+class FactEvidence:
+    """The evidence of m facts (k different ones) about n1 objects for n2 boxes, for any share that is meant literally.
+
+    Built by :meth:`of`. ``order`` (n2,) lists the boxes by their coordinates, and ``by_name`` (n1,) the objects by
+    their names: what is judged does not depend on how either was given. Pairs are compared with facts when that is
+    first asked for, by ``models`` or by the shipped ones.
+    """
+
+    edges: NDArray[np.int64]  # (m,)
+    ends: NDArray[np.int64]  # (m, 2)
+    kinds: NDArray[np.int64]  # (m,)
+    order: NDArray[np.intp]
+    by_name: NDArray[np.intp]
+    models: RelationModels | None
+    compared: Callable[[RelationModels], _FactRatios]
+    deadline: Deadline
+
+    @classmethod
+    def of(
+        cls,
+        description: RelationGraph,
+        boxes: NDArray[np.float64],
+        models: RelationModels | None = None,
+        *,
+        saying: bool = True,
+        names: NDArray[np.integer] | None = None,
+        everything: NDArray[np.float64] | None = None,
+        deadline: Deadline = Deadline.never(),
+    ) -> FactEvidence:
+        """Compare the facts of a description with boxes (n2, 2, d).
+
+        ``names`` (n2, n2) are the exact names of the pairs, where they are known already. ``everything`` (n, 2, d) are
+        all boxes of the scene, where those that are compared are some of them. Raises GraphError for boxes that are
+        none, and OutOfTimeError at the deadline. So do the methods, which raise UnknownTermError for a word that has no
+        model and SettingError for a weight beyond 0 to 1, too.
+        """
+        edges, ends, kinds, distinct = compared_facts(description)
+        order = np.zeros(0, dtype=np.intp)
+        if len(boxes):
+            order = np.lexsort(np.reshape(boxes, (len(boxes), -1)).T[::-1])
+        if names is None:
+            names = box_relations(np.asarray(boxes, dtype=np.float64), description.vocabulary).names
+        names, boxes = names[np.ix_(order, order)], np.asarray(boxes[order], dtype=np.float64)
+        require_boxes(boxes)
+        nearer = PairBlocks.of(boxes, deadline) if everything is None else Surroundings.of(boxes, everything, deadline)
+
+        def compared(known: RelationModels) -> _FactRatios:
+            return _FactRatios(nearer, names, SaidFacts(known, description.vocabulary, saying, distinct), deadline)
+
         by_name = np.argsort(np.array(description.nodes, dtype=str))
-        literal = literal_share(either, by_name, deadline.share(JUDGEMENT_SHARE))
-    if usual is None or models is not None:
-        usual = ratios(models or shipped_models())
-    return FactTables(edges, ends, kinds, usual.tables(literal, np.argsort(order)))
+        return cls(edges, ends, kinds, order, by_name, models, compared, deadline)
+
+    @cached_property
+    def ratios(self) -> _FactRatios:
+        """The likelihood ratios of the facts by the models."""
+        return self.compared(self.models or shipped_models())
+
+    def literal(
+        self,
+        unary: Array | None = None,
+        absent: Array | None = None,
+        allowed: NDArray[np.bool_] | None = None,
+    ) -> float:
+        """Return the share of facts to be taken literally, 0 to ``literalness.LITERAL``.
+
+        It is judged by the shipped models, with what is known of things by themselves (``unary``, shape (n1, n2), and
+        the mask ``allowed``) and of their absence (``absent``, (n1,)), as in
+        :class:`deixis.reasoning.grounding.matching.problem.Problem`.
+        """
+        shape = len(self.by_name), len(self.order)
+        alone = np.zeros(shape) if unary is None else np.ascontiguousarray(unary[:, self.order])
+        away = np.full(shape[0], ABSENT_LOG_ODDS) if absent is None else absent
+        may = np.ones(shape, dtype=bool) if allowed is None else allowed[:, self.order]
+        shipped = self.ratios if self.models is None else self.compared(shipped_models())  # not kept
+        either = (Problem(self.ends, self.kinds, shipped.tables(share), alone, away, may) for share in (0.0, LITERAL))
+        return literal_share(either, self.by_name, self.deadline.share(JUDGEMENT_SHARE))
+
+    def tables(self, literal: float) -> FactTables:
+        """Return the evidence where such a share of the facts is meant literally."""
+        return self._as_given(self.ratios.tables(literal, np.argsort(self.order)))
+
+    def most(self) -> FactTables:
+        """Return what no evidence is above, pair by pair, whatever share :meth:`literal` gives."""
+        back = np.argsort(self.order)
+        graded, literal = self.ratios.tables(0.0, back), self.ratios.tables(LITERAL, back)
+        return self._as_given(np.maximum(graded, literal, out=graded))
+
+    def _as_given(self, tables: NDArray[np.float32]) -> FactTables:
+        return FactTables(self.edges, self.ends, self.kinds, tables)
 
 
 class SaidFacts:
     """What different facts (relations, sign, weight) say of pairs, to a graded speaker and to a literal one.
 
-    ``literal`` holds, for each fact, the likelihood ratio of a literal speaker by the exact name of the pair, shape
-    (relations + 1,): the last one is of no name, -1.
+    ``literal`` (k, relations + 1) holds the likelihood ratios of a literal speaker by the exact name of the pair, the
+    last one of no name, -1; ``weights`` (k, 1) those of the facts.
     """
 
     def __init__(self, models: RelationModels, vocabulary: Relations, saying: bool, distinct: Sequence[Said]) -> None:
         self.models, self.vocabulary, self.saying = models, vocabulary, saying
         self.spoken_by_chance = models[SAYING].chance if saying else 1.0
         self.said = [(vocabulary.members(mask), positive, weight) for mask, positive, weight in distinct]
-        self.literal = [self._literal(relations, positive) for relations, positive, _ in self.said]
+        by_name = [self._literal(relations, positive) for relations, positive, _ in self.said]
+        self.literal = np.reshape(by_name, (len(by_name), len(vocabulary) + 1))
+        self.weights = np.reshape([weight for _, _, weight in self.said], (-1, 1))
 
     def spoken(self, pairs: PairGeometry) -> NDArray[np.float32] | np.float32:
         """Return how readily each pair of a block is spoken of."""
@@ -183,11 +252,11 @@ class SaidFacts:
         ratio += np.float32(outliers / by_chance)
         return ratio
 
-    def offset(self, fact: int, share: float) -> NDArray[np.float32]:
-        """Return what is added to the graded speaker's part, by the exact name of the pair: a ``share`` of facts is
-        meant literally, and a hedged fact may say nothing."""
-        weight = self.said[fact][2]
-        offset: NDArray[np.float32] = (weight * share * self.literal[fact] + (1 - weight)).astype(np.float32)
+    def offset(self, facts: int | slice, share: float) -> NDArray[np.float32]:
+        """Return what is added to the graded speaker's part of one fact, or of some, by the exact name of the pair: a
+        ``share`` of facts is meant literally, and a hedged fact may say nothing."""
+        weights = self.weights[facts]
+        offset: NDArray[np.float32] = (weights * share * self.literal[facts] + (1 - weights)).astype(np.float32)
         return offset
 
     def mixed(self, fact: int, pairs: PairGeometry, names: NDArray[np.uint8], share: float) -> NDArray[np.float32]:
@@ -229,20 +298,24 @@ class _FactRatios:
 
         ``order`` (n2,) lists the things as they shall stand.
         """
-        n, known = len(self.names), self.facts
-        tables = empty_tables(len(known.said), n)
-        said = np.empty((n, n), dtype=np.float32)
-        for fact, (table, graded) in enumerate(zip(tables, self.graded, strict=True)):
+        n, k, known = len(self.names), len(self.facts.said), self.facts
+        tables = empty_tables(k, n)
+        some = max(1, min(k, TABLE_CELLS // max(n * n, 1)))
+        room = np.empty((some, n, n), dtype=np.float32)
+        for start in range(0, k, some):
             self._require_time()
-            np.take(known.offset(fact, share), self.names, out=said, mode="clip")
-            said += np.multiply(graded, np.float32(known.said[fact][2] * (1 - share)), out=table)
+            part = slice(start, start + some)
+            said = room[: min(some, k - start)]
+            np.take(known.offset(part, share), self.names, axis=1, out=said, mode="clip")
+            scales = (known.weights[part] * (1 - share)).astype(np.float32)[:, :, None]
+            said += np.multiply(self.graded[part], scales, out=tables[part])
             np.log(said, out=said)
-            np.fill_diagonal(said, 0.0)
+            said[:, np.arange(n), np.arange(n)] = 0.0
             if order is None:
-                table[:] = said
+                tables[part] = said
             else:
-                for row, place in zip(table, order, strict=True):
-                    np.take(said[place], order, out=row, mode="clip")
+                for row, place in enumerate(order.tolist()):
+                    np.take(said[:, place], order, axis=1, out=tables[part, row], mode="clip")
         return tables
 
     def _require_time(self, needed: float = 0.0) -> None:

@@ -95,17 +95,19 @@ def _log_prior(absent: Array, n2: int) -> float:
 def _by_subsets(gains: Array) -> float:
     """Return the logarithm of the sum over partial matchings of rows with k columns (n, k), of few columns."""
     k = gains.shape[1]
-    totals = np.full(1 << k, -np.inf)  # by the set of columns that are taken
-    totals[0] = 0.0
-    sets = np.arange(1 << k)
-    for row in gains:
-        following = totals.copy()
-        for column, gain in enumerate(row.tolist()):
-            free = sets[(sets >> column & 1) == 0]
-            taken = free | 1 << column
-            following[taken] = np.logaddexp(following[taken], totals[free] + gain)
-        totals = following
-    return float(np.logaddexp.reduce(totals))
+    above = np.maximum(gains.max(axis=1, initial=0.0), 0.0)
+    weights, unmatched = np.exp(gains - above[:, None]), np.exp(-above)
+    totals, scale = np.zeros(1 << k), float(above.sum())  # by the set of columns that are taken, times exp(scale)
+    totals[0] = 1.0
+    for row, alone in zip(weights.tolist(), unmatched.tolist(), strict=True):
+        following = alone * totals
+        for column, weight in enumerate(row):
+            free, taken = totals.reshape(-1, 2, 1 << column)[:, 0], following.reshape(-1, 2, 1 << column)[:, 1]
+            taken += weight * free
+        most = float(following.max())
+        totals = following / most
+        scale += math.log(most)
+    return float(np.log(totals.sum())) + scale
 
 
 def _bethe(gains: Array) -> float:

@@ -31,6 +31,10 @@ SUM_CELLS, FACTOR_CELLS = 6e7, 4e6  # work for sums, and room for facts; beyond,
 
 START_EFFORT = 0.1
 
+BOUND_CELLS, BOUND_WORK = 4e5, 1e6  # room for facts, and work at each share, that a bound of the sum may take
+BOUND_SHARES = (3e-3, 1e-4)  # of what is enough: partial maps below which less is are not followed
+LOWEST_LOG = -600.0  # of numbers that are told from 0 with room to spare
+
 
 @dataclass(frozen=True, eq=False)
 class Posterior:
@@ -86,7 +90,7 @@ def posterior(
     """
     if start is not None:
         problem.require_map(start)
-    exact = exact_posterior(problem, deadline, mass=mass, seed=seed)
+    exact = exact_posterior(problem, deadline, mass=mass, seed=seed, start=start)
     if exact is not None:
         return exact
     n1, n2 = problem.unary.shape
@@ -101,11 +105,17 @@ def posterior(
 
 
 def exact_posterior(
-    problem: Problem, deadline: Deadline = Deadline.never(), *, mass: float = 1e-3, seed: int = 0
+    problem: Problem,
+    deadline: Deadline = Deadline.never(),
+    *,
+    mass: float = 1e-3,
+    seed: int = 0,
+    start: NDArray[np.int64] | None = None,
 ) -> Posterior | None:
     """The exact posterior but for ``mass``, or None where that would take long, or longer than until the deadline.
 
-    Raises MatchingError for a mass that is not between 0 and 1.
+    ``start`` (n1,) is a map of high value; where there is none, a short search finds one. Raises MatchingError for a
+    mass that is not between 0 and 1.
     """
     if not 0 < mass < 1:
         raise MatchingError(f"the mass that may be missing lies between 0 and 1, not at {mass}")
@@ -116,9 +126,11 @@ def exact_posterior(
     compiled, width = problem.compiled, n2 + 1
     if len(compiled.kind) * width * width > FACTOR_CELLS or deadline.passed:
         return None
-    best, _ = search_from(np.full(n1, width - 1), compiled, deadline, seed, START_EFFORT, 2)
+    if start is None:
+        labels, _ = search_from(np.full(n1, width - 1), compiled, deadline, seed, START_EFFORT, 2)
+        start = to_assignment(labels, width - 1)
     parts = factors(compiled)
-    top = math.exp(problem.value(to_assignment(best, width - 1)) - parts.log_scale)
+    top = math.exp(problem.value(start) - parts.log_scale)
     nodes = int(SUM_CELLS / (n1 * width))
     for threshold in THRESHOLDS:
         if deadline.passed:
@@ -136,3 +148,33 @@ def exact_posterior(
         ):
             return None
     return None
+
+
+def log_sum_bound(problem: Problem, enough: float) -> float:
+    """Return a number that the logarithm of the sum over all maps is not above: at most ``enough`` where little work
+    shows that.
+
+    >>> problem = Problem(np.zeros((0, 2), np.int64), np.zeros(0, np.int64), np.zeros((0, 1, 1), np.float32),
+    ...                   np.array([[np.log(3.0)]]), np.zeros(1))
+    >>> round(math.exp(log_sum_bound(problem, 0.0)), 6)
+    4.0
+    """
+    n1, n2 = problem.unary.shape
+    compiled, width = problem.compiled, n2 + 1
+    if n1 == 0 or n2 == 0:
+        return float(problem.absent.sum())
+    if len(compiled.kind) * width * width > BOUND_CELLS:
+        return math.inf
+    parts = factors(compiled)
+    loose = parts.log_scale + float(np.log(parts.weights.sum(axis=1)).sum())
+    if loose <= enough or enough - parts.log_scale < LOWEST_LOG:
+        return loose
+    for share in BOUND_SHARES:
+        threshold = share * math.exp(min(enough, loose) - parts.log_scale)
+        _, (total, missing, _) = add_up(compiled, parts, threshold, int(BOUND_WORK / (n1 * width)))
+        found = total + missing
+        if 0 < found < math.inf:
+            loose = min(loose, math.log(found) + parts.log_scale)
+        if loose <= enough:
+            break
+    return loose

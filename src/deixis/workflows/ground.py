@@ -278,18 +278,20 @@ def answer(request: GroundingRequest, stage: Stage = lambda _: nullcontext()) ->
     if request.ask is not None:
         seen = request.scene if side is None else side.scene
         found = _answer_with_questions(request, request.ask, seen, deadline.left)
-        before = notes if side is None else side.notes + side.doubt
+        if side is None:
+            found = found.noting(notes)
+        else:
+            viewpoints = side.viewpoints.viewpoints if side.viewpoints else ()
+            found = replace(found.noting(side.notes + side.doubt), viewpoints=viewpoints)
     else:
         select = Select(request.select)
         with stage("grounding"):
             if side is None:
                 engine = engine_named(request.engine, select)
-                found, before = ground_evidence(request.evidence(request.scene), engine, deadline, contradiction), notes
+                found = ground_evidence(request.evidence(request.scene), engine, deadline, contradiction).noting(notes)
             else:
                 found = ground_from_sides(request.evidence, side, request.engine, select, deadline, contradiction)
-                before = side.notes
-    viewpoints = None if side is None else side.viewpoints.viewpoints if side.viewpoints else ()
-    return replace(found.noting(before), viewpoints=viewpoints, scene=request.scene)
+    return replace(found, scene=request.scene)
 
 
 def _contradiction(request: GroundingRequest) -> tuple[str, ...]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -104,16 +104,42 @@ def ground_from_sides(
 ) -> Grounding:
     """Ground as seen from the likeliest side, with the probabilities of matches over all sides that are worth a look.
 
-    Where nothing tells a side, the map is that of the scene as it stands, with the probabilities from all around.
+    Where nothing tells a side, the map is that of the scene as it stands, with the probabilities from all around. The
+    answer has the viewpoints with the probabilities that its matches rest on.
     """
     here = side.side
     if here is None:
-        return ground_evidence(side.evidence or evidence_of(side.scene), engine_named(engine, select), deadline, notes)
+        evidence = side.evidence or evidence_of(side.scene)
+        found = ground_evidence(evidence, engine_named(engine, select), deadline, notes)
+        return replace(found.noting(side.notes), viewpoints=())
     views = (here, *(view for view, _ in side.others))
     sides = tuple(Side(view.angle, view.mirrored, view.prior) for view in views)
     seen = (None, *(evidence_of(scene) for _, scene in side.others))
     evidence = side.evidence or evidence_of(side.scene)
-    return ground_evidence(evidence, engine_named(engine, select, sides, seen), deadline, notes)
+    found = ground_evidence(evidence, engine_named(engine, select, sides, seen), deadline, notes)
+    if side.viewpoints is None:
+        return replace(found.noting(side.notes), viewpoints=())
+    weighed = as_weighed(side.viewpoints, found.sides)
+    return replace(found.noting(_notes(weighed)), viewpoints=weighed.viewpoints)
+
+
+def as_weighed(found: Viewpoints, sides: Sequence[tuple[Side, float]]) -> Viewpoints:
+    """Return viewpoints as probable as the posterior of the matches has them, given that the scene is the one meant.
+
+    ``sides`` are those that were grounded from, with their probabilities; viewpoints that are none of them are so
+    unlikely that they keep theirs.
+    """
+    weighed = {(side.angle, side.mirrored): probability for side, probability in sides}
+    total = sum(weighed.values())
+    if total <= 0:
+        return found
+    share = sum(view.probability for view in found.viewpoints if (view.angle, view.mirrored) in weighed)
+    views = []
+    for view in found.viewpoints:
+        known = weighed.get((view.angle, view.mirrored))
+        views.append(view if known is None else replace(view, probability=share * known / total))
+    views.sort(key=lambda view: (-round(view.probability, 9), view.mirrored, view.angle))
+    return replace(found, viewpoints=tuple(views))
 
 
 def scene_from(scene: Scene, view: Viewpoint) -> Scene:

@@ -108,6 +108,7 @@ def test_a_turned_table_is_grounded_as_if_it_were_not(quarters: int, option: str
     back = (best["turned"] + 90 * quarters) % 360
     assert min(back, 360 - back) < 15 and not best["mirrored"]
     assert best["probability"] == max(side["probability"] for side in said["viewpoints"])
+    assert sum(side["probability"] for side in said["viewpoints"]) == pytest.approx(1.0, abs=0.01)
     assert "viewpoints" not in json.loads(straight)
 
 
@@ -340,3 +341,17 @@ def test_python_holds_a_dialogue_as_the_command_does() -> None:
         example("script1.layout"), SCENE, lambda _: Oracle({name or "": id for name, id in TRUTH.items()}, out), out
     )
     assert all(match.decided for match in asked.grounding.matches.values())
+
+
+@pytest.mark.parametrize("viewpoint", ["quarter", "unknown"])
+def test_viewpoints_are_as_probable_as_the_sides_of_matches(viewpoint: str) -> None:
+    found = deixis_package.ground(example("formal_dinner.layout"), turned_scene(1), viewpoint=viewpoint)
+    assert found.viewpoints and found.fits is not None
+    sides = {(side.angle, side.mirrored): probability / found.fits for side, probability in found.sides}
+    assert sum(view.probability for view in found.viewpoints) == pytest.approx(1.0)
+    rest = 1 - sum(view.probability for view in found.viewpoints if (view.angle, view.mirrored) in sides)
+    for view in found.viewpoints:
+        if (view.angle, view.mirrored) in sides:
+            assert view.probability == pytest.approx((1 - rest) * sides[view.angle, view.mirrored])
+    shown = f"with probability {found.viewpoints[0].probability:.2f}"
+    assert any(note.startswith("the scene was taken turned") and note.endswith(shown) for note in found.notes)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -18,9 +19,10 @@ from deixis.ontology.graph import Fact, RelationGraph
 from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.geometry.rectangle import scene_relations
 from deixis.reasoning.geometry.turning import turned
+from deixis.reasoning.grounding import hypotheses
 from deixis.reasoning.grounding.answer import Grounding
 from deixis.reasoning.grounding.engines import engine_named
-from deixis.reasoning.grounding.evidence.evidence import Evidence, evidence_from, no_unary_evidence
+from deixis.reasoning.grounding.evidence.evidence import Evidence, Whole, evidence_from, no_unary_evidence
 from deixis.reasoning.grounding.evidence.labels import Label
 from deixis.reasoning.grounding.ground import ground
 from deixis.reasoning.grounding.hypotheses import (
@@ -137,6 +139,65 @@ def test_the_posterior_is_that_of_all_maps_sides_and_scenes(evidence: Evidence) 
     np.testing.assert_allclose(found.posterior.marginals, marginals, atol=UNLIKELY_SIDES)
 
 
+def unpruned(evidence: Evidence) -> Verdict:
+    """Return the verdict for which every side and every reading of the labels is searched."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(hypotheses, "log_sum_bound", lambda *_: math.inf)
+        return weighed(evidence)
+
+
+def same_answers(evidence: Evidence) -> bool:
+    """Whether both verdicts agree to 1e-4, and whether something was pruned."""
+    found, whole = weighed(evidence), unpruned(evidence)
+    assert found.fits == pytest.approx(whole.fits, abs=1e-4)
+    np.testing.assert_allclose(
+        [one.probability for one in found.sides], [one.probability for one in whole.sides], atol=1e-4
+    )
+    np.testing.assert_allclose(found.posterior.marginals, whole.posterior.marginals, atol=1e-4)
+    return any(one.probability == 0 for one in found.sides)
+
+
+@settings(max_examples=40, deadline=None)
+@given(labelled_evidences())
+def test_left_out_hypotheses_change_no_answer(evidence: Evidence) -> None:
+    same_answers(evidence)
+
+
+def test_the_bound_of_a_shortlist_counts_maps_to_what_is_not_listed() -> None:
+    table = generate(5, 1.6, 0.2, seed=4)
+    known = seen(table.boxes, table.description())
+    outside = np.array([0.0, 0.1, 0.9, 0.0, 0.3])
+    whole = Whole(known.scene.nodes, table.boxes, known.without_facts, None, outside, 1 - outside)
+    listed = replace(known, whole=whole)
+    total = summed(listed.problem)[0] - math.log1p(-0.9)
+    assert hypotheses._bound(listed, total + 5.0) >= total
+    assert hypotheses._bound(listed, total + 5.0) <= total + 5.0
+
+
+def test_no_bound_is_sought_where_that_takes_long(monkeypatch: pytest.MonkeyPatch) -> None:
+    table = generate(5, 1.6, 0.2, seed=4)
+    known = seen(table.boxes, table.description())
+    monkeypatch.setattr(hypotheses, "BOUND_CELLS", 2 * len(known.facts) * 36 - 1)
+    assert hypotheses._bound(known, 0.0) == math.inf
+    assert "upper_problem" not in known.__dict__
+
+
+@pytest.mark.parametrize("place", ["as it is", "turned", "mirrored", "shuffled"])
+@pytest.mark.parametrize("labelled", [0, 4, 8])
+def test_left_out_sides_of_tables_change_no_answer(place: str, labelled: int) -> None:
+    table = generate(8, 1.8, 0.1, seed=17 + labelled)
+    boxes = table.boxes
+    if place == "shuffled":
+        centres, halves = np.roll(boxes.mean(axis=1), 3, axis=0), (boxes[:, 1] - boxes[:, 0]) / 2
+        boxes = np.stack([centres - halves, centres + halves], axis=1)
+    elif place != "as it is":
+        boxes = turned(boxes, math.pi if place == "turned" else 0.0, place == "mirrored")
+    labels: list[Label | None] = [None] * len(boxes)
+    for i in range(labelled):
+        labels[int(table.truth[i])] = Label(f"d{i:04}")
+    assert same_answers(seen(boxes, table.description(kinds=True), labels))
+
+
 @settings(max_examples=20, deadline=None)
 @given(st.integers(1, 4), st.integers(1, 4))
 def test_where_nothing_is_said_the_prior_remains(objects: int, things: int) -> None:
@@ -240,7 +301,7 @@ def test_past_the_deadline_no_other_side_is_looked_from(monkeypatch: pytest.Monk
     table = generate(4, 1.5, 0.0, seed=2)
     evidence = seen(table.boxes, table.description())
     found = weigh(evidence, np.full(4, UNMATCHED), Deadline.after(0.0))
-    assert found is None or all(one.assignment is found.sides[0].assignment for one in found.sides)
+    assert found is None or all(one.evidence is found.sides[0].evidence for one in found.sides)
 
 
 def test_engines_without_probabilities_say_nothing_of_fit() -> None:

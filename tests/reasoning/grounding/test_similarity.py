@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 import time
 from collections.abc import Callable
@@ -14,6 +15,7 @@ from numpy.typing import NDArray
 
 from deixis.deadline import Deadline
 from deixis.ontology.graph import PaperGraph, RelationGraph
+from deixis.reasoning.grounding import similarity
 from deixis.reasoning.grounding.similarity import node_similarity
 
 MakeGraph = Callable[..., RelationGraph]
@@ -227,3 +229,16 @@ def test_many_edges_cost_no_more_than_a_matrix_for_each_label() -> None:
     started = time.process_time()
     node_similarity(graph, graph, iterations=2)
     assert time.process_time() - started < 2.0
+
+
+@pytest.mark.parametrize(("dense", "looped"), [(0, 10_000), (0, 0)])
+def test_large_sets_of_edges_carry_what_small_ones_do(monkeypatch: pytest.MonkeyPatch, dense: int, looped: int) -> None:
+    rng, pairs = np.random.default_rng(3), list(itertools.permutations(range(9), 2))
+    edges = [(*pairs[i], int(rng.integers(4))) for i in rng.permutation(len(pairs)).tolist()]
+    first, second = paper_graph(9, edges[:40]), paper_graph(9, edges[30:])
+    expected = node_similarity(first, second, iterations=20).matrices
+    monkeypatch.setattr(similarity, "MAX_DENSE", dense)
+    monkeypatch.setattr(similarity, "MAX_LOOPED", looped)
+    monkeypatch.setattr(similarity, "CARRIED_CELLS", 3 * 81)  # three of the eight labels and directions at once
+    found = node_similarity(first, second, iterations=20).matrices
+    assert found == pytest.approx(expected, abs=1e-12) and expected.any()

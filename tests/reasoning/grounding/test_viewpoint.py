@@ -116,7 +116,7 @@ def test_quarter_turns_and_mirrors_are_recovered_with_every_object(quarters: int
     assert found.best.mirrored == mirrored
     assert again.mean(axis=1) == pytest.approx(scene.boxes.mean(axis=1), abs=1e-9)
     assert found.best.assignment.tolist() == named(list(scene.ids)).tolist()
-    assert found.best.probability > (0.6 if mirrored else 0.9)
+    assert found.best.probability > (0.4 if mirrored else 0.9)
     assert len(found.ties) == 1
 
 

@@ -6,12 +6,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from deixis.experiments.generated_tables import GeneratedTable, generate
 from deixis.ontology.graph import Fact, RelationGraph
 from deixis.ontology.tbox import default_ontology
-from deixis.reasoning.grounding.evidence.facts import fact_tables
+from deixis.reasoning.grounding.evidence.facts import FactEvidence, fact_tables
 from deixis.reasoning.grounding.evidence.literalness import LITERAL, MAX_JUDGED_OBJECTS, literal_share
 from deixis.reasoning.grounding.matching.problem import Problem
 
@@ -81,3 +83,12 @@ def test_what_labels_say_counts_in_the_judgement() -> None:
 
 def test_of_a_large_description_a_connected_part_is_judged() -> None:
     assert share_of(generate(2 * MAX_JUDGED_OBJECTS, 2.5, 0.1, seed=1)) > 0.85
+
+
+@settings(max_examples=30, deadline=None)
+@given(st.integers(0, 1000), st.floats(0.0, LITERAL))
+def test_no_evidence_is_above_the_most_at_any_share(seed: int, share: float) -> None:
+    table = generate(5, 1.6, 0.2, seed=seed)
+    said = FactEvidence.of(table.description(), table.boxes)
+    assert (said.most().tables >= said.tables(share).tables - 1e-5).all()
+    assert 0 <= said.literal() <= LITERAL

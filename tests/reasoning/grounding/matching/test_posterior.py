@@ -15,7 +15,7 @@ from deixis.deadline import Deadline
 from deixis.reasoning.grounding.matching import ladders
 from deixis.reasoning.grounding.matching import posterior as module
 from deixis.reasoning.grounding.matching.exchangeable import exchangeable
-from deixis.reasoning.grounding.matching.posterior import posterior
+from deixis.reasoning.grounding.matching.posterior import log_sum_bound, posterior
 from deixis.reasoning.grounding.matching.problem import UNMATCHED, MatchingError, Problem
 from deixis.reasoning.grounding.options import is_decided
 
@@ -47,6 +47,16 @@ def test_what_is_missing_is_no_more_than_is_said(problem: Problem, mass: float) 
     assert found.exact
     assert found.error <= mass
     assert np.abs(found.marginals - brute(problem)).max(initial=0.0) <= found.error + 1e-5
+
+
+@settings(max_examples=80, deadline=None)
+@given(problems(), st.floats(-30.0, 10.0))
+def test_no_sum_over_all_maps_is_above_its_bound(problem: Problem, enough: float) -> None:
+    total = float(np.logaddexp.reduce(list(every_map(problem).values())))
+    bound = log_sum_bound(problem, total + enough)
+    assert bound >= total - 1e-4
+    if enough >= 2.0:
+        assert bound <= total + enough
 
 
 @settings(max_examples=10, deadline=None)
