@@ -21,7 +21,7 @@ from deixis.memory import owner as disk
 from deixis.memory.errors import DamagedMemoryError, MemoryFormatError, MemoryWriteError
 from deixis.memory.owner import LOCK_FILE
 
-VERSION = 2
+VERSION = 3
 """The format that this program writes; ``memory.semantic.migrations`` reads those before it, from 0 on."""
 
 FORMAT = "deixis-memory"

@@ -8,7 +8,7 @@ import pyoxigraph as ox
 
 from deixis.memory.folder import Migration
 from deixis.memory.semantic.queries.union import merge_if_overlapping
-from deixis.memory.semantic.rdf.graphs import GRAPHS
+from deixis.memory.semantic.rdf.graphs import GRAPHS, MERGED
 
 _GRAPHS_0 = "urn:deixis:graph:"
 
@@ -32,5 +32,11 @@ def _from_1(old: ox.Store, new: ox.Store) -> None:
     new.bulk_extend(old)
 
 
-MIGRATIONS: dict[int, Migration] = {0: _from_0, 1: _from_1}
+def _from_2(old: ox.Store, new: ox.Store) -> None:
+    """Copy version 2, in whose union the ontology was missing, and make the union again."""
+    new.bulk_extend(quad for quad in old if quad.graph_name != MERGED)
+    merge_if_overlapping(new)
+
+
+MIGRATIONS: dict[int, Migration] = {0: _from_0, 1: _from_1, 2: _from_2}
 """From a version to the step that leads to the next."""

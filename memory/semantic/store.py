@@ -318,7 +318,7 @@ class SemanticMemory(Closing):
     def query(
         self, sparql: str, time_limit: float = QUERY_TIME_LIMIT, memory_limit: int = QUERY_MEMORY_LIMIT
     ) -> QueryResult:
-        """Ask SELECT, ASK, CONSTRUCT or DESCRIBE of the asserted, inferred and learned graphs together.
+        """Ask SELECT, ASK, CONSTRUCT or DESCRIBE of the ontology, asserted, inferred and learned graphs together.
 
         ``GRAPH ?g`` reaches all six canonical graphs. Another process answers, from a snapshot of the store.
 
@@ -334,13 +334,15 @@ class SemanticMemory(Closing):
         Raises
         ------
         QueryError
-            With the place, for what is refused, nested too deeply, or cannot be understood.
+            With the place, for what is refused, nested too deeply, or cannot be understood, and for a term in the
+            namespace of the vocabulary that neither it nor the memory has.
         QueryTimeoutError, QueryMemoryError
             A limit is reached. Both are QueryErrors; there are no partial answers.
         """
-        from deixis.memory.semantic.queries.sparql import run_query
+        from deixis.memory.semantic.queries.sparql import require_terms, run_query
 
         with reading(self.path):
+            require_terms(self.store, sparql)
             if self._union is None:
                 self._union = default_graph(self.store)
             return run_query(self._answer, sparql, self._union, QueryLimits(time_limit, memory_limit))

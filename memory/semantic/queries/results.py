@@ -103,6 +103,11 @@ class QueryResult(Answer):
             return f"SELECT {' '.join('?' + name for name in self.variables)}: {count(len(self.rows), 'row')}"
         return f"{self.kind.upper()}: {count(len(self.triples), 'triple')}"
 
+    @property
+    def empty(self) -> bool:
+        """True for a query of rows or triples that found none."""
+        return self.kind is not QueryKind.ASK and not self.rows and not self.triples
+
     @classmethod
     def of(cls, kind: QueryKind, answer: StoreAnswer, ordered: bool, limits: QueryLimits) -> QueryResult:
         """Return what Oxigraph answers, read to its end; raises QueryMemoryError where that takes too much."""

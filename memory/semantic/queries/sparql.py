@@ -25,8 +25,9 @@ from deixis.memory.semantic.queries.tokens import (
     too_deep,
 )
 from deixis.memory.semantic.rdf.files import PREFIXES
-from deixis.memory.semantic.rdf.graphs import CANONICAL
+from deixis.memory.semantic.rdf.graphs import CANONICAL, GraphName, graph_iri
 from deixis.ontology.relation import nearest
+from deixis.ontology.vocabulary import BASE
 from deixis.printable import window
 
 _UPDATES = {"INSERT", "DELETE", "LOAD", "CLEAR", "CREATE", "DROP", "COPY", "MOVE", "ADD", "WITH", "USING"}
@@ -44,6 +45,7 @@ class CheckedQuery:
     asks_graphs: bool  # by GRAPH
     ordered: bool
     prefixes: Mapping[str, str]  # of those that need no declaration, the ones that it uses
+    terms: tuple[tuple[str, int], ...] = ()  # IRIs in the namespace of the vocabulary, and where each first stands
 
 
 class _Text:
@@ -184,7 +186,40 @@ def check_query(sparql: str, prefixes: Mapping[str, str] = PREFIXES) -> CheckedQ
     asks_graphs = any(token.kind is TokenKind.WORD and token.upper == "GRAPH" for token in found)
     used = {token.text.partition(":")[0] for token in found if token.kind is TokenKind.NAME}
     mine = {prefix: base for prefix, base in prefixes.items() if prefix in used and prefix not in declared}
-    return CheckedQuery(text.text, QueryKind(form.text.lower()), names_graphs, asks_graphs, _ordered(found), mine)
+    kind, ordered, terms = QueryKind(form.text.lower()), _ordered(found), _vocabulary_terms(found, known)
+    return CheckedQuery(text.text, kind, names_graphs, asks_graphs, ordered, mine, terms)
+
+
+def _vocabulary_terms(found: list[Token], known: Mapping[str, str]) -> tuple[tuple[str, int], ...]:
+    """Return the IRIs of the query that are in the namespace of the vocabulary, each with its first place."""
+    terms: dict[str, int] = {}
+    for before, token in zip([None, *found], found, strict=False):
+        if token.kind is TokenKind.IRI or (token.kind is TokenKind.NAME and not token.text.startswith("_:")):
+            iri = _iri(token, known)
+            declared = before is not None and before.upper in ("PREFIX", "BASE")
+            if iri is not None and iri.startswith(BASE) and iri != BASE and not declared:
+                terms.setdefault(iri, token.start)
+    return tuple(terms.items())
+
+
+def require_terms(store: ox.Store, sparql: str) -> None:
+    """Raise QueryError, with the nearest term, if a query names a term that neither vocabulary nor memory has."""
+    for iri, place in _admitted(sparql).terms:
+        term = ox.NamedNode(iri)
+        uses = (
+            store.quads_for_pattern(term, None, None),
+            store.quads_for_pattern(None, term, None),
+            store.quads_for_pattern(None, None, term),
+        )
+        if any(next(iter(found), None) for found in uses):
+            continue
+        subjects = {quad.subject for quad in store.quads_for_pattern(None, None, None, graph_iri(GraphName.ONTOLOGY))}
+        known = {subject.value for subject in subjects if isinstance(subject, ox.NamedNode)}
+        names = {value.removeprefix(BASE) for value in known if value.startswith(BASE)}
+        name = iri.removeprefix(BASE)
+        near = next((one for one in sorted(names) if one.casefold() == name.casefold()), None) or nearest(name, names)
+        hint = f"; did you mean 'dx:{near}'?" if near else "; docs/reference/ontology.md lists the terms"
+        raise _Text(sparql).error(place, f"the vocabulary has no term 'dx:{name}'{hint}")
 
 
 def _prologue(found: list[Token]) -> int:
@@ -225,7 +260,7 @@ def _check_from(text: _Text, found: list[Token], known: dict[str, str]) -> bool:
     return named
 
 
-def _iri(token: Token, known: dict[str, str]) -> str:
+def _iri(token: Token, known: Mapping[str, str]) -> str:
     if token.kind is TokenKind.IRI:
         return token.text[1:-1]
     prefix, _, local = token.text.partition(":")

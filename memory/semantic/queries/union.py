@@ -1,4 +1,4 @@
-"""The union of the asserted, inferred and learned graphs, as a query sees it: each triple once.
+"""The union of the ontology and the asserted, inferred and learned graphs, as a query sees it: each triple once.
 
 Asked over several graphs at once, Oxigraph gives a triple that is in two of them twice, which SPARQL does not. So as
 soon as the three overlap anywhere, their union is kept as a graph of its own, and queries look at that; as long as they

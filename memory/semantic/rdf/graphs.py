@@ -52,8 +52,8 @@ class ModelSet(StrEnum):
 CONTRIBUTED = tuple(name for name in GraphName if name is not GraphName.INFERRED)
 """The graphs that lessons contribute to; the inferred one is always replaced as a whole."""
 
-UNION = (GraphName.ASSERTED, GraphName.INFERRED, GraphName.LEARNED)
-"""The graphs that a query without GRAPH looks at."""
+UNION = (GraphName.ONTOLOGY, GraphName.ASSERTED, GraphName.INFERRED, GraphName.LEARNED)
+"""The graphs that a query without GRAPH looks at: what is known, and the terms in which it is said."""
 
 MERGED = ox.NamedNode(GRAPHS + "merged")
 """Their union as a graph of its own, kept where they overlap: see :mod:`deixis.memory.semantic.queries.union`."""

@@ -15,6 +15,7 @@ from deixis.cli.common import (
     MemoryDir,
     TimeLimit,
     print_lines,
+    print_note,
 )
 from deixis.memory.semantic.queries.limits import QUERY_MEMORY_LIMIT, QUERY_TIME_LIMIT
 
@@ -56,6 +57,8 @@ def query(
             sys.stdout.write(result.to_turtle())
         else:
             print_lines(result.to_table())
+            if result.empty:
+                print_note("the query has no answer: nothing in the memory matches it")
         if result.boolean is False:
             raise typer.Exit(NO)
 

@@ -219,13 +219,16 @@ def test_the_answers_are_those_of_the_store_itself(
     with SemanticMemory.open(tmp_path_factory.mktemp("any") / "memory", create=True) as memory:
         memory.load({GraphName.ASSERTED: [ox.Triple(*terms) for terms in told]})
         graph = ox.NamedNode("https://w3id.org/deixis/graph/asserted")
-        select = "SELECT ?s ?p ?o ?none (TRIPLE(?s, ?p, ?o) AS ?t) { ?s ?p ?o }"
-        rows = memory.store.query(select, default_graph=graph)
+        select = "SELECT ?s ?p ?o ?none (TRIPLE(?s, ?p, ?o) AS ?t) {{ {} }}"
+        rows = memory.store.query(select.format("?s ?p ?o"), default_graph=graph)
         assert isinstance(rows, ox.QuerySolutions)
-        assert sorted(memory.query(select).rows, key=str) == sorted(map(tuple, rows), key=str)
+        assert sorted(memory.query(select.format("GRAPH dxg:asserted { ?s ?p ?o }")).rows, key=str) == sorted(
+            map(tuple, rows), key=str
+        )
         triples = memory.store.query("CONSTRUCT WHERE { ?s ?p ?o }", default_graph=graph)
         assert isinstance(triples, ox.QueryTriples)
-        assert set(memory.query("CONSTRUCT WHERE { ?s ?p ?o }").triples) == set(triples)
+        asserted = "CONSTRUCT { ?s ?p ?o } WHERE { GRAPH dxg:asserted { ?s ?p ?o } }"
+        assert set(memory.query(asserted).triples) == set(triples)
         s, p, _ = told[0]
         bound = {"s": rdflib.URIRef(s.value), "p": rdflib.URIRef(p.value)}
         assert memory.dataset().query("ASK { ?s ?p ?o }", initBindings=bound).askAnswer is True
