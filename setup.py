@@ -1,8 +1,8 @@
-"""The packages of the wheel; ``pyproject.toml`` says the rest.
+"""Find the packages of the wheel; ``pyproject.toml`` holds everything else.
 
-The rooms stand at the top of the repository and are mapped into ``deixis``. Their packages are found anew with every
-build, so that a new folder with an ``__init__.py`` needs no entry here. No symbolic link is followed: a ZIP, a checkout
-without links and the source distribution build the same wheel as a clone.
+The top-level folders of the repository are mapped into ``deixis``. Each build finds their packages again, so that a new
+folder with an ``__init__.py`` needs no entry here. No symbolic link is followed: a ZIP, a checkout without links and
+the source distribution build the same wheel as a clone.
 """
 
 from setuptools import find_packages, setup
@@ -10,7 +10,7 @@ from setuptools import find_packages, setup
 ROOMS = ("ontology", "reasoning", "grammar", "perception", "memory")
 
 links = [pattern for room in ROOMS for pattern in (room, f"{room}.*")]
-"""What ``find_packages`` sees through the links under ``src/deixis``, which serve type checkers only."""
+"""Packages that ``find_packages`` sees through the links under ``src/deixis``, which serve type checkers only."""
 
 packages = ["deixis", *(f"deixis.{found}" for found in find_packages("src/deixis", exclude=links)), "deixis.examples"]
 for room in ROOMS:

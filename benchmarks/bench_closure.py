@@ -1,12 +1,12 @@
-"""Algebraic closure of random networks, beside path consistency as it is written straight down, and GQR.
+"""Time algebraic closure of random networks, beside a direct path consistency algorithm and GQR.
 
-The peer is path consistency over 13-bit masks, axis by axis, compiled by numba: a queue of pairs, and the composition
-of two relations as an OR, over the atoms of the left one, of a table that covers every right one. Its result is
-compared with ours. GQR takes part, as a process that reads files, where ``gqr`` is on the PATH.
+The peer is path consistency over 13-bit masks, axis by axis, compiled by numba: a queue of pairs; the composition of
+two relations is an OR, over the atoms of the left one, of a table that covers every right one. The results are
+compared. GQR takes part, as a process that reads files, if ``gqr`` is on the PATH.
 
-Rectangles are taken from random boxes, so that the networks are consistent; each fact is the pair's own atoms and, on
-each axis, every other atom with a probability of 0.1. Allen networks likewise; of 10,000 constraints several are about
-one pair.
+Rectangles come from random boxes, so that the networks are consistent; each fact has the pair's own atoms and, on each
+axis, every other atom with a probability of 0.1. Allen networks are made the same way; of 10,000 constraints several
+relate the same pair.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ def network(things: int, facts: int, axes: int, seed: int) -> Network:
 
 @njit(cache=True)
 def straight(net, table, converses):  # type: ignore[no-untyped-def]
-    """Path consistency in place, (n, n) masks; False where a pair is left with nothing."""
+    """Compute path consistency in place, (n, n) masks; return False if a pair is emptied."""
     n = len(net)
     queued = np.zeros((n, n), dtype=np.bool_)
     queue = np.empty((n * n, 2), dtype=np.int32)
@@ -90,14 +90,14 @@ def straight(net, table, converses):  # type: ignore[no-untyped-def]
 
 
 def tables() -> tuple[Masks, Masks]:
-    """Compositions of an atom with every relation, (13, 8192), and the converse of every relation, (8192,)."""
+    """Return the compositions of each atom with every relation, (13, 8192), and each relation's converse, (8192,)."""
     compositions = [[ALLEN.compose(1 << atom, mask) for mask in range(8192)] for atom in range(13)]
     converses = [ALLEN.converse(mask) for mask in range(8192)]
     return np.array(compositions, dtype=np.uint16), np.array(converses, dtype=np.uint16)
 
 
-def anew(network: Network) -> Network:
-    """The same network without what it keeps, so that each run starts from the constraints."""
+def uncached(network: Network) -> Network:
+    """Return the network without its cached closure, so that each run starts from the constraints."""
     return Network(network.calculus, network.size, network.constraints)
 
 
@@ -105,7 +105,7 @@ def peer(nets: list[Network], table: Masks, converses: Masks) -> list[list[Masks
     closed = []
     for each in nets:
         axes = []
-        for axis in on_axes(anew(each)) or ():
+        for axis in on_axes(uncached(each)) or ():
             net = np.full((axis.size, axis.size), 8191, dtype=np.uint16)
             np.fill_diagonal(net, 1 << ALLEN.identity)
             stated = axis.arrays
@@ -119,11 +119,11 @@ def peer(nets: list[Network], table: Masks, converses: Masks) -> list[list[Masks
 
 
 def ours(nets: list[Network]) -> list[Closure]:
-    return [close(anew(each)) for each in nets]
+    return [close(uncached(each)) for each in nets]
 
 
 def gqr(folder: Path, nets: list[Network]) -> float | None:
-    """Seconds of ``gqr c``, reading included; None where there is no such program."""
+    """Return the seconds of ``gqr c``, reading included; None if there is no such program."""
     program = shutil.which("gqr")
     if program is None:
         return None

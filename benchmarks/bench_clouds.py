@@ -1,8 +1,8 @@
-"""Reading a cloud of 307,200 coloured points, an image of 640 by 480, beside Open3D's readers on the same files.
+"""Time reading a cloud of 307,200 coloured points, an image of 640 by 480, beside Open3D's readers of the same files.
 
 The readers take turns in one run. Open3D has two, and the ratio is to the faster one. The points are those of a table
-scene where DEIXIS_DATA is set, and of a wavy surface with a fifth of the points missing where it is not. Text has up to
-nine digits a number.
+scene if DEIXIS_DATA is set, otherwise of a wavy surface with a fifth of the points missing. Numbers in text have up to
+nine digits.
 """
 
 from __future__ import annotations
@@ -64,7 +64,7 @@ def main() -> None:
     try:
         import open3d  # noqa: F401
     except ImportError as error:
-        print(f"skipped: Open3D is not there to compare with ({error})", file=sys.stderr)
+        print(f"skipped: Open3D is not installed ({error})", file=sys.stderr)
         return
     with tempfile.TemporaryDirectory() as folder:
         measure(Path(folder), scene())

@@ -1,8 +1,8 @@
-"""Colour beside shape: real things on ten Kinect tables that stand on several of them, named by the other tables.
+"""Measure colour beside shape: objects on ten Kinect tables, each table named by the views of the others.
 
-DEIXIS_DATA leads to ``mosd-tabletop``, whose truth says which points are one thing. Which thing it is, was read off the
-colour images (``SAME``): 45 views of 13 things, under one lamp, partly hidden by others. Each table is asked for after
-all others were taught; "unknown" asks with the thing left out. Points are put in the table's frame by the true table.
+DEIXIS_DATA leads to ``mosd-tabletop``, whose truth gives the points of each object. Which object it is was read off the
+colour images (``SAME``): 45 views of 13 objects, under one lamp, partly hidden by others. Each table is named after all
+others were taught; "unknown" leaves out the object itself. Points are put in the table's frame by the true table.
 """
 
 from __future__ import annotations
@@ -36,23 +36,23 @@ SAME = {
     "flakes": ("44:3", "46:7", "48:4"),
     "juice bag": ("44:5", "46:8", "48:8"),
 }
-"""The tables and objects (a segment's label over ten) at which each thing is seen."""
+"""The tables and objects (a segment's label over ten) where each object is seen."""
 
 TABLE_LABELS = (1, 9)
 CLOSE = 0.01
-"""Metres from the plane within which a point of the table counts for it."""
+"""Distance in metres from the plane within which a point counts as part of the table."""
 
 WAYS: dict[str, Comparison] = {
     "spin images": (SPIN_IMAGE_ROOTS,),
     "spin images and colour": (SPIN_IMAGE_ROOTS, COLOUR),
     "upright and form": (UPRIGHT, FORM),
-    "by default: and colour": (UPRIGHT, FORM, COLOUR),
+    "default: and colour": (UPRIGHT, FORM, COLOUR),
 }
 Views = list[tuple[str, str, PointCloud]]
 
 
 def seen(folder: Path) -> Views:
-    """Thing, table and cloud of every view, in the frame of its table."""
+    """Return the object, table and cloud of every view, in the frame of its table."""
     places = sorted((place.split(":"), thing) for thing, listed in SAME.items() for place in listed)
     found: Views = []
     for table in dict.fromkeys(table for (table, _), _ in places):
@@ -70,7 +70,7 @@ def seen(folder: Path) -> Views:
 
 
 def frame_of(table: NDArray[np.float32]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Rotation and origin of the frame in which the table is z = 0 and the camera is above it, at y below 0."""
+    """Return rotation and origin of the frame in which the table is z = 0 and the camera is above it, at negative y."""
     points = table.astype(np.float64)[::10]
     near = points
     for _ in range(5):
@@ -84,8 +84,11 @@ def frame_of(table: NDArray[np.float32]) -> tuple[NDArray[np.float64], NDArray[n
 
 
 def answers(views: Views, way: Comparison) -> Iterator[tuple[float, ...]]:
-    """For each view: whether its thing is nearest, and named; least ND as it is and without it; confidence and whether
-    right, as it is and without it; and the weight of the last descriptor."""
+    """Yield the results of each view.
+
+    They are: whether its object is nearest, and named; least ND with the object and without it; confidence and whether
+    the answer is right, with and without; and the weight of the last descriptor.
+    """
     described = [[each.describe(cloud) for each in way] for _, _, cloud in views]
     for table in dict.fromkeys(table for _, table, _ in views):
         taught = [number for number, (_, own, _) in enumerate(views) if own != table]

@@ -1,7 +1,7 @@
-"""Engines of description logic side by side: the core ontology with more and more facts, and a transitive chain.
+"""Time engines of description logic side by side: the core ontology with a growing number of facts, and a chain.
 
-Each line gives the seconds of one engine from N-Triples to N-Triples; an engine that would take too long is left out of
-the larger sizes, and says so.
+The chain is of a transitive property. Each line gives the seconds of one engine from N-Triples to N-Triples; a line
+says which engines are left out of the larger sizes because they would take too long.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ def core() -> str:
 
 
 def facts(number: int) -> list[Triple]:
-    """Tables of ten things, each with a kind and with one fact that relates it to another."""
+    """Return tables of ten things, each with a kind and with one fact that relates it to another."""
     rng = random.Random(1)
     kinds = [f"<{BASE}{name}>" for name in ("Fork", "Knife", "Spoon", "DinnerPlate", "Napkin", "WineGlass")]
     words = [f"<{BASE}{name}>" for name in ("left", "top", "topLeft", "exactlyRight", "exactlyOn")]
@@ -100,7 +100,7 @@ def measure(name: str, job: Callable[[], object]) -> None:
 
 
 def grown(text: str, stated: list[Triple]) -> None:
-    """Adding a few facts to what is materialised, beside starting anew."""
+    """Time adding a few facts to a materialised graph, beside materialising it from scratch."""
     known = Materialisation(read_ntriples(text))
     new = [Triple("<urn:new>", TYPE, f"<{BASE}Fork>")]
     new += [Triple("<urn:new>", f"<{BASE}left>", stated[2 * i].subject) for i in range(ADDED - 1)]
@@ -111,7 +111,7 @@ def grown(text: str, stated: list[Triple]) -> None:
 def main() -> None:
     schema = core()
     for engine in ENGINES.values():
-        engine(schema)  # compiled, loaded, and the disk's cache warm
+        engine(schema)  # compiled and loaded, with the disk's cache warm
     for size in SIZES:
         stated = facts(size)
         text = schema + write_ntriples(declared(stated))

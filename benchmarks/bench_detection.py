@@ -1,11 +1,11 @@
-"""Detection beside LCCP of the Point Cloud Library and beside clustering above a plane: real and simulated tables.
+"""Compare detection with LCCP (Point Cloud Library) and clustering above a plane, on real and simulated tables.
 
-``mosd-tabletop`` (DEIXIS_DATA): the share of true segments of at least 200 points that are found at an intersection
-over union above 0.5, one to one, and that of whole objects, of which the truth has several segments for some. The
-simulator: the share of the 12 things of a formal setting that are found in this way, and that are found with the box's
-centre, as seen from above, within a centimetre of the truth's; and hard cases (``hard_tables.py``). Seconds are of
-processor time. ``--seeds N`` simulates N tables (50), from seed 0 or ``--first`` on; ``--hard N`` so many of each hard
-case (4); ``--quick`` two and one. LCCP is built against the library where that is installed (Debian: libpcl-dev).
+``mosd-tabletop`` (DEIXIS_DATA): the share of true segments of at least 200 points that are found one to one at an
+intersection over union above 0.5, and the share of whole objects, some of which have several true segments. The
+simulator: the share of the 12 things of a formal setting that are found in this way, and the share found with the box's
+centre, as seen from above, within a centimetre of the true one; and hard cases (``hard_tables.py``). Seconds are of
+processor time. ``--seeds N`` simulates N tables (50), from seed 0 or ``--first`` on; ``--hard N`` as many of each hard
+case (4); ``--quick`` two and one. LCCP is built against the library if that is installed (Debian: libpcl-dev).
 """
 
 from __future__ import annotations
@@ -33,12 +33,15 @@ from deixis.workflows.lay_table import lay_script
 from deixis.workflows.simulate import Simulation, simulate
 
 LCCP_HEIGHT = 0.005
-"""Metres above the plane from which LCCP is given points: less leaves it pieces of the table."""
+"""Minimum height in metres above the plane of the points given to LCCP: with less, pieces of the table remain."""
 CLOSE = 0.01
 Labels = NDArray[np.integer]
 Found = tuple[Labels, NDArray[np.float64], float]
-"""The number of its thing for each point, the middles (k, 3) of the things in the cloud's frame, and the seconds of
-processor time that it took."""
+"""The result of detection.
+
+It holds the number of its thing for each point, the middles (k, 3) of the things in the cloud's frame, and the seconds
+of processor time.
+"""
 
 Method = Callable[[PointCloud], Found]
 
@@ -52,7 +55,7 @@ def ours(cloud: PointCloud) -> Found:
 
 
 def without_image(cloud: PointCloud) -> Found:
-    """The same of the bare points in another order: it is not said which of them are next to each other."""
+    """Detect things in the bare points in random order, so that no image tells which points are neighbours."""
     order = np.random.default_rng(0).permutation(np.flatnonzero(cloud.finite))
     found, middles, taken = ours(cloud.take(order))
     labels = np.full(len(cloud), -1, np.int64)
@@ -81,7 +84,7 @@ def middles_of(cloud: PointCloud, labels: Labels) -> NDArray[np.float64]:
 
 
 def clustering(voxel: float, gap: float) -> Method:
-    """The tabletop detector's method: RANSAC's largest plane, and what is above it in clusters (Open3D's DBSCAN)."""
+    """Return the usual tabletop detector: RANSAC's largest plane, and clusters above it (Open3D's DBSCAN)."""
 
     def found(cloud: PointCloud) -> Found:
         import open3d
@@ -103,7 +106,7 @@ def clustering(voxel: float, gap: float) -> Method:
 
 
 def lccp(program: Path) -> Method:
-    """RANSAC's largest plane, and what is above it by LCCP."""
+    """Return the detector by RANSAC's largest plane and LCCP above it."""
 
     def found(cloud: PointCloud) -> Found:
         started = time.process_time()
@@ -119,7 +122,7 @@ def lccp(program: Path) -> Method:
 
 
 def methods(folder: Path) -> dict[str, Method]:
-    """Return what is compared, by name; LCCP where it can be built."""
+    """Return the methods to compare, by name; LCCP if it can be built."""
     found: dict[str, Method] = {"detect": ours, "detect, no image": without_image}
     program = lccp_pcl.build(folder)
     if program is None:
@@ -132,7 +135,7 @@ def methods(folder: Path) -> dict[str, Method]:
 
 
 def matched(labels: Labels, truth: Labels, wanted: list[int]) -> dict[int, int]:
-    """The found thing for each true one with an intersection over union above 0.5, which no two can share."""
+    """Return the found thing of each true one: one to one, with an intersection over union above 0.5."""
     sizes = np.bincount(labels[labels >= 0], minlength=1)
     result = {}
     for thing in wanted:
@@ -147,7 +150,7 @@ def matched(labels: Labels, truth: Labels, wanted: list[int]) -> dict[int, int]:
 
 
 def real_scenes(folder: Path, compared: dict[str, Method]) -> None:
-    print("mosd-tabletop: true segments found at IoU > 0.5, of those with 200 points; seconds of processor\n")
+    print("mosd-tabletop: true segments found at IoU > 0.5, of those with 200 points; processor seconds\n")
     print(f"{'scene':8}" + "".join(f"{name:>26}" for name in compared))
     rows: dict[str, list[tuple[float, float, int, int, float]]] = {name: [] for name in compared}
     for path in sorted(folder.glob("*.pcd")):
@@ -170,7 +173,7 @@ def real_scenes(folder: Path, compared: dict[str, Method]) -> None:
 
 
 def _large(truth: Labels, least: int) -> list[int]:
-    """Return the numbers from ``least`` on that ``LEAST`` points bear."""
+    """Return the numbers from ``least`` on that label at least ``LEAST`` points."""
     return [int(k) for k in np.unique(truth) if k >= least and (truth == k).sum() >= LEAST]
 
 
@@ -191,7 +194,7 @@ def simulated(seeds: range, compared: dict[str, Method]) -> None:
 
 
 def hard_cases(count: int, compared: dict[str, Method]) -> None:
-    print(f"\n{count} of each hard case: things of {LEAST} points found at IoU > 0.5; greatest seconds of processor\n")
+    print(f"\n{count} of each hard case: things of {LEAST} points found at IoU > 0.5; greatest processor seconds\n")
     print(f"{'case':24}" + "".join(f"{name:>22}" for name in compared))
     for name, make in CASES.items():
         cases = [make(seed) for seed in range(count)]
@@ -208,8 +211,8 @@ def hard_cases(count: int, compared: dict[str, Method]) -> None:
 
 
 def odd_clouds(seed: int) -> None:
-    """Print how long clouds that no table looks like take, as they are and as bare points in random order."""
-    print("\nodd clouds of 307,200 points: seconds of processor, as they are and as bare points; what they show\n")
+    """Print the seconds for clouds unlike any table, as they are and as bare points in random order."""
+    print("\nodd clouds of 307,200 points: processor seconds, as they are and as bare points; detected kind\n")
     for name, cloud in hard_tables.odd_clouds(seed).items():
         order = np.random.default_rng(0).permutation(np.flatnonzero(cloud.finite))
         line = f"{name:44}"
@@ -241,7 +244,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--seeds", type=int, default=50)
     parser.add_argument("--first", type=int, default=0, help="the first seed")
-    parser.add_argument("--hard", type=int, default=4, help="how many of each hard case")
+    parser.add_argument("--hard", type=int, default=4, help="number of tables of each hard case")
     parser.add_argument("--quick", action="store_true")
     given = parser.parse_args()
     folder = data_folder("mosd-tabletop")

@@ -1,16 +1,16 @@
-"""An embedding learnt from procedural shapes, beside the descriptors that it is learnt from: held-out kinds and meshes.
+"""Measure an embedding learnt from procedural shapes, beside its own descriptors, on held-out kinds and meshes.
 
 A kind is a family of solids (vessels, closed solids, sheets, stemmed vessels, two solids joined) with parameters drawn
 once; things of a kind vary all of them. The embedding is the linear map of a discriminant analysis (Fisher 1936) over
-the form of a view and the mean and spread of its upright descriptors: within kinds, spread is made even, by ridge
-``--ridge`` of the mean variance. Two thirds of the kinds teach it. The others, the meshes of ``DEIXIS_DATA`` and what
-is found on laid tables are named by what is nearest: by the descriptors together, by the embedding, and by all. What
-came of it, and why it is not shipped: docs/explanation/recognition.md. ``--kinds N`` (240) makes so many, eight things
-in two views each, in about eight minutes; ``--write FILE`` keeps the map (.npz).
+the form of a view and the mean and spread of its upright descriptors: the spread within kinds is whitened, with a ridge
+of ``--ridge`` times the mean variance. Two thirds of the kinds train it. The others, the meshes of ``DEIXIS_DATA`` and
+the things found on laid tables are named by the nearest category: by the descriptors together, by the embedding, and by
+all. docs/explanation/recognition.md states the results, and why the embedding is not shipped. ``--kinds N`` (240) makes
+N kinds, eight things each in two views each, in about eight minutes; ``--write FILE`` keeps the map (.npz).
 
-``--unknown`` asks instead whether more than the least distance tells the unknown: how much nearer the nearest category
-is than the second, and than the median one, and whether both descriptors have the same one nearest. Their logistic
-regression is fitted to held-out kinds, and reported on other splits of these, and on the meshes.
+``--unknown`` measures instead whether other signals than the least distance detect unknown things: how much nearer the
+nearest category is than the second and the median one, and whether both descriptors have the same nearest one. Their
+logistic regression is fitted to held-out kinds, and reported on other splits of these, and on the meshes.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ from deixis.perception.simulator.views import views_of
 
 Array = NDArray[np.float64]
 THINGS, EACH = 8, 2
-"""Things of a kind, and views of each."""
+"""Number of things of a kind, and of views of each."""
 
 DIMENSIONS = (32, 64, 96)
 SHARE = 0.4
@@ -50,7 +50,7 @@ SIDES, LEVELS = 48, 24
 
 @dataclass(frozen=True, eq=False)
 class Kind:
-    """What things of a kind have in common; lengths are relative to the width, but for ``size`` in metres.
+    """The common parameters of the things of a kind; lengths are relative to the width, except ``size`` in metres.
 
     ``knots`` are radii from foot to top, ``power`` and ``aspect`` those of the superellipse of a section, ``widths``
     and ``lifts`` of a sheet along its length. ``vary`` is the standard deviation of the logarithm of every number.
@@ -99,7 +99,7 @@ class Kind:
         )
 
     def thing(self, rng: np.random.Generator) -> Mesh:
-        """A thing of the kind, in metres, turned about the vertical at random."""
+        """Return a thing of the kind, in metres, turned about the vertical at random."""
 
         def varied(value: float | Array) -> Array:
             return np.asarray(value * np.exp(rng.normal(0, self.vary, np.shape(value))))
@@ -113,7 +113,7 @@ class Kind:
         return moved(Mesh(vertices, mesh.faces), rng.uniform(0, 2 * np.pi))
 
     def _round(self, varied, rng: np.random.Generator) -> Mesh:  # type: ignore[no-untyped-def]
-        """A closed solid, or a vessel with a wall, perhaps on a stem, with an ear or a stick."""
+        """Return a closed solid, or a vessel with a wall, sometimes on a stem, with a handle."""
         slender = float(varied(self.slender))
         radii, heights = smooth(varied(self.knots), LEVELS), np.linspace(0, 1, LEVELS) * slender
         radii *= 0.5 / radii.max()
@@ -145,7 +145,7 @@ class Kind:
         return joined(*parts)
 
     def _sheet(self, varied, rng: np.random.Generator) -> Mesh:  # type: ignore[no-untyped-def]
-        """A long flat thing, perhaps dished and with tines."""
+        """Return a long flat thing, sometimes curved and with tines."""
         rows, columns = 41, 13
         along, across = np.linspace(0, 1, rows), np.linspace(-1, 1, columns)
         half = smooth(varied(self.widths), rows) / 2 * np.sqrt(np.minimum(1, np.minimum(along, 1 - along) * 14 + 0.02))
@@ -157,7 +157,7 @@ class Kind:
         return thick_sheet(x, y, bottom, bottom + float(varied(self.thick)), cells)
 
     def _pair(self, varied, rng: np.random.Generator) -> Mesh:  # type: ignore[no-untyped-def]
-        """A solid across the end of another, as the head of a hammer is."""
+        """Return a solid across the end of another, like the head of a hammer."""
         shaft = smooth(varied(self.knots), 12) * float(varied(self.cross[0])) * 0.4
         head = smooth(varied(self.knots[::-1]), 8) * float(varied(self.cross[1])) * 0.5
         one = ringed(self._rings(shaft, np.linspace(0, 1, 12), 0.0))
@@ -178,13 +178,13 @@ class Kind:
 
 
 def smooth(knots: Array, count: int) -> Array:
-    """So many values along a smooth curve through knots at even distances."""
+    """Return ``count`` values along a smooth curve through evenly spaced knots."""
     found: Array = PchipInterpolator(np.linspace(0, 1, len(knots)), knots)(np.linspace(0, 1, count))
     return found
 
 
 def described(rows: Sequence[tuple[str, str, PointCloud]]) -> Views:
-    """Views (kind, thing, cloud), by what views of a table are compared by."""
+    """Describe views (kind, thing, cloud) by the descriptors by which views of a table are compared."""
     found = [(row, UPRIGHT.describe(row[2]), FORM.describe(row[2])) for row in rows]
     kept = [each for each in found if len(each[1]) and len(each[2])]
     kinds, things, clouds = zip(*(each[0] for each in kept), strict=True)
@@ -193,26 +193,26 @@ def described(rows: Sequence[tuple[str, str, PointCloud]]) -> Views:
 
 
 def procedural(first: int, last: int) -> Views:
-    """Views of things of kinds drawn by these seeds."""
-    rows = []
+    """Return views of things of the kinds drawn by these seeds."""
+    rows: list[tuple[str, str, PointCloud]] = []
     for number in range(first, last):
         kind = Kind.drawn(np.random.default_rng([number, 5]))
         for thing in range(THINGS):
             mesh = kind.thing(np.random.default_rng([number, thing, 9]))
-            for cloud in views_of(mesh, EACH, seed=100 * number + thing, upright=True):
-                rows.append((f"{number:05}", f"{number} {thing}", cloud))
+            clouds = views_of(mesh, EACH, seed=100 * number + thing, upright=True)
+            rows.extend((f"{number:05}", f"{number} {thing}", cloud) for cloud in clouds)
     return described(rows)
 
 
 def vectors(views: Views) -> Array:
-    """What is embedded (n, d): the form, and twice the mean and the spread of the upright descriptors."""
+    """Return the vectors to embed (n, d): the form, and twice the mean and the spread of the upright descriptors."""
     pairs = zip(views.described[FORM.name], views.described[UPRIGHT.name], strict=True)
-    whole = 39  # the numbers at the end that are the same at all keypoints
+    whole = 39  # the trailing numbers that are the same at all keypoints
     return np.stack([np.concatenate([f[0], 2 * u.mean(axis=0), 2 * u.std(axis=0)[:-whole]]) for f, u in pairs])
 
 
 def learnt(rows: Array, kinds: NDArray[np.str_], ridge: float, size: int) -> tuple[Array, Array]:
-    """Mean (d,) and map (d, size) of the discriminant analysis."""
+    """Return mean (d,) and map (d, size) of the discriminant analysis."""
     middle = rows.mean(axis=0)
     _, number = np.unique(kinds, return_inverse=True)
     means = np.stack([rows[number == each].mean(axis=0) for each in range(number.max() + 1)])
@@ -224,13 +224,13 @@ def learnt(rows: Array, kinds: NDArray[np.str_], ridge: float, size: int) -> tup
 
 
 def logarithms(matrix: NDArray[np.floating]) -> Array:
-    """Logarithms of distances (n, n) over their median, so that several can be averaged."""
+    """Return the logarithms of distances (n, n) over their median, so that several can be averaged."""
     logs: Array = np.log(np.maximum(matrix, 1e-6) / np.median(matrix))
     return logs
 
 
 def named(scores: Array, views: Views, count: int, splits: int) -> tuple[float, float]:
-    """Share of views that are nearest to their own category, and AUROC of the unknown; means over splits by things."""
+    """Return the share of views nearest to their own category, and the AUROC of the unknown; means over splits."""
     results = []
     for seed in range(splits):
         taught, asked = split(views, count, seed)
@@ -255,7 +255,7 @@ SIGNALS = {
 
 
 def signals(views: Views, count: int, seeds: range) -> tuple[Array, NDArray[np.bool_]]:
-    """Signals (n, 4) of every view that is asked for, as it is and with its category left out, and which is which."""
+    """Return the signals (n, 4) of every asked view, with and without its category, and True for those without."""
     parts = [logarithms(distances(views.described[way.name])) for way in (UPRIGHT, FORM)]
     found, unknown = [], []
     for seed in seeds:
@@ -276,7 +276,7 @@ def signals(views: Views, count: int, seeds: range) -> tuple[Array, NDArray[np.b
 
 
 def tell_unknown(held: Views, meshes: Views | None) -> None:
-    """Prints the AUROC of the unknown by each choice of signals."""
+    """Print the AUROC of the unknown by each choice of signals."""
     from sklearn.linear_model import LogisticRegression
 
     rows, unknown = signals(held, 4, range(3))

@@ -1,12 +1,11 @@
-"""What *decided* is worth where a scene is not what its description says: right and decided matches under each fault.
+"""Measure how reliable *decided* is for scenes that contradict their descriptions: decided and right matches per fault.
 
-Generated tables of 11 objects, each fully described by 22 facts; the description tells their kinds, or words alone.
-Then something is wrong: three things bear labels, said to be certain, that name other objects; the table is seen from
-the other side, or in a mirror; its things lie at each other's places; two boxes are merged into one; two things are
-missed. A match is right where the object is that very thing; either of two merged ones may be the merged box. Of words
-alone nothing tells which thing lies at which place: things at shuffled places are then right at the places that are
-described. ``bench_fits.py`` measures how often such descriptions are noticed. Intervals are Wilson's (1927), 95 per
-cent, as if matches of one table were independent.
+Generated tables of 11 objects, each fully described by 22 facts; the description states their kinds, or words alone.
+Then a fault is made: three things have labels, stated as certain, that name other objects; the table is seen from the
+other side, or in a mirror; its things are shuffled; two boxes are merged into one; two things are missed. A match is
+right if the thing is the object; either of two merged things may be the merged box. Words alone cannot identify
+shuffled things: their matches count as right at the described places. ``bench_fits.py`` measures how often such
+descriptions are noticed. Intervals are Wilson's (1927), 95 per cent, as if matches of one table were independent.
 """
 
 from __future__ import annotations
@@ -40,7 +39,7 @@ Boxes = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class FaultyScene:
-    """The boxes (n2, 2, 2) that are seen, their labels, and the boxes that each object may rightly be."""
+    """The perceived boxes (n2, 2, 2), their labels, and the boxes that are right for each object."""
 
     boxes: Boxes
     truth: tuple[frozenset[int], ...]
@@ -63,7 +62,7 @@ def labels_wrong(table: GeneratedTable, rng: np.random.Generator, certain: int =
 
 
 def other_side(table: GeneratedTable, rng: np.random.Generator) -> FaultyScene:
-    """Return the table as somebody opposite sees it."""
+    """Return the table as seen from the opposite side."""
     return _scene(turned(table.boxes, math.pi), table.truth.tolist())
 
 
@@ -73,12 +72,12 @@ def mirrored(table: GeneratedTable, rng: np.random.Generator) -> FaultyScene:
 
 
 def shuffled(table: GeneratedTable, rng: np.random.Generator) -> FaultyScene:
-    """Return the things of the table at each other's places."""
+    """Return the table with its things at each other's places."""
     return _scene(moved_to(table.boxes, rng.permutation(len(table.boxes))), table.truth.tolist())
 
 
 def by_place(table: GeneratedTable, seen: FaultyScene) -> FaultyScene:
-    """Return the same scene where an object is whatever lies at its place."""
+    """Return the scene with each object redefined as the thing at its place."""
     apart = np.linalg.norm(table.boxes.mean(axis=1)[:, None] - seen.boxes.mean(axis=1)[None], axis=2)
     return _scene(seen.boxes, apart.argmin(axis=1)[table.truth].tolist())
 
@@ -132,7 +131,7 @@ def _scene(boxes: Boxes, truth: list[int], labels: list[Label | None] | None = N
 
 
 def grounded(table: GeneratedTable, seen: FaultyScene, kinds: bool) -> Grounding:
-    """Return the answer of the engine that is the default."""
+    """Return the answer of the default engine."""
     ontology = default_ontology()
     scene = scene_relations([f"o{p:04}" for p in range(len(seen.boxes))], seen.boxes, ontology.relations)
     description = table.description(kinds=kinds)
@@ -141,13 +140,13 @@ def grounded(table: GeneratedTable, seen: FaultyScene, kinds: bool) -> Grounding
 
 
 def decided_and_right(found: Grounding, seen: FaultyScene) -> tuple[int, int]:
-    """Return how many matches are decided, and how many of those are right."""
+    """Return the number of decided matches, and of right ones among them."""
     decided = {name: int(match.perceived[1:]) for name, match in found.matches.items() if match.decided}
     return len(decided), sum(p in seen.truth[int(name[1:])] for name, p in decided.items())
 
 
 def interval(right: int, decided: int) -> str:
-    """Return the share of right ones, and between what it lies with 95 per cent."""
+    """Return the right of the decided matches, with the 95 per cent interval of their share."""
     if not decided:
         return "none decided"
     told = binomtest(right, decided).proportion_ci(method="wilson")
@@ -155,11 +154,11 @@ def interval(right: int, decided: int) -> str:
 
 
 def print_costs(seed: int, repeats: int = 5) -> None:
-    """Print what a grounding takes in a warm process, with all sides and with the scene as it stands alone."""
+    """Print the processor time of a grounding in a warm process, with all sides and with one."""
     ontology = default_ontology()
     for objects, facts, told in ((7, 12, "labels"), (7, 12, "kinds"), (12, 24, "labels"), (12, 24, "kinds")):
         taken = np.zeros((repeats, 2))
-        for number in range(-1, repeats):  # the first one is to warm up
+        for number in range(-1, repeats):  # the first one warms up
             table = generate(objects, facts / objects, 0.0, seed=1000 * seed + number + 1)
             labels: list[Label | None] = [None] * len(table.boxes)
             for i, p in enumerate(table.truth.tolist() if told == "labels" else []):
@@ -171,22 +170,20 @@ def print_costs(seed: int, repeats: int = 5) -> None:
                 ground(evidence, engine_named("exact", sides=sides), Deadline.after(30.0))
                 taken[max(number, 0), place] = time.process_time() - started
         all_sides, one = 1000 * np.median(taken, axis=0)
-        print(
-            f"{objects} objects, {facts} facts, {told}: {all_sides:.0f} ms of processor, {one:.0f} without other sides"
-        )
+        print(f"{objects} objects, {facts} facts, {told}: {all_sides:.0f} processor ms, {one:.0f} with one side")
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--tables", type=int, default=36, help="tables for each fault")
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--cost", action="store_true", help="print only what groundings take, in processor time")
+    parser.add_argument("--cost", action="store_true", help="print only the processor time of groundings")
     options = parser.parse_args()
     if options.cost:
         print_costs(options.seed)
         return
     print(
-        f"{options.tables} tables of {OBJECTS} objects, {FACTS} facts: right of decided, of {OBJECTS} objects a table"
+        f"{options.tables} tables of {OBJECTS} objects, {FACTS} facts: right of decided, of {OBJECTS} objects per table"
     )
     print(f"{'fault':<40}{'kinds':<44}words alone")
     for name, fault in FAULTS.items():

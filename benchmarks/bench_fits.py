@@ -1,12 +1,12 @@
-"""Whether a description is of a scene: fits the powers that are shipped, and measures how well wrong ones are noticed.
+"""Measure how well wrong descriptions of a scene are noticed, and fit the shipped powers.
 
 Right pairs are generated tables and photographs (``$DEIXIS_DATA/vrd``) with their own descriptions; wrong ones are
-those tables with their things at each other's places, and photographs with another's description. Prints the powers of
+tables with shuffled things, and photographs with another's description. Prints the powers of
 :mod:`deixis.reasoning.grounding.hypotheses` as they are fitted (:mod:`deixis.reasoning.grounding.fitting.fits`), and
-the likeliest ones on tables and on photographs alone. Then, on other tables than those: the share of wrong
-descriptions noticed at each share of right ones accused, for photographs also in ten folds none of which is judged by
-what it taught; what is decided of photographs, and right, by their own descriptions and by others'; and how often
-``fits`` is below a half on tables of 12 objects whose kinds are known, 22 facts and more.
+the likeliest powers on tables and on photographs alone. Then, on other tables: the share of wrong descriptions noticed
+at each rate of false alarms, for photographs also in ten-fold cross-validation; the decided and the right matches of
+photographs, with their own descriptions and with others'; and how often ``fits`` is below a half on tables of 12
+objects whose kinds are known, with 22 facts and more.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ DRAWS = 200
 def verdict(
     description: RelationGraph, boxes: Boxes, metric: bool = True, sides: tuple[Side, ...] = AS_IT_STANDS
 ) -> Verdict:
-    """Return what the default engine makes of a description beside a scene."""
+    """Return the default engine's verdict on a description beside a scene."""
     ontology = default_ontology()
     scene = scene_relations([f"o{p:04}" for p in range(len(boxes))], boxes, ontology.relations)
     unlabelled = [None] * len(boxes)
@@ -66,9 +66,9 @@ def verdict(
 
 
 def displaced(table: GeneratedTable, rng: np.random.Generator) -> Boxes:
-    """Return the boxes of a table whose things lie at each other's places, none where one of its kind lay.
+    """Return the boxes of a table with shuffled things, none where one of its kind lay.
 
-    Of so many of a kind that this cannot be, as few as ``DRAWS`` draws find.
+    If a kind is too frequent for that, return the draw of ``DRAWS`` with the fewest exceptions.
     """
     kinds = np.empty(len(table.boxes), dtype=np.int64)
     kinds[:] = -1 - np.arange(len(table.boxes))
@@ -97,7 +97,7 @@ def table_pairs(count: int, seed: int) -> Iterator[tuple[FitEvidence, bool]]:
 
 @dataclass(frozen=True, eq=False)
 class PhotographPair:
-    """A photograph, what is made of it with its own description, and with that of another."""
+    """A photograph, another one, and the verdicts on its scene with either description."""
 
     own: Photograph
     other: Photograph
@@ -105,7 +105,7 @@ class PhotographPair:
 
     @property
     def evidence(self) -> tuple[FitEvidence, FitEvidence]:
-        """What tells whether the one and the other description are of the photograph."""
+        """The evidence on whether its own and the other description are of the photograph."""
         return self.found[0].evidence, self.found[1].evidence
 
 
@@ -128,7 +128,7 @@ def photograph_pairs() -> list[PhotographPair]:
 
 
 def decided_things(found: Verdict) -> dict[int, int]:
-    """Return which object is decided to be which thing."""
+    """Return the decided matches, from object to thing."""
     probable = found.posterior
     likeliest = probable.marginals[:, :-1].argmax(axis=1)
     chosen = is_decided(probable.marginals[np.arange(len(likeliest)), likeliest], probable.errors)
@@ -136,7 +136,7 @@ def decided_things(found: Verdict) -> dict[int, int]:
 
 
 def curve(right: NDArray[np.float64], wrong: NDArray[np.float64]) -> str:
-    """Return the share of wrong descriptions noticed where so many right ones are accused, and the area."""
+    """Return the share of wrong descriptions noticed at each rate of false alarms, and the area under the curve."""
     told = [f"{(wrong < np.quantile(right, share)).mean():.2f} at {share:g}" for share in ACCUSED]
     area = (right[:, None] > wrong).mean() + (right[:, None] == wrong).mean() / 2
     return f"{', '.join(told)}; area {area:.3f}"
@@ -157,7 +157,7 @@ def main() -> None:
 
 
 def _print_powers(tables: list[tuple[FitEvidence, bool]], images: list[PhotographPair], seed: int) -> None:
-    """Print the powers that are shipped and those that are fitted; pairs of a table are drawn again together."""
+    """Print the shipped and the fitted powers; pairs of a table are resampled together."""
     print(f"shipped: FACTS_POWER {FACTS_POWER}, CHANCE_SHARE {CHANCE_SHARE}, KINDS_POWER {KINDS_POWER}")
     told, right = [one for one, _ in tables], np.array([right for _, right in tables])
     print(f"likeliest powers on tables alone: {_listed(likeliest_powers(told, right))}")
@@ -203,7 +203,7 @@ def _print_curves(tables: list[tuple[FitEvidence, bool]], images: list[Photograp
 
 
 def _print_decided(images: list[PhotographPair]) -> None:
-    """Print what is decided of photographs described by their own descriptions, and by others'."""
+    """Print the decided matches of photographs with their own descriptions, and with others'."""
     described, decided, right = sum(len(pair.own.boxes) for pair in images), 0, 0
     others, of_kind, touched, unfit = 0, 0, 0, 0
     for pair in images:
@@ -225,7 +225,7 @@ def _print_decided(images: list[PhotographPair]) -> None:
 
 
 def _print_rates(count: int, seed: int) -> None:
-    """Print how often ``fits`` is below a half on full descriptions of 12 objects whose kinds are known."""
+    """Print the share of ``fits`` below a half on full descriptions of 12 objects whose kinds are known."""
     print("fits below 0.5, 12 objects, kinds known")
     for facts in (22, 30):
         rates = np.zeros(3)

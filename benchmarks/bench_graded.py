@@ -1,15 +1,15 @@
-"""Graded meaning on what people wrote down about photographs (those of ``bench_vrd.py``), and on generated tables.
+"""Measure graded meaning on described photographs (those of ``bench_vrd.py``) and on generated tables.
 
 Every image's facts become log-likelihood ratios (:mod:`deixis.reasoning.grounding.evidence.facts`); the one-to-one map
-with the largest sum is found exactly. Share of objects named right, mean over images, each a mean over random node
-orders. ``shipped`` words and sizes know nothing of these images. ``learned`` words, and sizes of what people call
-things, are fitted by cross-validation over images: the test fold is never seen. ``--halves`` adds the shares of two
-fixed halves of the images, development and confirmation; the last choices of form, and the strengths of the priors of
-what is learned, were made by looking at the first alone.
+with the largest sum is found exactly. Prints the share of objects named right, mean over images, each a mean over
+random node orders. ``shipped`` words and sizes do not depend on these images. ``learned`` words, and sizes by the names
+in the descriptions, are fitted by cross-validation over images: the test fold is never seen. ``--halves`` adds the
+shares of two fixed halves of the images, development and confirmation; the last choices of form, and the strengths of
+the priors of learned models, were made on the first half alone.
 
-``--tables N`` grounds N generated tables of 12 objects a setting instead: the share right of the best map, beside
-the exact Bayes limit of who knows the words only and of who knows as well how pairs are drawn; the expected calibration
-error of the probabilities of matches; and the precision of the objects that are at least 0.95 probable.
+``--tables N`` grounds N generated tables of 12 objects per setting instead: the share right of the best map, beside the
+exact Bayes limit given the words only and given also how pairs are drawn; the expected calibration error of the
+probabilities of matches; and the precision of the objects that are at least 0.95 probable.
 """
 
 from __future__ import annotations
@@ -38,13 +38,13 @@ from deixis.reasoning.grounding.matching.posterior import posterior
 from deixis.reasoning.grounding.matching.problem import Problem
 
 HALVES_SEED = 2016
-SETTINGS = ((1.0, 0.0), (1.5, 0.0), (2.5, 0.0), (1.0, 0.1), (2.5, 0.1), (2.5, 0.2))  # facts an object, share off
+SETTINGS = ((1.0, 0.0), (1.5, 0.0), (2.5, 0.0), (1.0, 0.1), (2.5, 0.1), (2.5, 0.2))  # facts per object, share off
 
 
 def share_right(
     facts: FactTables, alone: NDArray[np.float64], count: int, rng: np.random.Generator, orders: int
 ) -> float:
-    """The share named right over random orders of both sides; the i-th object is the i-th box."""
+    """Return the share named right over random orders of both sides; the i-th object is the i-th box."""
     shares = []
     for _ in range(orders):
         rows, columns = rng.permutation(count), rng.permutation(count)
@@ -62,7 +62,7 @@ def graded_shares(
     saying: bool = True,
     literal: float | None = None,
 ) -> NDArray[np.float64]:
-    """The share named right of each image, by a meaning of its own."""
+    """Return the share named right in each image, each with its own meaning."""
     rng, sizes, shares = np.random.default_rng(1), default_ontology().sizes, []
     for (said, boxes), meaning in zip(images, meanings, strict=True):
         alone = meaning.weights.sizes * size_evidence(classes(said), boxes, sizes, meaning.sizes, metric=False)
@@ -73,7 +73,7 @@ def graded_shares(
 
 
 def crisp_shares(images: Sequence[Photograph], orders: int) -> NDArray[np.float64]:
-    """Degrees 1, 0.5 and 0: the special case."""
+    """Return the shares with degrees 1, 0.5 and 0, the crisp special case."""
     rng, shares = np.random.default_rng(1), []
     for said, boxes in images:
         names = scene_relations([f"o{i:03}" for i in range(len(boxes))], boxes, said.vocabulary).names
@@ -94,8 +94,8 @@ def report(name: str, shares: NDArray[np.float64], started: float, halves: bool)
 
 
 def on_tables(count: int, first: int) -> None:
-    """Shares right and calibration on generated tables of 12 objects, seeds ``first`` and on."""
-    print(f"{count} tables of 12 objects a setting, seeds {first} to {first + count - 1}")
+    """Print shares right and calibration on generated tables of 12 objects, seeds ``first`` and on."""
+    print(f"{count} tables of 12 objects per setting, seeds {first} to {first + count - 1}")
     for facts, off in SETTINGS:
         right, probability, hits, limits = [], [], [], []
         for seed in range(first, first + count):
@@ -110,7 +110,7 @@ def on_tables(count: int, first: int) -> None:
         error, sure, precision = calibrated(np.concatenate(probability), np.concatenate(hits))
         partly = "" if all(one.complete for one in limits) else " (not all maps listed)"
         print(
-            f"{facts:g} facts an object, {off:.0%} off: best map {np.mean(right):.3f} "
+            f"{facts:g} facts per object, {off:.0%} off: best map {np.mean(right):.3f} "
             f"(standard error {np.std(right, ddof=1) / np.sqrt(count):.3f}); limit {words:.3f}, with pairs {pairs:.3f}"
             f"{partly}; calibration error {error:.3f}; {sure} of {12 * count} sure, precision {precision:.3f}",
             flush=True,
@@ -118,7 +118,7 @@ def on_tables(count: int, first: int) -> None:
 
 
 def calibrated(probability: NDArray[np.float64], hits: NDArray[np.bool_]) -> tuple[float, int, float]:
-    """Expected calibration error in ten bins; how many matches are 0.95 probable, and the share right of these."""
+    """Return the calibration error in ten bins, the number of matches at 0.95 or more, and their share right."""
     bins = np.minimum((10 * probability).astype(int), 9)
     off = sum(abs(probability[bins == b].sum() - hits[bins == b].sum()) for b in range(10))
     sure = probability >= 0.95
@@ -160,13 +160,13 @@ def on_photographs(options: argparse.Namespace) -> None:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--orders", type=int, default=5, help="random node orders an image")
+    parser.add_argument("--orders", type=int, default=5, help="random node orders per image")
     parser.add_argument("--folds", type=int, default=10)
     parser.add_argument("--seeds", default="0,1", help="seeds of the split into folds")
-    parser.add_argument("--strength", type=float, default=3.0, help="of the prior of learned models")
+    parser.add_argument("--strength", type=float, default=3.0, help="strength of the prior of learned models")
     parser.add_argument("--word-contrast", type=float, default=0.0)
     parser.add_argument("--halves", action="store_true", help="also the two halves of the images")
-    parser.add_argument("--tables", type=int, default=0, help="generated tables a setting, instead of photographs")
+    parser.add_argument("--tables", type=int, default=0, help="generated tables per setting, instead of photographs")
     parser.add_argument("--first-table", type=int, default=9000, help="the first table's seed")
     options = parser.parse_args()
     if options.tables > 0:

@@ -1,12 +1,12 @@
-"""What learning, checking, recognising, asking and forgetting take when few lessons are known, and when many are.
+"""Time learning, checking, recognising, asking and forgetting with few and with many known lessons.
 
-Lessons are generated: seven things of a formal place setting, some under words that the ontology does not know, each
-table laid a little differently. One warm process learns them one by one. At 10, 100 and 1,000 it measures further
-lessons, the part of learning behind the grounding, and the rest (medians of ``--runs``, 9). Then it learns 10,000 as a
-batch into another memory, says what that takes a lesson, and measures again. At the end it forgets what the first
-memory knows but for ten lessons, to see that the disk is given back. With ``--words`` it also fits relation words to
-all lessons at 10, 100 and 1,000 (``learn-relation``), and forgets lessons that they were fitted to. ``--quick`` stops
-at 20 lessons and a batch of 20.
+Lessons are generated: seven things of a formal place setting, some under words that the ontology lacks, each table laid
+a little differently. One warm process learns them one by one. At 10, 100 and 1,000 it measures further lessons, the
+part of learning after the grounding, and the other tasks (medians of ``--runs``, 9). Then it learns 10,000 as a batch
+into another memory, prints the time per lesson, and measures again. At the end it forgets all lessons of the first
+memory except ten, to check that the disk space is released. With ``--words`` it also fits relation words to all lessons
+at 10, 100 and 1,000 (``learn-relation``), and forgets lessons used in the fit. ``--quick`` stops at 20 lessons and a
+batch of 20.
 """
 
 from __future__ import annotations
@@ -34,13 +34,13 @@ from deixis.workflows.read import read_script
 
 THINGS = 7
 UNKNOWN = [first + last for first in ("zor", "mil", "tef", "gau", "pim") for last in ("ble", "cket", "dril", "nop")]
-"""Words that the ontology does not know."""
+"""Words that the ontology does not contain."""
 
 Times = dict[str, list[float]]
 
 
 def generated(number: int) -> tuple[Script, Scene]:
-    """The script and the labelled scene of one table; the same for the same number."""
+    """Return the script and the labelled scene of one table, which depend on its number alone."""
     rng, relations = random.Random(number), default_ontology().relations
     whole = formal_setting(number, 0.01)
     things = rng.sample(whole.objects, THINGS)
@@ -64,7 +64,7 @@ def timed(times: Times, what: str) -> Iterator[None]:
 
 
 def measure(session: Session, first: int, runs: int) -> Times:
-    """The times of further lessons, which are forgotten again, and of what is asked between."""
+    """Return the times of further lessons, which are forgotten again, and of the questions between them."""
     times: Times = defaultdict(list)
     answer = learning.answer  # type: ignore[attr-defined]
     for number in range(first, first + runs):
@@ -97,7 +97,7 @@ def measure(session: Session, first: int, runs: int) -> Times:
 
 
 def measure_words(session: Session, known: int, runs: int) -> Times:
-    """The times of fitting words to all lessons, and of forgetting lessons of the fit, which are learned again."""
+    """Return the times of fitting words to all lessons, and of forgetting lessons of the fit (learned again)."""
     times: Times = defaultdict(list)
     with timed(times, "fit words"):
         session.learn_relations()
@@ -111,7 +111,7 @@ def measure_words(session: Session, known: int, runs: int) -> Times:
 
 
 def told(lessons: int, times: Times, base: Times | None) -> str:
-    """One line: medians in milliseconds, and how many times what they were with the fewest lessons."""
+    """Return one line: medians in milliseconds, and their ratios to those with the fewest lessons."""
     parts = []
     for what, taken in times.items():
         median = statistics.median(taken)
@@ -121,7 +121,7 @@ def told(lessons: int, times: Times, base: Times | None) -> str:
 
 
 def singly(path: Path, numbers: list[int], runs: int, words: bool) -> Times:
-    """Learns one by one up to each number of lessons, and measures there; returns the times with the fewest."""
+    """Learn one by one up to each number of lessons, and measure there; return the times with the fewest."""
     base: Times | None = None
     with Session(path) as session:
         measure(session, 10_000_000, 2)  # everything is compiled and read once
@@ -141,7 +141,7 @@ def singly(path: Path, numbers: list[int], runs: int, words: bool) -> Times:
 
 
 def as_batch(path: Path, number: int, runs: int, base: Times) -> None:
-    """Learns a batch in one call, and measures there."""
+    """Learn a batch in one call, and measure there."""
     examples = [generated(new) for new in range(number)]
     keep, kept = learning.keep_lessons, []  # type: ignore[attr-defined]
 
@@ -162,7 +162,7 @@ def as_batch(path: Path, number: int, runs: int, base: Times) -> None:
         behind, busy = (value / number * 1e3 for value in kept[0])
         most = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6
         print(
-            f"a batch of {number:,}: {taken:.1f} s, {taken / number * 1e3:.1f} ms a lesson, of which behind the "
+            f"a batch of {number:,}: {taken:.1f} s, {taken / number * 1e3:.1f} ms per lesson, of which after the "
             f"grounding {behind:.1f} ms ({busy:.1f} ms of processor time); {most:.2f} GB of memory at the most",
             flush=True,
         )
@@ -171,7 +171,7 @@ def as_batch(path: Path, number: int, runs: int, base: Times) -> None:
 
 
 def forgetting(path: Path, left: int) -> None:
-    """Forgets all lessons but some, and says what is on the disk then."""
+    """Forget all lessons except ``left``, and print the size on disk."""
     before = size(path)
     with Session(path) as session:
         lessons = session.memory().lessons()[left:]

@@ -1,8 +1,8 @@
-"""What follows from order facts, beside a store's property path, graph libraries and description-logic reasoners.
+"""Time inference from order facts, beside a store's property path, graph libraries and description-logic reasoners.
 
-Every peer gets its graph or store ready made and counts the pairs of which *left* holds. Ours begins with the facts as
-arrays and ends with every relation's pairs counted and the graph built in which explanations are searched; then one
-explanation of the longest kind is timed by itself.
+Every peer gets its graph or store ready made and counts the pairs of *left*. Ours begins with the facts as arrays and
+ends with every relation's pairs counted and the graph for explanations built; then one explanation of the longest kind
+is timed by itself.
 """
 
 from __future__ import annotations
@@ -28,12 +28,12 @@ Pairs = NDArray[np.int32]
 
 
 def chain(n: int) -> tuple[int, Pairs]:
-    """n objects in a row."""
+    """Return a chain of ``n`` objects in a row."""
     return n, np.stack([np.arange(n - 1), np.arange(1, n)], axis=1).astype(np.int32)
 
 
 def tables(facts: int, size: int) -> tuple[int, Pairs]:
-    """Tables of ``size`` objects in a random order, each said to be left of another that is."""
+    """Return tables of ``size`` objects in a random order, each stated to be left of another one."""
     rng = np.random.default_rng(3)
     n = facts // size * size
     rows = []
@@ -60,7 +60,7 @@ def graph_of(n: int, pairs: Pairs) -> RelationGraph:
 
 
 def ours(graph: RelationGraph) -> int:
-    """The number of pairs of *left*; all relations are counted, and the graph for explanations is built."""
+    """Return the number of pairs of *left*, after counting all relations and building the graph for explanations."""
     implied = Implications(graph)
     counts = implied.counts()
     implied.prepare_explanations()
@@ -101,7 +101,7 @@ def compare(title: str, case: tuple[int, Pairs], peers: list[str], runs: int) ->
     made = {"pyoxigraph property path": oxigraph, "networkx transitive_closure_dag": networkx, "rdflib": rdflib}
     jobs = [(name, made[name](pairs)) for name in peers]
     expected = ours(graph)
-    assert all(job() == expected for _, job in jobs), "the peers count other pairs"
+    assert all(job() == expected for _, job in jobs), "the peers count different pairs"
     times = medians(lambda: ours(graph), *(job for _, job in jobs), runs=runs)
     print(f"{title}: {len(pairs):,} facts, {expected:,} pairs of left")
     print(f"    deixis {1e3 * times[0]:.2f} ms, one explanation {1e3 * explanation(graph):.2f} ms")
@@ -110,7 +110,7 @@ def compare(title: str, case: tuple[int, Pairs], peers: list[str], runs: int) ->
 
 
 def explanation(graph: RelationGraph) -> float:
-    """Seconds for the derivation of a fact between the first object and what is farthest from it."""
+    """Return the seconds for the derivation of a fact between the first object and the farthest one."""
     implied = Implications(graph)
     implied.prepare_explanations()
     pairs = implied.pairs(LEFT)
@@ -131,7 +131,7 @@ def long_chain(n: int) -> None:
 
 
 def to_triples(n: int) -> None:
-    """A chain to N-Triples, beside HermiT and Pellet on the same chain as a transitive property."""
+    """Time a chain to N-Triples, beside HermiT and Pellet on the same chain as a transitive property."""
     from deixis.reasoning.description_logic.reasoners import Reasoner, classify
 
     graph = graph_of(*chain(n))

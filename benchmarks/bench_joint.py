@@ -1,10 +1,9 @@
-"""Joint solving of networks in several calculi: the share decided, and in how many seconds of processor time.
+"""Measure joint solving of networks in several calculi: the share decided, and the processor time.
 
-Satisfiable networks are what random boxes bear, in each calculus for a share of the pairs, every other relation with
-atoms beside the true one. What is called consistent is verified again. *Closing alone* is the share that is decided
-without looking for boxes. Two kinds of other networks follow: contradictory ones, in which one pair is given what
-joint closure excludes for it, and changed ones, in which some relations are replaced at random; these may be
-satisfiable or not.
+Satisfiable networks hold the relations of random boxes, in each calculus for a share of the pairs, every other relation
+with atoms beside the true one. Consistent verdicts are verified again. *Closing alone* is the share decided without a
+search for boxes. Two other kinds of networks follow: contradictory ones, in which one pair gets a relation that joint
+closure excludes, and changed ones, in which some relations are replaced at random; these may be satisfiable or not.
 """
 
 from __future__ import annotations
@@ -21,7 +20,7 @@ from numpy.typing import NDArray
 from deixis.deadline import Deadline
 from deixis.reasoning.qualitative.calculi.bridges import links_between
 from deixis.reasoning.qualitative.calculi.registry import calculus
-from deixis.reasoning.qualitative.networks.boxes import bears
+from deixis.reasoning.qualitative.networks.boxes import satisfies
 from deixis.reasoning.qualitative.networks.combination import close_jointly, solve_jointly
 from deixis.reasoning.qualitative.networks.network import Constraint, Network
 from deixis.reasoning.qualitative.relate import relate
@@ -39,13 +38,13 @@ COMBINATIONS = (
     "direction-distance+cd+ra",
     "ten+ra+cd+distance",
 )
-SHARES = (1.0, 0.6, 0.3, 0.15)  # of the pairs that something is said of, in each calculus
+SHARES = (1.0, 0.6, 0.3, 0.15)  # share of the pairs with a relation, in each calculus
 WIDTHS = (0.0, 0.15, 0.4)  # chances of atoms beside the true one
-CHANGED = 0.15  # of the relations
+CHANGED = 0.15  # share of the relations
 
 
 def random_boxes(count: int, rng: np.random.Generator) -> NDArray[np.float64]:
-    """Boxes anywhere, or on a grid, where they share sides and centres; shape (count, 2, 2)."""
+    """Return boxes anywhere, or on a grid, where they share sides and centres; shape (count, 2, 2)."""
     spread = rng.choice([1.0, 3.0, 6.0])
     centres, halves = rng.uniform(0, spread, (count, 2)), rng.uniform(0.1, 0.4 * spread, (count, 2))
     if rng.random() < 0.5:
@@ -55,7 +54,7 @@ def random_boxes(count: int, rng: np.random.Generator) -> NDArray[np.float64]:
 
 
 def borne(names: str, count: int, rng: np.random.Generator) -> list[Network]:
-    """Return what random boxes bear in some calculi."""
+    """Return the relations of random boxes in some calculi."""
     boxes, share, width = random_boxes(count, rng), rng.choice(SHARES), rng.choice(WIDTHS)
     found = []
     for name in names.split("+"):
@@ -68,7 +67,7 @@ def borne(names: str, count: int, rng: np.random.Generator) -> list[Network]:
 
 
 def contradictory(nets: list[Network], rng: np.random.Generator) -> list[Network] | None:
-    """Return the networks with what joint closure excludes of one pair; None where it excludes nothing new."""
+    """Return the networks with an excluded relation on one pair; None if joint closure excludes nothing new."""
     closed = close_jointly(nets, links_between([net.calculus for net in nets]))
     told = [{(c.first, c.second) for c in net.constraints} for net in nets]
     pairs = [
@@ -109,7 +108,7 @@ class Tally:
         started = time.process_time()
         found = solve_jointly(nets, links, Deadline.after(limit))
         self.seconds.append(time.process_time() - started)
-        assert found.boxes is None or all(bears(found.boxes, net) for net in nets)
+        assert found.boxes is None or all(satisfies(found.boxes, net) for net in nets)
         self.verdicts[str(found.verdict)] += 1
         self.closing += found.verdict == "consistent" and found.boxes is None
 

@@ -1,10 +1,10 @@
-"""Writes over both stores, killed: afterwards all of a write is there, or nothing of it.
+"""Kill writes over both stores, and check that each write is afterwards either complete or absent.
 
 Every write (learn, learn a batch, teach, forget a lesson or a category, rename, merge, import concepts and views) is
-killed by SIGKILL, in ``--kills`` (300) children: half of them at a random step, before or after a call that changes
-what is on the disk, and half at a random moment. ``--every-step`` kills each write once at each of its steps instead.
-After each kill the memory is opened again: ``verify`` must find nothing, also of what is inferred, and all lessons,
-views and inferred triples must be those of before the write or of after it. Exits 1 where they are not.
+killed by SIGKILL, in ``--kills`` (300) children: half of them at a random step, before or after a call that changes the
+disk, and half at a random moment. ``--every-step`` kills each write once at each of its steps instead. After each kill
+the memory is opened again: ``verify`` must find nothing, also in the inferred triples, and all lessons, views and
+inferred triples must be those before the write or those after it. Exits 1 otherwise.
 """
 
 from __future__ import annotations
@@ -41,14 +41,14 @@ class Writes:
             self.steps[write], self.right[write] = len(steps), (before, state(self.memory))
 
     def begin(self, write: str) -> None:
-        """Put the memory that a write begins with in its place."""
+        """Restore the memory that a write begins with."""
         shutil.rmtree(self.memory, ignore_errors=True)
         begin = self.example.begin(write)
         if begin is not None:
             shutil.copytree(begin, self.memory)
 
     def outcome(self, write: str, step: int = 0, after: float | None = None) -> str:
-        """Kill a write, and say what is there then: before, after, or what is wrong."""
+        """Kill a write, and return the state of the memory: before, after, or the error."""
         self.begin(write)
         self.kills.run(self.memory, self.example.writes()[write], step, after)
         wrong = findings(self.memory)

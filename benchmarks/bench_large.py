@@ -1,20 +1,19 @@
-"""Large scenes: how well the marginals are calibrated, and whether limits of time and memory are kept.
+"""Measure large scenes: the calibration of the marginals, and whether limits of time and memory are kept.
 
-Calibration: generated tables (10 % of the facts off, one thing in ten missing and one in ten extra) of three layouts,
-kinds known or words alone, of seeds on which nothing was adjusted (``--seeds FIRST`` begins at another one). For each
-size it prints the share of objects that are what is likeliest, the mean probability of that, and the calibration error
-(ten bins), of all objects and then of those that are there; the share of objects whose match is decided, and how many
-of those are right; then what the marginals of a run many times as long differ by, at 30 objects, on average and at
-most; and seconds by the clock and of the processor, beside the limit. ``--limit SECONDS`` is the time limit (default
-10).
+Calibration: generated tables (10 % of the facts wrong, one thing in ten missing and one in ten extra) of three layouts,
+with kinds known or words alone, of seeds on which nothing was tuned (``--seeds FIRST`` begins at another one). For each
+size it prints the share of objects whose likeliest thing is right, the mean probability of that thing, and the
+calibration error (ten bins), of all objects and then of those present; the share of objects whose match is decided, and
+how many of those are right; then the mean and the greatest difference from the marginals of a run many times as long,
+at 30 objects; and seconds by the clock and of the processor, beside the limit. ``--limit SECONDS`` is the time limit
+(default 10).
 
-``--only TEXT`` measures the arms whose line of ARMS has the text, ``--no-limits`` nothing but calibration.
+``--only TEXT`` measures the arms whose line of ARMS contains the text, ``--no-limits`` calibration only.
 
-Limits: ten objects beside 20,000 labelled things, of which some bear a label that nothing else bears. Then whole
-scripts and scenes of 1,000 to 20,000 objects. All are read from files, each in a process of its own: seconds by the
-clock and of the processor, the peak of the memory beyond that of the loaded program (on Linux), and what came of it.
-On a busy machine compare the clock's seconds with the processor's: a time limit is one of the clock. ``--quick`` takes
-a few of both.
+Limits: ten objects beside 20,000 labelled things, some of which have a unique label. Then whole scripts and scenes of
+1,000 to 20,000 objects. All are read from files, each in a process of its own: seconds by the clock and of the
+processor, the peak memory beyond that of the loaded program (on Linux), and the result. On a busy machine compare the
+clock's seconds with the processor's: a time limit is one of the clock. ``--quick`` takes a few of both.
 """
 
 from __future__ import annotations
@@ -43,9 +42,9 @@ from deixis.reasoning.grounding.matching.problem import UNMATCHED, Problem
 from deixis.reasoning.grounding.options import is_decided
 
 HELD_OUT = 100
-"""Seed of the first table: the settings of the chains were chosen on tables of the seeds before it."""
+"""Seed of the first table; the settings of the chains were chosen on tables of smaller seeds."""
 
-ARMS = [  # layout, kinds known, objects, facts an object, tables
+ARMS = [  # layout, kinds known, objects, facts per object, tables
     ("seats", True, 30, 2.5, 8),
     ("seats", True, 100, 2.5, 8),
     ("seats", True, 300, 2.5, 4),
@@ -63,11 +62,11 @@ ARMS = [  # layout, kinds known, objects, facts an object, tables
     ("rows", True, 1000, 8.0, 2),
 ]
 QUICK_ARMS = [("seats", True, 30, 2.5, 2), ("clusters", True, 100, 2.5, 1)]
-LONGER = 4.0  # times as many proposals for the reference at REFERENCE_OBJECTS
+LONGER = 4.0  # factor of proposals for the reference at REFERENCE_OBJECTS
 REFERENCE_OBJECTS = 30
-SHORT_LIMIT = 60.0  # seconds: enough on a busy machine, too
+SHORT_LIMIT = 60.0  # seconds: enough even on a busy machine
 RARE, QUICK_RARE = (0, 2, 6), (6,)
-"""Of ten described objects, how many bear a label that nothing else in the scene bears."""
+"""Numbers of the ten described objects whose label is unique in the scene."""
 
 RARE_LABELS = ("candle", "teapot", "bowl", "saucer", "jug", "mug")
 LIMITS = [(1000, 2.0), (1000, 10.0), (2000, 3.0), (5000, 5.0), (20000, 5.0), (20000, 30.0)]  # things, seconds
@@ -98,7 +97,7 @@ print(f"{seconds:.2f} {time.process_time() - worked:.2f} {peak() - before:.0f} {
 def main() -> None:
     quick = "--quick" in sys.argv
     limit = float(_option("--limit", 10.0))
-    posterior(_case(12, 2.5, 0)[0], Deadline.after(2.0))  # compiled
+    posterior(_case(12, 2.5, 0)[0], Deadline.after(2.0))  # compile
     first = int(_option("--seeds", HELD_OUT))
     columns = "right  said   calibration  right  said   calibration  decided  of which right  off, mean and most  clock"
     print(f"layout    kinds  objects  facts  {columns}   processor")
@@ -107,24 +106,24 @@ def main() -> None:
             _calibration(*arm, limit, first)
     if "--no-limits" in sys.argv:
         return
-    print("\nobjects  labels nobody else has  things  limit   clock   processor  memory  what came of it")
+    print("\nobjects  unique labels         things  limit   clock   processor  memory  result")
     for rare in QUICK_RARE if quick else RARE:
         _short(rare, 500 if quick else 20_000, SHORT_LIMIT)
-    print("\nthings  limit   clock   processor  memory  what came of it")
+    print("\nthings  limit   clock   processor  memory  result")
     for things, seconds in QUICK_LIMITS if quick else LIMITS:
         _limits(things, seconds)
     print(f"\npeak memory of this process {resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20:.2f} GB")
 
 
 def _option(name: str, default: float | str) -> str:
-    """Return what follows an option on the command line, as text."""
+    """Return the value of an option on the command line, as text."""
     return sys.argv[sys.argv.index(name) + 1] if name in sys.argv else str(default)
 
 
 def _case(
     objects: int, facts: float, seed: int, layout: str = "seats", kinds: bool = True
 ) -> tuple[Problem, NDArray[np.int64]]:
-    """A matching problem and the truth: each object's thing, the last column for what is not there."""
+    """Return a matching problem and the truth: each object's thing, the last column for missing objects."""
     known, tenth = default_ontology(), objects // 10
     table = generate(objects, facts, missing=tenth, extra=tenth, seed=seed, layout=LAYOUTS[layout])
     labels = [None] * len(table.boxes)
@@ -163,7 +162,7 @@ def _calibration(layout: str, kinds: bool, objects: int, facts: float, tables: i
 
 
 def _reference(problem: Problem) -> NDArray[np.float64]:
-    """Marginals by a run many times as long, with other random numbers."""
+    """Return the marginals of a run many times as long, with other random numbers."""
     before = ladders.PROPOSALS, ladders.TOLERANCE
     ladders.PROPOSALS, ladders.TOLERANCE = LONGER * before[0], 0.0
     try:
@@ -173,7 +172,7 @@ def _reference(problem: Problem) -> NDArray[np.float64]:
 
 
 def _calibration_error(probability: NDArray[np.float64], right: NDArray[np.bool_]) -> float:
-    """The mean difference of what is said and what is right, over ten bins, by how many fall in each."""
+    """Return the mean difference of probability and share right over ten bins, weighted by their counts."""
     bins = np.clip((probability * 10).astype(int), 0, 9)
     return sum(
         float((bins == b).mean() * abs(probability[bins == b].mean() - right[bins == b].mean()))
@@ -182,7 +181,7 @@ def _calibration_error(probability: NDArray[np.float64], right: NDArray[np.bool_
 
 
 def _short(rare: int, things: int, seconds: float) -> None:
-    """Ten neighbours among so many labelled things, described by thirty facts."""
+    """Ground ten neighbours among many labelled things, described by thirty facts."""
     with tempfile.TemporaryDirectory() as folder:
         script, scene = Path(folder) / "short.layout", Path(folder) / "short.scene.json"
         _write_short(rare, things, script, scene)
@@ -192,7 +191,7 @@ def _short(rare: int, things: int, seconds: float) -> None:
 
 
 def _child(script: Path, scene: Path, seconds: float) -> list[str]:
-    """Ground in a process of its own: seconds of the clock and the processor, megabytes, and what came of it."""
+    """Ground in a process of its own; return seconds of the clock and the processor, megabytes, and the result."""
     command = [sys.executable, "-c", CHILD, str(script), str(scene), str(seconds)]
     out = subprocess.run(command, capture_output=True, text=True, check=True).stdout
     return out.strip().split(" ", 3)
@@ -230,7 +229,7 @@ def _limits(things: int, seconds: float) -> None:
 
 
 def _write(things: int, script: Path, scene: Path) -> None:
-    """Write a table and 2.5 facts an object about it, half of them between neighbours, without comparing all pairs."""
+    """Write a table and 2.5 facts per object about it, half of them between neighbours, without comparing all pairs."""
     from scipy.spatial import cKDTree
 
     rng, relations = np.random.default_rng(0), default_ontology().relations

@@ -1,8 +1,8 @@
-"""The engines for the matching problem beside CP-SAT, FAQ and swap annealing, over the same generated tables.
+"""Compare the engines for the matching problem with CP-SAT, FAQ and swap annealing on the same generated tables.
 
-Two tables: proofs (8 to 30 objects, with all optima), and values (30 to 1,000 objects, one in ten missing and one in
-ten extra, for crisp and graded facts, few and many, with and without mistakes). Values are relative to the best that
-anything found in the run; the scalable engine at four times its effort is there only to be part of that. ``--quick``
+There are two tables: proofs (8 to 30 objects, with all optima), and values (30 to 1,000 objects, one in ten missing and
+one in ten extra, for crisp and graded facts, few and many, with and without mistakes). Values are relative to the best
+found by any method in the run; the scalable engine at four times its effort is only a reference for that. ``--quick``
 takes a few cases of each.
 """
 
@@ -34,19 +34,19 @@ from deixis.reasoning.grounding.matching.scalable import scalable
 T = TypeVar("T")
 
 PROOF_LIMIT = 30.0  # seconds for one case
-REFERENCE_LIMIT = 2.0  # seconds of the exact engine where it only serves to know the best value
-SETTINGS = [(facts, off) for off in (0.0, 0.2, 0.1) for facts in (1.0, 1.5, 2.5)]  # facts an object, share off
-QUICK = [(30, 1, SETTINGS[-1:]), (100, 1, SETTINGS[-1:])]  # objects, cases a row, rows
+REFERENCE_LIMIT = 2.0  # seconds of the exact engine as a reference for the best value
+SETTINGS = [(facts, off) for off in (0.0, 0.2, 0.1) for facts in (1.0, 1.5, 2.5)]  # facts per object, share off
+QUICK = [(30, 1, SETTINGS[-1:]), (100, 1, SETTINGS[-1:])]  # objects, cases per row, rows
 FULL = [(30, 3, SETTINGS), (100, 1, SETTINGS), (300, 1, SETTINGS[0::4]), (1000, 1, SETTINGS[-1:])]
 HURRY = 1.0  # seconds
-ABSENT = math.log(0.05 / 0.95)  # as grounding has it
+ABSENT = math.log(0.05 / 0.95)  # as in grounding
 
 
 def main() -> None:
     quick = "--quick" in sys.argv
     warm()
     annealing.solve(generate(8, seed=0).crisp(), steps=10)
-    print("seeds from 0; times are medians (the longest in brackets); proofs: 2.5 facts an object, 10 % off\n")
+    print("seeds from 0; times are medians (the longest in brackets); proofs: 2.5 facts per object, 10 % off\n")
     for centred in (False, True):
         _proofs(3 if quick else 10, centred)
     for objects, cases, settings in QUICK if quick else FULL:
@@ -81,13 +81,13 @@ def _proofs(cases: int, centred: bool) -> None:
 
 
 def _values(objects: int, cases: int, chosen: list[tuple[float, float]]) -> None:
-    print(f"\nvalues, {objects} objects, {cases} case(s) a row: value over the best found; median seconds (longest)")
+    print(f"\nvalues, {objects} objects, {cases} case(s) per row: value over the best found; median seconds (longest)")
     for graded in (False, True):
         for facts, off in chosen:
             out = objects // 10
             tables = [generate(objects, facts, off, missing=out, extra=out, seed=s) for s in range(cases)]
             problems = [_graded(table) if graded else table.crisp(centred=True) for table in tables]
-            print(f" {'graded' if graded else 'crisp'}, {facts} facts an object, {off:.0%} off")
+            print(f" {'graded' if graded else 'crisp'}, {facts} facts per object, {off:.0%} off")
             _row(problems)
 
 
@@ -105,7 +105,7 @@ def _row(problems: list[Problem]) -> None:
 
 
 def _in_a_hurry(cases: int) -> None:
-    """The whole of grounding under a short time limit, from boxes and facts to the answer."""
+    """Time the whole of grounding under a short time limit, from boxes and facts to the answer."""
     print(f"\nscalable grounding, time limit {HURRY:g} s: objects, seconds of the processor, seconds by the clock")
     for objects in (100, 300, 1000):
         out, spent, waited = objects // 10, [], []
@@ -120,14 +120,14 @@ def _in_a_hurry(cases: int) -> None:
 
 
 def _graded(table: GeneratedTable) -> Problem:
-    """What grounding solves: log-likelihood ratios of graded meaning."""
+    """Return the problem that grounding solves: log-likelihood ratios of graded meaning."""
     facts = fact_tables(table.description(), table.boxes)
     n1, n2 = len(table.truth), len(table.boxes)
     return Problem(facts.ends, facts.kinds, facts.tables, np.zeros((n1, n2)), np.full(n1, ABSENT))
 
 
 def _engines(n1: int, n2: int) -> dict[str, Callable[[Problem], NDArray[np.int64]]]:
-    """The scalable engine and its peers, those that are worth their time at this size."""
+    """Return the scalable engine and those peers that are fast enough at this size."""
     engines: dict[str, Callable[[Problem], NDArray[np.int64]]] = {
         "scalable": lambda p: scalable(p).assignment,
         "annealing": annealing.solve,

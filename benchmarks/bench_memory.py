@@ -1,6 +1,6 @@
-"""Bulk load, queries and their bounds at 100,000 and 1,000,000 triples, beside bare pyoxigraph in the same run.
+"""Time bulk load, queries and their limits at 100,000 and 1,000,000 triples, beside bare pyoxigraph in the same run.
 
-Two kinds of data: background knowledge that no shape is about, and scenes, of which every object is checked.
+There are two kinds of data: background knowledge without any shape, and scenes, in which every object is checked.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ QUERIES = {
 
 
 def background(triples: int) -> Iterator[ox.Triple]:
-    """Nodes of ten statements each, about other nodes."""
+    """Yield nodes of ten statements each, about other nodes."""
     predicates = [ox.NamedNode(f"urn:p{number}") for number in range(10)]
     nodes = triples // 10
     for number in range(nodes):
@@ -44,7 +44,7 @@ def background(triples: int) -> Iterator[ox.Triple]:
 
 
 def scenes(triples: int) -> Iterator[ox.Triple]:
-    """Scenes of fifty objects of eight statements each."""
+    """Yield scenes of fifty objects of eight statements each."""
     chair, inside = iri("urn:chair"), iri(DX.IN_SCENE)
     yield ox.Triple(chair, iri(W3C.RDF_TYPE), iri(DX.VIEWPOINT))
     yield ox.Triple(chair, iri(W3C.RDFS_LABEL), text("chair"))
@@ -71,7 +71,7 @@ def seconds(job: Callable[[], object]) -> float:
 
 
 def load(kind: str, data: list[ox.Triple], folder: Path) -> tuple[SemanticMemory, ox.Store]:
-    """Loads the same triples in both, and prints how long each took."""
+    """Load the same triples in both, and print the time of each."""
     bare = ox.Store(folder / "bare")
 
     def fill() -> None:
@@ -87,7 +87,7 @@ def load(kind: str, data: list[ox.Triple], folder: Path) -> tuple[SemanticMemory
 
 
 def ask(memory: SemanticMemory, bare: ox.Store) -> None:
-    """Runs the queries in both, and prints how long each took."""
+    """Run the queries in both, and print the time of each."""
     for name, query in QUERIES.items():
 
         def direct(query: str = query) -> object:
@@ -100,7 +100,7 @@ def ask(memory: SemanticMemory, bare: ox.Store) -> None:
 
 
 def bounds(memory: SemanticMemory) -> None:
-    """Prints what a query costs that needs a process or a snapshot, and how soon an endless one ends."""
+    """Print the cost of a query that needs a process or a snapshot, and the time until an endless one ends."""
     one = QUERIES["look-up of one subject"]
     started, changed = [], []
     for number in range(9):
@@ -108,7 +108,7 @@ def bounds(memory: SemanticMemory) -> None:
         memory.learn(f"change-{number}", {GraphName.ASSERTED: [triple]}, [])
         changed.append(seconds(lambda: memory.query(one)))
         with contextlib.suppress(QueryTimeoutError):
-            memory.query(one, time_limit=0.0)  # ends the process
+            memory.query(one, time_limit=0.0)  # end the process
         started.append(seconds(lambda: memory.query(one)))
     print(
         f"    look-up after a change: {median(changed) * 1e3:.1f} ms; in a new process: {median(started) * 1e3:.1f} ms"

@@ -1,15 +1,15 @@
-"""Naming things never seen: meshes of other people's, split by things, beside the paper's equations and a forest.
+"""Measure naming of unseen things: meshes by other makers, split by things, beside the paper's equations and a forest.
 
-DEIXIS_DATA leads to ``tabletop-meshes``. Things, their mends and exclusions are those of
+DEIXIS_DATA leads to ``tabletop-meshes``. Things, corrections and exclusions are those of
 ``deixis.experiments.open_ended.mesh_list``; ``--all`` takes all meshes as they come. Half of the things of each
-category teach, by 3, 5 or 24 views a category. All views of the other half are asked for, each once as it is, and once
-with its category left out of what was taught, so that half of all answers should be *none of these*. What was chosen on
-what is in docs/explanation/open_ended.md. Figures are means over splits; the calibration error is over the answers of
-all splits.
+category teach, by 3, 5 or 24 views per category. All views of the other half are named, each once as it is, and once
+with its category left out of the taught ones, so that half of all answers should be *none of these*.
+docs/explanation/open_ended.md states which data each choice was made on. Figures are means over splits; the calibration
+error is over the answers of all splits.
 
-``--words`` names things on tables instead: twelve things that were never seen, at random places, with a description of
-20 facts. It prints how many are named rightly by their looks, by the words alone, and by both together.
-``--facts N`` describes them by N facts. ``--quick`` takes fewer views and splits.
+``--words`` names things on tables instead: twelve unseen things at random places, with a description of 20 facts. It
+prints how many are named correctly by their shape, by the words alone, and by both together. ``--facts N`` describes
+them by N facts. ``--quick`` takes fewer views and splits.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from common import data_folder
 from numpy.typing import NDArray
 
 import deixis
-from deixis.experiments.open_ended.mesh_list import EXCLUDED, MENDED
+from deixis.experiments.open_ended.mesh_list import CORRECTED, EXCLUDED
 from deixis.experiments.open_ended.things import FOLDER, in_metres, listed_meshes, rows_of, upright
 from deixis.learning.views import (
     FORM,
@@ -56,15 +56,15 @@ from deixis.perception.simulator.views import views_of
 Array = NDArray[np.float64]
 TAUGHT_VIEWS = (3, 5, 24)
 COMPARISON: Comparison = (UPRIGHT, FORM)
-"""What views of a table are compared by; meshes have no colours."""
+"""Descriptors by which views of a table are compared; meshes have no colours."""
 
 TREES = 150
-"""Of a random forest."""
+"""Number of trees of a random forest."""
 
 
 @dataclass(frozen=True, eq=False)
 class Views:
-    """n views of things: category and thing of each, the clouds, and what describes them by name."""
+    """A set of n views: category and thing of each, the clouds, and the descriptors by name."""
 
     categories: NDArray[np.str_]
     things: NDArray[np.str_]
@@ -73,7 +73,7 @@ class Views:
 
 
 def meshes(folder: Path, everything: bool) -> Iterator[tuple[str, str, Mesh]]:
-    """Category, file and mesh of what is measured."""
+    """Yield category, file and mesh of each measured thing."""
     if not everything:
         yield from listed_meshes(folder)
         return
@@ -82,7 +82,7 @@ def meshes(folder: Path, everything: bool) -> Iterator[tuple[str, str, Mesh]]:
 
 
 def seen(folder: Path, everything: bool, each: int) -> Views:
-    """So many views of each thing, described in every way."""
+    """Return ``each`` views of each thing, described in every way."""
     rows = [
         (category, name, cloud)
         for number, (category, name, mesh) in enumerate(meshes(folder, everything))
@@ -104,13 +104,13 @@ def seen(folder: Path, everything: bool, each: int) -> Views:
 
 
 def distances(arrays: Sequence[NDArray[np.float32]]) -> NDArray[np.float32]:
-    """D_V (n, n) from each view, a row, to each."""
+    """Return D_V (n, n) from each view, a row, to each."""
     packed = PackedViews.of((str(number), rows) for number, rows in enumerate(arrays))
     return np.stack([view_distances(Target.of(rows), packed) for rows in arrays]).astype(np.float32)
 
 
 def split(views: Views, count: int, seed: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Places of ``count`` views a category to teach, evenly from half of its things, and of all of the other half."""
+    """Return positions of ``count`` views per category to teach, from half of its things, and of the others."""
     rng = np.random.default_rng(seed)
     taught: list[int] = []
     asked: list[int] = []
@@ -118,7 +118,7 @@ def split(views: Views, count: int, seed: int) -> tuple[NDArray[np.int64], NDArr
         things = rng.permutation(np.unique(views.things[views.categories == category]))
         half = -(-len(things) // 2)
         if half == len(things):
-            continue  # of one thing there is no other
+            continue  # a category of one thing has no other one
         pools = [list(rng.permutation(np.flatnonzero(views.things == thing))) for thing in things[:half]]
         turns = [pool[turn] for turn in range(max(map(len, pools))) for pool in pools if turn < len(pool)]
         taught += turns[:count]
@@ -128,9 +128,10 @@ def split(views: Views, count: int, seed: int) -> tuple[NDArray[np.int64], NDArr
 
 @dataclass(frozen=True, eq=False)
 class Answers:
-    """Scores of one split: ``known`` (q, c) and, with the own category left out, ``unknown`` (q, c): less is nearer.
+    """The scores of one split, ``known`` (q, c) and, without the own category, ``unknown`` (q, c); less is nearer.
 
-    ``probabilities`` (2 q, c + 1) are of both in turn, the last of none; None where a way gives none.
+    ``probabilities`` (2 q, c + 1) are of both in turn, with *none of these* last; None for methods without
+    probabilities.
     """
 
     truth: NDArray[np.int64]
@@ -140,7 +141,7 @@ class Answers:
 
 
 def left_out(scores: Array, truth: NDArray[np.int64]) -> Array:
-    """The scores without those of the own category."""
+    """Return the scores without the own category."""
     rest = scores.copy()
     rest[np.arange(len(truth)), truth] = np.inf
     return rest
@@ -153,7 +154,7 @@ def normalised(
     asked: NDArray[np.int64],
     settings: RecognitionSettings | None,
 ) -> tuple[Array, HeldOut]:
-    """ND (q, c) of what is asked for (D_C without settings), and of what was taught, held out as recognition does."""
+    """Return ND (q, c) of the asked views (D_C without settings), and of the taught ones by held-out recognition."""
     names, category = np.unique(views.categories[taught], return_inverse=True)
     places = [taught[category == number] for number in range(len(names))]
     widths = [
@@ -165,20 +166,23 @@ def normalised(
         divisors = np.array([one.value for one in spreads(widths, settings.prior_spread, settings.shrinkage)])
     found = np.stack([matrix[np.ix_(asked, own)].min(axis=1) for own in places], axis=1) / divisors
     rows = np.stack([matrix[np.ix_(taught, own)].min(axis=1) for own in places], axis=1) / divisors
-    fewer, counts = [], np.array([len(set(views.things[own])) for own in places])
+    fewer: list[tuple[int, float]] = []
+    counts = np.array([len(set(views.things[own])) for own in places])
     for row, (place, number) in enumerate(zip(taught, category, strict=True)):
         rest = places[number][views.things[places[number]] != views.things[place]]
         own = matrix[place, rest]
         rows[row, number] = own.min() / divisors[number] if len(rest) else np.inf
-        for thing in set(views.things[rest]) if counts[number] > 2 else ():
-            fewer.append((counts[number] - 1, float(np.log(own.min() / own[views.things[rest] != thing].min()))))
+        fewer.extend(
+            (int(counts[number]) - 1, float(np.log(own.min() / own[views.things[rest] != thing].min())))
+            for thing in (set(views.things[rest]) if counts[number] > 2 else ())
+        )
     power = -shortening(fewer)
     rows[np.arange(len(taught)), category] *= (counts / np.maximum(counts - 1, 1))[category] ** power
     return found, HeldOut(rows, category)
 
 
 def by_distance(matrix: str, settings: RecognitionSettings | None) -> Callable[..., Answers]:
-    """Naming by the nearest category, by D_C (no settings) or ND."""
+    """Return a method that names by the nearest category, by D_C (no settings) or ND."""
 
     def name(
         views: Views, matrices: dict[str, NDArray[np.float32]], taught: NDArray[np.int64], asked: NDArray[np.int64]
@@ -193,7 +197,7 @@ def by_distance(matrix: str, settings: RecognitionSettings | None) -> Callable[.
 def jointly(
     views: Views, matrices: dict[str, NDArray[np.float32]], taught: NDArray[np.int64], asked: NDArray[np.int64]
 ) -> Answers:
-    """As ``deixis recognise`` names what stands on a table: by all its descriptors, calibrated by what was taught."""
+    """Name as ``deixis recognise`` does: by all descriptors, calibrated on the taught views."""
     ways = [normalised(matrices[way.name], views, taught, asked, DEFAULT) for way in COMPARISON]
     calibration: Calibration = calibrate_jointly([held for _, held in ways], DEFAULT.prior_unknown, SHIPPED_JOINT)
     truth = np.searchsorted(np.unique(views.categories[taught]), views.categories[asked])
@@ -205,10 +209,11 @@ def jointly(
 def forest(
     views: Views, matrices: dict[str, NDArray[np.float32]], taught: NDArray[np.int64], asked: NDArray[np.int64]
 ) -> Answers:
-    """A random forest (scikit-learn) on everything: the form, and the mean and spread of the local descriptors.
+    """Name by a random forest (scikit-learn) on the form, and the mean and spread of the local descriptors.
 
-    For the unknown it is grown anew without each category. Leaving out the votes of a category that it was taught would
-    ask it about things that it knows: it votes for them, so that few votes are left, and AUROC comes to 0.81 to 0.88.
+    For the unknown it is trained again without each category. Only leaving out the votes of a category that it was
+    trained on would test it on known things: it votes for them, so that few votes are left, and AUROC becomes 0.81 to
+    0.88.
     """
     from sklearn.ensemble import RandomForestClassifier
 
@@ -241,7 +246,7 @@ WAYS: dict[str, Callable[..., Answers]] = {
 
 
 def compare(views: Views, matrices: dict[str, NDArray[np.float32]], splits: int) -> None:
-    """Prints a line for each way of naming and number of views."""
+    """Print a line for each method and number of views."""
     print("views  way                          right  top 3  AUROC  calibration error  right with none  not named")
     for count in TAUGHT_VIEWS:
         for said, name in WAYS.items():
@@ -257,7 +262,7 @@ def compare(views: Views, matrices: dict[str, NDArray[np.float32]], splits: int)
 
 
 def calibrated(found: Sequence[Answers]) -> str:
-    """The calibration error of all answers together, how many are right, and for how many known ones a name is said."""
+    """Return the calibration error of all answers, the share right, and the share of known views left unnamed."""
     given = [one for one in found if one.probabilities is not None]
     if not given:
         return ""
@@ -270,7 +275,7 @@ def calibrated(found: Sequence[Answers]) -> str:
 
 
 def words(views: Views, tables: int, facts: int) -> None:
-    """Prints how many of twelve new things on a table are named rightly by looks, by words and by both."""
+    """Print how many of twelve new things on a table are named correctly by shape, by words and by both."""
     taught, asked = split(views, 24, 0)
     categories = [
         tuple(
@@ -316,7 +321,7 @@ def words(views: Views, tables: int, facts: int) -> None:
 
 
 def describe(names: Sequence[str], things: Sequence[dict[str, object]], facts: int, rng: np.random.Generator) -> str:
-    """So many facts between pairs, by the exact relation of their boxes, and one for each thing that they leave out."""
+    """Return facts between pairs, by the exact relations of their boxes, and one for each thing without a fact."""
     scene = deixis.read_scene({"objects": [{k: v for k, v in thing.items() if k != "candidates"} for thing in things]})
     relations = default_ontology().relations
     exact = list(relations.values())
@@ -329,7 +334,7 @@ def describe(names: Sequence[str], things: Sequence[dict[str, object]], facts: i
 
 
 def named(script: str, things: Sequence[dict[str, object]], names: Sequence[str]) -> float:
-    """The share of things that the grounding gives a name of the right category."""
+    """Return the share of things to which grounding gives a name of the right category."""
     found = deixis.ground(deixis.read_script(text=script), {"objects": list(things)})
     right = 0
     for name, match in found.matches.items():
@@ -342,7 +347,10 @@ def main() -> None:
     if folder is None:
         return
     everything, quick = "--all" in sys.argv, "--quick" in sys.argv
-    for what, entries in (("mended", {key: mend.why for key, mend in MENDED.items()}), ("left out", dict(EXCLUDED))):
+    for what, entries in (
+        ("corrected", {key: each.why for key, each in CORRECTED.items()}),
+        ("left out", dict(EXCLUDED)),
+    ):
         for name, why in () if everything else entries.items():
             print(f"{what}: {name}: {why}")
     views = seen(folder, everything, 4 if quick else 12)

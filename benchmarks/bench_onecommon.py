@@ -1,8 +1,8 @@
-"""People's words for dots: which of seven is meant, where the dot that it is described by is labelled for certain.
+"""Measure grounding of people's words for dots: find one of seven dots, described by its relation to a labelled dot.
 
 OneCommon (Udagawa and Aizawa 2019), ``$DEIXIS_DATA/onecommon/direction_pairs.json``: ``target left of landmark`` with
-the landmark's dot labelled ``landmark``. Prints the share of targets and of landmarks that are found, and how probable
-the landmark is.
+the landmark's dot labelled ``landmark`` for certain. Prints the share of targets and of landmarks that are found, and
+the probability of the landmark.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ def main() -> None:
         probable.append((matches["landmark"].probability or 0.0) if "landmark" in matches else 0.0)
     target, landmark = np.mean(found, axis=0)
     print(f"{len(found)} descriptions: target found {target:.2f}, landmark {landmark:.2f}")
-    print(f"landmark probable {np.mean(probable):.4f} in the mean, {min(probable):.4f} at the least")
+    print(f"probability of the landmark {np.mean(probable):.4f} in the mean, {min(probable):.4f} at the least")
 
 
 if __name__ == "__main__":

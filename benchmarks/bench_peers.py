@@ -1,9 +1,9 @@
-"""At which settings the scoreboard's peers do best: a sweep, on other tables than the scoreboard's.
+"""Find the best settings of the scoreboard's peers: a sweep on other tables than the scoreboard's.
 
-Tables of 12 objects (``--size N``), 1, 1.5 and 2.5 facts each, none or a fifth off, half of them with one in ten
-missing and extra. ``right``: objects given their own thing, or left out where missing; ``below the best``: the
-log-likelihood that the map lacks to the best that was found at any setting. What is marked is what the scoreboard runs.
-``--quick`` takes one table of each setting.
+Tables of 12 objects (``--size N``), 1, 1.5 and 2.5 facts each, none or a fifth wrong, half of them with one in ten
+missing and extra. ``right``: objects given their own thing, or left out if missing; ``below the best``: the difference
+in log-likelihood from the best map found at any setting. A mark shows the settings of the scoreboard. ``--quick`` takes
+one table of each setting.
 """
 
 from __future__ import annotations
@@ -25,12 +25,12 @@ from deixis.experiments.scoreboard.cases import Case, Setting, generated_cases
 from deixis.reasoning.grounding.evidence.meaning import SHIPPED
 from deixis.reasoning.grounding.matching.problem import Problem
 
-SEED = 4242  # the scoreboard's is 1, or what a user says
+SEED = 4242  # the scoreboard's seed is 1, or given by the user
 
 
 @dataclass
 class Tried:
-    """A solver at some settings, and how it did."""
+    """A solver at some settings, and its results."""
 
     solver: str
     settings: str

@@ -1,14 +1,14 @@
-"""Putting and getting views of 60 KB, beside bare plyvel with values of the same size in the same run.
+"""Time putting and getting views of 60 KB, beside bare plyvel with values of the same size in the same run.
 
-Two kinds of descriptors, 100 of 153 numbers: dense random ones, which no compression shrinks, and sparse ones, two
-thirds zeros, as spin images are. Bare plyvel is measured with the options that Deixis opens its database with, and with
-its own. Both sides write without sync, one batch a view or ten views a batch, and give out nothing unverified: bare
-plyvel verifies LevelDB's CRC-32C; Deixis verifies that of what is said of a view, and the 64-bit XXH3 of the arrays.
-Bare plyvel is also read without. What is compared is a view (arrays, time, metadata) against a string of bytes, by the
-clock, in which a machine's other programs count, and by the CPU time of the thread, in which they count little.
+There are two kinds of descriptors, 100 of 153 numbers: dense random ones, which no compression shrinks, and sparse
+ones, two thirds zeros, like spin images. Bare plyvel is measured with the options with which Deixis opens its database,
+and with its own. Both sides write without sync, one batch per view or per ten views, and return only verified data:
+bare plyvel verifies LevelDB's CRC-32C; Deixis verifies the CRC-32C of a view's metadata, and the 64-bit XXH3 of the
+arrays. Bare plyvel is also read without verification. A view (arrays, time, metadata) is compared with a byte string,
+by the clock, which other programs of the machine affect, and by the CPU time of the thread, which they affect little.
 
-A view copies its arrays when it is made, so that nobody changes them. What making one takes is printed too, and belongs
-to neither side: there are no byte strings without it either.
+A view copies its arrays when it is made, so that they cannot change. The time to make one is printed too, and counts
+for neither side: byte strings must be made too.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ Times = dict[str, list[float]]
 
 
 def make_views(number: int, sparse: bool) -> list[View]:
-    """Views with metadata as a robot would give it."""
+    """Return views with the metadata that a robot would give."""
     rng, start = np.random.default_rng(0), datetime(2026, 5, 1, tzinfo=UTC)
     views = []
     for place in range(number):
@@ -49,7 +49,7 @@ def make_views(number: int, sparse: bool) -> list[View]:
 
 
 def timed(times: Times, name: str, job: Callable[[], object]) -> None:
-    """Adds the seconds that a job takes."""
+    """Add the seconds of a job to the times."""
     started, started_cpu = time.perf_counter(), time.thread_time()
     job()
     times.setdefault(f"{name}, CPU", []).append(time.thread_time() - started_cpu)
@@ -57,12 +57,12 @@ def timed(times: Times, name: str, job: Callable[[], object]) -> None:
 
 
 def settle(db: Any) -> None:
-    """Empties the log into a table, so that reading is reading of tables on both sides."""
+    """Flush the log into a table, so that both sides read from tables."""
     db.compact_range(start=b"\xfe", stop=b"\xff")
 
 
 def bare_round(times: Times, name: str, options: dict[str, Any], values: Sequence[bytes], batch: int) -> None:
-    """Puts and gets byte strings."""
+    """Put and get byte strings."""
     folder = tempfile.mkdtemp()
     with plyvel.DB(folder + "/db", create_if_missing=True, **options) as db:
         keys = [b"view%06d" % place for place in range(len(values))]
@@ -82,7 +82,7 @@ def bare_round(times: Times, name: str, options: dict[str, Any], values: Sequenc
 
 
 def our_round(times: Times, views: Sequence[View], batch: int) -> None:
-    """Writes and reads views."""
+    """Write and read views."""
     folder = tempfile.mkdtemp()
     with LevelMemory.open(folder + "/m", create=True) as memory:
         batches = [Batch(views[first : first + batch]) for first in range(0, len(views), batch)]
@@ -96,16 +96,16 @@ def our_round(times: Times, views: Sequence[View], batch: int) -> None:
 
 
 def ratios(times: Times, ours: str, theirs: str) -> str:
-    """Our throughput relative to theirs: the median over the rounds, each of which measured both."""
+    """Return our throughput relative to theirs: the median over the rounds, each of which measured both."""
     each = [their / our for our, their in zip(times[ours][1:], times[theirs][1:], strict=True)]
     return f"{statistics.median(each):4.0%} ({min(each):.0%} to {max(each):.0%})"
 
 
 def rows(times: Times, number: int) -> Iterator[str]:
-    """The table."""
-    yield f"  make  deixis {statistics.median(times['deixis make, CPU'][1:]) / number * 1e6:7.1f} us a view"
+    """Yield the lines of the table."""
+    yield f"  make  deixis {statistics.median(times['deixis make, CPU'][1:]) / number * 1e6:7.1f} us per view"
     for what in ("put", "get", "scan"):
-        yield f"  {what:<5} deixis {statistics.median(times[f'deixis {what}'][1:]) / number * 1e6:7.1f} us a view"
+        yield f"  {what:<5} deixis {statistics.median(times[f'deixis {what}'][1:]) / number * 1e6:7.1f} us per view"
         for other in (f"same options {what}", f"own options {what}", f"same options {what}, unverified"):
             if other in times:
                 median = statistics.median(times[other][1:]) / number * 1e6
@@ -120,11 +120,11 @@ def main() -> None:
         values = [view.descriptors["spin"].tobytes() for view in views]
         for batch in (1, 10):
             times: Times = {}
-            for _ in range(ROUNDS):  # the first only warms up
+            for _ in range(ROUNDS):  # the first round only warms up
                 our_round(times, views, batch)
                 bare_round(times, "same options", OPTIONS, values, batch)
                 bare_round(times, "own options", {}, values, batch)
-            print(f"{number} {'sparse' if sparse else 'dense'} views, {batch} a batch")
+            print(f"{number} {'sparse' if sparse else 'dense'} views, {batch} per batch")
             print("\n".join(rows(times, number)), flush=True)
 
 

@@ -1,7 +1,7 @@
-"""The posterior over matches: how long it takes, and how far its marginals are from those of a run many times as long.
+"""Time the posterior over matches, and compare its marginals with those of a run many times as long.
 
-Graded facts over generated tables, 10 % off, one in ten missing and one in ten extra. ``difference`` is the largest
-over all matches and cases; ``mean`` that of each object's likeliest thing. ``--quick`` takes one case and a shorter
+Graded facts over generated tables, 10 % wrong, one in ten missing and one in ten extra. ``difference`` is the largest
+over all matches and cases; ``mean`` is that of each object's likeliest thing. ``--quick`` takes one case and a shorter
 reference.
 """
 
@@ -21,8 +21,8 @@ from deixis.reasoning.grounding.matching import ladders as settings
 from deixis.reasoning.grounding.matching.posterior import Posterior, posterior
 from deixis.reasoning.grounding.matching.problem import Problem
 
-ABSENT = math.log(0.05 / 0.95)  # as grounding has it
-LONGER = {8: 10, 12: 10, 30: 10, 100: 3}  # times as many proposals for the reference
+ABSENT = math.log(0.05 / 0.95)  # as in grounding
+LONGER = {8: 10, 12: 10, 30: 10, 100: 3}  # factor of proposals for the reference
 
 
 def main() -> None:
@@ -56,7 +56,7 @@ def _print(objects: int, facts: float, times: list[float], found: list[Posterior
 
 @contextmanager
 def _longer(times: float) -> Iterator[None]:
-    """Sampling with so many times the proposals, however well the chains agree."""
+    """Sample with ``times`` as many proposals, however well the chains agree."""
     before = settings.PROPOSALS, settings.TOLERANCE
     settings.PROPOSALS, settings.TOLERANCE = times * before[0], 1e-6
     try:

@@ -1,12 +1,12 @@
-"""Recognition: processor time beside a kd-tree per view and matrix products, recall, calibration, on simulated views.
+"""Measure recognition on simulated views: processor time beside kd-trees and matrix products, recall, calibration.
 
-Views are of 16 kinds of tableware, by their spin images and by the upright descriptors that ``deixis recognise``
-compares views of a table by; targets are other things of the same kinds; every method gives D_C for each category.
-"Matrix products" is the straightforward way: products of blocks in single precision, and a compiled minimum.
-Set OPENBLAS_NUM_THREADS=1 to measure one core. ``--quick`` takes 1,000 views only, else 10,000 too; ``--random`` takes
-as many of evenly random descriptors instead, in memory and mapped from files, the case in which bounds tell nothing.
-``--calibration`` measures only that, ``--constants`` the numbers that are shipped (``PRIOR_SPREADS``, ``SHIPPED``), and
-``--tables`` how well things are named that were found on laid tables.
+Views are of 16 kinds of tableware, with spin images and with the upright descriptors by which ``deixis recognise``
+compares views of a table; targets are other things of the same kinds; every method gives D_C for each category. A
+kd-tree is built per view. "Matrix products" is the straightforward way: products of blocks in single precision, and a
+compiled minimum. Set OPENBLAS_NUM_THREADS=1 to measure one core. ``--quick`` takes 1,000 views only, otherwise 10,000
+too; ``--random`` takes as many of uniformly random descriptors instead, in memory and mapped from files, the case in
+which bounds exclude nothing. ``--calibration`` measures only that, ``--constants`` the shipped numbers
+(``PRIOR_SPREADS``, ``SHIPPED``), and ``--tables`` how well things found on laid tables are named.
 """
 
 from __future__ import annotations
@@ -52,13 +52,13 @@ KINDS = (
     *("dinner fork", "dessert fork", "dinner knife", "butter knife", "dessert spoon", "soup spoon", "napkin", "bottle"),
 )
 EACH = 8
-"""Views of one thing."""
+"""Number of views of one thing."""
 
 FIRST_TARGET = 10_000
-"""The seed of the first thing that is only ever a target."""
+"""Seed of the first thing that is only ever a target."""
 
 SHAPES: recognising.Comparison = (recognising.UPRIGHT, recognising.FORM)
-"""What views of a table are compared by where they have no colours."""
+"""Descriptors by which views of a table are compared if they have no colours."""
 
 Descriptors = NDArray[np.float32]
 Describe = Callable[[PointCloud], Descriptors]
@@ -69,19 +69,19 @@ Methods = dict[str, Callable[[Descriptors], list[float]]]
 def described(
     kind: str, things: range, each: int = EACH, describe: Describe = SPIN_IMAGES
 ) -> Iterator[tuple[str, Descriptors]]:
-    """Views of things of a kind, by the thing's seed and the view's number."""
+    """Yield views of things of a kind, by the thing's seed and the view's number."""
     for thing in things:
         for number, view in enumerate(views_of_thing(kind, thing, each)):
             yield f"{kind} {thing} {number}", describe(view)
 
 
 def views_of_thing(kind: str, thing: int, each: int) -> list[PointCloud]:
-    """Views of one thing of a kind, in the table's frame."""
+    """Return views of one thing of a kind, in the table's frame."""
     return views_of(make(kind, seed=thing).mesh, each, seed=thing, upright=True)
 
 
 def blocked(target: Descriptors, pack: PackedViews, block: int = 2_000) -> float:
-    """D_C by matrix products of a block of descriptors at a time, and the least of each view's."""
+    """Compute D_C by matrix products of a block of descriptors at a time, and the least of each view's."""
     best, first = np.inf, 0
     columns, wanted = -2 * target.T, np.square(target).sum(axis=1)
     while first < len(pack):
@@ -95,7 +95,7 @@ def blocked(target: Descriptors, pack: PackedViews, block: int = 2_000) -> float
 
 @njit(cache=True, error_model="numpy", fastmath={"nnan", "nsz"})
 def nearest(products, squares, starts, wanted):  # type: ignore[no-untyped-def]
-    """The least mean distance, from -2 t.v (n, q), |v|^2 (n,) and |t|^2 (q,); ``starts`` tells views apart."""
+    """Return the least mean distance from -2 t.v (n, q), |v|^2 (n,) and |t|^2 (q,); ``starts`` separates views."""
     best = np.inf
     least = np.empty(len(wanted), np.float32)
     for view in range(len(starts) - 1):
@@ -108,7 +108,7 @@ def nearest(products, squares, starts, wanted):  # type: ignore[no-untyped-def]
 
 
 def methods(packs: Sequence[PackedViews], indexes: Sequence[ViewIndex], trees: bool) -> Methods:
-    """Each gives D_C of every category for a target."""
+    """Return the methods; each gives D_C of every category for a target."""
 
     def ours(target: Descriptors, exact: bool) -> list[float]:
         seen, reduced = Target.of(target), indexes[0].reduction(target)
@@ -129,7 +129,7 @@ def methods(packs: Sequence[PackedViews], indexes: Sequence[ViewIndex], trees: b
 
 
 def processor_time(job: Callable[[Descriptors], object], target: Descriptors) -> float:
-    """Seconds of one processor, the second time that it is done; what else the machine does counts little."""
+    """Return the processor seconds of the second run of a job, which other programs affect little."""
     job(target)
     started = time.process_time()
     job(target)
@@ -137,7 +137,7 @@ def processor_time(job: Callable[[Descriptors], object], target: Descriptors) ->
 
 
 def compare(packs: Sequence[PackedViews], targets: Sequence[Descriptors], trees: bool) -> None:
-    """Prints the median over targets of each method's time, and the recall of the approximate one."""
+    """Print the median over targets of each method's time, and the recall of the approximate one."""
     started = time.perf_counter()
     indexes = [index for index in indexes_of(packs) if index is not None]
     exactly = time.perf_counter() - started
@@ -162,7 +162,7 @@ def compare(packs: Sequence[PackedViews], targets: Sequence[Descriptors], trees:
 
 
 def simulated(things: int, describe: Describe) -> None:
-    """So many things of every kind, and one more of each as a target."""
+    """Compare on ``things`` things of every kind, and one more of each as a target."""
     targets = [
         view for kind in KINDS for _, view in described(kind, range(FIRST_TARGET, FIRST_TARGET + 1), 1, describe)
     ]
@@ -170,7 +170,7 @@ def simulated(things: int, describe: Describe) -> None:
 
 
 def random(each: int) -> None:
-    """Ten categories of so many random views, in memory, and then mapped from files."""
+    """Compare on ten categories of ``each`` random views, in memory, and then mapped from files."""
     rng = np.random.default_rng(0)
     targets = [rng.random((100, 153), np.float32) for _ in range(9)]
     views = [[(str(i), rng.random((100, 153), np.float32)) for i in range(each)] for _ in range(10)]
@@ -185,7 +185,7 @@ def random(each: int) -> None:
 
 
 def taught(things: int, each: int, describe: Describe) -> dict[str, InstanceCategory]:
-    """Every kind, with things that are known to be such."""
+    """Return every kind as a category of known instances."""
     return {kind: _with_things(kind, list(described(kind, range(things), each, describe))) for kind in KINDS}
 
 
@@ -194,7 +194,7 @@ def _with_things(kind: str, views: list[tuple[str, Descriptors]]) -> InstanceCat
 
 
 def constants() -> None:
-    """Prints what is shipped, measured on simulated tableware."""
+    """Print the shipped constants as measured on simulated tableware."""
     named = {name: describer_named(name).describe for name in DESCRIBERS}
     for name, describe in {"spin_image_roots": recognising.SPIN_IMAGE_ROOTS.describe, **named}.items():
         icds = [category.width(over_things=True).icd or np.nan for category in taught(6, 2, describe).values()]
@@ -221,7 +221,7 @@ def constants() -> None:
 
 
 def calibration(things: int = 6, each: int = 3) -> None:
-    """Prints how calibrated probabilities are, on things never seen; a quarter of the kinds is unknown in turn."""
+    """Print the calibration of the probabilities on unseen things; a quarter of the kinds is unknown in turn."""
     fresh = [
         (kind, view)
         for kind in KINDS
@@ -252,7 +252,7 @@ def _answers(
     fresh: Sequence[tuple[str, list[Descriptors]]],
     fold: int,
 ) -> Iterator[tuple[float, bool, bool, float]]:
-    """Probability of the likeliest answer, whether right, whether unknown, and ND; as many unknown as known targets."""
+    """Return probability of the likeliest answer, right, unknown, and ND, for as many unknown as known targets."""
     hidden = set(KINDS[fold::4])
     rest = [tuple(each[kind] for each in categories) for kind in KINDS if kind not in hidden]
     known = known_by(comparison, rest).calibrated().recogniser
@@ -266,7 +266,7 @@ def _answers(
 
 
 def found_on_table(seed: int) -> list[tuple[str, PointCloud]]:
-    """What detection finds on a table laid for a formal dinner, by the words that its layout grounds there."""
+    """Return the things that detection finds on a formal table, by the words that its layout grounds there."""
     script = parse_script(example("formal_dinner.layout").read_text(encoding="utf-8"))
     scene = perceive(simulate(lay_script(script, seed=seed), seed=seed).cloud)
     matches = ground(example("formal_dinner.layout"), scene).matches
@@ -274,11 +274,11 @@ def found_on_table(seed: int) -> list[tuple[str, PointCloud]]:
 
 
 TABLES = tuple(range(first, first + 6) for first in (1, 7, 31, 37))
-"""Seeds of four sets of six tables; each set is asked for after the next one was taught."""
+"""Seeds of four sets of six tables; each set is named after the next one was taught."""
 
 
 def tables() -> None:
-    """Prints how things are named on six tables after one, three and six others were taught, for each set of tables.
+    """Print how things are named on six tables after one, three and six others were taught, for each set of tables.
 
     A thing counts as unknown with its category left out. Calibration is that of all answers, known and unknown.
     """
@@ -318,7 +318,7 @@ def _taught(
     learnt: Sequence[Sequence[tuple[str, list[Descriptors]]]],
     settings: RecognitionSettings,
 ) -> JointRecogniser:
-    """What recognises the things of some tables, calibrated."""
+    """Return a calibrated recognition of the things of some tables."""
     views = [(name, f"{place} {name}", rows) for place, table in enumerate(learnt) for name, rows in table]
     categories = [
         tuple(
@@ -331,9 +331,12 @@ def _taught(
 
 
 class OnTable(NamedTuple):
-    """An answer, or arrays of many: whether the nearest category, the name and a name that is said are right or wrong;
-    whether unknown is said with the category left out; the least ND as it is and without the category; and confidence
-    and whether it is right, as it is and without."""
+    """An answer, or arrays of many.
+
+    Each holds whether the nearest category, the name and a stated name are right or wrong; whether the answer is
+    unknown with the category left out; the least ND with and without the category; and confidence and whether the
+    answer is right, with and without.
+    """
 
     nearest: Any
     named: Any

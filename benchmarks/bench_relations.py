@@ -1,6 +1,6 @@
-"""Relations of all ordered pairs of 1,000 boxes (a million pairs), beside a plain loop over end points.
+"""Time the relations of all ordered pairs of 1,000 boxes (a million pairs), beside a plain loop over end points.
 
-The loop is what a library without arrays does for one pair, on 60 boxes and scaled to as many pairs.
+The loop does what a library without arrays does for one pair, on 60 boxes and scaled to as many pairs.
 """
 
 from __future__ import annotations

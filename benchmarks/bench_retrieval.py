@@ -1,10 +1,10 @@
-"""Which layout is this? Hits@k and MRR over 50 layouts and 200 scenes, beside a bag of kinds; and the time it takes.
+"""Measure retrieval of layouts: Hits@k and MRR over 50 layouts and 200 scenes, beside a bag of kinds; and its time.
 
 Layouts are drawn at random: a plate, and 5 to 11 other pieces of tableware in places around and on it, described by one
-and a half facts a piece. Every two or three of the 50 have the same pieces in other places, so that kinds alone do not
-tell them apart. Of each, four scenes are laid: every piece a little awry and of varying size, some pieces missing, some
-extra, a share of the things labelled. The bag of kinds is Dice's coefficient of the labelled kinds alone. Seeds are
-printed.
+and a half facts per piece. Every two or three of the 50 have the same pieces in other places, so that kinds alone
+cannot distinguish them. Four scenes are laid of each: every piece a little out of place and of varying size, some
+pieces missing, some extra, a share of the things labelled. The bag of kinds is Dice's coefficient of the labelled kinds
+alone. Seeds are printed.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ TOP = 10
 LAYOUTS, BAGS, SCENES_EACH = 50, 20, 4
 JITTER, MISSING, EXTRA = 0.015, 0.12, 1.0  # metres; share; mean number
 
-# What is laid, with width and depth in metres when it points away from the viewer.
+# The pieces, with width and depth in metres when they point away from the viewer.
 PIECES = {
     "dinner fork": (0.025, 0.20),
     "salad fork": (0.022, 0.17),
@@ -58,14 +58,14 @@ PLACES = np.array(
 
 @dataclass(frozen=True)
 class Laid:
-    """The pieces of a layout, and where they lie: boxes (n, 2, 2)."""
+    """The pieces of a layout, and their boxes (n, 2, 2)."""
 
     kinds: tuple[str, ...]
     boxes: NDArray[np.float64]
 
 
 def laid(bag_of_kinds: int, rng: np.random.Generator, seed: int) -> Laid:
-    """A layout: the pieces of one of the bags, in places of its own."""
+    """Return a layout: the pieces of one of the bags, in places of its own."""
     choosing = np.random.default_rng([seed, bag_of_kinds])
     count = int(choosing.integers(5, 12))
     kinds = [str(kind) for kind in choosing.choice(list(PIECES), count)]
@@ -110,22 +110,22 @@ def iri(word: str) -> str:
 
 
 def bag(layout: Described, one: Seen) -> float:
-    """Dice's coefficient of kinds, unlabelled things left out of what is common."""
+    """Return Dice's coefficient of kinds, without unlabelled things in the intersection."""
     common = Counter(layout.graph.kinds) & Counter(kind for kind in one.kinds if kind is not None)
     return 2 * sum(common.values()) / (len(layout.graph.nodes) + len(one.kinds))
 
 
 def by_bag(scenes: list[Seen], layouts: list[Described], backwards: bool) -> list[list[str]]:
-    """What the bag of kinds ranks: layouts for each scene or, ``backwards``, scenes for each layout."""
+    """Rank by the bag of kinds: layouts for each scene or, ``backwards``, scenes for each layout."""
     scores = np.array([[bag(layout, one) for layout in layouts] for one in scenes])
     names = [one.name for one in (scenes if backwards else layouts)]
     return [[names[k] for k in np.argsort(-row, kind="stable")[:TOP]] for row in (scores.T if backwards else scores)]
 
 
 def figures(ranked: list[list[str]], wanted: list[str]) -> str:
-    """Hits at 1, 3 and 10, and the mean reciprocal rank (0 beyond ``TOP``) with its standard error.
+    """Return Hits at 1, 3 and 10, and the mean reciprocal rank (0 beyond ``TOP``) with its standard error.
 
-    What is wanted of a ranking is a name that begins so.
+    A ranking is right at the first name that begins with the wanted one.
     """
     ranks = [
         next((rank for rank, name in enumerate(names, start=1) if name.startswith(start)), np.inf)

@@ -1,8 +1,8 @@
-"""The scoreboard of ``deixis experiment scoreboard`` with other people's solvers beside the engines.
+"""Run the scoreboard of ``deixis experiment scoreboard`` with other solvers beside the engines.
 
-The peers get the same problem as the engines (log-likelihood ratios of graded meaning) and are run at the settings that
-the table states, their best in ``bench_peers.py``; those that are not installed, and sizes that are too large for them,
-are skipped with a word. ``pip install ortools pygmtools`` gets them. Options as for the command: ``--quick``,
+The peers get the same problem as the engines (log-likelihood ratios of graded meaning) and run at the settings in the
+table, their best in ``bench_peers.py``; peers that are not installed, and sizes that are too large for them, are
+skipped with a note. ``pip install ortools pygmtools`` installs them. Options are those of the command: ``--quick``,
 ``--cases``, ``--seed``, ``--time-limit``, ``--plot``, ``--json``.
 """
 
@@ -26,14 +26,14 @@ from deixis.experiments.scoreboard.run import ScoreboardPlan, run, steps
 from deixis.reasoning.grounding.matching.problem import Problem
 
 MOST = {"annealing": 300, "faq": 100, "cp-sat": 8, "pygmtools": 30}
-"""Objects: beyond, a case takes minutes, or more memory than a desktop has."""
+"""Maximum number of objects; larger cases take minutes, or more memory than a desktop has."""
 
 LEAST_STEPS = 2_000_000
-"""Proposals of the annealing; its usual number where that is more."""
+"""Minimum number of proposals of the annealing; its usual number if that is more."""
 
 
 def peers() -> list[Contestant]:
-    """Swap annealing, FAQ, CP-SAT and three spectral or iterative solvers of pygmtools."""
+    """Return swap annealing, FAQ, CP-SAT and three spectral or iterative solvers of pygmtools."""
     found = [
         peer("annealing", f"swap annealing, {LEAST_STEPS:,} proposals or more", _annealing, most=MOST["annealing"]),
         peer("faq", "Frank-Wolfe (Vogelstein et al. 2015), ten starts", _faq, most=MOST["faq"]),
@@ -50,16 +50,16 @@ def peers() -> list[Contestant]:
         "rrwm": "Cho et al. 2010",
         "ipfp": "Leordeanu et al. 2009",
     }
-    for settings in graph_matching.BEST:
-        found.append(
-            peer(
-                settings.solver,
-                f"pygmtools ({papers[settings.solver]}), {settings}",
-                partial(_graph_matching, settings=settings),
-                most=MOST["pygmtools"],
-                lacking=_lacking("pygmtools"),
-            )
+    found.extend(
+        peer(
+            settings.solver,
+            f"pygmtools ({papers[settings.solver]}), {settings}",
+            partial(_graph_matching, settings=settings),
+            most=MOST["pygmtools"],
+            lacking=_lacking("pygmtools"),
         )
+        for settings in graph_matching.BEST
+    )
     return found
 
 
@@ -86,12 +86,14 @@ def _graph_matching(problem: Problem, seconds: float, settings: graph_matching.S
 
 def main(arguments: Sequence[str] | None = None) -> None:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--quick", action="store_true", help="a small part of it")
-    parser.add_argument("--cases", type=int, default=10, help="tables of each setting; of large ones fewer")
+    parser.add_argument("--quick", action="store_true", help="a small part of the cases")
+    parser.add_argument("--cases", type=int, default=10, help="tables of each setting; fewer of large ones")
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--time-limit", type=float, default=5.0, help="seconds of an engine for a case")
-    parser.add_argument("--size", type=int, action="append", help="only tables of so many objects")
-    parser.add_argument("--plot", type=Path, help="draw it (.png, .svg, .pdf)")
+    parser.add_argument("--time-limit", type=float, default=5.0, help="time limit of an engine per case, in seconds")
+    parser.add_argument(
+        "--size", type=int, action="append", help="only tables of this number of objects; may be repeated"
+    )
+    parser.add_argument("--plot", type=Path, help="draw the scoreboard (.png, .svg, .pdf)")
     parser.add_argument("--json", action="store_true")
     options = parser.parse_args(arguments)
     plan = ScoreboardPlan(

@@ -1,16 +1,16 @@
-"""Hard constraint networks: how long a verdict takes, beside GQR.
+"""Time the verdict on hard constraint networks, beside GQR.
 
 Random networks are of the model A(n, d, l) of Nebel 1997: each pair is constrained with the probability that gives a
 mean degree d, and each atom is in a label with the probability that gives l of them on average. ``DEIXIS_DATA`` leads
-to GQR's own instances of 320 things. GQR takes part, as a process that reads files, where ``gqr`` is on the PATH. Else
-the figures stated are those measured once on another machine with GQR built from source, for eight other networks of
-60 things of the same model, and for its own instances, of which it solved four.
+to GQR's own instances of 320 things. GQR takes part, as a process that reads files, if ``gqr`` is on the PATH.
+Otherwise the stated figures are those measured once on another machine with GQR built from source, for eight other
+networks of 60 things of the same model, and for its own instances, of which it solved four.
 
-OPRA (Moratz 2006) is a calculus as users bring them, whose relations take two words: no tractable subclass is known,
-and a closed network of atoms, which *undecided* means here, may be inconsistent.
+OPRA (Moratz 2006) is an example of a user's own calculus, whose relations take two words: no tractable subclass is
+known, and a closed network of atoms, reported here as *undecided*, may be inconsistent.
 
-Every consistent network is proved: a scenario, one atom for each pair, that closure leaves as it is and that has only
-stated atoms. Start-up (imports, compiled loops and tables) is timed apart, in a process of its own.
+Every consistent network is proved: a scenario, one atom for each pair, that closure does not change and that has only
+stated atoms. Start-up (imports, compiled loops and tables) is timed separately, in a process of its own.
 """
 
 from __future__ import annotations
@@ -59,20 +59,20 @@ def random_network(chosen: Calculus, things: int, degree: float, atoms: float, r
 
 
 def hard_regions(things: int, degree: float, rng: np.random.Generator) -> Network:
-    """A network of RCC-8 whose labels are in no maximal tractable subclass (Renz and Nebel 2001)."""
+    """Return a network of RCC-8 whose labels are in no maximal tractable subclass (Renz and Nebel 2001)."""
     classes = (RCC8_HORN, RCC8_C8, RCC8_Q8)
     hard = [label for label in range(1, 256) if not any(label in each.relations for each in classes)]
     upper = np.argwhere(np.triu(rng.random((things, things)) < degree / (things - 1), 1)).tolist()
     return Network(calculus("rcc8"), things, tuple(Constraint(i, j, int(rng.choice(hard))) for i, j in upper))
 
 
-def anew(network: Network) -> Network:
-    """The same network without what it keeps, so that each run starts from the constraints."""
+def uncached(network: Network) -> Network:
+    """Return the network without its cached closure, so that each run starts from the constraints."""
     return Network(network.calculus, network.size, network.constraints)
 
 
 def proved(network: Network) -> bool:
-    found = solve(anew(network), Deadline.after(TIME_LIMIT), scenario=True).scenario
+    found = solve(uncached(network), Deadline.after(TIME_LIMIT), scenario=True).scenario
     if found is None:
         return False
     stated = all(found.stated(c.first, c.second) & c.relation for c in network.constraints[:200])
@@ -101,7 +101,7 @@ def report(name: str, networks: list[Network], stated: str = "", runs: int = 3) 
     clock, processor = [], []
     solutions: list[Solution] = []
     for _ in range(runs):
-        fresh = [anew(network) for network in networks]
+        fresh = [uncached(network) for network in networks]
         started = time.perf_counter(), time.process_time()
         solutions = [solve(network, Deadline.after(TIME_LIMIT)) for network in fresh]
         clock.append(time.perf_counter() - started[0])
@@ -111,7 +111,7 @@ def report(name: str, networks: list[Network], stated: str = "", runs: int = 3) 
     proofs = sum(map(proved, consistent))
     conflicts = sum(solution.dead_ends for solution in solutions)
     print(
-        f"{name:<48} {statistics.median(clock):7.3f} s ({statistics.median(processor):.3f} s of processor)   "
+        f"{name:<48} {statistics.median(clock):7.3f} s ({statistics.median(processor):.3f} s of processor time)   "
         + ", ".join(f"{count} {verdict}" for verdict, count in sorted(verdicts.items()))
         + f", {proofs} of {len(consistent)} proved by a scenario, {conflicts:,} contradictions"
     )
@@ -122,7 +122,7 @@ def report(name: str, networks: list[Network], stated: str = "", runs: int = 3) 
 def main() -> None:
     allen = calculus("allen")
     started = subprocess.run([sys.executable, "-c", START], capture_output=True, text=True, check=True)
-    print(f"start-up, once a process: {float(started.stdout):.2f} s")
+    print(f"start-up, once per process: {float(started.stdout):.2f} s")
     rng = np.random.default_rng(15)
     solve(random_network(allen, 20, 9.5, 6.5, rng))  # loads
     for things, degree, many, known in ((60, 9.5, 8, "0.11 s"), (100, 10.0, 8, "")):

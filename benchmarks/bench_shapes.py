@@ -1,7 +1,7 @@
-"""Users' own shapes: pyshacl beside pyrudof, on random data and random shapes of SHACL core.
+"""Compare pyshacl and pyrudof on users' own shapes: random data and random shapes of SHACL core.
 
-pyrudof takes part where it is installed. Both get the same Turtle. A result is its focus node,
-its path and the kind of constraint; where they differ, the kinds of constraints that differ are counted.
+pyrudof takes part if it is installed. Both get the same Turtle. A result is its focus node, its path and the kind of
+constraint; differing kinds of constraints are counted.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ PREFIXES = (
 
 
 def data(nodes: int, rng: np.random.Generator) -> str:
-    """Things of four kinds with numbers, texts in two languages, and links between them."""
+    """Return things of four kinds with numbers, texts in two languages, and links between them."""
     lines = []
     for k in range(nodes):
         lines.append(f":n{k} a :K{rng.integers(4)} .")
@@ -121,25 +121,25 @@ def named(node: rdflib.term.Node | None) -> str:
 
 
 def measured(name: str, cases: list[tuple[str, str]]) -> list[tuple[bool, Counter[Result]] | None]:
-    """The answers of an engine, None where it fails, after printing how long one takes."""
+    """Return the answers of an engine, None where it fails, after printing the time of one."""
     seconds, answers, errors = [], list[tuple[bool, Counter[Result]] | None](), Counter[str]()
     for graph, wanted in cases:
         started = time.process_time()
         try:
             answers.append(ENGINES[name](graph, wanted))
-        except Exception as error:  # whatever either raises is counted
+        except Exception as error:  # count whatever either raises
             errors[f"{type(error).__name__}: {' '.join(str(error).split())[:80]}"] += 1
             answers.append(None)
         seconds.append(time.process_time() - started)
-    print(f"  {name:<8} {1000 * statistics.median(seconds):7.1f} ms of processor in the median; errors: {dict(errors)}")
+    print(f"  {name:<8} {1000 * statistics.median(seconds):7.1f} ms of processor time (median); errors: {dict(errors)}")
     return answers
 
 
 def main() -> None:
-    logging.getLogger("rdflib.term").setLevel(logging.CRITICAL)  # it warns of each ill-typed literal
+    logging.getLogger("rdflib.term").setLevel(logging.CRITICAL)  # pyshacl warns of each ill-typed literal
     rng = np.random.default_rng(17)
     there = [name for name in ENGINES if importlib.util.find_spec(name) is not None]
-    print("" if "pyrudof" in there else "pyrudof is not installed, and takes no part")
+    print("" if "pyrudof" in there else "skipped: pyrudof is not installed")
     for sets, nodes in ((200, 60), (5, 2000)):
         cases = [(data(nodes, rng), shapes(rng)) for _ in range(sets)]
         print(f"{sets} sets of shapes over {nodes:,} nodes")
@@ -154,7 +154,7 @@ def main() -> None:
             print("  " + ", ".join(f"{kind} {count}" for kind, count in differing.most_common()))
     if len(there) < 2:
         return
-    print("violations said of one value, pyshacl and pyrudof")
+    print("violations reported for one value by pyshacl and pyrudof")
     for what, wanted in SINGLE.items():
         for value in VALUES:
             graph = f"{PREFIXES}:n0 :p0 {value} ."

@@ -1,4 +1,4 @@
-"""Spin images beside the Point Cloud Library's: 500 keypoints of a bottle, at four densities, by threads; describers.
+"""Time spin images beside the Point Cloud Library's: 500 keypoints of a bottle, four densities, by threads; describers.
 
 Both are timed in turn from points and normals to images, their search structures included; times are medians, ratios
 those of medians. Without the library (Debian: libpcl-dev) only our own times are printed. ``--quick`` takes few runs.
@@ -58,7 +58,7 @@ def main() -> None:
 
 
 def bottle(n: int, seed: int = 0) -> Cloud:
-    """The side of a bottle, 24 cm high and 8 cm across, that faces a camera a metre away; normals; keypoints."""
+    """Return the side of a bottle, 24 cm high and 8 cm across, facing a camera a metre away; normals; keypoints."""
     rng = np.random.default_rng(seed)
     height, angle = rng.uniform(0, 0.24, n), rng.uniform(-1.45, 1.45, n)
     radius = np.interp(height, [0, 0.14, 0.18, 0.24], [0.04, 0.04, 0.014, 0.014])

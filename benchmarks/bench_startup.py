@@ -1,9 +1,10 @@
-"""What a command costs on a small job: processor and wall time of whole processes, beside ``deixis --version``.
+"""Measure the cost of each command on a small job: processor and wall time of whole processes.
 
     python benchmarks/bench_startup.py            # every command, medians of 7 runs in turn
     python benchmarks/bench_startup.py parse infer --runs 15
 
-Processor time is what the process and its children used (user and system). Before it is measured, each job runs once,
+Processor time is that of the process and its children (user and system); the last column relates it to that of
+``deixis --version``. Before it is measured, each job runs once,
 so that compiled code and bytecode are on disk, as they are after an installation and ``python -m deixis.kernels``.
 """
 
@@ -27,10 +28,10 @@ from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.clouds.cloud_file import write_cloud
 
 TARGET = 0.3
-"""Seconds of processor time that a linter's loop can bear, on a quiet machine."""
+"""Maximum processor seconds on a quiet machine, for use in the loop of a linter."""
 
 COMPILED_TARGET = 0.6
-"""The same for commands that ground, whose loops are loaded compiled."""
+"""Maximum processor seconds of commands that ground, whose loops are loaded compiled."""
 
 DINNER, SETTING = example("formal_dinner.layout"), example("place_setting.scene.json")
 LABELLED, SECOND = example("place_setting.labelled.scene.json"), example("second_table.scene.json")
@@ -66,13 +67,13 @@ COMMANDS = {
     "reason, HermiT": "reason kitchen.ttl --engine hermit",
     "simulate, 3 things": "simulate --random 3",
 }
-"""A small typical job of every command but those that ask, tell a story or run experiments."""
+"""A small typical job of every command except those that ask, tell a story or run experiments."""
 
 GROUNDING = ("ground", "check", "learn", "retrieve", "learn-relation")
 
 
 class Cost(NamedTuple):
-    """What a process took, in seconds, and how it ended."""
+    """The time of a process, in seconds, and its exit code."""
 
     processor: float
     wall: float
@@ -80,7 +81,7 @@ class Cost(NamedTuple):
 
 
 def cost(arguments: Sequence[str], folder: Path) -> Cost:
-    """Run Python as a process of its own, and return what it took."""
+    """Run Python as a process of its own, and return its cost."""
     started = time.perf_counter()
     environment = {
         **os.environ,
@@ -106,7 +107,7 @@ def deixis(command: str, run: int = 0) -> list[str]:
 
 
 def prepare(folder: Path) -> None:
-    """Write what the jobs read, and learn the layout that they look up."""
+    """Write the files that the jobs read, and learn the layout that they look up."""
     row = [f"thing_{i} left of thing_{i + 1}" for i in range(49)]
     (folder / "row.layout").write_text("\n".join(row) + "\n", encoding="utf-8")
     choices = [*row[:11], "thing_0 left of or above thing_5", "thing_3 is not above thing_7"]
@@ -130,12 +131,12 @@ def prepare(folder: Path) -> None:
         "teach block.scene.json o1 block",
     ):
         if cost(deixis(command), folder).code != 0:
-            raise SystemExit(f"this failed: deixis {command}")
+            raise SystemExit(f"failed: deixis {command}")
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("names", nargs="*", help="commands; all if none is named")
+    parser.add_argument("names", nargs="*", help="commands; all by default")
     parser.add_argument("--runs", type=int, default=7)
     options = parser.parse_args()
     chosen = {

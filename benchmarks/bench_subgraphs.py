@@ -1,8 +1,8 @@
-"""Equations 5 to 9 for all 455 sub-graphs of script2's 15 objects against 12 perceived ones, beside networkx.
+"""Time equations 5 to 9 for all 455 sub-graphs of script2's 15 objects against 12 perceived ones, beside networkx.
 
-The peer is what networkx has nearest to it, SimRank (`simrank_similarity`), run once for
-each of 15 of the sub-graphs' disjoint unions with the scene and scaled: an iterative node similarity of the same kind,
-without labels. It is a comparison of speed, not of answers.
+The peer is the closest method of networkx, SimRank (`simrank_similarity`), run once for each of 15 of the sub-graphs'
+disjoint unions with the scene and scaled: an iterative node similarity of the same kind, without labels. This compares
+speed, not answers.
 """
 
 from __future__ import annotations

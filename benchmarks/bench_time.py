@@ -1,8 +1,8 @@
-"""One more difference constraint in a simple temporal network of 100 and of 500 fluents, beside its peers.
+"""Time one more difference constraint in a simple temporal network of 100 and of 500 fluents, beside peers.
 
-The peers begin anew with each constraint: scipy's Floyd-Warshall gives the same minimal distances, networkx's
-Bellman-Ford only says whether there is a negative cycle. Both get their matrix or graph ready made, and bounds that are
-not strict. Ours adds the constraint and undoes it again, in exact bounds. Then all of a table's times from nothing.
+The peers start from scratch with each constraint: scipy's Floyd-Warshall gives the same minimal distances, networkx's
+Bellman-Ford only detects a negative cycle. Both get their matrix or graph ready made, and bounds that are not strict.
+Ours adds the constraint and undoes it again, in exact bounds. Then all times of a table are computed from scratch.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ ADDED = 20
 
 
 def story(n: int) -> tuple[list[Fluent], list[EndDifference]]:
-    """Fluents with true times, known to some seconds, and four times as many differences known to a second or so."""
+    """Return fluents known to some seconds, and four times as many differences known to about a second."""
     rng = np.random.default_rng(4)
     starts = rng.uniform(0, 10 * n, n).round(3)
     finishes = starts + rng.uniform(5, 60, n).round(3)
@@ -48,7 +48,7 @@ def constraints_of(differences: list[EndDifference]) -> list[tuple[DifferenceCon
 
 
 def weights(network: SimpleTemporalNetwork) -> csr_array:
-    """The stated constraints as a sparse matrix in seconds."""
+    """Return the stated constraints as a sparse matrix in seconds."""
     least: dict[tuple[int, int], float] = {}
     for c in network.constraints:
         cell = network.index(c.tail), network.index(c.head)
@@ -66,7 +66,7 @@ def add_and_undo(network: SimpleTemporalNetwork, new: list[tuple[DifferenceConst
 
 
 def changed_by(network: SimpleTemporalNetwork, new: list[tuple[DifferenceConstraint, ...]]) -> int:
-    """How many distances one difference changes on average."""
+    """Return the mean number of distances that one difference changes."""
     length, before, changed = len(network.constraints), network.distances.copy(), 0
     for constraints in new:
         assert network.try_add(constraints)
@@ -97,7 +97,7 @@ def measure(n: int, runs: int) -> None:
     print(f"{n} fluents, {len(network.points)} points, {len(network.constraints)} constraints")
     print(f"  one difference more changes {changed_by(network, new)} distances on average")
     print(f"  deixis, add one difference and undo it:        {one * 1e3:9.3f} ms")
-    print(f"  scipy Floyd-Warshall, all anew:                {scipys * 1e3:9.3f} ms ({scipys / one:.0f} times)")
+    print(f"  scipy Floyd-Warshall, from scratch:            {scipys * 1e3:9.3f} ms ({scipys / one:.0f} times)")
     print(f"  networkx Bellman-Ford, consistency only:       {networkxs * 1e3:9.3f} ms ({networkxs / one:.0f} times)")
     print(f"  deixis, the whole network from nothing:        {built * 1e3:9.1f} ms")
     print(f"  deixis, all bounds and all pairs' Allen masks: {followed * 1e3:9.1f} ms")

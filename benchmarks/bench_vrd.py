@@ -1,7 +1,7 @@
-"""The scoreboard's photographs alone, in more node orders: what people said of them, grounded by each engine.
+"""Run the scoreboard's photographs alone, in more node orders: people's descriptions, grounded by each engine.
 
-Visual Relationship Detection (Lu et al. 2016); see :mod:`deixis.experiments.photographs`. Means over images, each a
-mean over random node orders, with 95 per cent intervals.
+Visual Relationship Detection (Lu et al. 2016); see :mod:`deixis.experiments.photographs`. Prints means over images,
+each a mean over random node orders, with 95 per cent intervals.
 """
 
 from __future__ import annotations
@@ -18,9 +18,9 @@ from deixis.experiments.scoreboard.contestants import engines
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--orders", type=int, default=10, help="random node orders an image")
+    parser.add_argument("--orders", type=int, default=10, help="random node orders per image")
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--time-limit", type=float, default=2.0, help="seconds an alignment")
+    parser.add_argument("--time-limit", type=float, default=2.0, help="time limit per alignment, in seconds")
     options = parser.parse_args()
     folder = data_folder(FOLDER)
     if folder is None:

@@ -1,4 +1,4 @@
-"""What the benchmarks share: timing side by side, and where the data is."""
+"""Share the timing and the data folder among the benchmarks."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from pathlib import Path
 
 
 def data_folder(name: str) -> Path | None:
-    """A folder of the data for measuring, or None, said aloud, where DEIXIS_DATA does not lead to it."""
+    """Return a folder of the measuring data; print a note and return None if DEIXIS_DATA does not lead to it."""
     root = os.environ.get("DEIXIS_DATA")
     folder = Path(root) / name if root else None
     if folder is None or not folder.is_dir():
@@ -21,7 +21,7 @@ def data_folder(name: str) -> Path | None:
 
 
 def medians(*jobs: Callable[[], object], runs: int = 7) -> list[float]:
-    """Median seconds of each job, run in turn so that a slow moment of the machine meets them all."""
+    """Return the median seconds of each job, run in turn so that a slow moment of the machine affects them all."""
     times: list[list[float]] = [[] for _ in jobs]
     for job in jobs:
         job()

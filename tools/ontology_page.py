@@ -1,7 +1,7 @@
-"""Write docs/reference/ontology.md, the ontology as a page to read, from the TBox: ``python tools/ontology_page.py``.
+"""Write docs/reference/ontology.md, a readable page of the ontology, from the TBox: ``python tools/ontology_page.py``.
 
-Generators such as pyLODE and Widoco write HTML, and know neither which Allen relations a word admits, nor usual sizes,
-nor colours; pyLODE 3.4.1 from its wheel cannot be imported.
+Generators such as pyLODE and Widoco write HTML, and show neither the Allen relations that a word admits, nor usual
+sizes, nor colours; pyLODE 3.4.1 from its wheel cannot be imported.
 """
 
 from __future__ import annotations
@@ -100,7 +100,7 @@ Used as defined there: {others}.
 """
 
 Columns = dict[str, Callable[[Any], str]]
-"""Functions that give the cell of a term, by the heading of the column."""
+"""Functions that return the cell of a term, by the heading of the column."""
 
 graph = Graph("SimpleMemory")  # keeps the order of the files
 for file in ("deixis.ttl", "everyday.ttl"):
@@ -149,7 +149,7 @@ def page() -> str:
 
 
 def relation(term: URIRef) -> str:
-    """Return the section of a relation: its definition, what it is under, what it admits, and its words."""
+    """Return the section of a relation: its definition, its parents, the Allen relations admitted, and its words."""
     facts = [f"inverse {codes(inverses(term))}", f"under {linked(RDFS.subPropertyOf)(term)}"]
     if OWL.TransitiveProperty in graph[term : RDF.type]:
         facts.insert(1, "transitive")
@@ -161,12 +161,12 @@ def relation(term: URIRef) -> str:
 
 
 def admitted(relations: list[Node]) -> str:
-    """Return the signs of Allen relations, or "any" where they are all thirteen."""
+    """Return the signs of Allen relations, or "any" for all thirteen."""
     return "any" if len(relations) == 13 else " ".join(map(sign, relations))
 
 
 def tree(kind: Node, depth: int) -> Iterator[str]:
-    """Yield a line for a kind and for all below it; a kind with two parents stands under both."""
+    """Yield a line for a kind and for each kind below it; a kind with two parents is listed under both."""
     name, *others = words(kind).split(", ")
     also = f" Also: {', '.join(others)}." if others else ""
     yield f"{'  ' * depth}- **{name}** ({code(kind)}): {value(kind, SKOS.definition)}{also}"
@@ -196,10 +196,12 @@ def table(columns: Columns, terms: Iterable[URIRef]) -> str:
 
 
 def of_type(kind: URIRef) -> list[URIRef]:
+    """Return our terms of a type."""
     return [term for term in own if kind in graph[term : RDF.type]]
 
 
 def having(predicate: URIRef) -> list[URIRef]:
+    """Return our terms that have a value of a predicate."""
     return [term for term in own if value(term, predicate)]
 
 
@@ -209,10 +211,12 @@ def inverses(term: URIRef) -> list[Node]:
 
 
 def value(term: Node, predicate: URIRef) -> str:
+    """Return the value of a predicate of a term as text; empty if the term has no value."""
     return str(graph.value(term, predicate) or "")
 
 
 def text(predicate: URIRef) -> Callable[[Node], str]:
+    """Return a function that gives the value of a predicate of a term as text."""
     return lambda term: value(term, predicate)
 
 
@@ -220,17 +224,18 @@ label = text(RDFS.label)
 
 
 def linked(predicate: URIRef) -> Callable[[Node], str]:
-    """Return what lists the terms under a predicate."""
+    """Return a function that lists the terms under a predicate."""
     return lambda term: codes(other for other in graph[term:predicate] if other != OWL.NamedIndividual)
 
 
 def extent(name: str) -> Callable[[Node], str]:
-    """Return what gives the least, typical and greatest length, width, height or reach in centimetres."""
+    """Return a function that gives the least, typical and greatest length, width, height or reach in centimetres."""
     bounds = [DX[f"{end}{name.capitalize()}"] for end in ("least", "typical", "greatest")]
     return lambda term: ", ".join(f"{100 * float(value(term, bound)):g}" for bound in bounds if value(term, bound))
 
 
 def sign(term: Node) -> str:
+    """Return the sign of an Allen relation as code."""
     return f"`{value(term, DX.allenSymbol)}`"
 
 
@@ -241,10 +246,12 @@ def words(term: Node) -> str:
 
 
 def code(term: Node) -> str:
+    """Return the prefixed name of a term as code."""
     return f"`{graph.namespace_manager.normalizeUri(str(term))}`"
 
 
 def codes(terms: Iterable[Node]) -> str:
+    """Return the prefixed names of the terms that have an IRI."""
     return ", ".join(code(term) for term in terms if isinstance(term, URIRef))
 
 

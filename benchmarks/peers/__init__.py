@@ -1,1 +1,1 @@
-"""Other people's solvers behind the same call as the engines: ``solve(problem, seconds) -> assignment``."""
+"""Solvers of other makers behind the call of the engines: ``solve(problem, seconds) -> assignment``."""

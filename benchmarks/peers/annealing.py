@@ -1,4 +1,4 @@
-"""Swap annealing as one would write it first, compiled: a random object and thing, the change fact by fact."""
+"""Solve by straightforward swap annealing, compiled: a random object and thing, the change summed fact by fact."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ HOT, COLD = 1.0, 0.1  # in units of the mean range of a table; see bench_peers.p
 
 
 def proposals(objects: int) -> int:
-    """Chosen so that 30, 100 and 1,000 objects take about 0.1, 0.4 and 20 s."""
+    """Return the number of proposals, chosen so that 30, 100 and 1,000 objects take about 0.1, 0.4 and 20 s."""
     return int(np.interp(np.log(objects), np.log([30, 100, 1000]), [1e6, 2.5e6, 4e7]))
 
 
 def solve(
     problem: Problem, *, steps: int | None = None, seed: int = 0, hot: float = HOT, cold: float = COLD
 ) -> NDArray[np.int64]:
-    """The best map seen, from a random one on."""
+    """Return the best map seen, starting from a random one."""
     compiled: Compiled = compile_problem(problem)
     n1, n2 = problem.unary.shape
     rng = np.random.default_rng(seed)

@@ -1,4 +1,4 @@
-"""The problem for CP-SAT (ortools): a Boolean for every match, and one for each level of every fact."""
+"""Solve by CP-SAT (ortools): a Boolean for every match, and one for each level of every fact."""
 
 from __future__ import annotations
 
@@ -11,20 +11,20 @@ from numpy.typing import NDArray
 
 from deixis.reasoning.grounding.matching.problem import UNMATCHED, Problem
 
-SCALE = 10_000  # the solver counts in whole numbers
+SCALE = 10_000  # the solver works with whole numbers
 WORKERS = 2
 
 
 @dataclass(frozen=True, eq=False)
 class Solved:
-    """The map and whether the solver proved it the best."""
+    """The map, and True if the solver proved it the best."""
 
     assignment: NDArray[np.int64]
     proved: bool
 
 
 def solve(problem: Problem, seconds: float) -> Solved:
-    """The best map by CP-SAT; raises ImportError where ortools is not installed.
+    """Return the best map by CP-SAT; raise ImportError if ortools is not installed.
 
     A fact's level (above its least) may be claimed for a thing of its subject only where its object's thing gives that
     level there, and the reverse. That takes n2 clauses a level and fact, where pairs would take n2 squared.
@@ -59,7 +59,7 @@ def solve(problem: Problem, seconds: float) -> Solved:
 
 
 def _fact(model: Any, table: NDArray[np.float32], subject: list[Any], object: list[Any]) -> list[Any]:
-    """One Boolean a level: both ends are matched to a pair of it or a higher one; what it adds to the one below.
+    """Add one Boolean per level: both ends match a pair of it or a higher one; its value adds to the one below.
 
     Without both ends a fact is worth 0, so that levels below 0 need a Boolean that is forced to be true.
     """
@@ -79,7 +79,7 @@ def _fact(model: Any, table: NDArray[np.float32], subject: list[Any], object: li
                     model.add_bool_or(
                         [others[q] for q in np.flatnonzero(allowed[p])] + [end.negated(), reached.negated()]
                     )
-                else:  # reached unless a pair lower than that is matched
+                else:  # true unless a pair of a lower level is matched
                     low_ones = [others[q] for q in np.flatnonzero(~allowed[p]) if q != p]
                     for other in low_ones:
                         model.add_bool_or([end.negated(), other.negated(), reached.negated()])

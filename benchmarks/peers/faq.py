@@ -1,8 +1,8 @@
-"""FAQ (Vogelstein et al. 2015), Frank-Wolfe over doubly stochastic matrices, for facts of several kinds.
+"""Solve by FAQ (Vogelstein et al. 2015), Frank-Wolfe over doubly stochastic matrices, for facts of several kinds.
 
 ``scipy.optimize.quadratic_assignment`` takes one pair of matrices; facts of k kinds are a sum over k pairs, so the same
-steps are written out here for the sum, with scipy's linear assignment: start at the barycentre (or near it), the
-assignment that maximises the gradient, an exact line search, and the assignment nearest to where it ends.
+steps are written out here for the sum, with scipy's linear assignment: start at the barycentre (or near it), find the
+assignment that maximises the gradient, do an exact line search, and end with the assignment nearest to the last point.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ RULED_OUT = -1e6
 
 
 def solve(problem: Problem, *, starts: int = STARTS, seed: int = 0) -> NDArray[np.int64]:
-    """The best of so many starts, the first of them the barycentre."""
+    """Return the best map of ``starts`` starts, the first of them the barycentre."""
     from scipy.optimize import linear_sum_assignment
 
     rng = np.random.default_rng(seed)

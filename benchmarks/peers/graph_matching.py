@@ -1,4 +1,4 @@
-"""SM, RRWM and IPFP of pygmtools, on the affinity of all pairs of matches (small problems only)."""
+"""Solve by SM, RRWM and IPFP of pygmtools, on the affinity of all pairs of matches (small problems only)."""
 
 from __future__ import annotations
 
@@ -10,20 +10,20 @@ from numpy.typing import NDArray
 from deixis.reasoning.grounding.matching.problem import Problem
 from deixis.reasoning.grounding.similarity import assign
 
-MOST_CELLS = 2_000  # matches; the affinity has the square of it
+MOST_CELLS = 2_000  # number of matches; the affinity has its square
 
 
 @dataclass(frozen=True)
 class Settings:
-    """How a solver is run.
+    """The settings of a solver.
 
-    The solvers want affinities of at least 0: what is below is taken as 0, or, ``shifted``, each fact's table is raised
-    until nothing is.
+    The solvers need affinities of at least 0: negative ones are set to 0 or, if ``shifted``, each fact's table is
+    raised until none is negative.
     """
 
     solver: str
     shifted: bool = False
-    options: tuple[tuple[str, float], ...] = ()  # to the function of pygmtools
+    options: tuple[tuple[str, float], ...] = ()  # arguments of the function of pygmtools
 
     def __str__(self) -> str:
         how = "affinities shifted" if self.shifted else "affinities clipped"
@@ -39,9 +39,9 @@ BEST = (
 
 
 def solve(problem: Problem, settings: Settings) -> NDArray[np.int64]:
-    """One solver's map; raises ImportError where pygmtools is not installed.
+    """Return one solver's map; raise ImportError if pygmtools is not installed.
 
-    The solvers match as many objects as they can: nothing is left out that need not be.
+    The solvers match as many objects as possible.
     """
     import pygmtools  # type: ignore[import-not-found, unused-ignore]
 

@@ -1,5 +1,8 @@
-"""LCCP by the Point Cloud Library (Stein et al. 2014), through a small program that is built against it where it is
-installed: with the sanity criterion, and else the defaults of the library's own example."""
+"""Segment by LCCP of the Point Cloud Library (Stein et al. 2014), through a small program built against it.
+
+It is built if the library is installed, and runs with the sanity criterion and otherwise the defaults of the library's
+own example.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +18,7 @@ SOURCE = Path(__file__).with_suffix(".cpp")
 
 
 def build(folder: Path) -> Path | None:
-    """The program, or None where the compiler, pkg-config or the library (Debian's libpcl-dev) is missing."""
+    """Build the program and return its path; None if the compiler, pkg-config or Debian's libpcl-dev is missing."""
     if not (shutil.which("g++") and shutil.which("pkg-config")):
         return None
     flags = subprocess.run(["pkg-config", "--cflags", "--libs", "pcl_segmentation"], capture_output=True, text=True)
@@ -34,7 +37,7 @@ def run(
     voxel: float = 0.004,
     seed: float = 0.016,
 ) -> tuple[float, NDArray[np.int64]]:
-    """Seconds of processor time, and the segment of each point (n,), -1 for none."""
+    """Return seconds of processor time, and the segment of each point (n,), -1 for none."""
     with tempfile.TemporaryDirectory() as name:
         given, found = Path(name) / "cloud", Path(name) / "labels"
         painted = np.full(points.shape, 128, np.uint8) if colours is None else colours

@@ -1,4 +1,4 @@
-"""Spin images by the Point Cloud Library, through a small program that is built against it where it is installed."""
+"""Compute spin images by the Point Cloud Library, through a small program built against it if it is installed."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ BINS = 153
 
 
 def build(folder: Path) -> Path | None:
-    """The program, or None where the compiler, pkg-config or the library (Debian's libpcl-dev) is missing."""
+    """Build the program and return its path; None if the compiler, pkg-config or Debian's libpcl-dev is missing."""
     if not (shutil.which("g++") and shutil.which("pkg-config")):
         return None
     flags = subprocess.run(["pkg-config", "--cflags", "--libs", "pcl_features"], capture_output=True, text=True)
@@ -42,7 +42,7 @@ def run(
     threads: int = 1,
     runs: int = 1,
 ) -> tuple[list[float], NDArray[np.float32]]:
-    """Seconds of each run, the search tree included, and the images (k, bins)."""
+    """Return the seconds of each run, the search tree included, and the images (k, bins)."""
     with tempfile.TemporaryDirectory() as name:
         given, found = Path(name) / "cloud", Path(name) / "images"
         counts = np.array([len(points), len(keypoints)], np.int32)

@@ -1,7 +1,7 @@
-"""Relates boxes in a calculus: the atom of every ordered pair.
+"""Relate boxes in a calculus: find the atom of every ordered pair.
 
-Boxes have shape (n, 2, d), least and greatest corner; x to the viewer's right, y away from the viewer, z up. Calculi of
-the plane (all but ``ba``) look at x and y only.
+Boxes have shape (n, 2, d): least and greatest corner; x to the viewer's right, y away from the viewer, z up. Calculi of
+the plane (all except ``ba``) use x and y only.
 """
 
 from __future__ import annotations
@@ -33,11 +33,20 @@ CONES: tuple[str, ...] = (*CARDINAL_DIRECTIONS, SAME_PLACE)
 
 
 def cardinal_directions(boxes: NDArray[np.float64]) -> NDArray[np.str_]:
-    """For every ordered pair, in which direction the subject's centre lies from the object's: shape (n, n).
+    """Return the direction from the object's centre to the subject's, for every ordered pair: shape (n, n).
 
-    ``boxes`` has shape (n, 2, d), d at least 2; north is y up, east is x to the right. A direction on the border of
-    two cones belongs to the clockwise one (22.5 degrees east of north is north-east). Equal centres are ``eq``.
+    Parameters
+    ----------
+    boxes
+        Boxes of shape (n, 2, d), d at least 2: least and greatest corner; x is east, y is north.
 
+    Returns
+    -------
+    Members of CONES, shape (n, n); row: subject, column: object. A direction on the border of two cones belongs to
+    the clockwise one (22.5 degrees east of north is north-east). Equal centres are ``eq``.
+
+    Examples
+    --------
     >>> cardinal_directions(np.array([[[0.0, 2], [1, 3]], [[0, 0], [1, 1]]])).tolist()
     [['eq', 'n'], ['s', 'eq']]
     """
@@ -45,7 +54,7 @@ def cardinal_directions(boxes: NDArray[np.float64]) -> NDArray[np.str_]:
 
 
 def cardinal_cones(boxes: NDArray[np.float64]) -> NDArray[np.int16]:
-    """Return the same as positions in CONES, shape (n, n)."""
+    """Return the direction from the object's centre to the subject's as positions in CONES, shape (n, n)."""
     centres = boxes.mean(axis=1)
     east = centres[:, None, 0] - centres[None, :, 0]
     north = centres[:, None, 1] - centres[None, :, 1]
@@ -56,7 +65,7 @@ def cardinal_cones(boxes: NDArray[np.float64]) -> NDArray[np.int16]:
 
 AXES = "xyz"
 ALONG_AN_AXIS = ("point", "allen")
-"""The calculi that look along one axis only."""
+"""Calculi of one axis."""
 Codes = NDArray[np.int16]  # (n, n), row: subject, column: object
 
 
@@ -75,14 +84,36 @@ def relate(
     tolerance: float = 0.0,
     reference: float | None = None,
 ) -> Codes:
-    """The code of every ordered pair's atom in the calculus of that name, shape (n, n); row: subject, column: object.
+    """Return the code of every ordered pair's atom in a calculus, shape (n, n); row: subject, column: object.
 
-    ``name`` is one of RELATED; ``signs_of(name)`` says what the codes stand for. ``axis`` (x, y or z) is the one that
-    ``point`` (of the boxes' centres) and ``allen`` look along. Coordinates that differ by at most ``tolerance`` count
-    as equal. ``reference`` is the length, in the boxes' unit, that distances are measured by, and has to be given for
-    them. Raises GraphError for boxes of another shape or without the axes that are asked for, UnknownCalculusError and
-    SettingError.
+    Parameters
+    ----------
+    boxes
+        Boxes of shape (n, 2, d): least and greatest corner.
+    name
+        The name of the calculus, one of RELATED.
+    axis
+        The axis (x, y or z) of ``point``, which relates the boxes' centres, and of ``allen``.
+    tolerance
+        The greatest difference of coordinates that count as equal, in the boxes' unit.
+    reference
+        The unit of the distance ranges, as a length in the boxes' unit; required for calculi with distance.
 
+    Returns
+    -------
+    Codes of atoms; ``signs_of(name)`` lists the signs by code.
+
+    Raises
+    ------
+    GraphError
+        If the boxes have another shape, or lack an axis.
+    UnknownCalculusError
+        If boxes cannot be related in a calculus of that name.
+    SettingError
+        If `axis`, `tolerance` or `reference` is out of range.
+
+    Examples
+    --------
     >>> fork, plate = [[0.0, 0.0], [0.02, 0.2]], [[0.05, -0.02], [0.32, 0.25]]
     >>> codes = relate(np.array([fork, plate]), "cd")
     >>> signs_of("cd")[codes[0, 1]]
@@ -92,18 +123,18 @@ def relate(
     if relator is None:
         hint = nearest(name, _RELATORS)
         raise UnknownCalculusError(
-            f"boxes are not related in '{name}'; "
+            f"no calculus '{name}' relates boxes; "
             + (f"did you mean '{hint}'?" if hint else f"there are {', '.join(RELATED)}")
         )
     if not tolerance >= 0:
-        raise SettingError(f"a tolerance is 0 or more, not {tolerance}")
+        raise SettingError(f"`tolerance` must be at least 0, got {tolerance}")
     require_boxes(boxes)
     return relator(boxes, _Settings(axis, tolerance, reference))
 
 
 @dataclass(frozen=True, eq=False)
 class Related:
-    """What every ordered pair of named things bears in one calculus."""
+    """The atoms of one calculus between every ordered pair of named things."""
 
     calculus: str
     ids: tuple[str, ...]
@@ -111,11 +142,11 @@ class Related:
 
     @property
     def signs(self) -> tuple[str, ...]:
-        """What the codes stand for."""
+        """The signs of the atoms, by code."""
         return signs_of(self.calculus)
 
     def pairs(self, subject: str | None = None, object: str | None = None) -> Iterator[tuple[str, str, str]]:
-        """Subject, sign and object of every ordered pair, or of those with that subject and that object.
+        """Yield subject, sign and object of every ordered pair, or of the pairs with the given subject and object.
 
         Raises UnknownTermError for a name that nothing has.
         """
@@ -127,7 +158,7 @@ class Related:
                     yield self.ids[i], signs[row[j]], self.ids[j]
 
     def places(self, name: str | None) -> range:
-        """Return the place of a thing among the ids; of all where none is named.
+        """Return the place of a thing among the ids as a range of length 1; all places if ``name`` is None.
 
         Raises UnknownTermError for a name that nothing has.
         """
@@ -146,9 +177,9 @@ def signs_of(name: str) -> tuple[str, ...]:
 
 
 def _axis(boxes: NDArray[np.float64], axis: str) -> NDArray[np.float64]:
-    """Return the boxes on one axis, shape (n, 2)."""
+    """Return the intervals of the boxes on one axis, shape (n, 2)."""
     if len(axis) != 1 or axis not in AXES:
-        raise SettingError(f"an axis is x, y or z, not '{axis}'")
+        raise SettingError(f"`axis` must be x, y or z, got '{axis}'")
     if AXES.index(axis) >= boxes.shape[2]:
         raise GraphError("these boxes have no heights (z): they are flat")
     found: NDArray[np.float64] = boxes[:, :, AXES.index(axis)]
@@ -163,7 +194,7 @@ def _allen_on(boxes: NDArray[np.float64], axis: str, tolerance: float) -> Codes:
 
 
 def _order_on(boxes: NDArray[np.float64], axis: str, tolerance: float) -> Codes:
-    """Of the centres: 0 less, 1 equal, 2 greater."""
+    """Return the order of the boxes' centres on an axis: 0 less, 1 equal, 2 greater."""
     centres = _axis(boxes, axis).mean(axis=1)
     difference = centres[:, None] - centres[None, :]
     sign: Codes = (difference > tolerance).astype(np.int16) - (difference < -tolerance).astype(np.int16)
@@ -171,7 +202,7 @@ def _order_on(boxes: NDArray[np.float64], axis: str, tolerance: float) -> Codes:
 
 
 def _product(on: Callable[[NDArray[np.float64], str, float], Codes], axes: str, atoms: int) -> _Relator:
-    """Codes of a product of calculi with that many atoms an axis, the last axis fastest."""
+    """Return a function that codes pairs in a product of calculi of ``atoms`` atoms each, last axis fastest."""
 
     def related(boxes: NDArray[np.float64], settings: _Settings) -> Codes:
         codes = on(boxes, axes[0], settings.tolerance)
@@ -183,7 +214,7 @@ def _product(on: Callable[[NDArray[np.float64], str, float], Codes], axes: str, 
 
 
 def _by_atom(bridge: Callable[[], Bridge]) -> _Relator:
-    """Return what a rectangle-algebra atom says, where it says one thing."""
+    """Return a function that codes pairs by their rectangle-algebra atom, where the bridge maps it to one atom."""
 
     def related(boxes: NDArray[np.float64], settings: _Settings) -> Codes:
         table = np.array([admitted.bit_length() - 1 for admitted in bridge().admits], dtype=np.int16)
@@ -195,7 +226,7 @@ def _by_atom(bridge: Callable[[], Bridge]) -> _Relator:
 def _distances(boxes: NDArray[np.float64], settings: _Settings) -> Codes:
     reference = settings.reference
     if reference is None or not 0 < reference < np.inf:
-        raise SettingError(f"distance is measured by a reference length above 0, in the boxes' unit, not {reference}")
+        raise SettingError(f"`reference` must be a length above 0, in the boxes' unit, got {reference}")
     centres = boxes.mean(axis=1)[:, :2]
     offsets = centres[:, None] - centres[None, :]
     distance = np.hypot(offsets[..., 0], offsets[..., 1])
@@ -205,7 +236,7 @@ def _distances(boxes: NDArray[np.float64], settings: _Settings) -> Codes:
 
 
 def _directions_with_distances(boxes: NDArray[np.float64], settings: _Settings) -> Codes:
-    """Of the joint calculus the one atom that has the tile and the range."""
+    """Return the code of the one joint atom that has the tile and the range of each pair."""
     tiles, ranges = joint_to_directions(), joint_to_distances()
     atoms = np.full((len(tiles.target.atoms), len(ranges.target.atoms)), -1, dtype=np.int16)
     for code, (tile, reach) in enumerate(zip(tiles.admits, ranges.admits, strict=True)):
@@ -232,4 +263,4 @@ _RELATORS: dict[str, _Relator] = {
 }
 
 RELATED: tuple[str, ...] = tuple(_RELATORS)
-"""What boxes can be related in: the calculi, and the eight cones of ``cardir``."""
+"""Names of the calculi in which boxes can be related, and ``cardir``, the eight cones."""

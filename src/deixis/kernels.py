@@ -1,13 +1,13 @@
-"""Compiles every kernel once, so that no command waits for it: ``python -m deixis.kernels`` after an installation.
+"""Compile every kernel once, so that no command waits for it: ``python -m deixis.kernels`` after an installation.
 
-Python's own bytecode is written too: pip does that for what it installs, but not for a checkout.
+Python's own bytecode is written too: pip writes it for installed packages, but not for a checkout.
 """
 
 from __future__ import annotations
 
 
 def compile_kernels() -> None:
-    """Runs one tiny job of each kind; the compiled code is kept on disk, and so are the reasoners' classes."""
+    """Run one tiny job of each kind, so that compiled code and the reasoners' classes are kept on disk."""
     for engine in ("exact", "scalable"):
         compile_grounding(engine)
     compile_inference()
@@ -23,7 +23,7 @@ def compile_kernels() -> None:
 
 
 def _write_bytecode() -> None:
-    """Write the bytecode of Deixis, in whose folder some packages may be links, where there is leave to."""
+    """Write the bytecode of Deixis, whose folder may hold links to packages, where the folder can be written."""
     import compileall
     import sys
 
@@ -35,9 +35,9 @@ def _write_bytecode() -> None:
 
 
 def compile_grounding(engine: str) -> None:
-    """Compile, or load compiled, what grounding with an engine needs, chains for many things included.
+    """Compile, or load compiled, the kernels of grounding with one engine, chains for many objects included.
 
-    Raises UnknownTermError for a name that no engine has.
+    Raises UnknownTermError if no engine has that name.
     """
     from deixis.deadline import Deadline
     from deixis.grammar.parser import parse_script
@@ -66,7 +66,7 @@ def compile_grounding(engine: str) -> None:
 
 
 def compile_inference() -> None:
-    """Compile, or load compiled, the search over facts that leave a choice."""
+    """Compile, or load compiled, the search over facts with more than one reading."""
     from deixis.grammar.parser import parse_script
     from deixis.reasoning.constraints.difference import ORDERS, ZERO, Difference, DifferenceNetwork
     from deixis.reasoning.entailment.why_not import why_not
@@ -83,7 +83,7 @@ def compile_inference() -> None:
     inference.implications.derive(relations["left"], "a", "b")
     orders = DifferenceNetwork(points=2, dtype=ORDERS)
     orders.add(Difference(0, 0, 1, ZERO))
-    orders.path(0, 0, 1)  # what a search that goes back asks for
+    orders.path(0, 0, 1)  # needed by a search that backtracks
     inference_of(parse_script("a left of b\nb left of a\n"))
 
 
@@ -114,7 +114,7 @@ def compile_solving(wide: bool = True) -> None:
 
 
 def compile_imagining() -> None:
-    """Compile, or load compiled, what imagining a table needs."""
+    """Compile, or load compiled, the kernels that place the objects of an imagined table."""
     from deixis.grammar.parser import parse_script
     from deixis.reasoning.kernel import load_compiled
     from deixis.workflows.imagine import imagine
@@ -168,7 +168,7 @@ def _read_clouds() -> None:
 
 
 def compile_detection() -> None:
-    """Detects a block on a table, as an image and as bare points."""
+    """Detect a block on a table, in an image and in bare points."""
     import numpy as np
 
     from deixis.perception.clouds.cloud import PointCloud
@@ -183,7 +183,7 @@ def compile_detection() -> None:
 
 
 def compile_features() -> None:
-    """Describes a tiny view in every way that has a kernel."""
+    """Describe a tiny view with every descriptor that has a kernel."""
     import numpy as np
 
     from deixis.perception.clouds.cloud import PointCloud
@@ -200,7 +200,7 @@ def compile_features() -> None:
 
 
 def compile_recognition() -> None:
-    """Recognises a tiny view; views mapped from a file have a signature of their own."""
+    """Recognise a tiny view, in memory and mapped from a file: mapped arrays have a numba signature of their own."""
     import tempfile
     from pathlib import Path
 

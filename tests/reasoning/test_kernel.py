@@ -1,4 +1,4 @@
-"""Kernels: interpreted and compiled they do the same, and numba is imported only where there is work for it."""
+"""Check that kernels give the same results interpreted and compiled, and that numba is imported only when needed."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def sum_of_doubles(numbers):  # type: ignore[no-untyped-def]
 
 @contextmanager
 def given_so_far(elements: int) -> Iterator[None]:
-    """So many elements were given to interpreted kernels so far; afterwards as many as before."""
+    """Set the elements given to interpreted kernels so far, and restore the number afterwards."""
     before, Kernel.interpreted = Kernel.interpreted, elements
     try:
         yield
@@ -56,7 +56,7 @@ def given_so_far(elements: int) -> Iterator[None]:
 
 
 def inferred(text: str) -> tuple[Any, ...]:
-    """All that is inferred from a script: the conflict, or what follows, with what it rests on."""
+    """Return everything inferred from a script: the conflict, or the conclusions with their premises."""
     found = inference_of(parse_script(text))
     if found.conflict is not None:
         return (str(found.conflict),)
@@ -65,7 +65,7 @@ def inferred(text: str) -> tuple[Any, ...]:
 
 
 def both_ways(answer: Callable[[], Any]) -> tuple[Any, Any]:
-    """What a small job answers interpreted, and compiled."""
+    """Return the answers of a small job interpreted, and compiled."""
     with given_so_far(0):
         interpreted = answer()
         assert 0 < Kernel.interpreted <= MAX_INTERPRETED
@@ -139,7 +139,7 @@ def test_interpreted_and_compiled_timelines_agree(relations: list[tuple[int, int
     assert interpreted == compiled
 
 
-def test_a_call_with_many_elements_is_compiled_and_so_are_all_after_it() -> None:
+def test_a_large_call_and_all_later_calls_are_compiled() -> None:
     with given_so_far(0):
         assert sum_of_doubles(np.arange(4)) == 12
         assert Kernel.interpreted == 4
@@ -149,13 +149,13 @@ def test_a_call_with_many_elements_is_compiled_and_so_are_all_after_it() -> None
         assert sum_of_doubles(np.arange(4)) == 12
 
 
-def test_many_small_calls_are_compiled_in_the_end() -> None:
+def test_many_small_calls_are_compiled_eventually() -> None:
     with given_so_far(MAX_INTERPRETED - 20):
         assert [sum_of_doubles(np.arange(4)) for _ in range(10)] == [12] * 10
         assert Kernel.interpreted > MAX_INTERPRETED
 
 
-def test_what_is_loaded_in_advance_is_not_interpreted() -> None:
+def test_preloaded_kernels_are_not_interpreted() -> None:
     with given_so_far(0):
         load_compiled()
         before = Kernel.interpreted
@@ -172,7 +172,7 @@ def test_importing_kernels_imports_no_numba() -> None:
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
 
 
-def test_no_time_limit_is_spent_on_compiling() -> None:
+def test_compiling_does_not_use_up_the_time_limit() -> None:
     cubed = kernel()(lambda number: number**3)
     with given_so_far(MAX_INTERPRETED + 1):
         deadline, started = Deadline.after(1000.0), time.monotonic()

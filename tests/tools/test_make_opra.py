@@ -1,4 +1,4 @@
-"""The tables of OPRA, against oriented points with whole coordinates."""
+"""Compare the tables of OPRA with oriented points of whole coordinates."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ RAYS = np.array([(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1
 
 
 def table(m: int) -> NDArray[np.bool_]:
-    """Shape (atoms, atoms, atoms): which atoms three points may bear, a to b, b to c and a to c."""
+    """Return which atoms three points can have: a to b, b to c and a to c, shape (atoms, atoms, atoms)."""
     opra = Opra(m)
     return np.array([[[opra.possible(a, b, c) for c in opra.atoms] for b in opra.atoms] for a in opra.atoms])
 
 
 def direction(facing: NDArray[np.int64], towards: NDArray[np.int64], m: int) -> NDArray[np.int64]:
-    """The direction of vectors (2, n) as seen facing (2, n), without rounding."""
+    """Return the direction of vectors (2, n) as seen facing (2, n), without rounding."""
     ahead = facing[0] * towards[0] + facing[1] * towards[1]
     left = facing[0] * towards[1] - facing[1] * towards[0]
     rays = RAYS[:: 4 // m]
     found = np.zeros(ahead.shape, dtype=np.int64)
     for k, (x, y) in enumerate(rays):
-        beyond = x * left - y * ahead  # more than 0: further round than the ray
+        beyond = x * left - y * ahead  # positive: further round than the ray
         found[(beyond == 0) & (x * ahead + y * left > 0)] = 2 * k
         before = np.roll(rays, -1, axis=0)[k][0] * left - np.roll(rays, -1, axis=0)[k][1] * ahead
         found[(beyond > 0) & (before < 0)] = 2 * k + 1
@@ -33,7 +33,7 @@ def direction(facing: NDArray[np.int64], towards: NDArray[np.int64], m: int) -> 
 
 
 def observed(m: int, rounds: int) -> NDArray[np.bool_]:
-    """Shape (atoms, atoms, atoms): what random oriented points bear."""
+    """Return True for the atoms observed between random oriented points, shape (atoms, atoms, atoms)."""
     count, rng = 4 * m + 16 * m * m, np.random.default_rng(20)
     seen = np.zeros((count, count, count), dtype=np.bool_)
     for number in range(rounds):
@@ -49,11 +49,11 @@ def observed(m: int, rounds: int) -> NDArray[np.bool_]:
     return seen
 
 
-def test_the_table_of_granularity_1_is_what_points_bear() -> None:
+def test_the_table_of_granularity_1_agrees_with_points() -> None:
     assert (table(1) == observed(1, 12)).all()
 
 
-def test_points_bear_nothing_beyond_the_table_of_granularity_2() -> None:
+def test_points_stay_within_the_table_of_granularity_2() -> None:
     possible, seen = table(2), observed(2, 6)
     assert not (seen & ~possible).any()
     assert seen.sum() > 0.9 * possible.sum()

@@ -1,4 +1,4 @@
-"""The page about the ontology: in step with the TBox, and every term on it with its definition and words."""
+"""Check that the page of the ontology is up to date, with every term, its definition and its words."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ TERMS = sorted({s for s in GRAPH.subjects(RDF.type) if isinstance(s, URIRef) and
 
 
 def block(term: URIRef) -> str:
-    """What the page says of a term: its line, or of a relation its section."""
+    """Return the part of the page on a term: its line, or the section of a relation."""
     code = f"`dx:{term.removeprefix(BASE)}`"
     section = re.search(rf"^### [^\n]*\({re.escape(code)}\)\n(.*?)(?=^##|\Z)", TEXT, re.MULTILINE | re.DOTALL)
     if section:
@@ -30,8 +30,8 @@ def block(term: URIRef) -> str:
     return "\n".join(lines)
 
 
-def test_the_page_in_the_docs_is_in_step() -> None:
-    assert page() == TEXT, "write it anew: python tools/ontology_page.py"
+def test_the_page_in_the_docs_is_up_to_date() -> None:
+    assert page() == TEXT, "write it again: python tools/ontology_page.py"
 
 
 @pytest.mark.parametrize("term", TERMS, ids=lambda term: term.removeprefix(BASE))
@@ -42,7 +42,7 @@ def test_a_term_is_listed_with_its_definition_and_every_word(term: URIRef) -> No
     assert [str(text) for text in wanted if str(text) not in said] == []
 
 
-def test_a_relation_is_given_with_inverse_transitivity_and_atoms() -> None:
+def test_a_relation_has_its_inverse_transitivity_and_atoms() -> None:
     for relation in default_ontology().relations.values():
         said = block(URIRef(relation.iri))
         inverse = default_ontology().relations[relation.inverse]
@@ -53,7 +53,7 @@ def test_a_relation_is_given_with_inverse_transitivity_and_atoms() -> None:
         assert ("on z, where heights are known" in said) == bool(relation.z_atoms)
 
 
-def test_a_relation_stands_once_and_under_its_reading() -> None:
+def test_a_relation_is_listed_once_under_its_reading() -> None:
     wide, exact = TEXT.split("## Relations, the exact reading")
     assert len(re.findall("^### ", wide, re.MULTILINE)) == 10
     assert len(re.findall("^### ", exact, re.MULTILINE)) == 10
@@ -62,13 +62,13 @@ def test_a_relation_stands_once_and_under_its_reading() -> None:
     assert "### exactly left (`dx:exactlyLeft`)" in exact
 
 
-def test_kinds_are_indented_under_what_they_are() -> None:
+def test_kinds_are_indented_under_their_parents() -> None:
     assert "\n    - **cutlery** (`dx:Cutlery`)" in TEXT
     assert "\n      - **fork** (`dx:Fork`)" in TEXT
     assert "\n        - **cake" not in TEXT
     assert TEXT.count("(`dx:Fork`)") == 1
 
 
-def test_a_property_is_given_with_domain_and_range() -> None:
+def test_a_property_has_its_domain_and_range() -> None:
     assert "| in scene | `dx:inScene` | `dx:PerceivedObject` | `dx:Scene` | functional, inverse of `dx:shows` |" in TEXT
     assert "| 0.8 | usually, normally, typically, generally, mostly | `dx:usually` |" in TEXT

@@ -61,10 +61,10 @@ def _parameters(command: Any, context: Any) -> Iterator[str]:
 
 
 def plain(text: str) -> str:
-    """Return a help text as one paragraph of Markdown, with its special characters escaped.
+    r"""Return a help text as one paragraph of Markdown, with its special characters escaped.
 
-    >>> plain("Exit 1 where\\n  [none] is *known*.")
-    'Exit 1 where \\\\[none] is \\\\*known\\\\*.'
+    >>> plain("Exit 1 where\n  [none] is *known*.")
+    'Exit 1 where \\[none] is \\*known\\*.'
     """
     paragraphs = (" ".join(part.split()) for part in re.split(r"\n\s*\n", text.replace("\b", "")))
     return "\n\n".join(re.sub(r"([*_\[<`|])", r"\\\1", part) for part in paragraphs)

@@ -23,6 +23,7 @@ class Page(HTMLParser):
         self.feed(text)
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        """Record the identifiers and the links of an element."""
         found = dict(attrs)
         self.names.update(name for name in (found.get("id"), found.get("name")) if name)
         self.links += [link for link in (found.get("href"), found.get("src")) if link]

@@ -1,9 +1,7 @@
-"""Bridges between calculi: what a relation in one says of the same two things in another.
+"""Translate relations between calculi: a bridge gives, for a relation in one, the relation of the same pair in another.
 
-Each follows from the geometry of what is related: boxes with sides along the axes, their centres, and regions of which
-they are the bounding boxes.
-
-:mod:`deixis.reasoning.qualitative.calculi.bridges` has them; these are the ones that apply to any network.
+Each bridge follows from the geometry: boxes with sides along the axes, their centres, and regions with these boxes as
+their bounding boxes. :func:`links_between` returns the bridges that apply to any network.
 """
 
 from __future__ import annotations
@@ -25,9 +23,10 @@ from deixis.reasoning.qualitative.calculi.registry import calculus
 
 @dataclass(frozen=True, eq=False)
 class Bridge:
-    """For each atom of ``source`` the relation of ``target`` that two things which bear it may have.
+    """A map from each atom of ``source`` to the relation of ``target`` that the same two things may have.
 
-    An atom is admitted just where some two things bear both, so that nothing is lost that the pair alone could tell.
+    A target atom is admitted exactly where some two things have both atoms, so that no information about the pair is
+    lost.
     """
 
     source: Calculus
@@ -35,26 +34,26 @@ class Bridge:
     admits: tuple[int, ...]
 
     def forward(self, relation: int) -> int:
-        """Return what a relation of the source leaves of the target."""
+        """Return the target relation that a source relation admits."""
         mask = 0
         for code in bits(relation):
             mask |= self.admits[code]
         return mask
 
     def backward(self, relation: int) -> int:
-        """Return what a relation of the target leaves of the source."""
+        """Return the source relation that a target relation admits."""
         return sum(1 << code for code, admitted in enumerate(self.admits) if admitted & relation)
 
     @cached_property
     def inverse(self) -> Bridge:
-        """The same from the other side."""
+        """The bridge from the target to the source."""
         admits = tuple(self.backward(1 << code) for code in range(len(self.target.atoms)))
         return Bridge(self.target, self.source, admits)
 
 
 @cache
 def boxes_to_directions() -> Bridge:
-    """Rectangle algebra to cardinal directions: where the centre of one box lies from that of the other.
+    """Return the bridge from the rectangle algebra to cardinal directions, those between the centres of the boxes.
 
     >>> bridge = boxes_to_directions()
     >>> bridge.target.members(bridge.forward(bridge.source.relation(["<,d"])))
@@ -74,7 +73,7 @@ def boxes_to_directions() -> Bridge:
 
 @cache
 def boxes_to_regions() -> Bridge:
-    """Rectangle algebra to RCC-8 where the regions are the boxes themselves: one atom each.
+    """Return the bridge from the rectangle algebra to RCC-8 for regions that are boxes: one atom each.
 
     >>> bridge = boxes_to_regions()
     >>> bridge.target.members(bridge.forward(bridge.source.relation(["d,d", "d,s", "<,="])))
@@ -85,7 +84,7 @@ def boxes_to_regions() -> Bridge:
 
 @cache
 def bounds_to_regions() -> Bridge:
-    """Rectangle algebra to RCC-8 where the boxes are the bounding boxes of the regions, each in one piece.
+    """Return the bridge from the rectangle algebra to RCC-8 for regions that the boxes bound, each in one piece.
 
     Regions are bounded and regular closed. In one piece, each reaches from side to side of its box, so that two must
     meet where the one box spans the other on x and is spanned by it on y. (For what combining the two calculi takes:
@@ -102,7 +101,7 @@ def bounds_to_regions() -> Bridge:
 
 @cache
 def directions_to_distances() -> Bridge:
-    """Cardinal directions to distance: ``EQ`` just where ``same``."""
+    """Return the bridge from cardinal directions to distance: ``EQ`` exactly where ``same``."""
     source, target = calculus("cd"), calculus("distance")
     here = target.relation([SAME])
     admits = [target.universal & ~here] * len(source.atoms)
@@ -124,7 +123,7 @@ def joint_to_distances() -> Bridge:
 
 @cache
 def names_to_boxes() -> Bridge:
-    """Return the bridge from the ten names to the rectangle algebra: the atoms that each admits."""
+    """Return the bridge from the ten names to the rectangle-algebra atoms that each admits."""
     from deixis.ontology.tbox import default_ontology
     from deixis.reasoning.qualitative.calculi.ten import named_parts
 
@@ -132,7 +131,7 @@ def names_to_boxes() -> Bridge:
 
 
 def to_ra(names: int) -> int:
-    """Return a relation of ``ten`` as one of the rectangle algebra, which decides it.
+    """Return a relation of ``ten`` as a relation of the rectangle algebra, whose closure decides consistency.
 
     >>> calculus("ra").members(to_ra(calculus("ten").relation(["top_left"])))
     ('<,mi', '<,>', 'm,mi', 'm,>')
@@ -186,35 +185,36 @@ def _of_bounds(x: Allen, y: Allen) -> tuple[str, ...]:
 
 
 class Link(Protocol):
-    """What the atoms of one calculus admit of another's."""
+    """The atoms of one calculus that each atom of another admits."""
 
     @property
     def source(self) -> Calculus:
-        """The calculus that is read."""
+        """The calculus of the given relation."""
         ...
 
     @property
     def target(self) -> Calculus:
-        """The calculus that is narrowed."""
+        """The calculus of the resulting relation."""
         ...
 
     def forward(self, relation: int) -> int:
-        """Return the target's atoms that some atom of a source relation admits."""
+        """Return the target atoms that at least one atom of a source relation admits."""
         ...
 
     def backward(self, relation: int) -> int:
-        """Return the source's atoms that admit some atom of a target relation."""
+        """Return the source atoms that admit at least one atom of a target relation."""
         ...
 
 
 def links_between(calculi: Sequence[Calculus]) -> tuple[Link, ...]:
-    """Return the bridges between any two of some calculi; regions of RCC-8 have the boxes as their bounding boxes.
+    """Return the bridges between any two of the given calculi.
+
+    Boxes are taken as the bounding boxes of the regions of RCC-8.
 
     >>> from deixis.reasoning.qualitative.calculi.registry import calculus
     >>> [(link.source.name, link.target.name) for link in links_between([calculus("rcc8"), calculus("ra")])]
     [('ra', 'rcc8')]
     """
-
     known = {
         frozenset(("ra", "cd")): boxes_to_directions,
         frozenset(("ra", "rcc8")): bounds_to_regions,

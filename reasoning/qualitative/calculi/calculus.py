@@ -1,11 +1,11 @@
-"""Qualitative calculi as data: atoms, converse and composition (Ligozat and Renz 2004), and calculi whose atoms are
-unions of another's.
+"""Represent qualitative calculi as data: atoms, converse and composition (Ligozat and Renz 2004).
 
 A *relation* is a set of atoms, written as an integer: bit *i* stands for atom *i*. The atoms are jointly exhaustive and
-pairwise disjoint, so that the empty relation (0) is a contradiction and the universal one says nothing.
+pairwise disjoint, so that the empty relation (0) is a contradiction and the universal relation says nothing.
 
-Two kinds: a :class:`TableCalculus` states its composition in a table; a :class:`ProductCalculus` relates things on
-several independent axes at once, and composes axis by axis. The rectangle algebra is the product of two Allen algebras.
+There are two kinds: a :class:`TableCalculus` states its composition in a table; a :class:`ProductCalculus` relates
+things on several independent axes at once, and composes axis by axis. The rectangle algebra is the product of two Allen
+algebras. :func:`coarsening` builds a calculus whose atoms are unions of the atoms of another.
 """
 
 from __future__ import annotations
@@ -24,11 +24,11 @@ from deixis.ontology.relation import nearest
 from deixis.reasoning.errors import UnknownAtomError
 from deixis.reasoning.qualitative.calculi.words import atoms_within, relation_of
 
-MAX_TABLE_ATOMS = 320  # of a table calculus; OPRA of granularity 4 has 272
+MAX_TABLE_ATOMS = 320  # maximum atoms of a table calculus; OPRA of granularity 4 has 272
 
 
 def bits(relation: int) -> Iterator[int]:
-    """Yield the positions of the atoms in a relation, least first.
+    """Yield the positions of the atoms in a relation in ascending order.
 
     >>> list(bits(0b1010))
     [1, 3]
@@ -40,37 +40,40 @@ def bits(relation: int) -> Iterator[int]:
 
 
 class Calculus(ABC):
-    """What reasoning needs of any calculus."""
+    """A qualitative calculus: the operations that reasoning needs."""
 
     name: str
     atoms: tuple[str, ...]
-    identity: int  # the code of the atom that everything bears to itself
-    aliases: Mapping[str, str]  # other signs, to this calculus's
-    any_case: bool  # whether signs are read in upper and lower case alike
+    identity: int  # the code of the atom between everything and itself
+    aliases: Mapping[str, str]  # other signs, mapped to the signs of this calculus
+    any_case: bool  # True if upper and lower case count as equal in signs
     decided_by_closure: bool
-    """Whether a closed network of tractable relations, and of atoms, is consistent. Where it is False even a closed
-    network of atoms may be inconsistent: closure still refutes, and proves nothing (Renz and Ligozat 2005)."""
+    """True if every closed network of tractable relations, atoms included, is consistent.
+
+    Where it is False, even a closed network of atoms may be inconsistent: closure still refutes, and proves nothing
+    (Renz and Ligozat 2005).
+    """
 
     @property
     @abstractmethod
     def factors(self) -> tuple[TableCalculus, ...]:
-        """The calculi of the single axes; just itself for a table calculus."""
+        """The calculi of the single axes; a table calculus has itself only."""
 
     @abstractmethod
     def converse(self, relation: int) -> int:
-        """Return the relation of b to a where ``relation`` is that of a to b."""
+        """Return the relation of b to a, where ``relation`` is the relation of a to b."""
 
     @abstractmethod
     def compose(self, first: int, second: int) -> int:
-        """Return the weak composition: the atoms that a may bear to c where a ``first`` b and b ``second`` c."""
+        """Return the weak composition: the atoms possible from a to c where a ``first`` b and b ``second`` c."""
 
     @abstractmethod
     def pieces(self, relation: int) -> tuple[int, ...]:
-        """A split of the relation into tractable ones: one piece says that it is tractable; none, that it is empty."""
+        """Split the relation into tractable ones: one piece if it is tractable itself, none if it is empty."""
 
     @property
     def universal(self) -> int:
-        """The relation that says nothing."""
+        """The relation of all atoms, which excludes nothing."""
         return (1 << len(self.atoms)) - 1
 
     @cached_property
@@ -80,7 +83,7 @@ class Calculus(ABC):
         return {sign.casefold(): code for sign, code in codes.items()} | codes if self.any_case else codes
 
     def code(self, atom: str) -> int:
-        """Return the code of an atom by its sign or an alias; raises UnknownAtomError with the nearest sign."""
+        """Return the code of an atom by its sign or an alias; UnknownAtomError names the nearest sign."""
         found = self._codes.get(atom)
         if found is None and self.any_case:
             found = self._codes.get(atom.casefold())
@@ -95,7 +98,7 @@ class Calculus(ABC):
         return found
 
     def relation(self, atoms: Iterable[str]) -> int:
-        """Return the relation that holds these atoms."""
+        """Return the relation of these atoms."""
         mask = 0
         for atom in atoms:
             mask |= 1 << self.code(atom)
@@ -108,10 +111,10 @@ class Calculus(ABC):
 
 @dataclass(frozen=True, eq=False)
 class Subclass:
-    """A set of relations of one table calculus, by what tells its members; the empty relation is one of them."""
+    """A set of relations of one table calculus, given by a membership test; the empty relation is a member."""
 
     name: str
-    atoms: int  # of the calculus
+    atoms: int  # number of atoms of the calculus
     contains: Callable[[int], bool]
     source: str
 
@@ -122,12 +125,12 @@ class Subclass:
 
     @cached_property
     def largest_first(self) -> tuple[int, ...]:
-        """Every member except the empty relation, those of most atoms first."""
+        """Every member except the empty relation, in descending order of the number of atoms."""
         return tuple(sorted(self.relations - {0}, key=lambda relation: (-relation.bit_count(), relation)))
 
     @cached_property
     def hulls(self) -> NDArray[np.uint64]:
-        """Shape (2^atoms,): for every relation the intersection of the members that hold it."""
+        """The intersection of the members that contain each relation, shape (2^atoms,)."""
         everything = (1 << self.atoms) - 1
         hulls = np.full(1 << self.atoms, everything, dtype=np.uint64)
         members = np.array(sorted(self.relations), dtype=np.uint64)
@@ -139,7 +142,7 @@ class Subclass:
         return hulls
 
     def split(self, relation: int) -> tuple[int, ...]:
-        """Disjoint members of which ``relation`` is the union: the largest that fits, then the largest in the rest.
+        """Split ``relation`` into disjoint members: the largest that fits, then the largest that fits in the rest.
 
         >>> from deixis.reasoning.qualitative.calculi.registry import calculus
         >>> from deixis.reasoning.qualitative.calculi.tractable import ORD_HORN
@@ -163,22 +166,23 @@ def _split(subclass: Subclass, relation: int) -> tuple[int, ...]:
 
 @dataclass(frozen=True, eq=False)
 class TableCalculus(Calculus):
-    """A calculus of k atoms, at most 320, by its tables."""
+    """A calculus of k atoms, at most 320, given by its tables."""
 
     name: str
     atoms: tuple[str, ...]
     converses: NDArray[np.int64]  # (k,): the code of each atom's converse
     composition: NDArray[np.uint64]
-    """Shape (k, k): bit masks of atoms; row: a to b, column: b to c. Of more than 64 atoms (k, k, words)."""
+    """Bit masks of atoms, shape (k, k), or (k, k, words) for more than 64 atoms; row: a to b, column: b to c."""
     identity: int
     aliases: Mapping[str, str] = field(default_factory=dict)
     any_case: bool = False
-    tractable: Subclass | None = None  # None: no subclass is known, and relations are split into atoms
+    tractable: Subclass | None = None  # None if no subclass is known: relations are split into atoms
     decided_by_closure: bool = True
-    source: str = ""  # where the tables and the tractable subclass come from
+    source: str = ""  # citation of the tables and the tractable subclass
 
     @property
     def factors(self) -> tuple[TableCalculus, ...]:
+        """The calculus itself, as a tuple of one."""
         return (self,)
 
     @cached_property
@@ -194,12 +198,14 @@ class TableCalculus(Calculus):
         return atoms_within(self.composition.reshape(k, k, -1), k)
 
     def converse(self, relation: int) -> int:
+        """Return the relation of b to a from the table of converses."""
         mask = 0
         for code in bits(relation):
             mask |= 1 << int(self.converses[code])
         return mask
 
     def compose(self, first: int, second: int) -> int:
+        """Return the weak composition from the table."""
         mask = 0
         for i in bits(first):
             row = self._table[i]
@@ -208,15 +214,16 @@ class TableCalculus(Calculus):
         return mask
 
     def pieces(self, relation: int) -> tuple[int, ...]:
+        """Split the relation into members of the tractable subclass, or into atoms if none is known."""
         return atoms_of(relation) if self.tractable is None else self.tractable.split(relation)
 
 
 @dataclass(frozen=True, eq=False)
 class ProductCalculus(Calculus):
-    """Several calculi at once, one an axis; an atom is one atom of each, and its code counts the last axis fastest.
+    """A product of calculi, one per axis; the code of an atom counts the last axis fastest.
 
-    ``signs`` are names of its own for the atoms, by code; without them, and beside them, an atom is written as those of
-    its axes with a comma between: ``<,m``.
+    An atom is a tuple of one atom per axis. ``signs`` are single names for the atoms, by code; an atom may also be
+    written as the signs on its axes with a comma between them: ``<,m``.
     """
 
     name: str
@@ -228,21 +235,26 @@ class ProductCalculus(Calculus):
 
     @property
     def factors(self) -> tuple[TableCalculus, ...]:
+        """The calculi of the axes."""
         return self.axes
 
     @property
     def decided_by_closure(self) -> bool:  # type: ignore[override]
+        """True if closure decides the calculus of every axis."""
         return all(axis.decided_by_closure for axis in self.axes)
 
     @cached_property
     def atoms(self) -> tuple[str, ...]:  # type: ignore[override]
+        """The signs of the atoms, the last axis fastest."""
         return self.signs or tuple(",".join(signs) for signs in product(*(axis.atoms for axis in self.axes)))
 
     @cached_property
     def identity(self) -> int:  # type: ignore[override]
+        """The code of the atom that is the identity on every axis."""
         return self.code_of([axis.identity for axis in self.axes])
 
     def code(self, atom: str) -> int:
+        """Return the code of an atom by its sign, or by one sign for each axis."""
         signs = [sign.strip() for sign in atom.strip("()").split(",")]
         if self.signs and len(signs) == 1:
             return super().code(atom)
@@ -262,7 +274,7 @@ class ProductCalculus(Calculus):
         return total
 
     def of_axes(self, relations: Sequence[int]) -> int:
-        """Return the product of one relation an axis.
+        """Return the product of one relation per axis.
 
         >>> from deixis.reasoning.qualitative.calculi.registry import calculus
         >>> ra = calculus("ra")
@@ -276,16 +288,18 @@ class ProductCalculus(Calculus):
         return total
 
     def boxes(self, relation: int) -> tuple[tuple[int, ...], ...]:
-        """The relation as a disjoint union of products, one tuple of axis relations each; few, not always fewest."""
+        """Write the relation as a disjoint union of few products (tuples of axis relations), not always fewest."""
         return _boxes(relation, [len(axis.atoms) for axis in self.axes])
 
     def converse(self, relation: int) -> int:
+        """Return the relation of b to a, axis by axis."""
         mask = 0
         for box in self.boxes(relation):
             mask |= self.of_axes([axis.converse(r) for axis, r in zip(self.axes, box, strict=True)])
         return mask
 
     def compose(self, first: int, second: int) -> int:
+        """Return the weak composition, axis by axis."""
         mask = 0
         for a in self.boxes(first):
             for b in self.boxes(second):
@@ -294,7 +308,7 @@ class ProductCalculus(Calculus):
         return mask
 
     def pieces(self, relation: int) -> tuple[int, ...]:
-        """Products of tractable relations: each axis is a network of its own then, and closure decides it."""
+        """Split into products of tractable relations: closure decides each axis as a network of its own."""
         return tuple(
             self.of_axes(parts)
             for box in self.boxes(relation)
@@ -303,7 +317,7 @@ class ProductCalculus(Calculus):
 
 
 def _boxes(relation: int, sizes: Sequence[int]) -> tuple[tuple[int, ...], ...]:
-    """Group the first axis's atoms by what they leave to the others, and goes on with each group."""
+    """Group the first axis's atoms by the relation that they leave on the other axes, and go on with each group."""
     if not relation:
         return ()
     if len(sizes) == 1:
@@ -320,11 +334,12 @@ def _boxes(relation: int, sizes: Sequence[int]) -> tuple[tuple[int, ...], ...]:
 def coarsening(
     name: str, atoms: Sequence[str], parts: Sequence[int], fine: Calculus, source: str = ""
 ) -> TableCalculus:
-    """The calculus of the atoms whose parts are ``parts``, relations of ``fine`` that share nothing and leave nothing.
+    """Return the calculus whose atoms are ``parts``, relations of ``fine`` that are disjoint and cover every atom.
 
-    An atom's composition holds every atom that shares one with the composition of the parts: it is exact where the
-    finer one's is. What everything bears to itself is a part of one atom, which need not be neutral. Closure does not
-    decide (two parts of one atom cannot be told apart); translate into the finer calculus to decide.
+    The composition of two atoms contains every atom that shares a finer atom with the composition of the parts: it is
+    exact where the composition of ``fine`` is. The identity of ``fine`` is part of one atom, which need not be neutral.
+    Closure does not decide consistency, because the coarse calculus cannot distinguish two parts of one atom; translate
+    into the finer calculus to decide.
     """
     n = len(parts)
     converses = [parts.index(fine.converse(part)) for part in parts]
@@ -345,7 +360,7 @@ def coarsening(
 
 
 def atoms_of(relation: int) -> tuple[int, ...]:
-    """Return a relation split into its atoms.
+    """Return the atoms of a relation, each as a relation of its own.
 
     >>> atoms_of(0b110)
     (2, 4)

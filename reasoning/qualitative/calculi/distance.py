@@ -1,15 +1,15 @@
-"""Qualitative distance between points, alone and with direction (Clementini, Di Felice and Hernández 1997).
+"""Relate points by qualitative distance, alone and with direction (Clementini, Di Felice and Hernández 1997).
 
-An atom is a tile of the cardinal directions with a range of distance: ``N,near``. Their composition is tighter than
-that of the two by themselves: far to the west, and near to the north of there, is far to the north-west, and neither
-nearer nor farther round.
+An atom of the joint calculus is a tile of the cardinal directions with a range of distance: ``N,near``. Its composition
+is tighter than the compositions of direction and distance taken separately: far to the west, followed by near to the
+north, gives far to the north-west, and neither nearer nor farther round.
 
-It is exact. Three vectors p, q and r = p + q make a triangle. Which of its angles is right, obtuse or flat leaves ten
-*shapes*, and each fixes, to the quarter turn, how far q and r are turned against p. Tiles are quarter turns too (open
-ones, or the half axes between them), so that a shape as a whole fits two tiles or does not. Arcs of at most a quarter
-turn that meet two by two have a common point (Helly): three tiles that fit two by two fit together. What is left is
-whether a triangle of that shape has its sides in the three ranges; the law of cosines answers it by inequalities
-between the bounds or their squares.
+The composition is exact. Three vectors p, q and r = p + q make a triangle. Which of its angles is right, obtuse or flat
+leaves ten *shapes*, and each determines, to the quarter turn, how far q and r are turned against p. Tiles are quarter
+turns too (open ones, or the half axes between them), so that a shape as a whole fits two tiles or does not. Arcs of at
+most a quarter turn that meet in pairs have a common point (Helly): three tiles that fit in pairs fit together. It
+remains to test whether a triangle of that shape has its sides in the three ranges; the law of cosines answers this by
+inequalities between the bounds or their squares.
 """
 
 from __future__ import annotations
@@ -35,9 +35,24 @@ SAME = "same"
 class Ranges:
     """Ordered ranges of distance, in units of a reference length: range *i* reaches from bound *i* to bound *i + 1*.
 
-    The first bound is 0 and the last, infinity, is not given. A range holds its upper bound and not its lower one;
-    distance 0 is ``same`` and in no range. Raises SettingError where bounds do not rise or do not fit the names.
+    Parameters
+    ----------
+    names
+        The names of the ranges, in order.
+    bounds
+        The finite bounds between the ranges. The first bound of all is 0 and the last is infinity.
 
+    Raises
+    ------
+    SettingError
+        If the bounds do not rise, or do not fit the names.
+
+    Notes
+    -----
+    A range contains its upper bound and not its lower one; distance 0 is ``same`` and in no range.
+
+    Examples
+    --------
     >>> Ranges(("near", "far"), (2.0,)).intervals
     ((Fraction(0, 1), Fraction(2, 1)), (Fraction(2, 1), inf))
     """
@@ -47,13 +62,13 @@ class Ranges:
 
     def __post_init__(self) -> None:
         if not 0 < len(self.names) < 64:
-            raise SettingError(f"there are 1 to 63 ranges of distance, not {len(self.names)}")
+            raise SettingError(f"the number of distance ranges must be 1 to 63, got {len(self.names)}")
         if len(self.bounds) != len(self.names) - 1:
             raise SettingError(f"{len(self.names)} ranges of distance need {len(self.names) - 1} bounds between them")
         if SAME in self.names or len(set(self.names)) != len(self.names):
-            raise SettingError(f"ranges of distance need names of their own, and none may be '{SAME}'")
+            raise SettingError(f"the names of distance ranges must differ from one another and from '{SAME}'")
         if any(not isfinite(bound) for bound in self.bounds) or list(self.bounds) != sorted({0.0, *self.bounds})[1:]:
-            raise SettingError(f"bounds of distance must rise from above 0, not {', '.join(map(str, self.bounds))}")
+            raise SettingError(f"bounds of distance must rise from above 0, got {', '.join(map(str, self.bounds))}")
 
     @property
     def intervals(self) -> tuple[tuple[Bound, Bound], ...]:
@@ -63,11 +78,11 @@ class Ranges:
 
 
 DEFAULT_RANGES = Ranges(("near", "medium", "far"), (1.0, 3.0))
-"""Each range is longer than all before it together, as Clementini and others ask of a frame of reference."""
+"""Default ranges: each is longer than all before it together (required by Clementini and others)."""
 
 
 def distance_calculus(ranges: Ranges = DEFAULT_RANGES) -> TableCalculus:
-    """Ranges of distance as a calculus; composed by the triangle inequality, each entry realised in the plane.
+    """Return the calculus of distance ranges, composed by the triangle inequality; the plane realises each entry.
 
     Closure does not decide it: distances that obey the triangle inequality three by three need not fit in the plane.
 
@@ -93,7 +108,7 @@ def _composed(spans: Sequence[tuple[Bound, Bound] | None], i: int, j: int) -> in
     first, second = spans[i], spans[j]
     if first is None or second is None:
         return 1 << max(i, j)
-    mask = 1 if i == j else 0  # back where it began
+    mask = 1 if i == j else 0  # back at the start
     for k, third in enumerate(spans):
         if third is not None and _closes_triangle(first, second, third):
             mask |= 1 << k
@@ -101,7 +116,7 @@ def _composed(spans: Sequence[tuple[Bound, Bound] | None], i: int, j: int) -> in
 
 
 def _closes_triangle(first: tuple[Bound, Bound], second: tuple[Bound, Bound], third: tuple[Bound, Bound]) -> bool:
-    """Return whether a triangle, flat ones included, has one side in each range; open below and closed above.
+    """Return True if a triangle, flat ones included, has one side in each range; open below and closed above.
 
     The third side takes every length between the least difference of the others, which is not reached, and their
     greatest sum, which is.
@@ -111,17 +126,17 @@ def _closes_triangle(first: tuple[Bound, Bound], second: tuple[Bound, Bound], th
 
 
 _AROUND = ("E", "NE", "N", "NW", "W", "SW", "S", "SE")
-"""Tiles by eighths of a turn: an even one is a half axis, an odd one the open quarter turn between two."""
+"""Tiles by eighths of a turn: an even index is a half axis, an odd one the open quarter turn between two half axes."""
 
 HERE = f"EQ,{SAME}"
 MAX_RANGES = 7
-"""So many atoms as have a bit each in 64."""
+"""Maximum number of ranges, so that every atom fits into a word of 64 bits."""
 
 Range = tuple[Bound, Bound]
 
 
 class _Shape(Enum):
-    """How p, q and r = p + q lie: the turns from p to q, from p to r and from r to q, in eighths, to the left.
+    """A shape of the triangle p, q, r = p + q: the turns from p to q, p to r and r to q, in eighths to the left.
 
     An even turn is exact, an odd one lies between its neighbours.
     """
@@ -139,7 +154,7 @@ class _Shape(Enum):
 
 
 def direction_distance_calculus(ranges: Ranges = DEFAULT_RANGES) -> TableCalculus:
-    """Tiles and ranges as a calculus of ``8 len(ranges.names) + 1`` atoms. Closure does not decide it.
+    """Return the calculus of tiles and ranges, with ``8 len(ranges.names) + 1`` atoms; closure does not decide it.
 
     Raises SettingError for more than seven ranges.
 
@@ -178,7 +193,7 @@ def direction_distance_calculus(ranges: Ranges = DEFAULT_RANGES) -> TableCalculu
 
 
 def _fits(shape: _Shape, p: int, q: int, r: int) -> bool:
-    """Return whether vectors in these tiles can be turned so, all to the left or all to the right."""
+    """Return True if vectors in these tiles can have the turns of the shape, all to the left or all to the right."""
     to_q, to_r, r_to_q = shape.value
     return any(
         _turns(p, q, side * to_q) and _turns(p, r, side * to_r) and _turns(r, q, side * r_to_q) for side in (1, -1)
@@ -186,17 +201,17 @@ def _fits(shape: _Shape, p: int, q: int, r: int) -> bool:
 
 
 def _turns(start: int, end: int, turn: int) -> bool:
-    """Return whether something in tile ``start`` and something in ``end`` can have that turn between them."""
+    """Return True if a vector in tile ``start`` and one in tile ``end`` can have that turn between them."""
     off = (end - start - turn) % 8
     both_open = start % 2 == 1 and end % 2 == 1
     return off == 0 or (both_open and off in (1, 7))
 
 
 def _has_sides(shape: _Shape, p: Range, q: Range, r: Range) -> bool:
-    """Return whether a triangle of that shape can have its sides in the three ranges."""
+    """Return True if a triangle of that shape can have its sides in the three ranges."""
     kind, _, opposite = shape.name.partition("_")
     a, b, c = {"A": (q, r, p), "B": (p, r, q)}.get(opposite, (p, q, r))
-    # Whether a and b in their ranges leave a length for c in its own; ranges are open below and closed above.
+    # Each condition: a and b in their ranges leave a length for c in its own; ranges are open below and closed above.
     if kind == "FLAT":  # c = a + b
         return a[0] + b[0] < c[1] and c[0] < a[1] + b[1]
     if kind == "OBTUSE":  # a² + b² < c² < (a + b)²

@@ -1,11 +1,10 @@
-"""The calculi of ordered numbers: points, intervals, rectangles, blocks and cardinal directions, with tables derived
-from finite models.
+"""Derive the calculi of ordered numbers from finite models: points, intervals, rectangles, blocks, cardinal directions.
 
-A model is *enough* where every way for three things to lie to each other occurs in it. Then the composition that it
-shows is the composition over everything, and not just a part of it.
+A model is *enough* if every possible arrangement of three things occurs in it. Then the composition in the model is the
+composition over all things, and not just a part of it.
 
-No composition is typed in. Three numbers have at most three different values, and three intervals at most six
-different end points: the model of all numbers below three, or of all intervals between six of them, is enough.
+No composition is typed in. Three numbers have at most three different values, and three intervals at most six different
+end points: the model of all numbers below three, or of all intervals between six of them, is enough.
 """
 
 from __future__ import annotations
@@ -33,9 +32,10 @@ def converses_in(codes: NDArray[np.integer], atoms: int) -> NDArray[np.int64]:
 
 
 def composition_in(codes: NDArray[np.integer], atoms: int) -> NDArray[np.uint64]:
-    """The composition table, shape (atoms, atoms), bit masks, from the atom of every ordered pair, ``codes`` (m, m).
+    """Return the composition table, shape (atoms, atoms), as bit masks.
 
-    An entry holds the atom of (i, k) for every j that bears the row's atom to i's side and the column's to k's.
+    ``codes`` (m, m) is the atom of every ordered pair. An entry holds the atoms of all pairs i, k for which some j has
+    the row's atom from i and the column's to k.
 
     >>> order = np.array([[1, 0], [2, 1]])  # of two numbers: 0 for less, 1 for equal, 2 for greater
     >>> bin(composition_in(order, 3)[0, 1])
@@ -82,7 +82,7 @@ _TILE_ALIASES = {
 
 
 def point_algebra() -> TableCalculus:
-    """Two points on a line: ``<``, ``=``, ``>`` (Vilain and Kautz 1986). Every relation is tractable.
+    """Return the point algebra: ``<``, ``=``, ``>`` (Vilain and Kautz 1986). Every relation is tractable.
 
     >>> point = point_algebra()
     >>> point.members(point.compose(point.relation(["<", "="]), point.relation(["<"])))
@@ -103,7 +103,7 @@ def point_algebra() -> TableCalculus:
 
 
 def interval_algebra() -> TableCalculus:
-    """Two intervals on a line, neither a point: Allen's thirteen relations (Allen 1983), codes as in ontology.allen.
+    """Return the interval algebra: thirteen relations of proper intervals (Allen 1983), codes as in ontology.allen.
 
     >>> allen = interval_algebra()
     >>> allen.members(allen.compose(allen.relation(["m"]), allen.relation(["mi"])))
@@ -125,17 +125,17 @@ def interval_algebra() -> TableCalculus:
 
 
 def rectangle_algebra(allen: TableCalculus) -> ProductCalculus:
-    """Two rectangles with sides along x and y: an Allen relation an axis (Balbiani and others 1998)."""
+    """Return the algebra of rectangles, sides along x and y: an Allen relation per axis (Balbiani et al. 1998)."""
     return ProductCalculus("ra", (allen, allen), source="Balbiani, Condotta and Fariñas del Cerro 1998, 1999")
 
 
 def block_algebra(allen: TableCalculus) -> ProductCalculus:
-    """Two blocks with edges along x, y and z: an Allen relation an axis (Balbiani and others 2002)."""
+    """Return the algebra of blocks, edges along x, y and z: an Allen relation per axis (Balbiani and others 2002)."""
     return ProductCalculus("ba", (allen, allen, allen), source="Balbiani, Condotta and Fariñas del Cerro 1999, 2002")
 
 
 def cardinal_directions(point: TableCalculus) -> ProductCalculus:
-    """Two points in the plane, in nine tiles: the order on x and that on y (Frank 1991; Ligozat 1998).
+    """Return the calculus of points in nine tiles of the plane: order on x and on y (Frank 1991; Ligozat 1998).
 
     >>> cd = cardinal_directions(point_algebra())
     >>> cd.members(cd.compose(cd.relation(["N"]), cd.relation(["SE"])))

@@ -1,9 +1,10 @@
-"""The laws that a converse and a composition must obey, for tables that come from elsewhere.
+"""Check the laws that a converse and a composition must obey, for tables read from elsewhere.
 
-What three things bear to one another can be read in six ways, from either end and by any of its sides. In a calculus
-all six allow the same: the converse turns compositions round, and the cycle law holds (Ligozat and Renz 2004). Where
-tables disagree with themselves, a triangle is possible only if all six readings allow it: if every entry holds all that
-is possible, nothing possible is lost.
+The relations between three things can be read in six ways, starting from either end of each side of the triangle. In a
+calculus all six readings allow the same triangles: the converse of a composition is the composition of the converses in
+reverse order, and the cycle law holds (Ligozat and Renz 2004). Where tables contradict themselves, a triangle is
+possible only if all six readings allow it: if every entry contains everything that is possible, nothing possible is
+lost.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from deixis.reasoning.qualitative.calculi.words import atoms_within, words_with
 
 @dataclass(frozen=True)
 class Violation:
-    """A law that tables do not obey: how many entries break it, and the first of them as two atoms."""
+    """A law that the tables break: how many entries break it, and the first of them as two atoms."""
 
     law: str
     entries: int
@@ -29,7 +30,7 @@ class Violation:
 def lawful(
     converses: NDArray[np.int64], composition: NDArray[np.uint64], identity: int
 ) -> tuple[NDArray[np.uint64], tuple[Violation, ...]]:
-    """Return the part of a composition table that obeys the laws, and which laws the whole does not obey.
+    """Return the part of a composition table that obeys the laws, and the laws that the whole table breaks.
 
     Parameters
     ----------
@@ -38,19 +39,19 @@ def lawful(
     composition : ndarray, (k, k) or (k, k, words)
         Bit masks of atoms, or words of 64 atoms; row: a to b, column: b to c.
     identity : int
-        The code of the atom that everything bears to itself.
+        The code of the atom between everything and itself.
 
     Returns
     -------
     composition : ndarray
-        In the shape given: what all six readings of a triangle allow.
+        The atoms that all six readings of a triangle allow, in the shape given.
     violations : tuple of Violation
-        What was found wrong with the table as it was given. That the identity is not neutral is said and not mended.
+        The laws that the given table breaks. An identity that is not neutral is reported and not repaired.
 
     Raises
     ------
     CalculusError
-        Where the converse of a converse is another atom: such tables mean nothing.
+        If the converse of a converse is another atom: such tables have no meaning.
 
     Examples
     --------
@@ -88,10 +89,10 @@ def lawful(
 
 
 def _from_the_other_end(possible: NDArray[np.bool_], converses: NDArray[np.int64]) -> NDArray[np.bool_]:
-    """Entry (a, b, x) is that of b's converse, a's converse and x's converse."""
+    """Return the table read from the other end: entry (a, b, x) is the given entry of b's, a's and x's converse."""
     return possible.transpose(1, 0, 2)[np.ix_(converses, converses, converses)]
 
 
 def _by_another_side(possible: NDArray[np.bool_], converses: NDArray[np.int64]) -> NDArray[np.bool_]:
-    """Entry (a, b, x) is that of x, b's converse and a."""
+    """Return the table read by another side: entry (a, b, x) is the given entry of x, b's converse and a."""
     return possible.transpose(2, 1, 0)[:, converses, :]

@@ -1,6 +1,6 @@
-"""RCC-8: how two regions connect (Randell, Cui and Cohn 1992), and RCC-5, which does not tell borders.
+"""Build RCC-8, how two regions connect (Randell, Cui and Cohn 1992), and RCC-5, which ignores boundaries.
 
-The composition of RCC-8 is stated; it follows from no order.
+The composition of RCC-8 is stated as a table, because it does not follow from an order.
 
 Regions are non-empty regular closed sets of a topological space, in one piece or several.
 """
@@ -43,7 +43,7 @@ d         e         p         t         n         T         N         =
 
 
 def region_connection_calculus() -> TableCalculus:
-    """RCC-8 with its composition table.
+    """Return RCC-8 with its composition table.
 
     >>> rcc8 = region_connection_calculus()
     >>> rcc8.members(rcc8.compose(rcc8.relation(["EC"]), rcc8.relation(["NTPP"])))
@@ -72,9 +72,10 @@ _RCC5_ALIASES = {"DC": "DR", "PPC": "PPI", "disjoint": "DR", "overlap": "PO", "e
 
 
 def mereological_calculus(rcc8: Calculus) -> TableCalculus:
-    """RCC-5: discrete, partial overlap, proper part and its converse, equal (Bennett 1994); coarser than RCC-8.
+    """Return RCC-5: discrete, partial overlap, proper part and its converse, equal (Bennett 1994); coarser than RCC-8.
 
-    What RCC-5 atoms compose to in RCC-8 is a union of RCC-5 atoms, so that closure decides here what it decides there.
+    The composition of RCC-5 atoms in RCC-8 is a union of RCC-5 atoms, so that closure decides RCC-5 where it decides
+    RCC-8.
 
     >>> from deixis.reasoning.qualitative.calculi.registry import calculus
     >>> rcc5 = calculus("rcc5")

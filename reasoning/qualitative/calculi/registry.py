@@ -1,4 +1,4 @@
-"""The calculi by name. Each is built when first asked for, and kept."""
+"""Find the calculi by name; each is built on its first use and kept."""
 
 from __future__ import annotations
 
@@ -10,12 +10,28 @@ from deixis.reasoning.errors import UnknownAtomError, UnknownCalculusError
 from deixis.reasoning.qualitative.calculi.calculus import Calculus, ProductCalculus, TableCalculus, bits
 
 CALCULI: tuple[str, ...] = ("point", "allen", "ra", "ba", "rcc5", "rcc8", "cd", "ten", "distance", "direction-distance")
-"""The names of all calculi."""
+"""Names of all calculi."""
 
 
 def calculus(name: str) -> Calculus:
-    """Return the calculus of that name; raises UnknownCalculusError with the nearest name.
+    """Return a calculus by name.
 
+    Parameters
+    ----------
+    name
+        One of CALCULI.
+
+    Returns
+    -------
+    The calculus; repeated calls return the same object.
+
+    Raises
+    ------
+    UnknownCalculusError
+        If there is no calculus of that name.
+
+    Examples
+    --------
     >>> len(calculus("ra").atoms)
     169
     >>> calculus("rcc9")
@@ -76,7 +92,7 @@ def _build(name: str) -> Calculus:
 
 
 def with_same_tables(brought: TableCalculus) -> Calculus | None:
-    """Return the calculus that has just the atoms and tables of another one, whatever their order; None where none has.
+    """Return the calculus with the same atoms and tables as ``brought``, in any order; None if no calculus has them.
 
     Its atoms may have other signs there, but each must be a sign or an alias here.
     """

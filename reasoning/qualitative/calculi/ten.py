@@ -1,8 +1,8 @@
-"""The ten exact names as a calculus: unions of rectangle-algebra atoms, as the TBox states them.
+"""Build a calculus of the ten exact names: unions of rectangle-algebra atoms, as the TBox states them.
 
-The eleventh atom, ``overlap``, is what no name settles in the plane: boxes that overlap in part, or are one and the
-same. (Between perceived boxes heights and offsets settle these too: see :mod:`deixis.reasoning.geometry.rectangle`. No
-calculus over the plane can follow them there.)
+The eleventh atom, ``overlap``, holds the atoms that have no single name in the plane: boxes that overlap in part, or
+are equal. (Between perceived boxes, heights and offsets settle these too, which no calculus of the plane can do: see
+:mod:`deixis.reasoning.geometry.rectangle`.)
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ UNNAMED = "overlap"
 
 
 def ten_names(vocabulary: Relations, rectangles: ProductCalculus) -> TableCalculus:
-    """Return the calculus of the ten exact names and what they leave."""
+    """Return the calculus of the ten exact names and ``overlap``."""
     parts = named_parts(vocabulary)
     return coarsening(
         "ten",
@@ -29,7 +29,7 @@ def ten_names(vocabulary: Relations, rectangles: ProductCalculus) -> TableCalcul
 
 
 def named_parts(vocabulary: Relations) -> dict[str, int]:
-    """For each of the eleven its rectangle-algebra atoms; an atom that several names admit goes to ``overlap``.
+    """Map each of the eleven names to its rectangle-algebra atoms; an atom with several names goes to ``overlap``.
 
     >>> from deixis.ontology.tbox import default_ontology
     >>> from deixis.reasoning.qualitative.calculi.registry import calculus
@@ -44,5 +44,5 @@ def named_parts(vocabulary: Relations) -> dict[str, int]:
 
 
 def _mask(atoms: NDArray[np.bool_]) -> int:
-    """Codes of the product count y fastest, as a (13, 13) array in C order does."""
+    """Return the relation of a (13, 13) truth table: codes of the product count y fastest, as its C order does."""
     return sum(1 << int(code) for code in np.flatnonzero(atoms))

@@ -1,4 +1,4 @@
-"""Tractable subclasses: relations among which algebraic closure decides consistency.
+"""Define tractable subclasses: sets of relations whose consistency algebraic closure decides.
 
 A search splits any other relation into these, so that it branches over few large pieces and not over many atoms. Each
 subclass is computed from its definition, and closed under converse, intersection and weak composition.
@@ -13,7 +13,7 @@ from deixis.reasoning.geometry.allen import convex_hull
 from deixis.reasoning.qualitative.calculi.calculus import Subclass, bits
 
 _PLACES = ((0, 0), (0, 1), (0, 2), (0, 3), (0, 4), (1, 2), (1, 3), (1, 4), (2, 2), (2, 3), (2, 4), (3, 4), (4, 4))
-"""Where a's begin and a's end lie, by Allen code: 0 before b, 1 at its begin, 2 within, 3 at its end, 4 after it."""
+"""Places of a's begin and a's end, by Allen code: 0 before b, 1 at its begin, 2 within, 3 at its end, 4 after it."""
 
 
 def _dimension(relation: int) -> int:
@@ -22,7 +22,7 @@ def _dimension(relation: int) -> int:
 
 
 def convex_closure(relation: int) -> int:
-    """The least convex Allen relation that holds ``relation``: an interval in the lattice of places (Ligozat 1996).
+    """Return the least convex Allen relation above ``relation``: an interval in the lattice of places (Ligozat 1996).
 
     >>> bin(convex_closure(0b101))
     '0b111'
@@ -36,7 +36,7 @@ def _is_preconvex(relation: int) -> bool:
 
 @cache
 def _pointizable() -> frozenset[int]:
-    """What conjunctions of point relations between the end points can say: one of eight for each of four pairs."""
+    """Return the conjunctions of point relations between end points: one of eight for each of the four pairs."""
     signs = [[(place > end) - (place < end) + 1 for end in (1, 3)] for place in range(5)]
     found = set()
     for wanted in product(range(8), repeat=4):
@@ -54,20 +54,20 @@ EVERY_ORDER = Subclass("every relation", 3, lambda relation: True, "van Beek 199
 """All relations of the point algebra."""
 
 ORD_HORN = Subclass("ORD-Horn", 13, _is_preconvex, "Nebel and Bürckert 1995; as pre-convex relations Ligozat 1996")
-"""The one maximal tractable subclass of Allen's algebra that has all atoms."""
+"""The only maximal tractable subclass of Allen's algebra that has all atoms."""
 
 CONVEX = Subclass("convex", 13, lambda relation: convex_closure(relation) == relation, "Nökel 1989; Ligozat 1996")
-"""Closure does not only decide these: it leaves just what some solution has (van Beek and Cohen 1990)."""
+"""Relations for which closure is also minimal: each atom left occurs in a solution (van Beek and Cohen 1990)."""
 
 POINTIZABLE = Subclass("pointizable", 13, lambda relation: relation in _pointizable(), "Vilain and Kautz 1986")
-"""What the point algebra can say of end points."""
+"""Relations that the point algebra can state about end points."""
 
 _DC, _EC, _PO, _TPP, _NTPP, _TPPI, _NTPPI, _EQ = (1 << code for code in range(8))
 _PARTS, _WHOLES = _TPP | _NTPP, _TPPI | _NTPPI
 
 
 def _both_ways(relation: int) -> bool:
-    """Return whether it leaves open which of the two is part of the other, without letting them overlap partially."""
+    """Return True if either of the two may be part of the other, but they may not overlap partially."""
     return not relation & _PO and bool(relation & _PARTS) and bool(relation & _WHOLES)
 
 
@@ -91,13 +91,13 @@ RCC8_HORN = Subclass("Ĥ8", 8, _in_h8, "Renz and Nebel 1999")
 
 RCC8_C8 = Subclass("C8", 8, _in_c8, "Renz 1999")
 RCC8_Q8 = Subclass("Q8", 8, _in_q8, "Renz 1999")
-"""With Ĥ8 the only maximal tractable subclasses that have all atoms (Renz 1999)."""
+"""The only other maximal tractable subclasses that have all atoms, together with Ĥ8 (Renz 1999): C8 and Q8."""
 
 _RCC8_OF_RCC5 = (_DC | _EC, _PO, _PARTS, _WHOLES, _EQ)
 
 
 def rcc8_of_rcc5(relation: int) -> int:
-    """Return the RCC-8 relation that says the same as one of RCC-5, which does not tell borders.
+    """Return the RCC-8 relation equivalent to a relation of RCC-5, which ignores boundaries.
 
     >>> bin(rcc8_of_rcc5(0b00001))
     '0b11'
@@ -106,4 +106,4 @@ def rcc8_of_rcc5(relation: int) -> int:
 
 
 RCC5_HORN = Subclass("Ĥ5", 5, lambda relation: _in_h8(rcc8_of_rcc5(relation)), "Renz and Nebel 1999")
-"""The RCC-5 relations that are in Ĥ8: the only maximal tractable subclass that has all atoms."""
+"""RCC-5 relations that are in Ĥ8: the only maximal tractable subclass that has all atoms."""

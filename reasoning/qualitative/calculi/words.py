@@ -1,4 +1,4 @@
-"""Relations as arrays: 64-bit words of atoms, bit b of word w for atom 64 w + b, and truth values, one an atom."""
+"""Represent relations as arrays: 64-bit words (bit b of word w for atom 64 w + b), or one truth value per atom."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def relation_of(words: NDArray[np.uint64]) -> int:
 
 
 def atoms_within(words: NDArray[np.uint64], atoms: int) -> NDArray[np.bool_]:
-    """Return which atoms the relations in words (..., words) hold, shape (..., atoms).
+    """Return the truth value of each atom of the relations in words (..., words), shape (..., atoms).
 
     >>> atoms_within(words_of([1 << 64 | 3], 65), 65).nonzero()[1].tolist()
     [0, 1, 64]
@@ -40,7 +40,7 @@ def atoms_within(words: NDArray[np.uint64], atoms: int) -> NDArray[np.bool_]:
 
 
 def words_with(held: NDArray[np.bool_]) -> NDArray[np.uint64]:
-    """Return the relations that hold these atoms (..., atoms), as words (..., words).
+    """Return the relations with these atoms (..., atoms), as words (..., words).
 
     >>> words_with(np.arange(65) > 62).tolist()
     [9223372036854775808, 1]

@@ -1,10 +1,10 @@
-"""Boxes that bear everything that networks in several calculi say: the proof that the networks are consistent.
+"""Find boxes that satisfy networks in several calculi: a proof that the networks are consistent together.
 
-What is said of a pair, in whatever calculus, is a set of types of pairs (:mod:`.pair_types`). The search starts from
-boxes that a scenario of the rectangle algebra gives, or from random ones, and repeats two steps: it picks for each pair
-the permitted type that the boxes come nearest to, with a piece of other types around it; and it moves the boxes so that
-the pairs are as little out of their pieces as possible (:mod:`.placement`). Boxes that fit are verified in every
-calculus. A search that finds none proves nothing.
+The constraints on a pair, in any calculus, amount to a set of types of pairs (:mod:`.pair_types`). The search starts
+from boxes given by a scenario of the rectangle algebra, or from random ones, and repeats two steps: it picks for each
+pair the permitted type nearest to the boxes, with a piece of other types around it; and it moves the boxes so that the
+pairs are as little out of their pieces as possible (:mod:`.placement`). Boxes that fit are verified in every calculus.
+A search that finds none proves nothing.
 """
 
 from __future__ import annotations
@@ -33,29 +33,29 @@ from deixis.reasoning.qualitative.networks.search import Verdict, solve
 from deixis.reasoning.qualitative.relate import relate
 
 Closed = Callable[[str, int, int], int]
-"""What closing leaves of a pair, by the name of the calculus."""
+"""Function from the name of a calculus and a pair to the relation of the pair after closure."""
 
 MEASURED = ("distance", "direction-distance")
-"""The calculi for which the size of things counts."""
+"""Calculi in which the size of things matters."""
 MAX_TRIES = 20
-"""Boxes from which the search starts."""
+"""Maximum number of starts of the search."""
 MAX_MOVES = 12
-"""Linear programs from one start."""
+"""Maximum number of linear programs from one start."""
 MAX_ALL_PAIRS = 40
-"""Things up to which closed relations of all pairs guide the search, and not of stated pairs alone."""
+"""Maximum number of things for which closed relations of all pairs guide the search, not only those of stated pairs."""
 MAX_PAIRS = 4000
-"""Stated pairs up to which boxes are looked for."""
+"""Maximum number of stated pairs for which the search runs."""
 MARGINS = (2.0**-5, 2.0**-9)
-"""Margins of strict orders in units of the reference length, by turns, where distances count; else the margin is 1."""
+"""Margins of strict orders in units of the reference length, used in turn where distances matter; otherwise 1."""
 ROUNDING = 1e-9
-"""The relative error of distances that a verdict must not depend on; that of floating point is far smaller."""
+"""Relative error of distances that a verdict must not depend on; that of floating point is far smaller."""
 
 
 @dataclass(frozen=True, eq=False)
 class FoundBoxes:
-    """Verified boxes, shape (n, 2, 2), distances in units of the reference length; or None, and ``reason`` in words.
+    """Verified boxes, shape (n, 2, 2), distances in units of the reference length; or None, with the reason in words.
 
-    ``impossible`` says that there are no such boxes.
+    ``impossible`` is True if it is proved that there are no such boxes.
     """
 
     boxes: Boxes | None
@@ -63,8 +63,8 @@ class FoundBoxes:
     impossible: bool = False
 
 
-def bears(boxes: Boxes, network: Network) -> bool:
-    """Return whether boxes bear what a network says of them.
+def satisfies(boxes: Boxes, network: Network) -> bool:
+    """Return True if boxes satisfy every constraint of a network.
 
     Parameters
     ----------
@@ -79,7 +79,7 @@ def bears(boxes: Boxes, network: Network) -> bool:
     >>> ra = calculus("ra")
     >>> network = Network(ra, 2, (Constraint(0, 1, ra.relation(["<,=", "m,="])),))
     >>> boxes = np.array([[[0.0, 0], [1, 1]], [[1, 0], [2, 1]]])
-    >>> bears(boxes, network), bears(boxes[::-1], network)
+    >>> satisfies(boxes, network), satisfies(boxes[::-1], network)
     (True, False)
     """
     references = (1 - ROUNDING, 1 + ROUNDING) if network.calculus.name in MEASURED else (1.0,)
@@ -87,16 +87,16 @@ def bears(boxes: Boxes, network: Network) -> bool:
     return all(c.relation >> int(found[c.first, c.second]) & 1 for found in codes for c in network.constraints)
 
 
-def rectangles(networks: Sequence[Network], closed: Closed, but: str = "") -> Network:
-    """Return what boxes of which networks hold bear in the rectangle algebra; the calculus named ``but`` left out.
+def rectangles(networks: Sequence[Network], closed: Closed, without: str = "") -> Network:
+    """Return the constraints on boxes in the rectangle algebra that the networks imply.
 
-    Regions of ``rcc8`` are taken to be the boxes themselves.
+    The network in the calculus ``without`` is left out. Regions of ``rcc8`` are taken to be the boxes themselves.
     """
-    return _Pairs([network for network in networks if network.calculus.name != but], closed).rectangles()
+    return _Pairs([network for network in networks if network.calculus.name != without], closed).rectangles()
 
 
 def unrelated(networks: Sequence[Network]) -> tuple[str, ...]:
-    """Return the names of the calculi among these that boxes are not related in here, or with other ranges."""
+    """Return the names of the networks' calculi in which boxes are not related here, or with other distance ranges."""
     names = [network.calculus.name for network in networks]
     known = pair_types().atoms
     return tuple(
@@ -109,7 +109,7 @@ def unrelated(networks: Sequence[Network]) -> tuple[str, ...]:
 def find_boxes(
     networks: Sequence[Network], closed: Closed, deadline: Deadline = Deadline.never(), seed: int = 0
 ) -> FoundBoxes:
-    """Look for boxes that bear everything that networks over the same things say.
+    """Search for boxes that satisfy all networks over the same things.
 
     Parameters
     ----------
@@ -125,15 +125,15 @@ def find_boxes(
     """
     odd = unrelated(networks)
     if odd:
-        return FoundBoxes(None, f"boxes are not looked for in {', '.join(odd)}")
+        return FoundBoxes(None, f"the search for boxes does not cover {', '.join(odd)}")
     if not networks[0].size:
         return FoundBoxes(np.zeros((0, 2, 2)))
     if len(_stated_pairs(networks)) > MAX_PAIRS:
-        return FoundBoxes(None, f"boxes are looked for where at most {MAX_PAIRS:,} pairs are constrained")
+        return FoundBoxes(None, f"the search for boxes covers at most {MAX_PAIRS:,} constrained pairs")
     pairs = _Pairs(networks, closed)
     solution = solve(pairs.rectangles(), deadline, scenario=True)
     if solution.verdict is Verdict.INCONSISTENT:
-        return FoundBoxes(None, "no boxes bear all of it", impossible=True)
+        return FoundBoxes(None, "no boxes satisfy all constraints", impossible=True)
     if solution.scenario is None:
         return FoundBoxes(None, "the time limit was reached before boxes were found")
     boxes = _Search(networks, pairs, np.random.default_rng(seed)).run(solution.scenario, deadline)
@@ -144,13 +144,13 @@ def find_boxes(
 
 
 def _stated_pairs(networks: Sequence[Network]) -> list[tuple[int, int]]:
-    """Return the pairs of different things that something is stated of, lower number first."""
+    """Return the pairs of different things that a constraint relates, lower number first."""
     said = {(min(c.first, c.second), max(c.first, c.second)) for network in networks for c in network.constraints}
     return sorted((i, j) for i, j in said if i != j)
 
 
 class _Pairs:
-    """The pairs that something is known of, and the types that each may be of."""
+    """The pairs with some known relation, and the types permitted for each."""
 
     def __init__(self, networks: Sequence[Network], closed: Closed) -> None:
         self.size = networks[0].size
@@ -164,7 +164,7 @@ class _Pairs:
         self.ids = np.array([ids[k] for k in telling], dtype=np.int64)  # positions in ``sets``
 
     def rectangles(self) -> Network:
-        """Return what the pairs must bear in the rectangle algebra."""
+        """Return the relations that the pairs must have in the rectangle algebra."""
         codes = pair_types().atoms["ra"]
         relations = [sum(1 << code for code in np.unique(codes[each]).tolist()) for each in self.sets]
         stated = zip(self.pairs.tolist(), self.ids.tolist(), strict=True)
@@ -181,11 +181,11 @@ class _Search:
             pairs.ids
         ]  # (pairs, types)
         self._margin = 1.0
-        self._order = np.arange(11)  # of widening types to pieces
+        self._order = np.arange(11)  # order in which types are widened to pieces
         self._pieces: dict[tuple[int, int], Piece] = {}
 
     def run(self, scenario: Network, deadline: Deadline) -> Boxes | None:
-        """Return verified boxes, or None where none were found."""
+        """Return verified boxes; None if none were found."""
         best: Placement | None = None
         for attempt in range(MAX_TRIES):
             if self._measured:
@@ -203,14 +203,14 @@ class _Search:
                 return None
             if last.fits:
                 exact = rounded(last, whole=not self._measured)
-                if exact is not None and all(bears(exact, network) for network in self._networks):
+                if exact is not None and all(satisfies(exact, network) for network in self._networks):
                     return exact
             if best is None or last.slack.sum() < best.slack.sum():
                 best = last
         return None
 
     def _descend(self, boxes: Boxes, deadline: Deadline) -> Placement | None:
-        """Return the placement that the moves from a start come to; None where time ran out.
+        """Move boxes from a start until they fit or stop improving, and return the placement; None if time ran out.
 
         Pairs that stay out of their pieces weigh more with every move, and types are chosen at random to some degree
         after the first moves, so that the search does not stay where no single choice helps.
@@ -239,7 +239,7 @@ class _Search:
         return best
 
     def _nearest(self, boxes: Boxes, loosely: bool = False) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
-        """Return for each pair the nearest permitted type, and by how much it is missed: shapes (pairs,), (pairs,)."""
+        """Return for each pair the nearest permitted type and its distance from the boxes, both of shape (pairs,)."""
         types, pairs = pair_types(), self._pairs.pairs
         ends = np.concatenate([boxes[pairs[:, 0]], boxes[pairs[:, 1]]], axis=1)
         differences = np.einsum("pea,ke->pak", ends, COMPARED)[:, :, None]  # (pairs, 2, 1, 5)
@@ -263,7 +263,7 @@ class _Search:
         return np.concatenate([centres - halves, centres + halves], axis=1)
 
     def _shaken(self, placement: Placement) -> Boxes:
-        """Return the boxes with some of those that are not placed as permitted moved at random."""
+        """Return the boxes, with some of the pairs out of place moved at random."""
         wrong = np.unique(self._pairs.pairs[placement.slack > FEASIBLE])
         some = wrong[self._rng.random(len(wrong)) < 0.5]
         moved = placement.boxes.copy()
@@ -272,7 +272,7 @@ class _Search:
         return moved
 
     def _sized(self, boxes: Boxes) -> Boxes:
-        """Return the boxes in the size that fits the distances best."""
+        """Return the boxes scaled to the size that fits the distances best."""
         if not self._measured or not len(self._pairs.ids):
             return boxes
         sizes: list[Boxes] = [boxes * 2.0**scale for scale in range(-6, 5)]

@@ -1,4 +1,4 @@
-"""How the relations of a network are laid out in memory, and the compiled loops that go with it."""
+"""Lay out the relations of a network in memory, and run the compiled loops for each layout."""
 
 from __future__ import annotations
 
@@ -14,34 +14,34 @@ Words = NDArray[np.uint64]
 
 
 class Cells(ABC):
-    """The relations of all pairs of n things, and what the loops need to narrow them.
+    """The relations of all pairs of n things, and the data that the loops need to narrow them.
 
     ``bookkeeping``, below, are the arrays dirty, waiting, clock, trail and count of ``kernels``, in that order.
     """
 
-    atoms_a_row: int  # how long the trail may grow by one row's narrowing, for each thing
+    atoms_per_row: int  # trail steps that narrowing one row may add, per thing
 
     @abstractmethod
     def restrict(self, ends: tuple[Any, ...], words: Words, start: int, bookkeeping: tuple[Any, ...]) -> int:
-        """Intersect pairs (firsts, seconds, ids) with relations; returns the first constraint not dealt with."""
+        """Intersect pairs (firsts, seconds, ids) with relations; return the first constraint not dealt with."""
 
     @abstractmethod
     def advance(self, budget: int, bookkeeping: tuple[Any, ...]) -> int:
-        """Pass changes on; returns CLOSED, EMPTIED, PAUSED or FULL."""
+        """Propagate changes; return CLOSED, EMPTIED, PAUSED or FULL."""
 
     @abstractmethod
     def relation(self, first: int, second: int) -> int:
-        """Return what a pair may still be."""
+        """Return the current relation of a pair."""
 
     @abstractmethod
     def relations(self) -> Words:
-        """Return what all pairs may still be, (n, n, words of 64 atoms)."""
+        """Return the current relations of all pairs, (n, n, words of 64 atoms)."""
 
 
 class Masks(Cells):
-    """Pair by pair, 16 bits each, for small calculi."""
+    """A layout for small calculi: 16 bits for each pair."""
 
-    atoms_a_row = 1
+    atoms_per_row = 1
 
     def __init__(self, size: int, tables: Tables, identity: int) -> None:
         self._tables, self._half = tables, half_of(tables.atoms)
@@ -49,30 +49,34 @@ class Masks(Cells):
         np.fill_diagonal(self.masks, 1 << identity)
 
     def restrict(self, ends: tuple[Any, ...], words: Words, start: int, bookkeeping: tuple[Any, ...]) -> int:
+        """Intersect pairs with relations in the compiled loop; return the first constraint not dealt with."""
         from deixis.reasoning.qualitative.networks.mask_kernels import restrict
 
         layout = self._half, self.masks, self._tables.mask_converses
         return int(restrict(*ends, words, start, *layout, *bookkeeping))
 
     def advance(self, budget: int, bookkeeping: tuple[Any, ...]) -> int:
+        """Propagate changes in the compiled loop; return CLOSED, EMPTIED, PAUSED or FULL."""
         from deixis.reasoning.qualitative.networks.mask_kernels import advance
 
         table = self._tables
         return int(advance(budget, self._half, table.compositions, table.mask_converses, self.masks, *bookkeeping))
 
     def relation(self, first: int, second: int) -> int:
+        """Return the current relation of a pair."""
         return int(self.masks[first, second])
 
     def relations(self) -> Words:
+        """Return the current relations of all pairs, (n, n, words of 64 atoms)."""
         return self.masks.astype(np.uint64)[:, :, None]
 
 
 class Planes(Cells):
-    """One bit for each pair and atom, 64 pairs to a word, for calculi of any size."""
+    """A layout for calculi of any size: one bit for each pair and atom, 64 pairs to a word."""
 
     def __init__(self, size: int, tables: Tables, identity: int) -> None:
         self._tables = tables
-        self.atoms_a_row = tables.atoms
+        self.atoms_per_row = tables.atoms
         self._full = np.full((size + 63) // 64, 0xFFFFFFFFFFFFFFFF, dtype=np.uint64)
         if size % 64:
             self._full[-1] = (1 << size % 64) - 1
@@ -84,21 +88,25 @@ class Planes(Cells):
         self.planes[things, things >> 6] = self.planes[things, things >> 6] & others[:, None] | itself
 
     def restrict(self, ends: tuple[Any, ...], words: Words, start: int, bookkeeping: tuple[Any, ...]) -> int:
+        """Intersect pairs with relations in the compiled loop; return the first constraint not dealt with."""
         from deixis.reasoning.qualitative.networks.kernels import restrict
 
         return int(restrict(*ends, words, start, self.planes, self._tables.converses, *bookkeeping))
 
     def advance(self, budget: int, bookkeeping: tuple[Any, ...]) -> int:
+        """Propagate changes in the compiled loop; return CLOSED, EMPTIED, PAUSED or FULL."""
         from deixis.reasoning.qualitative.networks.kernels import advance
 
         table = self._tables
         return int(advance(budget, table.sizes, table.needs, table.converses, self._full, self.planes, *bookkeeping))
 
     def relation(self, first: int, second: int) -> int:
+        """Return the current relation of a pair."""
         bit = self.planes[first, second >> 6] >> np.uint64(second & 63) & np.uint64(1)
         return int.from_bytes(np.packbits(bit.astype(np.uint8), bitorder="little").tobytes(), "little")
 
     def relations(self) -> Words:
+        """Return the current relations of all pairs, (n, n, words of 64 atoms)."""
         from deixis.reasoning.qualitative.networks.kernels import relations
 
         size = len(self.planes)

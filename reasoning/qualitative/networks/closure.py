@@ -1,9 +1,6 @@
-"""Algebraic closure (path consistency): every relation is narrowed to what every third thing admits (Allen 1983).
+"""Compute the algebraic closure (path consistency): narrow each relation by every third thing (Allen 1983).
 
-    R(i, j) := R(i, j) and R(i, k) composed with R(k, j), for all i, j, k until nothing changes
-
-A closed network with an empty relation is inconsistent. The converse needs a tractable subclass: what closure decides
-is in :mod:`deixis.reasoning.qualitative.networks.search`.
+R(i, j) := R(i, j) and R(i, k) composed with R(k, j), for all i, j, k until nothing changes
 """
 
 from __future__ import annotations
@@ -24,28 +21,28 @@ from deixis.reasoning.qualitative.networks.state import NetworkState, Progress
 
 @dataclass(frozen=True, eq=False)
 class Closure:
-    """A network, closed as far as ``complete`` says.
+    """The closure of a network, as far as ``complete`` says.
 
     ``parts`` are the relations as arrays (n, n, words of 64 atoms), row to column: one for the whole calculus, or one
-    for each axis of a product calculus where every relation is a product. ``emptied`` is the pair of which nothing is
-    left, and then the other relations are as they were at that moment.
+    for each axis of a product calculus where every relation is a product. ``emptied`` is the pair whose relation became
+    empty; the other relations are then as they were at that moment.
     """
 
     network: Network
     parts: tuple[NDArray[np.uint64], ...]
     emptied: tuple[int, int] | None
     complete: bool
-    narrowed: int  # pairs i < j of which closure took an atom that was stated as possible
-    passes: int  # changes of pairs that were passed on
+    narrowed: int  # pairs i < j from which closure removed a stated atom
+    passes: int  # changes of pairs that were propagated
     seconds: float
 
     @property
     def consistent(self) -> bool:
-        """Whether no contradiction was found; that none exists, only a tractable subclass or a search can tell."""
+        """True if no contradiction was found; only a tractable subclass or a search can prove that none exists."""
         return self.emptied is None
 
     def known_pairs(self) -> NDArray[np.int64]:
-        """Return the pairs i < j, (m, 2), of which something is known."""
+        """Return the pairs i < j, (m, 2), whose relation is not universal."""
         calculus = self.network.calculus
         axes = calculus.axes if isinstance(calculus, ProductCalculus) and len(self.parts) > 1 else (calculus,)
         everything = [words_of((axis.universal,), len(axis.atoms))[0] for axis in axes]
@@ -61,11 +58,30 @@ class Closure:
 def close(
     network: Network, deadline: Deadline = Deadline.never(), progress: Progress | None = None, joint: bool = False
 ) -> Closure:
-    """Return the algebraic closure of a network, until ``deadline``.
+    """Return the algebraic closure of a network, computed until ``deadline``.
 
-    Products close axis by axis; ``joint`` closes the whole calculus at once all the same. Raises LimitError where the
-    network would not fit in memory.
+    Parameters
+    ----------
+    network
+        The network to close.
+    deadline
+        When to stop; ``complete`` of the result is False if it came first.
+    progress
+        Called now and then with the pairs propagated, and the pairs due so far.
+    joint
+        True to close a product calculus as a whole instead of axis by axis.
 
+    Returns
+    -------
+    The closed network. An empty relation ends closure and proves the network inconsistent.
+
+    Raises
+    ------
+    LimitError
+        If the network would not fit in memory.
+
+    Examples
+    --------
     >>> from deixis.reasoning.qualitative.calculi.registry import calculus
     >>> from deixis.reasoning.qualitative.networks.network import Constraint
     >>> point = calculus("point")
@@ -92,7 +108,7 @@ def close(
 
 
 def opened_states(network: Network, joint: bool = False, traced: bool = False) -> tuple[NetworkState, ...]:
-    """The states of a network's axes, or of the whole, with what is stated and before anything follows from it."""
+    """Return the states of a network's axes, or of the whole, with the stated constraints, not yet propagated."""
     axes = None if joint else on_axes(network)
     parts = (network,) if axes is None else axes
     states = tuple(NetworkState(part.calculus, part.size, traced) for part in parts)
@@ -104,13 +120,13 @@ def opened_states(network: Network, joint: bool = False, traced: bool = False) -
 def closed_states(
     network: Network, deadline: Deadline = Deadline.never(), progress: Progress | None = None, traced: bool = False
 ) -> tuple[tuple[NetworkState, ...], bool]:
-    """The states of a network's axes, or of the whole, closed up to the first contradiction; and whether in time."""
+    """Return the states of the axes, or of the whole, closed up to a contradiction; False if out of time."""
     states = opened_states(network, traced=traced)
     return states, close_states(states, deadline, progress)
 
 
 def close_states(states: Sequence[NetworkState], deadline: Deadline, progress: Progress | None) -> bool:
-    """Close states one after the other, up to the first contradiction; False where ``deadline`` came first."""
+    """Close states in turn, up to the first contradiction; return False if ``deadline`` came first."""
     for state in states:
         if any(each.emptied is not None for each in states):
             return True
@@ -126,5 +142,5 @@ def whole_relation(calculus: Calculus, states: Sequence[NetworkState], first: in
 
 
 def of_axes(calculus: Calculus, relations: Sequence[int]) -> int:
-    """Return the product of the relations on the axes; the relation itself where there is one axis."""
+    """Return the product of the relations on the axes; the relation itself if there is one axis."""
     return calculus.of_axes(relations) if isinstance(calculus, ProductCalculus) else relations[0]

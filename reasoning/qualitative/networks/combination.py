@@ -1,8 +1,8 @@
-"""Several calculi about the same things, closed together: what one says narrows the others (Wölfl and Westphal 2009).
+"""Close several calculi over the same things together: each narrows the others (Wölfl and Westphal 2009).
 
-Each network is closed in its own calculus; bridges carry over what the atoms of one admit of another, both ways; and
-so on until nothing changes. A contradiction of the whole is a proof, and need not be one of any part. That there is
-none proves nothing, except where only one calculus is said anything in: what realises that realises the rest.
+Each network is closed in its own calculus; bridges carry the relations over to the other calculi, both ways; this
+repeats until nothing changes. A contradiction of the whole is a proof, even if each network alone has none. Finding no
+contradiction proves nothing, unless only one calculus has constraints: a realisation of these also realises the others.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from deixis.reasoning.qualitative.networks.state import NetworkState, Progress
 
 @dataclass(frozen=True)
 class Contribution:
-    """What one calculus (its name) or one bridge (``a -> b``) did: pairs narrowed, and atoms taken from pairs i < j."""
+    """The pairs narrowed and atoms removed (i < j) by one calculus (its name) or one bridge (``a -> b``)."""
 
     name: str
     pairs: int
@@ -38,7 +38,7 @@ class Contribution:
 class JointClosure:
     """Networks over the same things, closed together as far as ``complete`` says.
 
-    ``emptied`` is the calculus and the pair of which nothing is left.
+    ``emptied`` is the calculus and the pair whose relation became empty.
     """
 
     networks: tuple[Network, ...]
@@ -50,11 +50,11 @@ class JointClosure:
 
     @property
     def consistent(self) -> bool:
-        """Whether no contradiction was found."""
+        """True if no contradiction was found."""
         return self.emptied is None
 
     def relation(self, calculus: str, first: int, second: int) -> int:
-        """Return the relation of two things in the calculus of that name."""
+        """Return the relation of two things in one calculus."""
         for network, state in zip(self.networks, self.states, strict=True):
             if network.calculus.name == calculus:
                 return state.relation(first, second)
@@ -69,13 +69,31 @@ def close_jointly(
 ) -> JointClosure:
     """Return the joint fixpoint of closing each network and crossing each bridge.
 
-    Raises NetworkError where the networks have not the same things, or not each its own calculus.
+    Parameters
+    ----------
+    networks
+        Networks over the same things, each in its own calculus.
+    bridges
+        Bridges between these calculi.
+    deadline
+        When to stop; ``complete`` of the result is False if it came first.
+    progress
+        Called while networks are closed.
+
+    Returns
+    -------
+    The closed networks, with the contribution of each calculus and bridge.
+
+    Raises
+    ------
+    NetworkError
+        If the networks are not over the same things, or if two share a calculus.
     """
     started = time.perf_counter()
     if len({network.size for network in networks}) > 1:
-        raise NetworkError("networks that are closed together must be about the same things")
+        raise NetworkError("networks closed together must be over the same things")
     if len({network.calculus.name for network in networks}) < len(networks):
-        raise NetworkError(f"networks that are closed together need a calculus each, not {_names(networks)}")
+        raise NetworkError(f"networks closed together must each have a calculus of their own, got {_names(networks)}")
     states = tuple(NetworkState(network.calculus, network.size) for network in networks)
     place = {network.calculus.name: k for k, network in enumerate(networks)}
     done = _Ledger()
@@ -112,7 +130,7 @@ def close_jointly(
 
 
 Propagator = Callable[[Deadline, Progress | None], bool]
-"""Narrows one state until a deadline, and returns whether it finished in time."""
+"""Function that narrows one state until a deadline, and returns True if it finished in time."""
 
 
 def _crossing(source: NetworkState, target: NetworkState, translate: Callable[[int], int]) -> Propagator:
@@ -132,7 +150,7 @@ def _crossing(source: NetworkState, target: NetworkState, translate: Callable[[i
 
 
 class _Ledger:
-    """Who narrowed how much."""
+    """A record of the pairs and atoms that each calculus and bridge narrowed."""
 
     def __init__(self) -> None:
         self._sums: dict[str, tuple[int, int]] = {}
@@ -151,11 +169,11 @@ class _Ledger:
 
 @dataclass(frozen=True, eq=False)
 class JointSolution:
-    """The verdict on several networks together, with the closure it rests on.
+    """The verdict on several networks together, with the closure that it rests on.
 
-    ``boxes`` are ones that bear everything, shape (n, 2, 2), least and greatest corner, where they were looked for and
-    found; distances are in units of the reference length. ``reason`` tells in words why the verdict is undecided, or
-    why there are no boxes though they were asked for.
+    ``boxes`` satisfy all networks, shape (n, 2, 2), least and greatest corner, if the search ran and found them;
+    distances are in units of the reference length. ``reason`` says why the verdict is undecided, or why there are no
+    boxes although they were requested.
     """
 
     verdict: Verdict
@@ -173,7 +191,8 @@ def solve_jointly(
 ) -> JointSolution:
     """Decide several networks together, or one that closure does not decide.
 
-    Closure refutes, and so does solving what boxes must bear; boxes that bear everything prove consistency.
+    Closure refutes, and so does solving the implied constraints on boxes; boxes that satisfy everything prove
+    consistency.
 
     Parameters
     ----------
@@ -219,21 +238,21 @@ def solve_jointly(
     if found.impossible and _boxes_refute(closure, bridges, deadline):
         return JointSolution(Verdict.INCONSISTENT, closure)
     others = "; regions of other shapes may" if found.impossible else ""
-    reason = f"no contradiction was found in {_names(networks)}, and that proves nothing: {found.reason}{others}"
+    reason = f"no contradiction was found in {_names(networks)}, which proves nothing: {found.reason}{others}"
     return JointSolution(Verdict.UNDECIDED, closure, reason)
 
 
 def _boxes_refute(closure: JointClosure, bridges: Sequence[Link], deadline: Deadline) -> bool:
-    """Return whether no boxes can bear what a closure leaves, with regions of any shape of which they are the bounds.
+    """Return True if no boxes satisfy a closure, even with regions of any shape inside them.
 
-    The closed relations of the rectangle algebra hold what regions say of their bounds. It says nothing where the
-    bridges leave apart what boxes would join.
+    The closed relations of the rectangle algebra include what the regions imply about their bounding boxes. The test
+    does not apply where the bridges keep apart calculi that boxes would connect.
     """
     calculi = [network.calculus for network in closure.networks]
     joined = {(bridge.source.name, bridge.target.name) for bridge in bridges}
     if unrelated(closure.networks) or {(b.source.name, b.target.name) for b in links_between(calculi)} - joined:
         return False
-    left = rectangles(closure.networks, closure.relation, but="rcc8")
+    left = rectangles(closure.networks, closure.relation, without="rcc8")
     return solve(left, deadline).verdict is Verdict.INCONSISTENT
 
 
@@ -241,7 +260,7 @@ def _boxes_refute(closure: JointClosure, bridges: Sequence[Link], deadline: Dead
 class JointConflict:
     """Constraints, each with the name of its calculus, that cannot all hold.
 
-    ``minimal`` says that no contradiction is found after leaving out any one of them.
+    ``minimal`` says that leaving out any one of them removes every contradiction that can be found.
     """
 
     constraints: tuple[tuple[str, Constraint], ...]
@@ -251,9 +270,9 @@ class JointConflict:
 def joint_conflict(
     networks: Sequence[Network], bridges: Sequence[Link], deadline: Deadline = Deadline.never()
 ) -> JointConflict | None:
-    """Return a deletion-minimal set of constraints that joint closure refutes; None where it refutes none in time.
+    """Return a deletion-minimal set of constraints that joint closure refutes; None if it refutes none in time.
 
-    Where closure refutes nothing, it is a set of which solving shows that no boxes bear it.
+    If closure refutes nothing, return a set that solving shows no boxes to satisfy.
     """
     stated = [(n.calculus.name, c) for n in networks for c in n.constraints]
 

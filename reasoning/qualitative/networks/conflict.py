@@ -1,7 +1,7 @@
-"""Why a network is inconsistent: constraints that cannot all hold, none of them dispensable.
+"""Find minimal conflicts: constraints that cannot all hold, each of them needed for the contradiction.
 
-What a failed closure rests on is read off its trail; then constraints are left out as long as the rest is inconsistent.
-Closure does this fast, and where it does not decide, search goes on with what it left.
+The trail of a failed closure shows the constraints that it rests on; then constraints are left out as long as the rest
+is inconsistent. Closure does this fast; where it does not decide, the search continues from its result.
 """
 
 from __future__ import annotations
@@ -26,8 +26,9 @@ Core = tuple[Constraint, ...]
 class NetworkConflict:
     """Constraints that cannot all hold.
 
-    ``minimal`` says that after leaving out any one of them no contradiction is left; it is False where time ran out
-    before that was seen. Where the calculus does not decide (``decided_by_closure`` is False), none is left to find.
+    ``minimal`` says that leaving out any one of them removes the contradiction; it is False if time ran out before that
+    was shown. In a calculus that closure does not decide (``decided_by_closure`` is False), it means that no
+    contradiction is found without it.
     """
 
     constraints: Core
@@ -37,10 +38,23 @@ class NetworkConflict:
 def minimal_conflict(
     network: Network, deadline: Deadline = Deadline.never(), inconsistent: bool = False
 ) -> NetworkConflict | None:
-    """A deletion-minimal set of inconsistent constraints; None where none was found in time.
+    """Return a deletion-minimal set of inconsistent constraints; None if none was found in time.
 
-    ``inconsistent`` says that the whole is known to be so: there is a conflict then, however little time there is.
+    Parameters
+    ----------
+    network
+        The network with the conflict.
+    deadline
+        When to stop; the conflict found so far is then returned with ``minimal`` False.
+    inconsistent
+        True if the whole network is known to be inconsistent: the result is then a conflict, however short the time.
 
+    Returns
+    -------
+    The conflict, or None.
+
+    Examples
+    --------
     >>> from deixis.reasoning.qualitative.calculi.registry import calculus
     >>> point = calculus("point")
     >>> before = point.relation(["<"])
@@ -69,29 +83,29 @@ def minimal_conflict(
     try:
         found = minimal_subset(core, by_search, deadline, keep_last=True)
         return NetworkConflict(found.items, found.proved)
-    except LimitError:  # too long a search
+    except LimitError:  # the search takes too long
         return NetworkConflict(core, False)
 
 
 def closure_decides(network: Network) -> bool:
-    """Whether closure alone tells if these constraints, and any part of them, are consistent."""
+    """Return True if closure alone decides the consistency of these constraints and of every subset of them."""
     chosen = network.calculus
     if decider(chosen) is not None or not chosen.decided_by_closure:
         return False
-    if any(axis.tractable is None for axis in chosen.factors):  # only networks of atoms, and these say all of all pairs
+    if any(axis.tractable is None for axis in chosen.factors):  # only networks that state an atom for every pair
         return False
     return all(len(chosen.pieces(relation)) <= 1 for relation in network.arrays.relations)
 
 
 def refuting(network: Network, deadline: Deadline) -> Core | None:
-    """The constraints on which a failed closure rests, in their order; None where closure does not fail in time."""
+    """Return the constraints on which a failed closure rests, in their order; None if closure does not fail in time."""
     network = network.only(without_leaves(network))
     if not network.constraints:
         return None
     small, _ = network.compact()
     try:
         states, _ = closed_states(small, deadline, traced=True)
-    except LimitError:  # too long a trail: no support, and all are suspected
+    except LimitError:  # the trail is too long to keep: no support is known, so suspect all constraints
         return network.constraints if close(small, deadline).emptied is not None else None
     for state in states:
         if state.emptied is not None:
@@ -100,9 +114,9 @@ def refuting(network: Network, deadline: Deadline) -> Core | None:
 
 
 def without_leaves(network: Network) -> Core:
-    """The constraints without those that lead to dead ends, as those of a tree all do.
+    """Return the constraints that remain when constraints to dead ends are removed, such as all constraints of a tree.
 
-    A thing that a single, satisfiable constraint is about can be placed whatever the others do.
+    A thing with a single, satisfiable constraint can be placed wherever the others are.
     """
     about: dict[int, set[int]] = {}
     for position, c in enumerate(network.constraints):
@@ -123,7 +137,7 @@ def without_leaves(network: Network) -> Core:
 
 
 def resting(network: Network, small: Network, state: NetworkState, first: int, second: int) -> Core:
-    """The constraints of ``network`` (``small`` is its compact form) on which a pair's relation in a state rests."""
+    """Return the constraints of ``network`` that a pair's relation rests on; ``small`` is its compact form."""
     needed = state.support(first, second)
     firsts, seconds = small.arrays.firsts, small.arrays.seconds
     chosen = needed[np.minimum(firsts, seconds), np.maximum(firsts, seconds)]

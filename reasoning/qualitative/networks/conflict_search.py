@@ -1,9 +1,9 @@
-"""Conflict-driven search: choices of tractable relations, closure after each, and a nogood from every contradiction.
+"""Search for tractable relations: choose one, close, and learn a nogood from every contradiction.
 
-The loops are in :mod:`deixis.reasoning.qualitative.networks.search_kernels`; here is what they work on. Only edges of
-which something is stated are decided. One is *settled* when some tractable relation within what is stated holds all
-that is left of it: the stated network with these relations instead is tractable, and its closure is not empty, since
-it holds the closed network at hand. So the search may stop with most pairs undetermined.
+The loops are in :mod:`deixis.reasoning.qualitative.networks.search_kernels`; this module prepares their data. Only
+edges with a stated relation are decided. An edge is *settled* when a tractable relation within the stated one contains
+the remaining relation: the stated network with these relations instead is tractable, and its closure is not empty,
+because it contains the present closed network. So the search may stop with most pairs undetermined.
 """
 
 from __future__ import annotations
@@ -25,17 +25,21 @@ from deixis.reasoning.qualitative.networks.tables import in_parts
 if TYPE_CHECKING:
     from deixis.reasoning.qualitative.networks.search_kernels import Algebra, Memory
 
-MAX_ATOMS = 64  # of an axis
-MAX_HULL_ATOMS = 16  # of an axis, for a table of all its relations
-MAX_TABLE_BYTES = 1 << 20  # of the look-up table of compositions
+MAX_ATOMS = 64  # maximum atoms of an axis
+MAX_HULL_ATOMS = 16  # maximum atoms of an axis with a table of all its relations
+MAX_TABLE_BYTES = 1 << 20  # maximum size of the look-up table of compositions
 BYTES_PER_EDGE = 48
-STEPS_PER_CHECK = 2_000_000  # look-ups between two looks at the clock: some milliseconds
-FIRST_STEPS = 5_000  # look-ups that may be interpreted, before loops are loaded
-FIRST_ROOM, FIRST_NOGOODS, FIRST_PREMISES = 1 << 12, 1 << 12, 1 << 17  # of the trail, for nogoods and their premises
+STEPS_PER_CHECK = 2_000_000  # look-ups between two readings of the clock: some milliseconds
+FIRST_STEPS = 5_000  # look-ups that may be interpreted before compiled loops are loaded
+FIRST_ROOM, FIRST_NOGOODS, FIRST_PREMISES = (
+    1 << 12,
+    1 << 12,
+    1 << 17,
+)  # lengths: trail, nogoods, premises
 NOGOODS_KEPT = 2_000  # learned nogoods at the first restart; the number grows
 
 Premise = tuple[int, int]
-"""An edge and a relation: that what holds of the edge is within the relation."""
+"""An edge and a relation: the premise that the remaining relation of the edge is within the relation."""
 
 
 class ConflictSearch:
@@ -44,19 +48,19 @@ class ConflictSearch:
     Parameters
     ----------
     axes : sequence of TableCalculus
-        The calculus on each axis; one for a network that is no product.
+        The calculus on each axis; one for a network that is not a product.
     masks : ndarray, (axes, n, n)
         What every pair may be, one bit an atom; empty nowhere.
     candidates : ndarray, (c,)
         Edges to settle: the pair i < k on axis a is (a * n + i) * n + k.
     stated : ndarray, (axes, n, n), optional
-        What was stated of every pair, of which ``masks`` may be the closure; ``masks`` itself by default.
+        The stated relation of every pair, of which ``masks`` may be the closure; ``masks`` itself by default.
     nogoods : sequence of sequences of Premise
         Premises of which one must be false.
     atomic : bool
-        Whether each candidate is to be narrowed to one atom; else to within a tractable relation.
+        True to narrow each candidate to one atom, False to narrow it to within a tractable relation.
     closed : bool
-        Whether ``masks`` is closed already.
+        True if ``masks`` is closed already.
 
     Raises
     ------
@@ -98,7 +102,7 @@ class ConflictSearch:
             queue_edges(self._algebra, self._memory)
 
     def run(self, deadline: Deadline = Deadline.never()) -> bool | None:
-        """Search on; True where all candidates are settled, False where they cannot be, None where time ran out."""
+        """Continue the search: True if all candidates are settled, False if they cannot be, None if out of time."""
         from deixis.reasoning.qualitative.networks import search_kernels
 
         budget = FIRST_STEPS if interprets() else STEPS_PER_CHECK
@@ -117,32 +121,32 @@ class ConflictSearch:
 
     @property
     def masks(self) -> NDArray[np.unsignedinteger[Any]]:
-        """What every pair may be by now, (axes, n, n)."""
+        """The current relations of all pairs, (axes, n, n)."""
         found: NDArray[np.unsignedinteger[Any]] = self._memory.masks
         return found
 
     @property
     def decisions(self) -> int:
-        """How many relations were chosen."""
+        """Number of relations chosen so far."""
         from deixis.reasoning.qualitative.networks.search_kernels import DECISIONS
 
         return int(self._memory.counts[DECISIONS])
 
     @property
     def conflicts(self) -> int:
-        """How many contradictions were met."""
+        """Number of contradictions met so far."""
         from deixis.reasoning.qualitative.networks.search_kernels import CONFLICTS
 
         return int(self._memory.counts[CONFLICTS])
 
     def tractable(self) -> NDArray[np.unsignedinteger[Any]]:
-        """Return the least tractable relation that holds what is left of each pair, (axes, n, n)."""
+        """Return the least tractable relation that contains the remaining relation of each pair, (axes, n, n)."""
         hulls = self._algebra.hulls
         return np.stack([hulls[axis][mask] for axis, mask in enumerate(self.masks)])
 
 
 def require_room(axes: int, things: int) -> None:
-    """Raise LimitError where a search on so many axes among so many things would not fit in memory."""
+    """Raise LimitError if a search on this many axes and things would not fit in memory."""
     if axes * things**2 * BYTES_PER_EDGE > MAX_BYTES:
         raise LimitError(
             f"a search among {things:,} things takes more than {MAX_BYTES >> 20:,} MB; "
@@ -152,12 +156,12 @@ def require_room(axes: int, things: int) -> None:
 
 @lru_cache(maxsize=16)
 def algebra(axes: tuple[TableCalculus, ...], atomic: bool) -> Algebra:
-    """Return the tables of the calculi on the axes; raises LimitError for more than 64 atoms on one."""
+    """Return the tables of the calculi on the axes; raise LimitError for more than 64 atoms on one."""
     from deixis.reasoning.qualitative.networks.search_kernels import Algebra
 
     most = max(len(axis.atoms) for axis in axes)
     if most > MAX_ATOMS:
-        raise LimitError(f"a search works for up to {MAX_ATOMS} atoms, not {most}")
+        raise LimitError(f"a search takes at most {MAX_ATOMS} atoms per axis, got {most}")
     dtype = np.dtype(np.uint16 if most <= MAX_HULL_ATOMS else np.uint64)
     parts = 2
     while (parts << -(-most // parts)) ** 2 * dtype.itemsize > MAX_TABLE_BYTES:
@@ -250,11 +254,11 @@ def _memory(
 
 
 def _longer(memory: Memory, *names: str) -> Memory:
-    """Return the memory with these arrays of twice the length."""
+    """Return the memory with the named arrays twice as long."""
     grown = {}
     for name in names:
         old = getattr(memory, name)
         if 2 * old.nbytes > MAX_BYTES:
-            raise LimitError("a search keeps more than fits in memory; split the network, or close it without a search")
+            raise LimitError("the search does not fit in memory; split the network, or close it without a search")
         grown[name] = np.concatenate([old, np.zeros_like(old)])
     return memory._replace(**grown)

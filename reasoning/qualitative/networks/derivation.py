@@ -1,7 +1,7 @@
-"""Why a pair bears a relation: a tree of steps down to what was stated.
+"""Derive the relation of a pair: a tree of steps down to the stated constraints.
 
-The constraints on which the pair rests are thinned out until none is dispensable; these few are then closed in rounds,
-so that each relation is derived by as few compositions on top of one another as can be.
+The constraints on which the pair rests are thinned out until each is needed; these few are then closed in rounds, so
+that each relation is derived by as few nested compositions as possible.
 """
 
 from __future__ import annotations
@@ -19,11 +19,31 @@ from deixis.reasoning.qualitative.networks.conflict import Core, refuting, resti
 from deixis.reasoning.qualitative.networks.network import Constraint, Network
 from deixis.reasoning.qualitative.networks.rounds import PairRelation, Rounds, Step
 
-FEW = 40  # things among which the shortest way is looked for right away
+FEW = 40  # maximum number of things for which the shortest derivation is searched first
 
 
 def explain(network: Network, first: int, second: int, deadline: Deadline = Deadline.never()) -> Step | None:
-    """Why closure leaves of a pair what it does; None where it leaves everything, or time ran out."""
+    """Return the derivation of a pair's closed relation; None if that is universal, or time ran out.
+
+    Parameters
+    ----------
+    network
+        The stated constraints.
+    first, second
+        The numbers of the two things.
+    deadline
+        When to stop.
+
+    Returns
+    -------
+    The last step of the derivation, with its premises. None also if the network is inconsistent: see
+    :func:`contradiction`.
+
+    Raises
+    ------
+    NetworkError
+        If one of the two things is not in the network.
+    """
     require_pair(network, first, second)
     small, things = network.compact()
     if first not in things or second not in things:
@@ -37,15 +57,37 @@ def explain(network: Network, first: int, second: int, deadline: Deadline = Dead
 
 
 def derive(network: Network, first: int, second: int, goal: int, deadline: Deadline = Deadline.never()) -> Step | None:
-    """The shortest derivation found of a relation no wider than ``goal``; None where closure does not give that.
+    r"""Return the shortest derivation found of a relation within ``goal``; None if closure does not give one.
 
+    Parameters
+    ----------
+    network
+        The stated constraints.
+    first, second
+        The numbers of the two things.
+    goal
+        A relation as a set of atoms; the derived one must be within it.
+    deadline
+        When to stop.
+
+    Returns
+    -------
+    The last step of the derivation, with its premises; None also if time ran out.
+
+    Raises
+    ------
+    NetworkError
+        If one of the two things is not in the network.
+
+    Examples
+    --------
     >>> from deixis.reasoning.qualitative.calculi.registry import calculus
     >>> from deixis.reasoning.qualitative.networks.network import Constraint
     >>> from deixis.reasoning.qualitative.networks.rounds import step_lines
     >>> point = calculus("point")
     >>> before = point.relation(["<"])
     >>> network = Network(point, 3, (Constraint(0, 1, before), Constraint(1, 2, before)), ("a", "b", "c"))
-    >>> print("\\n".join(step_lines(derive(network, 0, 2, before), network)))
+    >>> print("\n".join(step_lines(derive(network, 0, 2, before), network)))
     a ( < ) c   composed
         a ( < ) b   stated
         b ( < ) c   stated
@@ -69,7 +111,7 @@ def derive(network: Network, first: int, second: int, goal: int, deadline: Deadl
 
 
 def _in_rounds(network: Network, first: int, second: int, goal: int, deadline: Deadline) -> Step | None:
-    """The derivation that closing breadth first finds; of any pair's empty relation where ``first`` is -1."""
+    """Return the derivation found by closing breadth first; of any pair's empty relation if ``first`` is -1."""
     small, things = network.compact()
     place = {int(thing): k for k, thing in enumerate(things)} | {-1: -1}
     found = Rounds(small).derive(place[first], place[second], goal, deadline)
@@ -77,9 +119,9 @@ def _in_rounds(network: Network, first: int, second: int, goal: int, deadline: D
 
 
 def contradiction(network: Network, deadline: Deadline = Deadline.never()) -> Step | None:
-    """The derivation of the empty relation from constraints that closure refutes, best from a minimal conflict.
+    """Return the derivation of the empty relation from constraints that closure refutes; best given a minimal conflict.
 
-    None where closure finds no contradiction, or not in time.
+    Returns None if closure finds no contradiction, or not in time.
     """
     if refuting(network, deadline) is None:
         return None
@@ -87,14 +129,14 @@ def contradiction(network: Network, deadline: Deadline = Deadline.never()) -> St
 
 
 def require_pair(network: Network, first: int, second: int) -> None:
-    """Raises NetworkError where one of two things is none of the network."""
+    """Raise NetworkError if one of two things is not in the network."""
     for thing in (first, second):
         if not 0 <= thing < network.size:
             raise NetworkError(f"there is no thing {thing}; the network has {network.size}, numbered from 0")
 
 
 def _supporting(network: Network, first: int, second: int, goal: int, deadline: Deadline) -> Core | None:
-    """Constraints from which closure gives a relation within ``goal``, read off its trail; None where it does not."""
+    """Return constraints whose closure is within ``goal`` for a pair, read off its trail; None if it is not."""
     small, things = network.compact() if network.constraints else (network, np.zeros(0, dtype=np.int64))
     if first not in things or second not in things:
         return None

@@ -1,17 +1,29 @@
-"""The compiled loops of algebraic closure for calculi of any size, on bit planes.
+"""Run algebraic closure in compiled loops for calculi of any size, on bit planes.
 
-A network of n things is ``planes`` (n, words, atoms) of 64-bit words: bit b of ``planes[i, w, a]`` says that i may bear
-atom a to thing 64 w + b. The composition of one relation with a whole row of relations is then an OR of planes,
-64 pairs at a time.
+A network of n things is ``planes`` (n, words, atoms) of 64-bit words: bit b of ``planes[i, w, a]`` says that atom a is
+possible from i to thing 64 w + b. The composition of one relation with a whole row of relations is then an OR of
+planes, 64 pairs at a time.
 
-Throughout: ``sizes`` (3,) the number of atoms on each axis, padded by ones in front, an atom's code counting the last
-axis fastest; ``needs`` (3, bytes, 256, atoms of an axis) tells, for each byte of the left relation and each atom of
-the result, the right atoms that give it; in a calculus of one axis and more than 64 atoms it is (words, fours, 16,
-atoms), for every four atoms of the left relation, with the right atoms in words; ``converses`` (atoms,);
-``full`` (words,) one bit a thing; ``dirty`` (n, words) the ordered pairs whose change is still to be passed on,
-``waiting`` (n,) how many of them a row has; ``clock`` (5,) the row in turn, the passes done, the pair that was emptied
-and the thing by which (-1: none); ``trail`` (room, 4) the atoms taken away, in order: row, column, atom, by which thing
-(-1: stated); ``count`` (1,) how many there are, -1 where none is kept.
+These names are used throughout.
+
+``sizes`` (3,): the number of atoms on each axis, padded by ones in front; an atom's code counts the last axis fastest.
+
+``needs`` (3, bytes, 256, atoms of an axis): for each byte of the left relation and each atom of the result, the right
+atoms that give it. In a calculus of one axis and more than 64 atoms it is (words, fours, 16, atoms), for every four
+atoms of the left relation, with the right atoms in words.
+
+``converses`` (atoms,): the code of each converse.
+
+``full`` (words,): one bit per thing.
+
+``dirty`` (n, words): the ordered pairs whose change must still be propagated; ``waiting`` (n,): how many of them a row
+has.
+
+``clock`` (5,): the current row, the passes done, the emptied pair and the thing that emptied it (-1: none).
+
+``trail`` (room, 4): the removed atoms in order: row, column, atom, and the thing that caused it (-1: stated).
+
+``count`` (1,): the length of the trail, -1 if none is kept.
 """
 
 from __future__ import annotations
@@ -29,7 +41,7 @@ NONE = np.uint64(0)
 
 
 def _trailing_zeros() -> Any:
-    """Return numba's intrinsic for the processor's instruction."""
+    """Return numba's intrinsic for the instruction of the processor that counts trailing zeros."""
     from numba import types
     from numba.extending import intrinsic
 
@@ -44,7 +56,7 @@ def _trailing_zeros() -> Any:
 
 
 def _low_bit(word):  # type: ignore[no-untyped-def]
-    """The position of the lowest bit of a word that is not 0; unsigned, so that indexing needs no look at its sign."""
+    """Return the position of the lowest set bit of a word, not 0; unsigned, so that indexing skips the sign test."""
     return (int(word) & -int(word)).bit_length() - 1
 
 
@@ -52,12 +64,13 @@ low_bit = Instruction(_low_bit, _trailing_zeros)
 
 
 def _steps(budget, sizes, needs, converses, full, planes, *rest):  # type: ignore[no-untyped-def]
-    """About how many steps closure takes: every pair is passed on some times, to every word of every atom."""
+    """Estimate the steps of closure: every pair is propagated several times, to every word of every atom."""
     return 8 * len(planes) * planes.size
 
 
 @kernel()
 def mark(i, k, dirty, waiting):  # type: ignore[no-untyped-def]
+    """Queue the pair i, k for propagation, unless it waits already."""
     bit = ONE << np.uint64(k & 63)
     if i != k and not dirty[i, k >> 6] & bit:
         dirty[i, k >> 6] |= bit
@@ -77,11 +90,13 @@ def support(i, k, count, trail, needed):  # type: ignore[no-untyped-def]
 
 @kernel()
 def may(planes, i, atom, k):  # type: ignore[no-untyped-def]
+    """Return 1 if an atom is possible from i to k, otherwise 0."""
     return planes[i, k >> 6, atom] >> np.uint64(k & 63) & ONE
 
 
 @kernel()
 def empty(planes, i, k):  # type: ignore[no-untyped-def]
+    """Return True if no atom is possible from i to k."""
     left = NONE
     for atom in range(planes.shape[2]):
         left |= may(planes, i, atom, k)
@@ -90,7 +105,7 @@ def empty(planes, i, k):  # type: ignore[no-untyped-def]
 
 @kernel()
 def _take(i, k, atom, by, planes, converses, trail, count):  # type: ignore[no-untyped-def]
-    """Take an atom from a pair, seen from both things."""
+    """Remove an atom from a pair, seen from both things."""
     planes[i, k >> 6, atom] &= ~(ONE << np.uint64(k & 63))
     planes[k, i >> 6, converses[atom]] &= ~(ONE << np.uint64(i & 63))
     if count[0] >= 0:
@@ -103,9 +118,10 @@ def _take(i, k, atom, by, planes, converses, trail, count):  # type: ignore[no-u
 
 @kernel(lambda firsts, *rest: len(firsts) * rest[4].shape[2])
 def restrict(firsts, seconds, ids, masks, start, planes, converses, dirty, waiting, clock, trail, count):  # type: ignore[no-untyped-def]
-    """Intersect pairs with relations, from constraint ``start`` on; returns the first constraint not dealt with.
+    """Intersect pairs with relations, from constraint ``start`` on; return the first constraint not dealt with.
 
-    ``masks`` (relations, 64-bit words) holds the relations; the first constraint that empties its pair ends it.
+    ``masks`` (relations, 64-bit words) holds the relations; the loop ends at the first constraint that empties its
+    pair.
     """
     atoms = planes.shape[2]
     for m in range(start, len(firsts)):
@@ -131,7 +147,7 @@ def restrict(firsts, seconds, ids, masks, start, planes, converses, dirty, waiti
 def advance(  # type: ignore[no-untyped-def]
     budget, sizes, needs, converses, full, planes, dirty, waiting, clock, trail, count
 ):
-    """Pass changes on, ``budget`` pairs of them: CLOSED, EMPTIED, PAUSED (budget spent) or FULL (the trail is)."""
+    """Propagate ``budget`` changes; return CLOSED, EMPTIED, PAUSED (budget spent) or FULL (no room in the trail)."""
     n, words, atoms = planes.shape
     changed = np.zeros(words, dtype=np.uint64)
     removed = np.zeros((words, atoms), dtype=np.uint64)
@@ -172,7 +188,7 @@ def advance(  # type: ignore[no-untyped-def]
 
 @kernel()
 def _require(relation, axis, size, needs, required):  # type: ignore[no-untyped-def]
-    """For each atom of the result, the right atoms that give it together with some atom of ``relation``."""
+    """Set for each atom of the result the right atoms that give it together with some atom of ``relation``."""
     for c in range(size):
         required[axis, c] = NONE
     for byte in range((size + 7) >> 3):
@@ -185,9 +201,9 @@ def _require(relation, axis, size, needs, required):  # type: ignore[no-untyped-
 
 @kernel()
 def _remove_table(i, j, needs, planes, required, removed):  # type: ignore[no-untyped-def]
-    """removed[a] = the things k that i cannot bear a to, because of j; False where there is none.
+    """Set removed[a] to the things k for which j excludes atom a from i to k; return False if there are no such things.
 
-    Most of what is looked at is there to stay, and that shows after a few of the right atoms.
+    Most atoms remain, and the first few of the right atoms usually show that.
     """
     _, words, atoms = planes.shape
     relation = NONE
@@ -209,7 +225,7 @@ def _remove_table(i, j, needs, planes, required, removed):  # type: ignore[no-un
 
 @kernel()
 def _remove_wide(i, j, needs, planes, required, removed):  # type: ignore[no-untyped-def]
-    """The same for more than 64 atoms: the right atoms that give an atom are several words of ``required``."""
+    """Set ``removed`` for more than 64 atoms: the right atoms take several words of ``required``."""
     _, words, atoms = planes.shape
     parts = len(needs)
     required[:parts] = NONE
@@ -239,7 +255,7 @@ def _remove_wide(i, j, needs, planes, required, removed):  # type: ignore[no-unt
 
 @kernel()
 def _remove_product(i, j, sizes, needs, planes, required, boxes, scratch, removed):  # type: ignore[no-untyped-def]
-    """The same for a product calculus: box by box of i's relation to j, and for each box axis by axis."""
+    """Set ``removed`` for a product calculus: box by box of i's relation to j, and for each box axis by axis."""
     _, words, atoms = planes.shape
     removed[:] = planes[i]
     for box in range(_boxes(i, j, sizes, planes, boxes)):
@@ -276,7 +292,7 @@ def _compose_axis(given, required, before, size, after, out):  # type: ignore[no
 
 @kernel()
 def _boxes(i, j, sizes, planes, boxes):  # type: ignore[no-untyped-def]
-    """Write the relation of i to j as a disjoint union of products; returns how many."""
+    """Write the relation of i to j as a disjoint union of products; return how many."""
     rows = np.zeros((sizes[0], sizes[1]), dtype=np.uint64)
     for a in range(sizes[0]):
         for b in range(sizes[1]):
@@ -300,12 +316,13 @@ def _boxes(i, j, sizes, planes, boxes):  # type: ignore[no-untyped-def]
 
 @kernel()
 def row_seen(row, position):  # type: ignore[no-untyped-def]
+    """Return True if the row at ``position`` equals an earlier one."""
     return (row[:position] == row[position]).any()
 
 
 @kernel()
 def _alike(rows, a):  # type: ignore[no-untyped-def]
-    """The slabs that are just like slab a; none where an earlier one is."""
+    """Return the slabs equal to slab a; 0 if an earlier slab is equal to it."""
     alike = NONE
     for other in range(len(rows)):
         if (rows[other] == rows[a]).all():
@@ -317,7 +334,7 @@ def _alike(rows, a):  # type: ignore[no-untyped-def]
 
 @kernel()
 def _apply(i, j, removed, converses, full, planes, dirty, waiting, clock, changed, trail, count):  # type: ignore[no-untyped-def]
-    """Take from row i what j removes, and marks what changed; False where a pair is left with nothing."""
+    """Remove from row i what j excludes, and mark what changed; return False if a pair is emptied."""
     _, words, atoms = planes.shape
     changed[:] = NONE
     for w in range(words):
@@ -347,7 +364,7 @@ def _apply(i, j, removed, converses, full, planes, dirty, waiting, clock, change
 
 @kernel()
 def undo(length, converses, planes, dirty, waiting, clock, trail, count):  # type: ignore[no-untyped-def]
-    """Give back what was taken since the trail had that length, when the network was closed."""
+    """Restore the atoms removed since the trail had that length, when the network was closed."""
     for m in range(count[0] - 1, length - 1, -1):
         i, k, atom = trail[m, 0], trail[m, 1], trail[m, 2]
         planes[i, k >> 6, atom] |= ONE << np.uint64(k & 63)
@@ -360,7 +377,7 @@ def undo(length, converses, planes, dirty, waiting, clock, trail, count):  # typ
 
 @kernel()
 def lightest(planes, weights):  # type: ignore[no-untyped-def]
-    """The pair i < k of more than one atom with the fewest for its weight, as i * n + k; -1 where there is none."""
+    """Return the undecided pair i < k with the fewest atoms for its weight, as i * n + k; -1 if all are decided."""
     n, _, atoms = planes.shape
     best, best_score = -1, np.inf
     for i in range(n):

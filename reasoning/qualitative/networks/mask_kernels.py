@@ -1,9 +1,10 @@
-"""The compiled loops of algebraic closure for small calculi: one axis, up to 16 atoms, pair by pair.
+"""Run algebraic closure in compiled loops for small calculi: one axis, up to 16 atoms, pair by pair.
 
 A network of n things is ``masks`` (n, n), each relation 16 bits. For look-ups a relation is cut in two, its lower
-``half`` bits and the rest: ``compositions`` (2, 2^half, 2, 2^half) composes each part of a left relation with each of a
-right one, ``converses`` (2, 2^half) turns each part round. A row of the trail holds row, column, the atoms taken, by
-which thing. All else is as in :mod:`deixis.reasoning.qualitative.networks.kernels`.
+``half`` bits and the rest: ``compositions`` (2, 2^half, 2, 2^half) composes each part of a left relation with each part
+of a right one, ``converses`` (2, 2^half) takes the converse of each part. A row of the trail holds row, column, the
+removed atoms, and the thing that caused it. Everything else is as in
+:mod:`deixis.reasoning.qualitative.networks.kernels`.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from deixis.reasoning.qualitative.networks.kernels import CLOSED, EMPTIED, FULL,
 
 @kernel()
 def _narrow(i, k, left, by, half, masks, converses, dirty, waiting, clock, trail, count):  # type: ignore[no-untyped-def]
-    """Leaves a pair with less, seen from both things; False where that is nothing."""
+    """Narrow a pair, seen from both things; return False if nothing is left."""
     if count[0] >= 0:
         trail[count[0], 0] = i
         trail[count[0], 1] = k
@@ -34,7 +35,7 @@ def _narrow(i, k, left, by, half, masks, converses, dirty, waiting, clock, trail
 
 @kernel(lambda firsts, *rest: 10 * len(firsts))
 def restrict(firsts, seconds, ids, words, start, half, masks, converses, dirty, waiting, clock, trail, count):  # type: ignore[no-untyped-def]
-    """Intersect pairs with relations, from constraint ``start`` on; returns the first constraint not dealt with."""
+    """Intersect pairs with relations, from constraint ``start`` on; return the first constraint not dealt with."""
     for m in range(start, len(firsts)):
         if count[0] >= 0 and count[0] >= len(trail):
             return m
@@ -48,13 +49,13 @@ def restrict(firsts, seconds, ids, words, start, half, masks, converses, dirty, 
 
 
 def _steps(budget, half, compositions, converses, masks, *rest):  # type: ignore[no-untyped-def]
-    """About how many steps closure takes: every pair is passed on some times, to every third thing."""
+    """Estimate the steps of closure: every pair is propagated several times, to every third thing."""
     return 4 * len(masks) ** 3
 
 
 @kernel(_steps)
 def advance(budget, half, compositions, converses, masks, dirty, waiting, clock, trail, count):  # type: ignore[no-untyped-def]
-    """Pass changes on, ``budget`` pairs of them: CLOSED, EMPTIED, PAUSED (budget spent) or FULL (the trail is)."""
+    """Propagate ``budget`` changes; return CLOSED, EMPTIED, PAUSED (budget spent) or FULL (no room in the trail)."""
     n, words = dirty.shape
     rows = np.zeros((2, 1 << half), dtype=np.uint16)
     changed = np.zeros(n + 1, dtype=np.int64)
@@ -89,7 +90,7 @@ def advance(budget, half, compositions, converses, masks, dirty, waiting, clock,
 
 @kernel()
 def _compose(relation, half, compositions, rows):  # type: ignore[no-untyped-def]
-    """The relation composed with every lower part, and with every upper one."""
+    """Compose the relation with every lower part, and with every upper part."""
     low, high = compositions[0, relation & ((1 << half) - 1)], compositions[1, relation >> half]
     for part in range(2):
         np.bitwise_or(low[part], high[part], rows[part])
@@ -97,7 +98,7 @@ def _compose(relation, half, compositions, rows):  # type: ignore[no-untyped-def
 
 @kernel()
 def narrower(mine, others, half, low, high, changed, lefts):  # type: ignore[no-untyped-def]
-    """List the pairs of a row that are narrowed, and to what; without a branch, since there is no telling which."""
+    """List the narrowed pairs of a row, and their new relations; branch-free, since branches would be unpredictable."""
     found, shift = np.uint64(0), np.uint64(half)
     lower = (ONE << shift) - ONE
     for k in range(len(mine)):

@@ -1,4 +1,4 @@
-"""A qualitative constraint network: which relations things are said to bear to one another (Montanari 1974)."""
+"""Represent a qualitative constraint network: stated relations between things (Montanari 1974)."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Constraint:
-    """Thing ``first`` bears one of the atoms of ``relation`` to thing ``second``."""
+    """A statement that one of the atoms of ``relation`` holds from thing ``first`` to thing ``second``."""
 
     first: int
     second: int
@@ -40,10 +40,24 @@ class ConstraintArrays:
 
 @dataclass(frozen=True, eq=False)
 class Network:
-    """``size`` things, numbered from 0, and constraints between them; pairs that none is about may bear any relation.
+    """Constraints between ``size`` things, numbered from 0; pairs without a constraint may have any relation.
 
-    Several constraints on one pair hold together. Raises NetworkError where a constraint is about no thing of the
-    network, or has atoms that the calculus lacks.
+    Parameters
+    ----------
+    calculus
+        The calculus of the relations.
+    size
+        The number of things.
+    constraints
+        Constraints on ordered pairs; several on one pair hold together.
+    names
+        The names of the things, for messages; None if they are known by number only.
+
+    Raises
+    ------
+    NetworkError
+        If a constraint is on a thing outside the network or has atoms that the calculus lacks, or if there are not
+        as many names as things.
     """
 
     calculus: Calculus
@@ -53,7 +67,7 @@ class Network:
 
     def __post_init__(self) -> None:
         if self.size < 0 or (self.names is not None and len(self.names) != self.size):
-            raise NetworkError(f"a network of {self.size} things needs as many names, not {len(self.names or ())}")
+            raise NetworkError(f"a network of {self.size} things needs {self.size} names, got {len(self.names or ())}")
         stated, arrays = self.constraints, self.arrays
         if not stated:
             return
@@ -63,13 +77,13 @@ class Network:
             wrong = stated[outside[0]]
             place = "" if wrong.source is None else f"{wrong.source}: "
             raise NetworkError(
-                f"{place}a constraint on {wrong.first} and {wrong.second}, and the things of this network "
+                f"{place}a constraint on {wrong.first} and {wrong.second}, but the things of this network "
                 f"are 0 to {self.size - 1}"
             )
         universal = self.calculus.universal
         odd = [relation for relation in arrays.relations if relation & ~universal]
         if odd:
-            raise NetworkError(f"{self.calculus.name} has {len(self.calculus.atoms)} atoms; {odd[0]:#x} names others")
+            raise NetworkError(f"{self.calculus.name} has {len(self.calculus.atoms)} atoms; {odd[0]:#x} has others")
 
     @cached_property
     def arrays(self) -> ConstraintArrays:
@@ -85,11 +99,11 @@ class Network:
         )
 
     def name(self, thing: int) -> str:
-        """Return what a thing is called: its name, else its number."""
+        """Return the name of a thing, or its number if it has none."""
         return str(thing) if self.names is None else self.names[thing]
 
     def to_networkx(self) -> nx.MultiDiGraph[Any]:
-        """Return the network as a ``networkx.MultiDiGraph``, one edge a constraint.
+        """Return the network as a ``networkx.MultiDiGraph`` with one edge per constraint.
 
         Returns
         -------
@@ -130,12 +144,12 @@ class Network:
         return replace(self, constraints=tuple(constraints))
 
     def compact(self) -> tuple[Network, NDArray[np.int64]]:
-        """Return the network of just the things that constraints are about, and their numbers here, in order."""
+        """Return the network of the things that constraints relate, and their numbers here, in order."""
         (small,), kept = compacted([self])
         return small, kept
 
     def stated(self, first: int, second: int) -> int:
-        """What the constraints on one pair leave, read from first to second; the identity for a thing and itself."""
+        """Return the intersection of the constraints on one pair; the identity for a thing and itself."""
         relation = self.calculus.universal if first != second else 1 << self.calculus.identity
         for constraint in self.constraints:
             if (constraint.first, constraint.second) == (first, second):
@@ -146,7 +160,7 @@ class Network:
 
 
 def compacted(networks: Sequence[Network]) -> tuple[tuple[Network, ...], NDArray[np.int64]]:
-    """Networks over the same things, of just those that constraints of any are about; their numbers here, in order."""
+    """Return networks over the things that a constraint of any network relates, and their numbers here, in order."""
     ends = [end for network in networks for end in (network.arrays.firsts, network.arrays.seconds)]
     kept = np.unique(np.concatenate(ends))
     place = {int(thing): position for position, thing in enumerate(kept)}
@@ -160,7 +174,7 @@ def compacted(networks: Sequence[Network]) -> tuple[tuple[Network, ...], NDArray
 
 
 def on_axes(network: Network) -> tuple[Network, ...] | None:
-    """Return a network for each axis, where every relation is a product; None where one is not.
+    """Return a network for each axis if every relation is a product; None otherwise.
 
     Composition and intersection of products are products, so that the axes are independent networks (Balbiani,
     Condotta and Fariñas del Cerro 1998, for rectangles). The empty relation is empty on every axis.

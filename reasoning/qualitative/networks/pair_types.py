@@ -1,9 +1,9 @@
-"""Types of pairs of boxes: how two boxes in the plane can lie, as finely as all calculi that boxes bear can tell.
+"""Classify pairs of boxes in the plane, as finely as all the calculi of boxes together.
 
 On each axis a type gives the order of the four end points and of the two centres; there are 17 of these. With the range
-of the distance between the centres there are 849 types in all. Each bears one atom of every calculus, so that what
-several calculi say of a pair is one set of types, and a part of this set that linear constraints describe can be handed
-to linear programming.
+of the distance between the centres there are 849 types in all. Each type has one atom in every calculus, so that the
+constraints of several calculi on a pair are one set of types, and a part of this set that linear constraints describe
+can be given to linear programming.
 """
 
 from __future__ import annotations
@@ -31,9 +31,9 @@ LESS, EQUAL, GREATER, ANY = 1, 2, 4, 7
 COMPARED = np.array([[2, 0, -2, 0], [2, 0, 0, -2], [0, 2, -2, 0], [0, 2, 0, -2], [1, 1, -1, -1]], dtype=np.float64) / 2
 """Differences whose signs make a type, of (low a, high a, low b, high b): shape (5, 4); the last is of the centres."""
 REACHES = 1 + len(DEFAULT_RANGES.names)
-"""``same`` and the ranges of distance."""
+"""Number of distance codes: ``same`` and the ranges."""
 BOUNDS = np.array([0.0, 0.0, *DEFAULT_RANGES.bounds, np.inf])
-"""The range with code r reaches from ``BOUNDS[r]`` to ``BOUNDS[r + 1]``, in units of the reference length."""
+"""Bounds of the ranges in units of the reference length: range r reaches from ``BOUNDS[r]`` to ``BOUNDS[r + 1]``."""
 _WIDER = {LESS: (ANY, LESS | EQUAL), GREATER: (ANY, GREATER | EQUAL), EQUAL: (ANY, LESS | EQUAL, GREATER | EQUAL)}
 
 _REACHES_AROUND = tuple(
@@ -46,7 +46,7 @@ _REACHES_AROUND = tuple(
 
 @dataclass(frozen=True, eq=False)
 class PairTypes:
-    """All types, and the atom that each bears in every calculus."""
+    """All types, and the atom of each in every calculus."""
 
     orders: NDArray[np.int8]  # (17, 5): bits of the order of each difference, on one axis
     axes: NDArray[np.int64]  # (types, 2): the orders on x and on y
@@ -54,7 +54,7 @@ class PairTypes:
     atoms: Mapping[str, NDArray[np.int64]]  # by calculus (types,): the code of the atom
 
     def permitted(self, relations: Mapping[str, int]) -> NDArray[np.bool_]:
-        """Return which types bear one atom of each relation, by calculus: shape (types,)."""
+        """Return True for each type that has an atom of every given relation, by calculus: shape (types,)."""
         left = np.ones(len(self.reaches), dtype=np.bool_)
         for name, relation in relations.items():
             codes = self.atoms[name]
@@ -104,10 +104,10 @@ def _one_each(bridge: Bridge) -> list[int]:
 
 @dataclass(frozen=True, eq=False)
 class Piece:
-    """Types that linear constraints describe, up to the roundness of distance.
+    """A set of types described by linear constraints, except that distance is round.
 
-    ``signs`` has shape (2, 5): on each axis bits of the order that each difference of COMPARED may have, never LESS or
-    GREATER without EQUAL between them. ``nearest`` and ``farthest`` are codes of distance.
+    ``signs`` has shape (2, 5): for each axis, bits of the permitted orders of each difference of COMPARED, never LESS
+    and GREATER without EQUAL. ``nearest`` and ``farthest`` are codes of distance.
     """
 
     signs: NDArray[np.int8]
@@ -116,10 +116,10 @@ class Piece:
 
 
 def piece_around(permitted: NDArray[np.bool_], kept: int, order: NDArray[np.int64]) -> Piece:
-    """Return a large piece of the permitted types (types,) that holds type ``kept``.
+    """Return a large piece of the permitted types (types,) that contains type ``kept``.
 
     The eleven constraints that single out the type, ten orders and the distance, are widened one by one, in the
-    ``order`` (11,) given, as far as no type that is not permitted comes in.
+    ``order`` (11,) given, as long as no forbidden type enters.
 
     >>> types = pair_types()
     >>> apart = types.permitted({"rcc8": 1})  # DC

@@ -1,9 +1,9 @@
-"""Places boxes by linear programming: as little as possible out of given pieces, then exactly on what was equal.
+"""Place boxes by linear programming: as little as possible out of given pieces, then exactly on the equations.
 
 A linear program moves all boxes at once. Orders of end points and centres are linear. Distances are round: an upper
 bound becomes a polygon within the circle, and a lower bound the half-plane beyond a tangent, in the direction in which
-the centres lie already. Where the program leaves no slack, coordinates are rounded to binary fractions of which the
-equations hold exactly, and of which sums of two are exact in floating point.
+the centres lie already. Where the program leaves no slack, coordinates are rounded to binary fractions for which the
+equations hold exactly, and whose pairwise sums are exact in floating point.
 """
 
 from __future__ import annotations
@@ -23,24 +23,23 @@ Boxes = NDArray[np.float64]  # (n, 2, 2): least and greatest corner, x and y
 Equation = dict[int, int]  # factor by coordinate; the sum is zero
 
 POLYGON = 12
-"""Sides of the polygon within the circle of an upper bound on distance."""
+"""Number of sides of the polygon within the circle of an upper bound on distance."""
 PRECISION = 24
-"""Binary places of coordinates."""
+"""Number of binary places of coordinates."""
 FEASIBLE = 1e-6
-"""Slack up to which a constraint counts as met; smaller than any margin."""
+"""Maximum slack of a constraint that counts as met; smaller than any margin."""
 MAX_COORDINATE = 1000.0
-"""The greatest coordinate, for each box."""
+"""Greatest coordinate per box."""
 COMPACTNESS = 1e-4
-"""The cost of one unit of a coordinate, where one of slack costs 1 or more: boxes are not spread for nothing."""
+"""Cost of one unit of a coordinate (one unit of slack costs 1 or more), so that boxes do not spread without need."""
 
 
 @dataclass(frozen=True, eq=False)
 class Placement:
-    """Where a linear program moved boxes to.
+    """Boxes moved by a linear program.
 
-    ``slack`` is by how much each pair is out of its piece, at its worst constraint, shape (pairs,).
-    ``equations`` are what holds exactly where there is no slack, of coordinates counted as in ``boxes`` by axis, box
-    and end.
+    ``slack`` is the worst violation of each pair's piece, shape (pairs,). ``equations`` hold exactly where there is no
+    slack; their coordinates are counted as in ``boxes`` by axis, box and end.
     """
 
     boxes: Boxes
@@ -49,12 +48,12 @@ class Placement:
 
     @property
     def fits(self) -> bool:
-        """Whether every pair is in its piece."""
+        """True if every pair is in its piece."""
         return bool(self.slack.sum() <= FEASIBLE)
 
 
 class _Rows:
-    """The rows of a linear program, each a sum of products that is at most a bound."""
+    """The rows of a linear program, each a weighted sum with an upper bound."""
 
     def __init__(self) -> None:
         self._rows: list[NDArray[np.int64]] = []
@@ -75,7 +74,7 @@ class _Rows:
     def minimised(
         self, cost: NDArray[np.float64], most: NDArray[np.float64], deadline: Deadline
     ) -> NDArray[np.float64] | None:
-        """Return the variables, from 0 to ``most``, of least cost; None where time ran out."""
+        """Return the variables, from 0 to ``most``, of least cost; None if time ran out."""
         from scipy.optimize import linprog
         from scipy.sparse import csr_array
 
@@ -101,15 +100,15 @@ def place(
     Parameters
     ----------
     boxes
-        Boxes of shape (n, 2, 2), which tell in which directions far things are to be kept apart.
+        Boxes of shape (n, 2, 2), which give the directions in which to keep far things apart.
     pairs
         Pairs of boxes, shape (pairs, 2).
     pieces
-        The piece that each pair is to be in.
+        The piece for each pair.
     weights
         The cost of one unit of slack by pair, shape (pairs,).
     margin
-        The least difference where one coordinate is to be less than another.
+        The least difference where one coordinate must be less than another.
     deadline
         When to stop.
 
@@ -156,12 +155,12 @@ def place(
 def _round(
     boxes: Boxes, pairs: NDArray[np.int64], pieces: Sequence[Piece], margin: float
 ) -> Iterable[tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]]:
-    """Yield bounds on how far centres lie apart in a direction: pairs (m,), directions (m, 2) and bounds (m,)."""
+    """Yield bounds on the distance of centres in a direction: pairs (m,), directions (m, 2) and bounds (m,)."""
     nearest = np.array([piece.nearest for piece in pieces], dtype=np.int64)
     farthest = np.array([piece.farthest for piece in pieces], dtype=np.int64)
     centres = boxes.mean(axis=1)
     offsets = centres[pairs[:, 0]] - centres[pairs[:, 1]]
-    # Centres in one place are sent apart, each pair in another direction.
+    # Send centres at the same place apart, each pair in another direction.
     together = (np.abs(offsets) < FEASIBLE).all(axis=1)
     angles = np.where(together, np.arange(len(pairs)) * 2.4, np.arctan2(offsets[:, 1], offsets[:, 0]))
 
@@ -172,15 +171,15 @@ def _round(
     yield apart, -directions(angles[apart]), -(BOUNDS[nearest[apart]] + margin)
     near = np.flatnonzero((farthest > 0) & np.isfinite(BOUNDS[farthest + 1]))
     within = (BOUNDS[farthest[near] + 1] - margin) * np.cos(np.pi / POLYGON)
-    for side in range(POLYGON):  # a corner, which reaches farthest, lies in the present direction
+    for side in range(POLYGON):  # a corner of the polygon, where it reaches farthest, lies in the present direction
         yield near, directions(angles[near] + (2 * side + 1) * np.pi / POLYGON), within
 
 
 def rounded(placement: Placement, whole: bool) -> Boxes | None:
-    """Return the boxes of a placement that fits with coordinates of which the equations hold exactly.
+    """Return the boxes of a placement that fits, with coordinates for which the equations hold exactly.
 
-    Coordinates are binary fractions, such that sums of two are exact in floating point; whole numbers, at whatever
-    scale, where ``whole`` says so. None where there are none such.
+    Coordinates are binary fractions whose pairwise sums are exact in floating point; whole numbers, at any scale, if
+    ``whole`` is True. Returns None if there are no such coordinates.
     """
     solved = _solved(placement.equations)
     common = math.lcm(1, *(part.denominator for parts in solved.values() for part in parts.values()))
@@ -201,7 +200,7 @@ def rounded(placement: Placement, whole: bool) -> Boxes | None:
 
 
 def _solved(equations: Iterable[Equation]) -> dict[int, dict[int, Fraction]]:
-    """Return coordinates as sums of others that are free, factor by free coordinate, from equations of zero."""
+    """Solve equations of zero: return coordinates as sums of free ones, factor by free coordinate."""
     solved: dict[int, dict[int, Fraction]] = {}
 
     def inserted(parts: dict[int, Fraction]) -> dict[int, Fraction]:

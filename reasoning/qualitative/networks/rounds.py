@@ -1,4 +1,4 @@
-"""Closure in rounds, each from the round before alone, so that what follows is found by the shortest way first."""
+"""Close a network in rounds, each from the round before alone, so that short derivations are found first."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _WORDS = {Rule.STATED: "stated", Rule.COMPOSITION: "composed", Rule.CONJUNCTION:
 
 @dataclass(frozen=True, slots=True)
 class PairRelation:
-    """``first`` bears ``relation`` to ``second``."""
+    """The statement that ``relation`` holds from ``first`` to ``second``."""
 
     first: int
     second: int
@@ -23,11 +23,11 @@ class PairRelation:
 
 
 Step = Proof[PairRelation]
-"""Premises about (first, k) and (k, second) are composed, premises about the pair itself hold together."""
+"""A proof step: premises on (first, k) and (k, second) are composed, premises on the pair itself are intersected."""
 
 
 def step_lines(step: Step, network: Network, depth: int = 0) -> Iterator[str]:
-    """A proof in words, what follows first and what it rests on indented below."""
+    """Yield the lines of a proof in words, each conclusion first and its premises indented below."""
     claim, calculus = step.claim, network.calculus
     where = f" {step.source}" if step.source is not None else ""
     what = f"{network.name(claim.first)} {worded(calculus, claim.relation)} {network.name(claim.second)}"
@@ -37,7 +37,7 @@ def step_lines(step: Step, network: Network, depth: int = 0) -> Iterator[str]:
 
 
 def worded(calculus: Calculus, relation: int) -> str:
-    """Return a relation for people: its atoms, or for each axis what it leaves there, ``any`` for everything.
+    """Write a relation for people: its atoms, or for each axis of a product the relation there, ``any`` if universal.
 
     >>> from deixis.reasoning.qualitative.calculi.registry import calculus
     >>> ra = calculus("ra")
@@ -62,7 +62,7 @@ RelationTable = list[list[int]]
 
 
 class Rounds:
-    """A small network, closed breadth first; what each round left of each pair is kept."""
+    """A small network, closed breadth first, with the relation of each pair after each round."""
 
     def __init__(self, network: Network) -> None:
         self._network = network
@@ -78,9 +78,9 @@ class Rounds:
         self._tables: list[RelationTable] = [table]
 
     def derive(self, first: int, second: int, goal: int, deadline: Deadline) -> Step | None:
-        """Return the derivation of a relation within ``goal``; of any pair's empty relation where ``first`` is -1.
+        """Return the derivation of a relation within ``goal``; of any pair's empty relation if ``first`` is -1.
 
-        None where the rounds end, or ``deadline`` comes, before that.
+        Returns None if the rounds end, or ``deadline`` comes, before that.
         """
         while True:
             pair: tuple[int, int] | None = (first, second)
@@ -102,7 +102,7 @@ class Rounds:
         return self._composed[key]
 
     def _between(self, i: int, j: int, position: int) -> dict[int, int]:
-        """Return what each third thing leaves of a pair, where that is less than everything."""
+        """Return the relation of a pair implied by each third thing, where it is not universal."""
         table, between = self._tables[position], {}
         for k in range(len(table)):
             left, right = table[i][k], table[k][j]
@@ -113,7 +113,7 @@ class Rounds:
         return between
 
     def _next_round(self, deadline: Deadline) -> bool:
-        """Return whether there is another round, and was time for it."""
+        """Compute the next round; return False if nothing changed or time ran out."""
         last, changed = len(self._tables) - 1, False
         table = [list(row) for row in self._tables[last]]
         for i in range(len(table)):
@@ -151,7 +151,7 @@ class Rounds:
         enough = [k for k, relation in options.items() if not relation & ~goal]
         if enough:
             return min((self._composition(i, k, j, before) for k in enough), key=lambda step: step.size())
-        # The relation of before and what third things leave, as few of them as greed finds.
+        # Intersect the relation before with those from third things, as few of them as a greedy choice finds.
         left, chosen = self._at(i, j, before), []
         own = left != self._universal
         while left & ~goal:

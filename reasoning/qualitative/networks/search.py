@@ -1,9 +1,9 @@
-"""Consistency: closure where it decides, else a conflict-driven search over tractable relations.
+"""Decide consistency: by closure where it decides, otherwise by a conflict-driven search over tractable relations.
 
 A closed network of a tractable subclass is consistent. Where other relations are stated, the search of
 :mod:`deixis.reasoning.qualitative.networks.conflict_search` chooses tractable relations within them (Ladkin and
-Reinefeld 1992; Nebel 1997). Where no such subclass is known every pair is narrowed to an atom; and where even closed
-networks of atoms may be inconsistent (``decided_by_closure`` is False) a contradiction is still a proof, and
+Reinefeld 1992; Nebel 1997). Where no such subclass is known, every pair is narrowed to an atom. Where even closed
+networks of atoms may be inconsistent (``decided_by_closure`` is False), a contradiction is still a proof, and
 everything else undecided.
 """
 
@@ -33,7 +33,7 @@ Masks = NDArray[np.unsignedinteger[Any]]
 
 
 class Verdict(StrEnum):
-    """Whether all constraints of a network can hold at once."""
+    """The answer to whether all constraints of a network can hold at once."""
 
     CONSISTENT = "consistent"
     INCONSISTENT = "inconsistent"
@@ -42,11 +42,11 @@ class Verdict(StrEnum):
 
 @dataclass(frozen=True, eq=False)
 class Solution:
-    """The verdict on a network, and how it came about.
+    """The verdict on a network, and how it was reached.
 
-    ``scenario`` is, where it was asked for and found, the network with one atom for each pair i < j; where the verdict
-    is undecided for the sake of the calculus it is closed, and nothing more. ``refuted`` says that closure alone found
-    the contradiction. ``reason`` tells in words why the verdict is undecided, or why there is no scenario.
+    ``scenario`` is the network with one atom for each pair i < j, if it was requested and found; if the calculus leaves
+    the verdict undecided, it is closed, and not proved consistent. ``refuted`` says that closure alone found the
+    contradiction. ``reason`` says why the verdict is undecided, or why there is no scenario.
     """
 
     verdict: Verdict
@@ -64,10 +64,30 @@ OUT_OF_TIME = "the time limit was reached"
 def solve(
     network: Network, deadline: Deadline = Deadline.never(), progress: Progress | None = None, scenario: bool = False
 ) -> Solution:
-    """Decide whether a network is consistent, until ``deadline``; ``scenario`` asks for one as well.
+    """Decide whether a network is consistent, until ``deadline``; also return a scenario if ``scenario`` is True.
 
-    Raises LimitError where the network would not fit in memory.
+    Parameters
+    ----------
+    network
+        The network to decide.
+    deadline
+        When to stop; the verdict is undecided if it comes first.
+    progress
+        Called while the network is closed.
+    scenario
+        True to search for a scenario too: one atom for each pair.
 
+    Returns
+    -------
+    The verdict, with the scenario if it was requested and found.
+
+    Raises
+    ------
+    LimitError
+        If the network would not fit in memory.
+
+    Examples
+    --------
     >>> from deixis.reasoning.qualitative.calculi.registry import calculus
     >>> point = calculus("point")
     >>> before = point.relation(["<"])
@@ -88,7 +108,7 @@ def solve(
 
 
 def decider(calculus: Calculus) -> Link | None:
-    """The bridge to a calculus that decides networks of this one: the ten names are sets of rectangle-algebra atoms."""
+    """Return the bridge to a calculus that decides this one: the ten names are sets of rectangle-algebra atoms."""
     if calculus.name != "ten":
         return None
     from deixis.reasoning.qualitative.calculi.bridges import names_to_boxes
@@ -104,7 +124,7 @@ def translated(network: Network, bridge: Link) -> Network:
 
 
 def scenario(network: Network, deadline: Deadline = Deadline.never()) -> Network | None:
-    """A consistent network with one atom for each pair, all of them as stated; None where none was found in time."""
+    """Return a consistent network of one atom per pair, within the stated relations; None if not found in time."""
     solution = solve(network, deadline, scenario=True)
     return solution.scenario if solution.verdict is Verdict.CONSISTENT else None
 
@@ -122,11 +142,11 @@ class _Part:
 
     @property
     def atomic(self) -> bool:
-        """Whether only atoms are known to be decided by closure, if anything is."""
+        """True if no tractable relations except atoms are known."""
         return any(axis.tractable is None or not axis.decided_by_closure for axis in self.axes)
 
     def edges(self, masks: Masks | None = None) -> NDArray[np.int64]:
-        """Return the pairs i < k, all of them or those of which ``masks`` says something."""
+        """Return the pairs i < k, all of them or those that ``masks`` restricts."""
         upper = np.triu(np.ones(self.stated.shape[1:], dtype=np.bool_), 1)
         if masks is None:
             return np.flatnonzero(np.broadcast_to(upper, self.stated.shape))
@@ -134,7 +154,7 @@ class _Part:
         return np.flatnonzero((masks != everything[:, None, None]) & upper)
 
     def settled(self) -> bool:
-        """Whether closure has decided already: what is left of every stated pair is tractable."""
+        """Return True if closure has already decided: the remaining relation of every stated pair is tractable."""
         if self.nogoods or not self.is_closed:
             return False
         values = np.unique(self.closed.ravel()[self.edges(None if self.atomic else self.stated)])
@@ -143,7 +163,7 @@ class _Part:
         return all(len(self.axes[0].pieces(value)) == 1 for value in values.tolist())
 
     def decide(self, deadline: Deadline) -> bool | None:
-        """Whether the axes are consistent, as far as their calculi tell; None where time ran out."""
+        """Decide whether the axes are consistent, as far as their calculi allow; return None if time ran out."""
         if self.settled():
             return True
         edges = self.edges(None if self.atomic else self.stated)
@@ -153,7 +173,7 @@ class _Part:
         return self.search.run(deadline)
 
     def atoms(self, deadline: Deadline) -> Masks | None:
-        """Return one atom for every pair of a part that is decided; None where time ran out."""
+        """Return one atom for every pair of a consistent part; None if time ran out."""
         found = self.closed if self.search is None else self.search.masks
         if self.atomic:
             return found
@@ -215,15 +235,15 @@ def _decided(network: Network, deadline: Deadline, progress: Progress | None, wa
 
 
 def _unrefuted(calculus: Calculus, effort: tuple[int, int], found: Network | None, reason: str) -> Solution:
-    """The solution where closed tractable relations, or atoms, were found."""
+    """Return the solution for a closed network of tractable relations, or of atoms."""
     if calculus.decided_by_closure:
         return Solution(Verdict.CONSISTENT, *effort, 0.0, found, reason=reason)
-    reason = f"a closed network of atoms was found, and in {calculus.name} that proves nothing"
+    reason = f"a closed network of atoms was found, which proves nothing in {calculus.name}"
     return Solution(Verdict.UNDECIDED, *effort, 0.0, found, reason=reason)
 
 
 def _wide(network: Network, deadline: Deadline, wanted: bool) -> Solution:
-    """The solution in a calculus whose relations take several words, without its time."""
+    """Solve in a calculus whose relations take several words; the solution has no time yet."""
     search = WideSearch(network)
     answer = search.run(deadline)
     effort = search.decisions, search.conflicts
@@ -236,7 +256,7 @@ def _wide(network: Network, deadline: Deadline, wanted: bool) -> Solution:
 
 
 def _joined(network: Network) -> _Part:
-    """The axes of a product calculus where some relations are no products: each excludes products, as nogoods."""
+    """Return the axes of a product calculus; a relation that is not a product excludes products, as nogoods."""
     calculus, size = network.calculus, network.size
     assert isinstance(calculus, ProductCalculus)
     axes = calculus.axes
@@ -272,7 +292,7 @@ def _joined(network: Network) -> _Part:
 
 
 def atomic_network(network: Network, atoms: Masks) -> Network:
-    """Return the network of one atom for every pair i < j, from those on the axes, (axes, n, n)."""
+    """Return the network of one atom for every pair i < j, from the atoms on the axes, (axes, n, n)."""
     calculus = network.calculus
     codes = np.zeros(atoms.shape[1:], dtype=np.int64)
     for axis, mask in zip(calculus.factors, atoms, strict=True):

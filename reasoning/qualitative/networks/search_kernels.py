@@ -1,13 +1,14 @@
-"""The compiled loops of the conflict-driven search: closure from what changed, conflict analysis, learned nogoods.
+"""Run the conflict-driven search in compiled loops: incremental closure, conflict analysis, learned nogoods.
 
-A network has ``axes`` (one for a plain calculus) over n things. ``masks`` (axes, n, n) holds what every pair may still
-be on every axis, one bit an atom. A pair i < k on axis a is *edge* (a * n + i) * n + k, and is read from i to k.
+A network has ``axes`` (one for a plain calculus) over n things. ``masks`` (axes, n, n) holds the remaining relation of
+every pair on every axis, one bit per atom. A pair i < k on axis a is *edge* (a * n + i) * n + k, and is read from i to
+k.
 
-A *nogood* is a list of premises (edge, relation): not every edge can be within its relation. When all premises but one
-hold, the last edge loses the atoms of its relation. Nogoods are stated (an alternative between axes) or learned from a
-contradiction: every narrowing on the trail has a reason, the composition with a third thing or a nogood, and its
-premises are widened as far as the same conclusion still follows, up to the first edge that alone stands for all that
-the last decision brought (Marques-Silva and Sakallah 1999; Ohrimenko, Stuckey and Codish 2009).
+A *nogood* is a list of premises (edge, relation): not every edge can be within its relation. When all premises except
+one hold, the last edge loses the atoms of its relation. Nogoods are stated (an alternative between axes) or learned
+from a contradiction: every narrowing on the trail has a reason, the composition with a third thing or a nogood, and its
+premises are widened as far as the same conclusion still follows, up to the first edge that alone represents all effects
+of the last decision (Marques-Silva and Sakallah 1999; Ohrimenko, Stuckey and Codish 2009).
 """
 
 from __future__ import annotations
@@ -23,20 +24,23 @@ from deixis.reasoning.qualitative.networks.mask_kernels import narrower
 Array = Any
 
 loop = kernel(lambda budget, *rest: 20 * budget, _nrt=False)
-"""Compiles without reference counts: nothing here allocates, and counting each use of an array takes four fifths of the
-time of the search (numba counts with atomic instructions whenever an array is taken from a tuple)."""
+"""Decorator that compiles without reference counts.
+
+Nothing here allocates, and counting each use of an array takes four fifths of the time of the search (numba counts with
+atomic instructions whenever an array is taken from a tuple).
+"""
 
 CONSISTENT, INCONSISTENT, PAUSED, TRAIL_FULL, NOGOODS_FULL = 0, 1, 2, 3, 4
 
 # positions in ``Memory.counts``
 (
-    LENGTH,  # of the trail
-    LEVEL,  # decisions that stand
-    SEEN,  # narrowings of the trail that the nogoods were told of
-    CONFLICT,  # the edge of which nothing is left, else -1
-    NOGOODS,  # how many there are
-    PREMISES,  # how many they have in all
-    STATED,  # nogoods, the first ones, that are never forgotten
+    LENGTH,  # length of the trail
+    LEVEL,  # number of current decisions
+    SEEN,  # narrowings of the trail that the nogoods have seen
+    CONFLICT,  # the edge with an empty relation, otherwise -1
+    NOGOODS,  # number of nogoods
+    PREMISES,  # number of premises of all nogoods
+    STATED,  # number of leading nogoods that are never forgotten
     DECISIONS,
     CONFLICTS,
     RESTARTS,
@@ -45,10 +49,10 @@ CONSISTENT, INCONSISTENT, PAUSED, TRAIL_FULL, NOGOODS_FULL = 0, 1, 2, 3, 4
 ) = range(12)
 COUNTS = 12
 
-DECISION, NOGOOD = -1, -2  # reasons on the trail: a decision; nogood number c is NOGOOD - c; else the third thing
-MAX_SCANNED = 4096  # candidates that are compared for a decision
-RESTART_UNIT = 32  # conflicts to the first restart
-ACTIVITY_GROWTH = 1 / 0.98  # of what a conflict adds to an edge's activity, from one conflict to the next
+DECISION, NOGOOD = -1, -2  # reasons on the trail: a decision; NOGOOD - c for nogood number c; otherwise the third thing
+MAX_SCANNED = 4096  # candidates compared for a decision
+RESTART_UNIT = 32  # conflicts before the first restart
+ACTIVITY_GROWTH = 1 / 0.98  # decay of the activity that a conflict adds to an edge, from one conflict to the next
 MAX_ACTIVITY = 1e100
 
 ZERO = np.uint64(0)
@@ -56,37 +60,37 @@ ONE = np.uint64(1)
 
 
 class Algebra(NamedTuple):
-    """What the loops need of the calculi on the axes. A relation is cut into parts of ``width`` bits for look-ups."""
+    """The data of the axes' calculi for the loops; a relation is cut into parts of ``width`` bits for look-ups."""
 
     width: int
     compositions: Array  # (axes, parts, 2^width, parts, 2^width)
     converses: Array  # (axes, parts, 2^width)
     full: Array  # (axes,) uint64: the universal relation
     rows: Array  # (axes, relations, parts, 2^width): each composed with each part of a right one
-    known: Array  # (axes, relations): of which relations ``rows`` tells; (axes, 0) where relations are too many
-    hulls: Array  # (axes, 2^atoms): the least tractable relation that holds a relation; (axes, 0): only atoms are
+    known: Array  # (axes, relations): the relations in ``rows``; (axes, 0) if there are too many relations
+    hulls: Array  # (axes, 2^atoms): the least tractable relation above each; (axes, 0) if only atoms are
     tractable: Array  # (axes, relations): the tractable relations, largest first, padded with 0
-    weights: Array  # (axes, atoms): how many atoms an atom leaves possible, composed with each
+    weights: Array  # (axes, atoms): the number of atoms that each atom leaves possible when composed with each atom
 
 
 class Memory(NamedTuple):
-    """All that the search knows and may write. Edges are positions in the arrays of length e = axes * n * n."""
+    """The whole state of the search; arrays of length e = axes * n * n are indexed by edge."""
 
     masks: Array  # (axes, n, n)
     flat: Array  # (e,): the same memory
-    allowed: Array  # (e,): what is stated of an edge; it is settled when a tractable relation within holds what is left
+    allowed: Array  # (e,): the stated relation; settled when a tractable one within it contains the rest
     candidates: Array  # (c,): the edges to settle, those with the fewest atoms first
     counts: Array  # (COUNTS,)
     # the trail
     edges: Array  # (room,): the edge narrowed
-    olds: Array  # (room,): what it was before
+    olds: Array  # (room,): its relation before
     reasons: Array  # (room,)
-    earlier: Array  # (room,): the narrowing of the same edge before, or -1
+    earlier: Array  # (room,): the previous narrowing of the same edge, or -1
     latest: Array  # (e,): the last narrowing of an edge, or -1
-    starts: Array  # (room,): the length of the trail at each level's beginning
+    starts: Array  # (room,): the length of the trail at the start of each level
     cursors: Array  # (room,): at each level, the first candidate that was not settled
     stamps: Array  # (room,): at each level, the last contradiction with a premise of that level
-    # the edges whose narrowing is still to be passed on, in a list for each number of atoms left
+    # the edges whose narrowing must still be propagated, in a list for each number of atoms left
     first: Array  # (65,)
     last: Array  # (65,)
     following: Array  # (e,): the next in the list, -1 at the end, -2 for an edge that does not wait
@@ -96,13 +100,13 @@ class Memory(NamedTuple):
     tried: Array  # (e,): the tractable relation last decided
     # conflict analysis
     needed: Array  # (e,): the relation of a premise
-    since: Array  # (e,): the narrowing by which the premise holds, or -1 where there is none
-    premises: Array  # (room + e,): the edges with premises; one may stand there twice
+    since: Array  # (e,): the narrowing since which the premise holds, or -1 if it always held
+    premises: Array  # (room + e,): the edges with premises; an edge may occur twice
     # nogoods
     begins: Array  # (nogoods + 1,)
     premise_edges: Array  # (room for premises,)
     premise_masks: Array  # (room for premises,)
-    levels: Array  # (nogoods,): different levels among the premises when learned
+    levels: Array  # (nogoods,): number of different levels among the premises when learned
     watched: Array  # (2 nogoods,): two premises of each
     next_watch: Array  # (2 nogoods,)
     watches: Array  # (e,): the first watch on an edge, or -1
@@ -185,7 +189,7 @@ def _enqueue(edge, relation, memory):  # type: ignore[no-untyped-def]
 
 @loop
 def _dequeue(memory):  # type: ignore[no-untyped-def]
-    """The edge that waits with the fewest atoms, or -1."""
+    """Return the waiting edge with the fewest atoms, or -1."""
     for bucket in range(len(memory.first)):
         edge = memory.first[bucket]
         if edge >= 0:
@@ -225,7 +229,7 @@ def _back_to(level, algebra, memory):  # type: ignore[no-untyped-def]
 
 @loop
 def _pass_on(edge, changed, lefts, algebra, memory):  # type: ignore[no-untyped-def]
-    """Compose an edge with every third thing, both ways; stops where a pair is left with nothing."""
+    """Compose an edge with every third thing, both ways; stop when a pair is emptied."""
     masks, counts = memory.masks, memory.counts
     n = masks.shape[1]
     axis, place = edge // (n * n), edge % (n * n)
@@ -255,7 +259,7 @@ def _pass_on(edge, changed, lefts, algebra, memory):  # type: ignore[no-untyped-
 
 @loop
 def _row_place(axis, relation, algebra):  # type: ignore[no-untyped-def]
-    """Where in ``rows`` the relation is composed with each part of a right one."""
+    """Return the position in ``rows`` of the relation's compositions with each part of a right one."""
     if not algebra.known.shape[1]:
         _fill_rows(axis, relation, algebra.rows[axis, 0], algebra)
         return ZERO
@@ -279,7 +283,7 @@ def _fill_rows(axis, relation, rows, algebra):  # type: ignore[no-untyped-def]
 
 @loop
 def _narrower_in_parts(mine, others, width, rows, changed, lefts):  # type: ignore[no-untyped-def]
-    """List the pairs of a row that are narrowed, and to what, where relations are cut into more than two parts."""
+    """List the narrowed pairs of a row, and their new relations, where relations are cut into more than two parts."""
     found, shift = ZERO, np.uint64(width)
     part = (ONE << shift) - ONE
     for k in range(len(mine)):
@@ -295,7 +299,7 @@ def _narrower_in_parts(mine, others, width, rows, changed, lefts):  # type: igno
 
 @loop
 def _tell_nogoods(edge, algebra, memory):  # type: ignore[no-untyped-def]
-    """Visit the nogoods that watch an edge; returns how many."""
+    """Visit the nogoods that watch an edge; return how many."""
     counts, mask = memory.counts, _mask(edge, memory)
     before, watch, visited = -1, memory.watches[edge], 0
     while watch >= 0:
@@ -345,7 +349,7 @@ def _watch(nogood, side, position, memory):  # type: ignore[no-untyped-def]
 
 @loop
 def _established(edge, relation, memory):  # type: ignore[no-untyped-def]
-    """The narrowing by which an edge came within a relation; -1 where it always was."""
+    """Return the narrowing that brought an edge within a relation; -1 if it always was."""
     at = memory.latest[edge]
     while at >= 0 and not np.uint64(memory.olds[at]) & ~relation:
         at = memory.earlier[at]
@@ -354,7 +358,7 @@ def _established(edge, relation, memory):  # type: ignore[no-untyped-def]
 
 @loop
 def _need(edge, relation, found, opened, memory):  # type: ignore[no-untyped-def]
-    """Add a premise; returns how many edges have one, and how many of these of the last level."""
+    """Add a premise; return the number of edges with one, and how many of these are of the last level."""
     counts = memory.counts
     old = memory.since[edge]
     if old >= 0:
@@ -386,7 +390,7 @@ def _need_pair(axis, i, k, relation, found, opened, algebra, memory):  # type: i
 
 @loop
 def _need_composition(edge, third, gone, found, opened, algebra, memory):  # type: ignore[no-untyped-def]
-    """Add the widest premises on the sides of a triangle from which an edge has none of the atoms ``gone``."""
+    """Add the widest premises on two sides of a triangle that exclude the atoms ``gone`` from an edge."""
     n = memory.masks.shape[1]
     axis, place = edge // (n * n), edge % (n * n)
     i, k = place // n, place % n
@@ -405,7 +409,7 @@ def _need_composition(edge, third, gone, found, opened, algebra, memory):  # typ
 
 @loop
 def _learn(algebra, memory):  # type: ignore[no-untyped-def]
-    """Turn the contradiction into a nogood, go back to where it first says something, and narrow by it."""
+    """Turn the contradiction into a nogood, backtrack to the level where it first applies, and narrow by it."""
     counts, since, needed = memory.counts, memory.since, memory.needed
     found, opened = _need(counts[CONFLICT], ZERO, 0, 0, memory)
     counts[CONFLICTS] += 1
@@ -425,7 +429,7 @@ def _learn(algebra, memory):  # type: ignore[no-untyped-def]
         gone, reason = old & ~relation, memory.reasons[at]
         since[edge] = -1
         opened -= 1
-        # the edge keeps its place among ``premises``; one that is needed again is listed twice
+        # the edge keeps its place among ``premises``; an edge needed again is listed twice
         found, opened = _need(edge, old | relation, found, opened, memory)
         if reason >= 0:
             found, opened = _need_composition(edge, reason, gone, found, opened, algebra, memory)
@@ -436,7 +440,7 @@ def _learn(algebra, memory):  # type: ignore[no-untyped-def]
                 if other != edge:
                     wanted = np.uint64(memory.premise_masks[position])
                     found, opened = _need(other, wanted, found, opened, memory)
-    # what is needed is the nogood; the edge in turn goes first, that of the highest level before it second
+    # the premises needed are the nogood; the current edge goes first, that of the highest level before it second
     _write_nogood(edge, found, algebra, memory)
 
 
@@ -454,7 +458,7 @@ def _level_of(at, memory):  # type: ignore[no-untyped-def]
 
 @loop
 def _at_root(edge, memory):  # type: ignore[no-untyped-def]
-    """What an edge may be before any decision."""
+    """Return the relation of an edge before any decision."""
     at, relation = memory.latest[edge], _mask(edge, memory)
     while at >= memory.starts[1]:
         relation = np.uint64(memory.olds[at])
@@ -464,7 +468,7 @@ def _at_root(edge, memory):  # type: ignore[no-untyped-def]
 
 @loop
 def _known(axis, i, k, before, algebra, memory):  # type: ignore[no-untyped-def]
-    """What the premises that came to hold before a narrowing say of two things, or the state before any decision."""
+    """Return the relation of two things by premises that held before a narrowing, or before any decision."""
     n = memory.masks.shape[1]
     edge = (axis * n + min(i, k)) * n + max(i, k)
     relation = _at_root(edge, memory)
@@ -475,7 +479,7 @@ def _known(axis, i, k, before, algebra, memory):  # type: ignore[no-untyped-def]
 
 @loop
 def _follows(edge, algebra, memory):  # type: ignore[no-untyped-def]
-    """Whether a premise follows from those that came to hold before it, by the reason of its own narrowing."""
+    """Return True if a premise follows from those that held before it, by the reason of its own narrowing."""
     n = memory.masks.shape[1]
     axis, place = edge // (n * n), edge % (n * n)
     i, k = place // n, place % n
@@ -547,7 +551,7 @@ def _write_nogood(asserting, found, algebra, memory):  # type: ignore[no-untyped
 
 @loop
 def _forget(algebra, memory):  # type: ignore[no-untyped-def]
-    """At level 0: keep the nogoods that join the fewest levels, without what always holds."""
+    """Forget nogoods at level 0: keep those that connect the fewest levels, and drop premises that always hold."""
     counts = memory.counts
     total, learned = counts[NOGOODS], counts[NOGOODS] - counts[STATED]
     limit = 1 << 30
@@ -606,7 +610,7 @@ def _forget(algebra, memory):  # type: ignore[no-untyped-def]
 
 @loop
 def luby(k):  # type: ignore[no-untyped-def]
-    """Term k, from 1 on, of 1 1 2 1 1 2 4 … (Luby, Sinclair and Zuckerman 1993)."""
+    """Return term k, from 1 on, of 1 1 2 1 1 2 4 … (Luby, Sinclair and Zuckerman 1993)."""
     while True:
         power = 1
         while (1 << power) - 1 < k:
@@ -618,7 +622,7 @@ def luby(k):  # type: ignore[no-untyped-def]
 
 @loop
 def _hull(edge, mask, algebra, memory):  # type: ignore[no-untyped-def]
-    """The least tractable relation that holds ``mask``; itself where only atoms are tractable."""
+    """Return the least tractable relation that contains ``mask``; ``mask`` itself if only atoms are tractable."""
     if not algebra.hulls.shape[1]:
         return mask
     n = memory.masks.shape[1]
@@ -643,7 +647,7 @@ def _weigh(axis, relation, algebra):  # type: ignore[no-untyped-def]
 
 @loop
 def _decide(algebra, memory):  # type: ignore[no-untyped-def]
-    """Choose a relation for the edge most active for its atoms; the candidates looked at, -1 where all are settled."""
+    """Choose a relation for the edge most active for its atoms; return the candidates examined, -1 if none is left."""
     counts = memory.counts
     start = memory.cursors[counts[LEVEL]]
     best, best_score, front, seen, c = -1, -1.0, -1, 0, start
@@ -678,7 +682,7 @@ def _decide(algebra, memory):  # type: ignore[no-untyped-def]
 
 @loop
 def _alternative(nogood, algebra, memory):  # type: ignore[no-untyped-def]
-    """The premise of a stated nogood to decide against, as edge and relation; edge -1 where one is surely false."""
+    """Return the premise of a stated nogood to decide against, as edge and relation; edge -1 if one is surely false."""
     best, best_score, relation = -1, -1.0, ZERO
     for position in range(memory.begins[nogood], memory.begins[nogood + 1]):
         edge, wanted = memory.premise_edges[position], np.uint64(memory.premise_masks[position])
@@ -694,7 +698,7 @@ def _alternative(nogood, algebra, memory):  # type: ignore[no-untyped-def]
 
 @loop
 def _choice(edge, allowed, algebra, memory):  # type: ignore[no-untyped-def]
-    """What to leave of an edge: within the relation last tried, else the tractable one, or the atom, of most weight."""
+    """Return the relation to decide: within the last one tried, otherwise the tractable one or atom of most weight."""
     n = memory.masks.shape[1]
     axis, mask, tried = edge // (n * n), _mask(edge, memory), np.uint64(memory.tried[edge])
     if mask & tried and not tried & ~allowed:
@@ -721,7 +725,7 @@ def _choice(edge, allowed, algebra, memory):  # type: ignore[no-untyped-def]
 
 @kernel(lambda algebra, memory: 5 * memory.masks.size, _nrt=False)
 def queue_edges(algebra, memory):  # type: ignore[no-untyped-def]
-    """Before the first search of a network that is not closed: all that is stated is still to be passed on."""
+    """Queue all stated edges for propagation, before the first search of a network that is not closed."""
     axes, n, _ = memory.masks.shape
     for axis in range(axes):
         for i in range(n):
@@ -734,7 +738,7 @@ def queue_edges(algebra, memory):  # type: ignore[no-untyped-def]
 
 @loop
 def search(budget, changed, lefts, algebra, memory):  # type: ignore[no-untyped-def]
-    """Search on, ``budget`` steps of one look-up; CONSISTENT, INCONSISTENT, PAUSED, TRAIL_FULL or NOGOODS_FULL."""
+    """Search for ``budget`` look-ups; return CONSISTENT, INCONSISTENT, PAUSED, TRAIL_FULL or NOGOODS_FULL."""
     counts = memory.counts
     n = memory.masks.shape[1]
     while True:

@@ -1,4 +1,4 @@
-"""A network while it is being closed: relations that only ever lose atoms, and a trail that tells why."""
+"""Hold a network while it is being closed: relations that only lose atoms, and a trail that explains why."""
 
 from __future__ import annotations
 
@@ -17,15 +17,16 @@ from deixis.reasoning.qualitative.networks.network import Network
 from deixis.reasoning.qualitative.networks.tables import tables
 
 Progress = Callable[[int, int], None]
-"""Called now and then with the pairs passed on so far, and those known to be due in all; the latter may yet grow."""
+"""Function called now and then with the pairs propagated so far, and the pairs due so far, which may still grow.
+"""
 
-MAX_BYTES = 1 << 31  # bytes that a network may take, with its relations before and after as words of 64 atoms
-MAX_TRAIL_STEPS = 1 << 25  # steps of a trail: half a gigabyte
-STEPS_PER_CHECK = 20_000_000  # steps between two looks at the clock: some hundredths of a second
+MAX_BYTES = 1 << 31  # maximum memory of a network, with its relations before and after as words of 64 atoms
+MAX_TRAIL_STEPS = 1 << 25  # maximum trail: half a gigabyte
+STEPS_PER_CHECK = 20_000_000  # steps between two readings of the clock: some hundredths of a second
 
 
 class NetworkState:
-    """What the pairs of a network may still be. ``traced`` keeps the trail that explaining needs."""
+    """The remaining relations of a network's pairs; ``traced`` keeps the trail, which explanations need."""
 
     def __init__(self, calculus: Calculus, size: int, traced: bool = False) -> None:
         require_size(calculus, size)
@@ -45,16 +46,16 @@ class NetworkState:
 
     @property
     def emptied(self) -> tuple[int, int] | None:
-        """The pair of which nothing is left."""
+        """The pair whose relation is empty, if any."""
         return None if self._clock[2] < 0 else (int(self._clock[2]), int(self._clock[3]))
 
     @property
     def passes(self) -> int:
-        """How many changes of pairs were passed on."""
+        """Number of changes of pairs that were propagated."""
         return int(self._clock[1])
 
     def add(self, network: Network) -> bool:
-        """Intersect with all constraints of a network; False where a pair is left with nothing."""
+        """Intersect with all constraints of a network; return False if a pair is emptied."""
         arrays = network.arrays
         return self.restrict(arrays.firsts, arrays.seconds, arrays.ids, arrays.relations)
 
@@ -65,7 +66,7 @@ class NetworkState:
         ids: NDArray[np.int64],
         relations: tuple[int, ...],
     ) -> bool:
-        """Intersect pairs (m,), (m,) with ``relations[ids]``; False where one is left with nothing."""
+        """Intersect pairs (m,), (m,) with ``relations[ids]``; return False if a pair is emptied."""
         if not len(firsts) or self.emptied is not None:
             return self.emptied is None
         words, done = words_of(relations, self._atoms), 0
@@ -76,7 +77,7 @@ class NetworkState:
         return self.emptied is None
 
     def close(self, deadline: Deadline = Deadline.never(), progress: Progress | None = None) -> bool:
-        """Closes the network, as far as it is consistent; False where ``deadline`` came first."""
+        """Close the network, up to a contradiction; return False if ``deadline`` came first."""
         from deixis.reasoning.qualitative.networks.kernels import CLOSED, EMPTIED, FULL
 
         if self.emptied is not None or not self.size:
@@ -87,7 +88,7 @@ class NetworkState:
             if status in (CLOSED, EMPTIED):
                 return True
             if status == FULL:
-                self._lengthen(self.size * self._cells.atoms_a_row)
+                self._lengthen(self.size * self._cells.atoms_per_row)
             if progress is not None:
                 progress(self.passes, self.passes + int(self._waiting.sum()))
             if deadline.passed:
@@ -97,7 +98,7 @@ class NetworkState:
         length = 2 * len(self._trail) + room
         if length > MAX_TRAIL_STEPS:
             raise LimitError(
-                f"an explanation among {self.size:,} things in {self.calculus.name} keeps more than "
+                f"an explanation among {self.size:,} things in {self.calculus.name} needs a trail of more than "
                 f"{MAX_TRAIL_STEPS:,} steps; split the network"
             )
         longer = np.zeros((length, 4), dtype=np.int32)
@@ -113,21 +114,21 @@ class NetworkState:
         return needed
 
     def relation(self, first: int, second: int) -> int:
-        """Return what a pair may still be."""
+        """Return the current relation of a pair."""
         return self._cells.relation(first, second)
 
     def relations(self) -> NDArray[np.uint64]:
-        """Return what all pairs may still be, (n, n, words of 64 atoms)."""
+        """Return the current relations of all pairs, (n, n, words of 64 atoms)."""
         return self._cells.relations()
 
     def distinct(self) -> tuple[tuple[int, ...], NDArray[np.int64]]:
-        """Return the relations that occur, and for each pair (n, n) the position of its own among them."""
+        """Return the distinct relations, and for each pair (n, n) the position of its relation among them."""
         words = self.relations()
         relations, ids = distinct_rows(words.reshape(-1, words.shape[2]))
         return relations, ids.reshape(self.size, self.size)
 
     def masks(self) -> NDArray[np.uint64]:
-        """Return what all pairs may still be, (n, n); raises LimitError in a calculus of more than 64 atoms."""
+        """Return the current relations of all pairs, (n, n); raise LimitError in a calculus of more than 64 atoms."""
         if self._atoms > 64:
             raise LimitError(
                 f"products are searched with up to 64 atoms an axis; {self.calculus.name} has {self._atoms}"
@@ -136,7 +137,7 @@ class NetworkState:
 
 
 def distinct_rows(words: NDArray[np.uint64]) -> tuple[tuple[int, ...], NDArray[np.int64]]:
-    """The relations among rows (m, words of 64 atoms), and for each row (m,) the position of its own among them."""
+    """Return the distinct rows (m, words of 64 atoms) as relations, and each row's position (m,) among them."""
     if words.shape[1] == 1:
         values, ids = np.unique(words[:, 0], return_inverse=True)
         return tuple(int(value) for value in values), ids.astype(np.int64)
@@ -147,9 +148,9 @@ def distinct_rows(words: NDArray[np.uint64]) -> tuple[tuple[int, ...], NDArray[n
 
 
 def require_size(calculus: Calculus, size: int) -> None:
-    """Raise LimitError, before anything is allocated, where a network of that size would not fit in memory."""
+    """Raise LimitError, before anything is allocated, if a network of that size would not fit in memory."""
     table = tables(calculus)
-    bits = (16 if table.small else table.atoms) + 2 * 64 * ((table.atoms + 63) // 64)  # of a pair
+    bits = (16 if table.small else table.atoms) + 2 * 64 * ((table.atoms + 63) // 64)  # bytes of a pair
     if size * size * bits // 8 > MAX_BYTES:
         most = int((8 * MAX_BYTES / bits) ** 0.5)
         raise LimitError(

@@ -1,4 +1,4 @@
-"""A calculus as the arrays that the compiled loops read."""
+"""Convert a calculus to the arrays that the compiled loops read."""
 
 from __future__ import annotations
 
@@ -14,33 +14,34 @@ from deixis.reasoning.qualitative.calculi.calculus import MAX_TABLE_ATOMS, Calcu
 from deixis.reasoning.qualitative.calculi.words import words_with
 
 MAX_AXES = 3
-MAX_AXIS_ATOMS = 64  # of one axis of several
-MAX_SMALL_ATOMS = 16  # atoms
+MAX_AXIS_ATOMS = 64  # maximum atoms of one axis of several
+MAX_SMALL_ATOMS = 16  # maximum atoms of a table
 
 
 @dataclass(frozen=True, eq=False)
 class Tables:
-    """What the compiled loops need of a calculus; the shapes are stated in ``kernels`` and ``mask_kernels``."""
+    """The arrays of a calculus for the compiled loops; ``kernels`` and ``mask_kernels`` state the shapes."""
 
     sizes: NDArray[np.int64]
     needs: NDArray[np.uint64]
     converses: NDArray[np.int64]
-    compositions: NDArray[np.uint16]  # these two only where the calculus is small
+    compositions: NDArray[np.uint16]  # these two only for a small calculus
     mask_converses: NDArray[np.uint16]
 
     @property
     def small(self) -> bool:
-        """Whether a relation fits in 16 bits, and compositions of bytes in a table."""
+        """True if a relation fits in 16 bits, so that compositions are looked up in a table."""
         return len(self.mask_converses) > 0
 
     @property
     def atoms(self) -> int:
+        """Number of atoms."""
         return len(self.converses)
 
 
 @lru_cache(maxsize=64)
 def tables(calculus: Calculus) -> Tables:
-    """Return the arrays of a calculus; raises LimitError for too many axes, or atoms on one."""
+    """Return the arrays of a calculus; raise LimitError for too many axes, or atoms on one."""
     axes = calculus.factors
     largest = max(len(axis.atoms) for axis in axes)
     if len(axes) > MAX_AXES or largest > (MAX_TABLE_ATOMS if len(axes) == 1 else MAX_AXIS_ATOMS):
@@ -70,12 +71,12 @@ def tables(calculus: Calculus) -> Tables:
 
 
 def is_wide(calculus: Calculus) -> bool:
-    """Whether a relation of the calculus takes several words, on its only axis."""
+    """Return True if a relation of the calculus takes several words, on its only axis."""
     return len(calculus.factors) == 1 and len(calculus.atoms) > MAX_AXIS_ATOMS
 
 
 def _needs(axis: TableCalculus) -> NDArray[np.uint64]:
-    """Shape (bytes, 256, atoms): the right atoms that give an atom, for every byte of a left relation."""
+    """Return the right atoms that give each atom, for every byte of a left relation, shape (bytes, 256, atoms)."""
     size = len(axis.atoms)
     single = words_with(axis.possible().swapaxes(1, 2))[:, :, 0]  # (left, result)
     table = np.zeros(((size + 7) // 8, 256, size), dtype=np.uint64)
@@ -85,7 +86,7 @@ def _needs(axis: TableCalculus) -> NDArray[np.uint64]:
 
 
 def _wide_needs(axis: TableCalculus) -> NDArray[np.uint64]:
-    """Shape (words, fours, 16, atoms): the right atoms that give an atom, for every four atoms of a left relation."""
+    """Return the right atoms that give each atom, for every four left atoms, shape (words, fours, 16, atoms)."""
     size = len(axis.atoms)
     single = words_with(axis.possible().swapaxes(1, 2))  # (left, result, words)
     table = np.zeros((single.shape[2], (size + 3) // 4, 16, size), dtype=np.uint64)
@@ -119,10 +120,10 @@ def in_parts(
 
 
 def half_of(atoms: int) -> int:
-    """Return the atoms in the lower part of a relation that is cut in two."""
+    """Return the number of atoms in the lower part of a relation that is cut in two."""
     return (atoms + 1) // 2
 
 
 def _holding(bit: int, width: int) -> NDArray[np.int64]:
-    """Return the numbers of that many bits that hold one of them."""
+    """Return the numbers of ``width`` bits that have bit ``bit`` set."""
     return np.flatnonzero(np.arange(1 << width) >> bit & 1)

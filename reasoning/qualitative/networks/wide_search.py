@@ -1,9 +1,9 @@
-"""The search in calculi whose relations take several words: atom by atom, with closure after each.
+"""Search in calculi whose relations take several words: atom by atom, with closure after each.
 
-No tractable subclass is known of such calculi, so that every pair is narrowed to an atom. A contradiction names the
-decisions on which it rests, by the trail of the closure; the search goes back to the last but one of these, where the
-last is excluded (conflict-directed backjumping; Prosser 1993). Pairs that took part in contradictions are decided first
-(Boussemart and others 2004), and the search begins again after ever more contradictions.
+No tractable subclass is known for such calculi, so that every pair is narrowed to an atom. The trail of the closure
+shows which decisions a contradiction rests on; the search backtracks to the last but one of these, where the last is
+excluded (conflict-directed backjumping; Prosser 1993). Pairs involved in contradictions are decided first (Boussemart
+and others 2004), and the search restarts after ever more contradictions.
 """
 
 from __future__ import annotations
@@ -20,15 +20,15 @@ from deixis.reasoning.qualitative.networks.network import Network
 from deixis.reasoning.qualitative.networks.state import NetworkState
 from deixis.reasoning.qualitative.networks.tables import tables
 
-FIRST_RESTART = 32  # contradictions
+FIRST_RESTART = 32  # contradictions before the first restart
 RESTART_GROWTH = 1.5
 MAX_WEIGHT = 1e100
-WEIGHT_GROWTH = 1 / 0.95  # of what a contradiction adds to a pair's weight, from one contradiction to the next
+WEIGHT_GROWTH = 1 / 0.95  # decay of the weight that a contradiction adds to a pair, from one contradiction to the next
 
 
 @dataclass(frozen=True)
 class _Decision:
-    """An atom chosen for a pair, when the trail had ``steps`` steps."""
+    """A decision for an atom of a pair, taken when the trail had ``steps`` steps."""
 
     pair: tuple[int, int]
     atom: int
@@ -37,7 +37,7 @@ class _Decision:
 
 @dataclass(frozen=True)
 class _Exclusion:
-    """A pair lost an atom while the first ``level`` decisions stood, because of those at ``culprits``."""
+    """An atom removed from a pair while the first ``level`` decisions hold, because of those at ``culprits``."""
 
     pair: tuple[int, int]
     level: int
@@ -45,7 +45,7 @@ class _Exclusion:
 
 
 class WideSearch:
-    """A search for one atom a pair, for calculi that are kept as bit planes.
+    """A search for one atom per pair, for calculi whose networks are kept as bit planes.
 
     Parameters
     ----------
@@ -77,7 +77,7 @@ class WideSearch:
         self._limit, self._until_restart = float(FIRST_RESTART), FIRST_RESTART
 
     def run(self, deadline: Deadline = Deadline.never()) -> bool | None:
-        """Search on; True where every pair has one atom, False where none can, None where time ran out."""
+        """Continue the search: True if every pair has one atom, False if that is impossible, None if out of time."""
         while self._state.close(deadline):
             if self._state.emptied is not None:
                 if not self._go_back(self._state.emptied):
@@ -89,11 +89,11 @@ class WideSearch:
         return None
 
     def relations(self) -> NDArray[np.uint64]:
-        """Return what all pairs may be by now, (n, n, words of 64 atoms)."""
+        """Return the current relations of all pairs, (n, n, words of 64 atoms)."""
         return self._state.relations()
 
     def _decide(self) -> bool:
-        """Choose the atom last tried, or that of most weight, for some pair; False where none has several."""
+        """Choose for a pair the atom last tried, or that of most weight; return False if every pair has one."""
         pair = self._state.pair_to_decide(self._weights)
         if pair is None:
             return False
@@ -107,7 +107,7 @@ class WideSearch:
         return True
 
     def _go_back(self, emptied: tuple[int, int]) -> bool:
-        """Undo the last decision of which a contradiction comes, and exclude it; False where it comes of none."""
+        """Undo and exclude the last decision behind a contradiction; return False if it rests on no decision."""
         self.conflicts += 1
         needed = self._state.support(*emptied)
         self._increment *= WEIGHT_GROWTH
@@ -135,7 +135,7 @@ class WideSearch:
 
 
 class _RetractableState(NetworkState):
-    """A network that is being closed, and of which the last steps can be undone."""
+    """A network that is being closed, whose last steps can be undone."""
 
     def __init__(self, calculus: Calculus, size: int) -> None:
         super().__init__(calculus, size, traced=True)
@@ -145,22 +145,22 @@ class _RetractableState(NetworkState):
 
     @property
     def steps(self) -> int:
-        """How long the trail is."""
+        """Length of the trail."""
         return int(self._count[0])
 
     def intersect(self, pair: tuple[int, int], relation: int) -> None:
-        """Leave of a pair no more than a relation."""
+        """Intersect the relation of a pair with another."""
         self._pair[:, 0] = pair
         self.restrict(self._pair[0], self._pair[1], self._id, (relation,))
 
     def undo(self, steps: int) -> None:
-        """Go back to when the trail had that length, and the network was closed."""
+        """Restore the network to the time when the trail had that length, and the network was closed."""
         from deixis.reasoning.qualitative.networks.kernels import undo
 
         undo(steps, self._converses, self._planes, *self._bookkeeping)
 
     def pair_to_decide(self, weights: NDArray[np.float64]) -> tuple[int, int] | None:
-        """Return the pair of more than one atom that has the fewest for its weight (n, n)."""
+        """Return the undecided pair with the fewest atoms for its weight (n, n)."""
         from deixis.reasoning.qualitative.networks.kernels import lightest
 
         found = int(lightest(self._planes, weights))

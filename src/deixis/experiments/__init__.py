@@ -1,1 +1,1 @@
-"""Experiments, the paper's and our own: Figure 6 again, and the scoreboard of all engines."""
+"""Experiments of the paper and our own: Figure 6, open-ended learning, and the scoreboard of all engines."""

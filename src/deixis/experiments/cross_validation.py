@@ -1,4 +1,4 @@
-"""What grounding learns from described photographs, none of which is grounded by what it taught itself."""
+"""Learn meanings and sizes from described photographs by cross-validation."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ FIT = FitSettings(iterations=60)
 
 
 def folds(count: int, number: int, seed: int) -> list[NDArray[np.int64]]:
-    """Return the numbers from 0 to ``count``, dealt out at random to so many folds."""
+    """Deal the numbers from 0 to ``count`` at random into ``number`` folds."""
     order = np.random.default_rng(seed).permutation(count)
     return [order[start::number] for start in range(number)]
 
@@ -29,7 +29,7 @@ def folds(count: int, number: int, seed: int) -> list[NDArray[np.int64]]:
 def learned_meanings(
     images: Sequence[Photograph], seed: int, number: int = 10, settings: FitSettings = FIT
 ) -> list[Meaning]:
-    """For each photograph the words and the sizes, relative to their scenes, that those of the other folds teach."""
+    """Return, for each photograph, the words and the sizes relative to their scenes, learned from the other folds."""
     lessons = [said_pairs(said, boxes, range(len(boxes))) for said, boxes in images]
     found: dict[int, Meaning] = {}
     for test in folds(len(images), number, seed):
@@ -41,7 +41,7 @@ def learned_meanings(
 
 
 def relative_sizes(images: Sequence[Photograph]) -> Mapping[str, SizeModel]:
-    """Return how large things of each name are beside the others of their scene, by class IRI."""
+    """Return the sizes of the things of each name, relative to the others of their scene, by class IRI."""
     views: dict[str, list[NDArray[np.float64]]] = defaultdict(list)
     for said, boxes in images:
         for kind, size in zip(classes(said), log_sizes(boxes, relative=True), strict=True):

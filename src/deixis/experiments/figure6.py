@@ -1,9 +1,9 @@
-"""Figure 6 again: is graph similarity a good guide to correct matches?
+"""Reproduce Figure 6 of the paper: graph similarity as an indicator of correct matches.
 
 Each point is a sub-graph of the description, matched to the scene by equations 5 to 9 and the Hungarian method: its
-graph similarity against the share of its objects that are named right. (a) script1 by its sub-graphs of 4 to 12
-objects; (b) script2 by all its sub-graphs of 12 of its 15 objects. Both over the annotated place setting, and over
-generated variants of it, of which only figures are reported.
+graph similarity against the share of its objects that are named correctly. (a) script1 by its sub-graphs of 4 to 12
+objects; (b) script2 by all its sub-graphs of 12 of its 15 objects. Both use the annotated place setting, and generated
+variants of it, for which only figures are reported.
 
 Where the evidence leaves rows equal, the Hungarian method decides by node order; so every share is a mean over random
 node orders, and each accuracy is given with its spread over them, and up to interchangeability.
@@ -37,7 +37,7 @@ from deixis.workflows.read import read_script
 
 
 def plot_points(points: Points, path: Path, title: str, rho: float) -> None:
-    """Graph similarity against the share named right, a point a sub-graph, coloured by the facts it satisfies."""
+    """Plot graph similarity against the share named correctly, one point per sub-graph, coloured by satisfied facts."""
     figure, axes = new_figure(6.4, 4.4)
     drawn = axes.scatter(
         points.similarity, points.right, c=points.facts, cmap="viridis", s=18, alpha=0.75, linewidths=0
@@ -57,22 +57,22 @@ def plot_points(points: Points, path: Path, title: str, rho: float) -> None:
 
 
 PICTURES = {"script1": "figure6a.png", "script2": "figure6b.png"}
-"""The picture of each panel, by the script that the panel is about."""
+"""File name of each panel, by its script."""
 
 SIZES = range(4, 13)
 PER_SIZE = 60
-"""Sub-graphs of one size at the most; more are sampled."""
+"""Maximum number of sub-graphs of one size; larger sets are sampled."""
 
 POINT_ORDERS = 10
-"""Node orders that one point's share is a mean over."""
+"""Number of node orders in the mean of a point's share."""
 
 DISPLACEMENT = 0.01
-"""How far things are moved in the variants, metres."""
+"""Maximum displacement of things in the variants, in metres."""
 
 
 @dataclass(frozen=True)
 class Spread:
-    """A figure over repetitions."""
+    """The mean and percentiles of a figure over repetitions."""
 
     mean: float
     low: float  # 5th percentile
@@ -81,6 +81,7 @@ class Spread:
 
     @classmethod
     def of(cls, values: Sequence[float] | NDArray[np.float64]) -> Spread:
+        """Return the spread of the values."""
         array = np.asarray(values, dtype=float)
         low, median, high = np.percentile(array, [5, 50, 95])
         return cls(float(array.mean()), float(low), float(median), float(high))
@@ -91,14 +92,14 @@ class Spread:
 
 @dataclass(frozen=True, eq=False)
 class Points:
-    """One scene's sub-graphs: k of them, an entry each."""
+    """The k sub-graphs of one scene, one entry each."""
 
     similarity: NDArray[np.float64]
     facts: NDArray[np.float64]  # sum of degrees of the alignment
-    right: NDArray[np.float64]  # share named right, mean over node orders
+    right: NDArray[np.float64]  # share named correctly, mean over node orders
 
     def rho(self, measure: NDArray[np.float64]) -> float:
-        """Spearman's rank correlation of a measure with the share named right; 0 where either is constant."""
+        """Return Spearman's rank correlation of a measure with the share named correctly; 0 if either is constant."""
         from scipy.stats import spearmanr
 
         if np.ptp(measure) == 0 or np.ptp(self.right) == 0:
@@ -108,7 +109,7 @@ class Points:
 
 @dataclass(frozen=True)
 class Panel:
-    """What one panel of the figure says."""
+    """The figures of one panel."""
 
     script: str
     subgraphs: int
@@ -122,7 +123,7 @@ class Panel:
 
 @dataclass(frozen=True)
 class Figure6:
-    """Both panels, and where the pictures are."""
+    """Both panels, and the folder of the pictures."""
 
     a: Panel
     b: Panel
@@ -132,10 +133,12 @@ class Figure6:
     pictures: tuple[str, ...]
 
     def to_dict(self) -> dict[str, Any]:
+        """Return all fields as JSON types."""
         return asdict(self)
 
     def lines(self) -> list[str]:
-        head = [f"Figure 6 again: {self.variants} variants, {self.orders} node orders, seed {self.seed}", ""]
+        """Return the lines of the text report."""
+        head = [f"Figure 6: {self.variants} variants, {self.orders} node orders, seed {self.seed}", ""]
         return [*head, *_panel_lines("(a)", self.a), "", *_panel_lines("(b)", self.b), "", *self.pictures]
 
 
@@ -153,7 +156,23 @@ def _panel_lines(name: str, panel: Panel) -> list[str]:
 
 
 def run(out: Path, variants: int = 50, orders: int = 200, seed: int = 1) -> Figure6:
-    """Run both panels and write ``figure6a.png`` and ``figure6b.png`` to ``out``."""
+    """Run both panels and write ``figure6a.png`` and ``figure6b.png`` to ``out``.
+
+    Parameters
+    ----------
+    out
+        The folder of the pictures.
+    variants
+        The number of generated variants of the place setting.
+    orders
+        The number of random node orders of each accuracy.
+    seed
+        The seed of the variants and of the node orders.
+
+    Returns
+    -------
+    The figures of both panels, and the paths of the pictures.
+    """
     paths = {script: require_picture(out / name) for script, name in PICTURES.items()}
     annotated = read_scene(example("place_setting.labelled.scene.json"))
     scenes = [formal_setting(seed * 1000 + i, DISPLACEMENT) for i in range(variants)]
@@ -186,7 +205,7 @@ _Run = tuple[Points, dict[str, NDArray[np.float64]]]
 
 
 class _Trial:
-    """One script against scenes whose truth is known by their labels."""
+    """One script and the scenes on which it is tried, whose labels are the truth."""
 
     def __init__(self, name: str, rng: np.random.Generator) -> None:
         self.name = name
@@ -209,9 +228,9 @@ class _Trial:
         self._group = {name: f"group {i}" for i, group in enumerate(groups) for name in group}
 
     def run(self, scene: Scene, orders: int) -> tuple[Points, dict[str, NDArray[np.float64]]]:
-        """Return the points of one scene, and the accuracies over node orders, by what chooses the sub-graph."""
+        """Return the points of one scene, and the accuracies over node orders, by selection criterion."""
         evidence = no_unary_evidence(self._description, scene.without_labels().relations(default_ontology().relations))
-        # Rounded, so that entries that differ only by rounding errors do not decide what node order decides.
+        # Round, so that rounding errors do not break ties that node order should break.
         matrices = node_similarity(self._paper, evidence.scene.paper_view(), self._members).matrices.round(9)
         full = np.flatnonzero(self._members.sum(axis=1) == self._members.sum(axis=1).max())
         few = _Measured.of(self._in_orders(matrices, self._members, POINT_ORDERS), matrices, evidence)
@@ -234,7 +253,7 @@ class _Trial:
         return points, accuracies
 
     def _in_orders(self, matrices: NDArray[np.float64], members: NDArray[np.bool_], orders: int) -> NDArray[np.int64]:
-        """Return the Hungarian assignments with both graphs' nodes in random orders: shape (sub-graphs, orders, n1)."""
+        """Return the Hungarian assignments with all nodes in random orders, shape (sub-graphs, orders, n1)."""
         found = np.full((len(matrices), orders, matrices.shape[1]), UNMATCHED, dtype=np.int64)
         for matrix, kept, assignments in zip(matrices, members, found, strict=True):
             present = np.flatnonzero(kept)
@@ -245,7 +264,7 @@ class _Trial:
         return found
 
     def _right(self, assignments: NDArray[np.int64], scene: Scene, exactly: bool) -> NDArray[np.float64]:
-        """Return the share of the matched objects whose thing bears their name, or one they cannot be told from."""
+        """Return the share of matched objects whose thing has their name, or an indistinguishable one."""
         names, labels = self._description.nodes, [thing.label or "" for thing in scene.objects]
         group = {name: name if exactly else self._group.get(name, name) for name in (*names, *labels)}
         same = np.array([[group[name] == group[label] for label in labels] for name in names])
@@ -272,7 +291,7 @@ class _Measured:
         return cls(found, similarity.round(6), facts.round(6))
 
     def best(self, keys: tuple[NDArray[np.float64], ...], rng: np.random.Generator) -> NDArray[np.int64]:
-        """For each order the assignment with the greatest key (the last one first), ties at random: (orders, n1)."""
+        """Return the assignment with the greatest key (last key first, ties at random), shape (orders, n1)."""
         ties = rng.random(self.similarity.shape)
         winner = np.lexsort((ties, *keys), axis=0)[-1]
         chosen: NDArray[np.int64] = self.assignments[winner, np.arange(self.assignments.shape[1])]

@@ -1,11 +1,11 @@
-"""Laid tables drawn at random, descriptions of them with known mistakes, and the truth: what engines are compared on.
+"""Generate laid tables, descriptions of them with known mistakes, and the truth, to compare engines on.
 
-Seats stand in rows; each is laid with some pieces of a formal setting, a little awry. A description names some of the
-pieces by facts between two of them, half of the facts between near neighbours and half between any two. A share of the
-facts is off: its relation is replaced by a neighbouring one (the next direction around, where a piece lies on another
-any direction, and the reverse). ``missing`` described pieces are then taken off the table, ``extra`` ones were never
-described. The same seed gives the same table. Every piece has a kind, which a description may tell or keep back. Other
-layouts than seats put the same pieces in clusters, or in straight rows.
+Seats stand in rows; each is laid with some pieces of a formal setting, a little out of place. A description names some
+of the pieces by facts between two of them, half of the facts between near neighbours and half between any two. A share
+of the facts is wrong: its relation is replaced by a neighbouring one (the next direction around; any direction for a
+piece that lies on another, and the reverse). ``missing`` described pieces are then removed from the table, ``extra``
+ones were never described. The same seed gives the same table. Every piece has a kind, which a description may state or
+omit. Other layouts put the same pieces in clusters, or in straight rows.
 """
 
 from __future__ import annotations
@@ -22,8 +22,8 @@ from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.geometry.rectangle import SceneRelations, box_relations, scene_relations
 from deixis.reasoning.grounding.matching.problem import UNMATCHED, Problem
 
-# A formal setting: centre (x, y) from the middle of the dinner plate, then width and depth, metres. The napkin lies on
-# the dinner plate, the butter knife on the bread plate.
+# A formal setting: centre (x, y) from the middle of the dinner plate, then width and depth, in metres. The napkin lies
+# on the dinner plate, the butter knife on the bread plate.
 SETTING = {
     "dinner plate": (0.00, 0.00, 0.27, 0.27),
     "napkin": (0.00, 0.00, 0.16, 0.10),
@@ -41,26 +41,26 @@ SETTING = {
 }
 PIECES = np.array(list(SETTING.values()))
 SEAT = np.array([0.75, 0.70])  # from one seat to the next, metres
-JITTER = 0.015  # how far a piece lies off its place, metres (standard deviation)
-CLUSTER, CLUSTER_APART = 12, 1.0  # pieces of a cluster; metres from one to the next, about
+JITTER = 0.015  # standard deviation of a piece's position, in metres
+CLUSTER, CLUSTER_APART = 12, 1.0  # pieces of a cluster; approximate distance from one to the next, in metres
 ROW_STEP = 0.3  # metres from one place of a row to the next, and from row to row
-NEAR = 6  # a near neighbour is one of so many
+NEAR = 6  # number of near neighbours
 RING = ("top", "top_right", "right", "bottom_right", "bottom", "bottom_left", "left", "top_left")
 
 
 @dataclass(frozen=True, eq=False)
 class GeneratedTable:
-    """What was perceived (n2 boxes), what was said of n1 objects (m facts), and who is who."""
+    """Perceived boxes (n2), m facts about n1 objects, and the truth: which box each object is."""
 
     boxes: NDArray[np.float64]  # (n2, 2, 2): least and greatest corner, metres
     ends: NDArray[np.int64]  # (m, 2): subject and object
-    words: NDArray[np.int64]  # (m,): index of the exact relation that was said
-    off: NDArray[np.bool_]  # (m,): whether it was replaced by a neighbouring one
+    words: NDArray[np.int64]  # (m,): index of the stated exact relation
+    off: NDArray[np.bool_]  # (m,): True if it was replaced by a neighbouring one
     truth: NDArray[np.int64]  # (n1,): which thing each object is, UNMATCHED where it is missing
     pieces: NDArray[np.int64]  # (n1,): which piece of SETTING each object is
 
     def description(self, *, kinds: bool = False) -> RelationGraph:
-        """What was said, in the wide reading, as a script says it; with ``kinds`` also what kind each object is."""
+        """Return the facts in the wide reading of scripts; with ``kinds`` also the kind of each object."""
         ontology = default_ontology()
         relations = ontology.relations
         exact = list(relations.values())
@@ -73,15 +73,17 @@ class GeneratedTable:
         return RelationGraph.from_facts(relations, names, facts, [told[i] for i in self.pieces] if kinds else ())
 
     def scene(self) -> SceneRelations:
-        """Return what was perceived: the exact name of every ordered pair."""
+        """Return the perceived scene: the exact relation of every ordered pair."""
         names = [f"o{p:04}" for p in range(len(self.boxes))]
         return scene_relations(names, self.boxes, default_ontology().relations)
 
     def crisp(self, *, centred: bool = False) -> Problem:
-        """Return the problem under degrees: 1 where the exact name is the word, 0.5 where it only implies it, else 0.
+        """Return the matching problem with crisp degrees.
 
-        ``centred`` takes off each word's mean degree over the scene's pairs, so that a fact that fails speaks against
-        a match and leaving an object out can be the best there is.
+        The degree is 1 if the exact relation is the word, 0.5 if it implies it, otherwise 0.
+
+        ``centred`` subtracts each word's mean degree over the scene's pairs, so that a failing fact counts against a
+        match and leaving an object out can be optimal.
         """
         relations = default_ontology().relations
         n1, n2 = len(self.truth), len(self.boxes)
@@ -107,9 +109,28 @@ def generate(
     seed: int,
     layout: Layout | None = None,
 ) -> GeneratedTable:
-    """A table of ``objects`` described pieces and ``extra`` others, ``missing`` described ones then taken off.
+    """Generate a table, a description of it with known mistakes, and the truth.
 
-    ``layout`` is :func:`lay_boxes` where none is given, else one of ``LAYOUTS``.
+    Parameters
+    ----------
+    objects
+        The number of described pieces.
+    facts_each
+        The number of facts per object.
+    off
+        The share of wrong facts, in [0, 1].
+    missing
+        The number of described pieces to remove from the table.
+    extra
+        The number of pieces that are not described.
+    seed
+        The seed of the table; the same arguments give the same table.
+    layout
+        The function that lays the pieces, one of ``LAYOUTS``; :func:`lay_boxes` if None.
+
+    Returns
+    -------
+    The boxes, the facts and the truth.
     """
     rng = np.random.default_rng([seed, objects])
     boxes, pieces = (layout or lay_boxes)(objects + extra, rng)
@@ -129,7 +150,7 @@ def generate(
 
 
 def lay_boxes(count: int, rng: np.random.Generator) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """Boxes of seats in rows about four times as long as deep, each seat with three quarters of its pieces; which."""
+    """Lay seats, three quarters of the pieces each, in rows four times as long as deep; return boxes and pieces."""
     seats = max(1, round(count / (0.75 * len(PIECES)) + 0.5))
     columns = max(1, round(2 * np.sqrt(seats)))
     places = np.stack([np.arange(seats) % columns, np.arange(seats) // columns], axis=1) * SEAT
@@ -141,7 +162,7 @@ def lay_boxes(count: int, rng: np.random.Generator) -> tuple[NDArray[np.float64]
 
 
 def lay_clusters(count: int, rng: np.random.Generator) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """Boxes of any pieces in round clusters of about ``CLUSTER`` each, at random places; which pieces."""
+    """Lay any pieces in round clusters of about ``CLUSTER`` each, at random places; return boxes and pieces."""
     clusters = max(1, round(count / CLUSTER))
     places = rng.uniform(0, 1, (clusters, 2)) * np.sqrt(clusters) * CLUSTER_APART
     centres = places[rng.integers(clusters, size=count)] + rng.normal(0, CLUSTER_APART / 4, (count, 2))
@@ -149,7 +170,7 @@ def lay_clusters(count: int, rng: np.random.Generator) -> tuple[NDArray[np.float
 
 
 def lay_rows(count: int, rng: np.random.Generator) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """Boxes of any pieces in straight rows, about twice as long as there are rows, a little awry; which pieces."""
+    """Lay any pieces in straight rows, about twice as long as deep, slightly askew; return boxes and pieces."""
     columns = max(1, round(np.sqrt(2 * count)))
     places = rng.permutation(columns * -(-count // columns))[:count]
     centres = np.stack([places % columns, places // columns], axis=1) * ROW_STEP
@@ -162,14 +183,14 @@ LAYOUTS: dict[str, Layout] = {"seats": lay_boxes, "clusters": lay_clusters, "row
 
 
 def _boxes_at(centres: NDArray[np.float64], rng: np.random.Generator) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """Return a piece drawn at random for each centre (n, 2), as boxes (n, 2, 2), and which it is (n,)."""
+    """Return a random piece for each centre (n, 2), as boxes (n, 2, 2), and its index (n,)."""
     piece = rng.integers(len(PIECES), size=len(centres))
     halves = PIECES[piece, 2:] * rng.uniform(0.9, 1.1, (len(centres), 1)) / 2
     return np.stack([centres - halves, centres + halves], axis=1), piece.astype(np.int64)
 
 
 def _draw_pairs(boxes: NDArray[np.float64], objects: int, count: int, rng: np.random.Generator) -> NDArray[np.int64]:
-    """Ordered pairs of different objects: half with one of the nearest, half with any; no unordered pair twice."""
+    """Draw ordered pairs of different objects: half with a near one, half with any; no unordered pair twice."""
     near = nearest(boxes[:objects])
     count = min(count, objects * (objects - 1) // 2)
     found: dict[tuple[int, int], tuple[int, int]] = {}
@@ -189,7 +210,7 @@ def nearest(boxes: NDArray[np.float64]) -> NDArray[np.int64]:
 
 
 def neighbours(name: int, relations: Relations) -> list[int]:
-    """The exact relations next to that one: the direction before and after it; of *on* and *under* all directions."""
+    """Return the neighbours of an exact relation: the directions beside it; all directions for *on* and *under*."""
     word = list(relations.values())[name].word
     around = RING.index(word) if word in RING else -1
     near = [RING[around - 1], RING[(around + 1) % len(RING)]] if word in RING else list(RING)

@@ -1,9 +1,9 @@
-"""What people wrote down about photographs (Visual Relationship Detection, Lu et al. 2016), as descriptions and boxes.
+"""Read descriptions of photographs (Visual Relationship Detection, Lu et al. 2016) as descriptions and boxes.
 
-Each image with four or more related objects becomes a scene (its boxes, y turned up, nothing named) and a description:
-what people said of them, in the words that the layout language has, of objects that are called what people called
-them, and numbered (``person_1``), of the kinds that these names stand for. The truth is which box was meant. The data
-is read from ``$DEIXIS_DATA/vrd``.
+Each image with four or more related objects becomes a scene (its boxes, y turned up, without labels) and a description:
+the annotators' statements, in the words that the layout language has, about objects called as the annotators called
+them, and numbered (``person_1``), of the kinds that these names stand for. The truth is the box that each object refers
+to. The data is read from ``$DEIXIS_DATA/vrd``.
 """
 
 from __future__ import annotations
@@ -37,25 +37,25 @@ WORDS = {
 
 
 class PhotographError(DeixisError, ValueError):
-    """Files that are no annotations of photographs."""
+    """Files that are not annotations of photographs."""
 
 
 class Photograph(NamedTuple):
-    """What was said of n objects, and the boxes that they mean, in the order of the description's nodes."""
+    """The description of n objects, and the boxes that they refer to, in the order of the description's nodes."""
 
     description: RelationGraph
     boxes: NDArray[np.float64]  # (n, 2, 2): least and greatest corner, pixels, y up
 
 
 def photographs_folder() -> Path | None:
-    """Return where the annotations are, or None where DEIXIS_DATA does not lead to them."""
+    """Return the folder of the annotations, or None if DEIXIS_DATA does not lead to them."""
     root = os.environ.get("DEIXIS_DATA")
     folder = Path(root) / FOLDER if root else None
     return folder if folder is not None and folder.is_dir() else None
 
 
 def photographs(folder: Path, ontology: Ontology) -> Iterator[Photograph]:
-    """Yield all images of which enough was said, by name; raises PhotographError where the files are no annotations."""
+    """Yield all images with enough statements, by name; raise PhotographError if the files are not annotations."""
     try:
         annotations: dict[str, list[Any]] = json.loads((folder / "annotations.json").read_text(encoding="utf-8"))
         predicates: list[str] = json.loads((folder / "predicates.json").read_text(encoding="utf-8"))

@@ -1,7 +1,7 @@
-"""Generated place settings: a formal dinner for one, with things of varying size, set down more or less carefully.
+"""Generate place settings: a formal dinner for one, with things of varying size, set down more or less carefully.
 
-They stand in for a camera: boxes in the table's frame, x to the right, y away from the chair, metres. Sizes are those
-of ordinary tableware, measured across: plates 25 to 29 cm, forks and knives 17 to 24 cm, glasses 7 to 9 cm.
+They replace a camera: boxes in the table's frame, x to the right, y away from the chair, in metres. Sizes are those of
+ordinary tableware, measured across: plates 25 to 29 cm, forks and knives 17 to 24 cm, glasses 7 to 9 cm.
 """
 
 from __future__ import annotations
@@ -11,15 +11,25 @@ import numpy as np
 from deixis.perception.scene import PerceivedObject, Scene
 
 _Box = tuple[float, float, float, float]
-"""x0, x1, y0, y1"""
+"""The ends x0, x1, y0, y1 of a box, in metres."""
 
 
 def formal_setting(seed: int | None = None, displacement: float = 0.0) -> Scene:
-    """Return a formal place setting of 12 objects, every thing labelled with its name.
+    """Return a formal place setting of 12 objects, each labelled with its name.
 
-    Without a seed it is the standard one. With a seed sizes and gaps vary by up to a tenth, and every thing is moved
-    by up to ``displacement`` metres on each axis (but what lies on a plate moves with it).
+    Parameters
+    ----------
+    seed
+        The seed by which sizes and gaps vary by up to a tenth; None for the standard setting.
+    displacement
+        The greatest displacement of a thing on each axis, in metres; things on a plate move with it.
 
+    Returns
+    -------
+    The scene, in metres, with x to the right and y away from the chair.
+
+    Examples
+    --------
     >>> formal_setting()["dinner_plate"].minimum
     (-0.135, 0.03)
     """
@@ -45,7 +55,7 @@ _BORNE = {"napkin": "dinner_plate", "butter_knife": "bread_plate"}
 
 
 class _Sizes:
-    """Lengths that vary by up to a tenth, or do not where there is no generator."""
+    """Lengths that vary by up to a tenth, or are constant without a generator."""
 
     def __init__(self, rng: np.random.Generator | None) -> None:
         self._rng = rng

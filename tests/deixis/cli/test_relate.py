@@ -88,13 +88,13 @@ def test_an_empty_scene_has_no_pairs(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        (("--calculus", "rcc"), "boxes are not related in 'rcc'; did you mean 'rcc8'?"),
+        (("--calculus", "rcc"), "no calculus 'rcc' relates boxes; did you mean 'rcc8'?"),
         (("--of", "frok"), "nothing here is called 'frok'; did you mean 'fork'?"),
         (("--of", "fork", "--of", "spoon"), "nothing here is called 'spoon'"),
         (("--of", "a", "--of", "b", "--of", "c"), "--of takes a subject"),
         (("--matrix", "--of", "fork"), "does not go with --matrix"),
-        (("--calculus", "distance"), "a reference length"),
-        (("--calculus", "allen", "--axis", "q"), "an axis is x, y or z, not 'q'"),
+        (("--calculus", "distance"), "`reference` must be a length"),
+        (("--calculus", "allen", "--axis", "q"), "`axis` must be x, y or z, got 'q'"),
         (("--image", "x.jpg"), "an image ('x.jpg') is chosen in annotation files"),
     ],
 )

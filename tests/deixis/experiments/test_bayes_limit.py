@@ -1,4 +1,4 @@
-"""The Bayes limit against all permutations, and what is taken to be known of the generator against its draws."""
+"""Compare the Bayes limit with all permutations, and the assumed generator with its draws."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ AROUND = ["top", "top_right", "right", "bottom_right", "bottom", "bottom_left", 
 
 
 def _said(word: str, true: str, off: bool) -> float:
-    """How probably the word is said of a pair that bears the name ``true``."""
+    """Return the probability of the word for a pair whose true relation is ``true``."""
     if not off:
         return float(word == true)
     if true not in AROUND:
@@ -31,7 +31,7 @@ def _said(word: str, true: str, off: bool) -> float:
 
 
 def _by_permutations(table: GeneratedTable) -> tuple[float, float, int]:
-    """Both limits and the number of possible maps, one permutation after the other, in plain Python."""
+    """Return both limits and the number of possible maps, one permutation after the other, in plain Python."""
     n = len(table.truth)
     names = box_relations(table.boxes, RELATIONS).names
     middles = table.boxes.mean(axis=1)
@@ -57,7 +57,7 @@ def _by_permutations(table: GeneratedTable) -> tuple[float, float, int]:
 
 
 def _drawn(pairs: list[tuple[int, int]], middles: np.ndarray) -> float:
-    """The probability that these pairs are drawn one after the other."""
+    """Return the probability that these pairs are drawn one after the other."""
     n = len(middles)
 
     def chance(s: int, o: int) -> float:
@@ -87,7 +87,7 @@ def test_the_limit_is_that_of_all_permutations(seed: int, objects: int, facts: f
     assert found.words_and_pairs == pytest.approx(pairs)
 
 
-def test_with_eight_objects_near_ones_are_told_from_far_ones() -> None:
+def test_near_objects_are_distinguished_from_far_ones() -> None:
     table = generate(8, 1.0, 0.0, seed=5)
     found, (words, pairs, possible) = bayes_limit(table), _by_permutations(table)
     assert found.maps == possible
@@ -95,8 +95,8 @@ def test_with_eight_objects_near_ones_are_told_from_far_ones() -> None:
     assert found.words_and_pairs == pytest.approx(pairs)
 
 
-def test_pairs_are_drawn_as_the_limit_takes_them_to_be() -> None:
-    """The first pair of many descriptions of one table, against the probabilities by which the limit weighs."""
+def test_pairs_are_drawn_as_the_limit_assumes() -> None:
+    """Compare the first pairs of many descriptions of one table with the probabilities in the limit."""
     from deixis.experiments.generated_tables import _draw_pairs
 
     table = generate(9, 1.0, 0.0, seed=1)
@@ -112,11 +112,11 @@ def test_pairs_are_drawn_as_the_limit_takes_them_to_be() -> None:
         assert abs(seen[maps[0], maps[1]] - expected) < 5 * np.sqrt(expected)
 
 
-def test_only_whole_tables_have_a_limit() -> None:
-    with pytest.raises(ValueError, match="nothing is missing or extra"):
+def test_tables_with_missing_pieces_are_refused() -> None:
+    with pytest.raises(ValueError, match="no missing and no extra pieces"):
         bayes_limit(generate(8, missing=1, seed=0))
 
 
-def test_a_listing_that_is_cut_off_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_incomplete_listing_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(module, "MAX_MAPS", 1)
     assert not bayes_limit(generate(8, 1.0, 0.1, seed=1)).complete

@@ -1,4 +1,4 @@
-"""Nothing is grounded by what it taught itself."""
+"""Check that no photograph is grounded by its own data."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ NAMES = ("dog_0", "chair_1", "lamp_2", "dog_3")
 
 
 def photograph(seed: int, chair: float) -> Photograph:
-    """A chair of some size right of a dog, and two things more."""
+    """Return a chair of some size right of a dog, and two other things."""
     facts = [Fact("dog_0", (RELATIONS["left"],), "chair_1"), Fact("lamp_2", (RELATIONS["top"],), "dog_3")]
     low = np.random.default_rng(seed).uniform(0, 100, (4, 2))
     sizes = np.array([[10.0, 10.0], [chair, chair], [10.0, 20.0], [10.0, 10.0]])
@@ -34,7 +34,7 @@ def test_every_number_is_in_one_fold() -> None:
     assert sorted(map(len, found)) == [3, 3, 4]
 
 
-def test_a_photograph_is_no_part_of_what_it_is_grounded_by() -> None:
+def test_a_photograph_is_not_in_its_own_training_fold() -> None:
     images = [photograph(seed, 40.0) for seed in range(3)]
     before = learned_meanings(images, 1, 3, QUICK)
     after = learned_meanings([photograph(9, 400.0), *images[1:]], 1, 3, QUICK)
@@ -47,7 +47,7 @@ def test_a_photograph_is_no_part_of_what_it_is_grounded_by() -> None:
     assert before[0].sizes[chair].length[0] > before[0].sizes[category_of("dog")].length[0] + 0.5
 
 
-def test_what_was_learned_speaks_only_for_those_who_learn_and_where_something_was() -> None:
+def test_learned_meanings_are_used_only_by_learning_contestants() -> None:
     image = photograph(0, 40.0)
     (learned, *_) = learned_meanings([photograph(seed, 40.0) for seed in range(3)], 1, 3, QUICK)
     case, other = (

@@ -1,4 +1,4 @@
-"""Figure 6 again, on one variant and few node orders: the result's structure, and that a seed settles it."""
+"""Check the structure of the reproduced Figure 6 on one variant and few node orders, and that a seed determines it."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def test_facts_drop_exactly_the_absent(result: Figure6) -> None:
     assert result.b.accuracy["exactly the absent dropped, facts decide"].mean == 1
 
 
-def test_the_pictures_are_pictures(result: Figure6) -> None:
+def test_the_pictures_are_written(result: Figure6) -> None:
     assert [Path(picture).name for picture in result.pictures] == ["figure6a.png", "figure6b.png"]
     for picture in result.pictures:
         data = Path(picture).read_bytes()
@@ -83,18 +83,18 @@ def test_the_command_prints_the_same_figures_for_the_same_seed(result: Figure6, 
 
 def test_the_text(result: Figure6) -> None:
     lines = result.lines()
-    assert lines[0] == "Figure 6 again: 1 variants, 3 node orders, seed 1"
+    assert lines[0] == "Figure 6: 1 variants, 3 node orders, seed 1"
     assert sum("Spearman's rho" in line for line in lines) == 2
     assert lines[-2:] == list(result.pictures)
 
 
-def test_a_spread() -> None:
+def test_spread_percentiles() -> None:
     spread = Spread.of([0.0, 0.5, 1.0])
     assert (spread.mean, spread.median) == (0.5, 0.5)
     assert str(spread) == "0.50 (5 % 0.05, median 0.50, 95 % 0.95)"
 
 
-def test_a_constant_has_no_correlation() -> None:
+def test_a_constant_has_zero_correlation() -> None:
     points = Points(np.ones(4), np.arange(4.0), np.array([0.0, 0.2, 0.5, 1.0]))
     assert points.rho(points.similarity) == 0
     assert points.rho(points.facts) == pytest.approx(1)

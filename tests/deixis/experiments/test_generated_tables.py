@@ -1,4 +1,4 @@
-"""Generated tables: what is said is true but for the stated share, and every piece keeps its kind."""
+"""Check that facts about generated tables are true except the stated share, and that every piece keeps its kind."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ EXACT = {relation.word: relation.index for relation in RELATIONS.of_reading(Read
 
 @given(st.integers(0, 1000), st.integers(6, 20), st.sampled_from([0.0, 0.1, 0.3]))
 @settings(max_examples=15, deadline=None)
-def test_what_is_said_is_true_but_for_the_share_that_is_off(seed: int, objects: int, off: float) -> None:
+def test_the_stated_share_of_facts_is_wrong(seed: int, objects: int, off: float) -> None:
     table = generate(objects, 1.5, off, seed=seed)
     ends = table.truth[table.ends]
     names = box_relations(table.boxes, RELATIONS).names[ends[:, 0], ends[:, 1]]
@@ -31,7 +31,7 @@ def test_what_is_said_is_true_but_for_the_share_that_is_off(seed: int, objects: 
     assert len({frozenset(pair) for pair in table.ends.tolist()}) == len(table.ends) == round(1.5 * objects)
 
 
-def test_missing_and_extra_ones() -> None:
+def test_missing_and_extra_pieces() -> None:
     table = generate(20, missing=3, extra=2, seed=4)
     assert (table.truth == UNMATCHED).sum() == 3
     assert len(table.boxes) == 19
@@ -47,7 +47,7 @@ def test_a_piece_has_the_size_of_its_kind_within_a_tenth(seed: int) -> None:
     assert ((shares > 0.899) & (shares < 1.101)).all()
 
 
-def test_a_description_tells_kinds_only_where_it_is_asked_to() -> None:
+def test_kinds_are_stated_only_on_request() -> None:
     table, kinds = generate(12, seed=0), default_ontology().kinds
     assert table.description().kinds == ()
     told = [kinds[iri].label for iri in table.description(kinds=True).kinds if iri]
@@ -61,11 +61,11 @@ def test_the_same_seed_gives_the_same_table() -> None:
     assert not np.array_equal(first.boxes, generate(10, seed=4).boxes)
 
 
-def test_neighbours_are_next_to_each_other_around() -> None:
+def test_neighbours_are_adjacent_directions() -> None:
     assert neighbours(EXACT["left"], RELATIONS) == [EXACT["bottom_left"], EXACT["top_left"]]
     assert neighbours(EXACT["on"], RELATIONS) == [EXACT[word] for word in RING]
 
 
-def test_the_nearest_do_not_include_oneself() -> None:
+def test_the_nearest_boxes_exclude_the_box_itself() -> None:
     boxes = np.array([[[x, 0.0], [x + 1, 1.0]] for x in (0.0, 2.0, 10.0)])
     assert nearest(boxes).tolist() == [[1, 2], [0, 2], [1, 0]]

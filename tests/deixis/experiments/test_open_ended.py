@@ -1,4 +1,4 @@
-"""The experiment in open-ended learning: its data, its splits, its figures and what it prints."""
+"""Test the open-ended learning experiment: its data, its splits, its figures and its text."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from commands import deixis
 
 from deixis.experiments.open_ended.comparison import by_things, by_views, split_scores
 from deixis.experiments.open_ended.contestants import EQUATIONS, NEAREST, contestants
+from deixis.experiments.open_ended.described_views import CacheError, DescribedViews, cached_views, describe_views
 from deixis.experiments.open_ended.plot import mean_curve, plot_open_ended
 from deixis.experiments.open_ended.report import lines, to_dict
 from deixis.experiments.open_ended.run import OpenEnded, OpenEndedPlan, run
-from deixis.experiments.open_ended.shown import CacheError, Shown, cached_views, describe_views
 from deixis.experiments.open_ended.things import (
     MeshListError,
     from_meshes,
@@ -36,10 +36,10 @@ from deixis.perception.simulator.tableware import FORMS, make
 TINY = OpenEndedPlan(orders=2, instances=5, views=2, asked=2, kinds=("Plate", "Fork", "Mug"))
 
 
-def shown(things: int = 4, views: int = 3) -> Shown:
-    """Two categories of things whose views nothing tells apart but their numbers."""
+def shown(things: int = 4, views: int = 3) -> DescribedViews:
+    """Return two categories of things whose views differ only in their numbers."""
     categories = [name for name in ("cup", "fork") for _ in range(things * views)]
-    return Shown(
+    return DescribedViews(
         "made up",
         tuple(categories),
         np.arange(2 * things).repeat(views),
@@ -60,16 +60,16 @@ def box(*size: float) -> Mesh:
 @pytest.mark.parametrize(
     ("extent", "metres"), [(0.12, 0.12), (0.5, 0.5), (0.84, 0.084), (12.0, 0.12), (37.8, 0.378), (230.0, 0.23)]
 )
-def test_a_unit_is_the_metre_where_a_thing_is_then_small_enough_for_a_table(extent: float, metres: float) -> None:
+def test_the_largest_unit_that_fits_a_table_is_chosen(extent: float, metres: float) -> None:
     assert np.ptp(in_metres(box(0.01, extent, 0.02)).vertices, axis=0).max() == pytest.approx(metres)
 
 
-def test_what_has_y_up_is_turned_and_stays_right_handed() -> None:
+def test_y_up_meshes_are_turned_and_stay_right_handed() -> None:
     turned = upright(Mesh(np.eye(3), np.array([[0, 1, 2]], np.int32)), True).vertices
     assert turned[1].tolist() == [0, 0, 1] and np.linalg.det(turned) == pytest.approx(1.0)
 
 
-def test_no_thing_is_both_taught_and_asked_for_and_every_category_is_both() -> None:
+def test_a_split_by_things_teaches_and_asks_every_category() -> None:
     data = shown()
     split = by_things(data, seed=1)
     taught, asked = (set(data.instances[part]) for part in split)
@@ -77,19 +77,19 @@ def test_no_thing_is_both_taught_and_asked_for_and_every_category_is_both() -> N
     assert sorted(np.concatenate(split)) == list(range(len(data.views)))
 
 
-def test_every_thing_is_seen_before_where_views_are_split() -> None:
+def test_a_split_by_views_teaches_every_thing() -> None:
     data = shown()
     taught, asked = by_views(data, seed=1)
     assert set(data.instances[taught]) == set(data.instances[asked]) and not set(taught) & set(asked)
 
 
-def test_splits_differ_with_the_seed_and_only_with_it() -> None:
+def test_only_the_seed_changes_a_split() -> None:
     data = shown()
     assert np.array_equal(by_things(data, 3).taught, by_things(data, 3).taught)
     assert not np.array_equal(by_things(data, 3).taught, by_things(data, 4).taught)
 
 
-def test_the_nearest_taught_view_names_and_a_category_left_out_is_farther() -> None:
+def test_the_nearest_view_names_and_an_excluded_category_is_far() -> None:
     data = shown(things=2, views=2)
     same = np.array(data.categories)[:, None] == np.array(data.categories)[None]
     distances = np.where(same, 1.0, 3.0).astype(np.float32)
@@ -98,7 +98,7 @@ def test_the_nearest_taught_view_names_and_a_category_left_out_is_farther() -> N
         assert (scores.accuracy, scores.auroc) == (1.0, 1.0)
 
 
-def test_a_category_with_a_large_icd_swallows_others_unless_it_is_shrunk() -> None:
+def test_shrinkage_keeps_a_wide_category_from_winning() -> None:
     data = shown(things=2, views=2)
     fork = np.array(data.categories) == "fork"
     distances = np.where(fork[:, None] ^ fork[None], 2.0, 1.0)  # cups are 1 apart, and 2 from forks,
@@ -111,18 +111,18 @@ def test_a_category_with_a_large_icd_swallows_others_unless_it_is_shrunk() -> No
     assert found == [1.0, 0.5, 1.0]
 
 
-def test_things_of_the_simulator_differ_from_one_another() -> None:
+def test_simulated_things_differ_from_one_another() -> None:
     things = list(simulated(("Plate", "Fork"), 2, 1, seed=0))
     assert [thing.category for thing in things] == ["Plate", "Plate", "Fork", "Fork"]
     assert len({len(thing.clouds[0]) for thing in things}) == 4
 
 
-def test_by_default_every_kind_that_the_simulator_has_a_shape_for_is_shown() -> None:
+def test_the_default_shows_every_kind_with_a_shape() -> None:
     assert OpenEndedPlan().kinds == tuple(FORMS)
 
 
 def test_described_views_are_read_back_as_they_were_kept(tmp_path: Path) -> None:
-    def build() -> Shown:
+    def build() -> DescribedViews:
         return describe_views("some", simulated(("Plate", "Fork"), 1, 1, 0))
 
     one, again = (
@@ -135,8 +135,8 @@ def test_described_views_are_read_back_as_they_were_kept(tmp_path: Path) -> None
         assert all(np.array_equal(a[name], b[name]) for name in a.descriptors)
 
 
-def test_a_damaged_file_is_made_again_and_a_folder_that_is_none_is_named(tmp_path: Path) -> None:
-    def build() -> Shown:
+def test_a_damaged_file_is_made_again_and_a_bad_folder_reported(tmp_path: Path) -> None:
+    def build() -> DescribedViews:
         return describe_views("some", simulated(("Plate",), 1, 1, 0))
 
     cached_views(tmp_path, "key", build)
@@ -161,7 +161,7 @@ def test_meshes_of_a_folder_are_shown_upright_and_in_metres(tmp_path: Path) -> N
     assert all(0.02 < np.ptp(thing.clouds[0].points, axis=0).max() < 0.3 for thing in things)
 
 
-def test_everything_in_the_real_list_has_the_size_of_a_thing_on_a_table() -> None:
+def test_meshes_of_the_real_list_have_tabletop_sizes() -> None:
     folder = meshes_folder()
     if folder is None:
         pytest.skip("DEIXIS_DATA does not lead to tabletop-meshes")
@@ -172,19 +172,19 @@ def test_everything_in_the_real_list_has_the_size_of_a_thing_on_a_table() -> Non
 
 
 @pytest.mark.parametrize("text", [None, "a,b\n1,2\n"])
-def test_a_folder_without_a_list_of_meshes_is_named(tmp_path: Path, text: str | None) -> None:
+def test_a_folder_without_a_mesh_list_is_reported(tmp_path: Path, text: str | None) -> None:
     if text is not None:
         (tmp_path / "index.csv").write_text(text)
     with pytest.raises(MeshListError, match=r"index\.csv"):
         rows_of(tmp_path)
 
 
-def test_every_contestant_bears_its_name() -> None:
+def test_every_contestant_has_its_own_name() -> None:
     book = Codebook("spin_images", np.zeros((2, 3)))
     assert all(make().name == name for name, make in contestants(book).items())
 
 
-def test_a_missing_scikit_learn_is_named_before_any_work(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_missing_scikit_learn_is_reported_before_any_work(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "sklearn", None)
     code, out, err = deixis("experiment", "open-ended")
     assert (code, out) == (2, "")
@@ -192,7 +192,7 @@ def test_a_missing_scikit_learn_is_named_before_any_work(monkeypatch: pytest.Mon
     assert err.count("\n") == 1
 
 
-def test_every_order_is_run_for_every_contestant_and_the_same_plan_gives_the_same_figures(found: OpenEnded) -> None:
+def test_every_contestant_runs_every_order_reproducibly(found: OpenEnded) -> None:
     again = run(found.plan, entered=[EQUATIONS, NEAREST])
     (one,), (other,) = found.findings, again.findings
     assert [taught.contestant for taught in one.taught] == [EQUATIONS, EQUATIONS, NEAREST, NEAREST]
@@ -201,7 +201,7 @@ def test_every_order_is_run_for_every_contestant_and_the_same_plan_gives_the_sam
     assert one.taught[0].course.order == one.taught[2].course.order
 
 
-def test_what_is_told_fits_the_page_and_gives_seeds_and_what_was_left_out(found: OpenEnded) -> None:
+def test_the_report_fits_the_page_and_names_seeds_and_skipped(found: OpenEnded) -> None:
     text = lines(found)
     assert max(map(len, text)) <= 120 and "seeds 1 to 2" in text[0]
     assert any("skipped: meshes" in line for line in text)
@@ -215,7 +215,7 @@ def test_the_picture_is_drawn(found: OpenEnded, tmp_path: Path) -> None:
     assert EQUATIONS in (tmp_path / "open.svg").read_text()
 
 
-def test_a_mean_curve_goes_as_far_as_the_longest_each_staying_where_it_ended() -> None:
+def test_a_mean_curve_holds_shorter_curves_at_their_end() -> None:
     curves = [np.array([1.0]), np.array([3.0, 5.0]), np.array([2.0, 4.0, 6.0]), np.empty(0)]
     assert mean_curve(curves).tolist() == [2.0, 10 / 3, 4.0]
     assert mean_curve([]).tolist() == mean_curve([np.empty(0)]).tolist() == []

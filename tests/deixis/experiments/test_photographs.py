@@ -1,4 +1,4 @@
-"""Reading what people said of photographs."""
+"""Test reading descriptions of photographs."""
 
 from __future__ import annotations
 
@@ -35,13 +35,13 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def test_images_with_four_related_objects_are_read_and_y_points_up(folder: Path) -> None:
+def test_images_with_four_related_objects_are_read_with_y_up(folder: Path) -> None:
     (found,) = photographs(folder, default_ontology())
     assert [str(fact) for fact in found.description.facts()] == ["on(dog_0, wing_chair_1)", "top(dog_2, sky_3)"]
     assert found.boxes[1].tolist() == [[0, -15], [8, -10]]
 
 
-def test_every_order_keeps_who_is_who(folder: Path) -> None:
+def test_shuffling_keeps_the_truth(folder: Path) -> None:
     (original,) = photographs(folder, default_ontology())
     cases = list(photograph_cases(folder, 3, None, seed=1))
     assert [case.unit for case in cases] == [0, 0, 0]
@@ -54,7 +54,7 @@ def test_every_order_keeps_who_is_who(folder: Path) -> None:
 @pytest.mark.parametrize(
     ("name", "text"), [("annotations.json", "{"), ("annotations.json", '{"a": [{}]}'), ("predicates.json", "[]")]
 )
-def test_other_files_are_an_error(folder: Path, name: str, text: str) -> None:
+def test_files_of_another_format_are_an_error(folder: Path, name: str, text: str) -> None:
     (folder / name).write_text(text)
     with pytest.raises(PhotographError, match="no annotations of Visual Relationship Detection"):
         list(photographs(folder, default_ontology()))
@@ -66,7 +66,7 @@ def test_a_missing_file_is_an_error(folder: Path) -> None:
         list(photographs(folder, default_ontology()))
 
 
-def test_without_the_variable_there_is_no_folder(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_no_folder_without_the_environment_variable(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.delenv("DEIXIS_DATA", raising=False)
     assert photographs_folder() is None
     monkeypatch.setenv("DEIXIS_DATA", str(tmp_path))

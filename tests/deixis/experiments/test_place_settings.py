@@ -1,4 +1,4 @@
-"""Generated place settings: what the paper says of one holds, and seeds reproduce."""
+"""Check that the paper's facts hold of generated place settings, and that seeds reproduce them."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ NEIGHBOURS = [
 
 
 def held(scene: Scene) -> set[tuple[str, str, str]]:
-    """Every word that holds of a pair, at least widely."""
+    """Return every word that holds of a pair, at least in the wide reading."""
     found = set()
     for fact in scene.graph(R).facts():
         (exact,) = fact.relations
@@ -45,7 +45,7 @@ def held(scene: Scene) -> set[tuple[str, str, str]]:
     return found
 
 
-def test_the_standard_setting_has_twelve_things_named_as_they_are() -> None:
+def test_the_standard_setting_has_twelve_labelled_things() -> None:
     scene = formal_setting()
     assert len(scene.objects) == 12
     assert all(thing.label == thing.id and thing.confidence == 1 for thing in scene.objects)
@@ -53,16 +53,16 @@ def test_the_standard_setting_has_twelve_things_named_as_they_are() -> None:
 
 
 @pytest.mark.parametrize("fact", FIGURE_7 + NEIGHBOURS)
-def test_what_is_said_of_a_formal_setting_holds_of_the_standard_one(fact: tuple[str, str, str]) -> None:
+def test_facts_of_a_formal_setting_hold_of_the_standard_one(fact: tuple[str, str, str]) -> None:
     assert fact in held(formal_setting())
 
 
 @pytest.mark.parametrize("seed", range(10))
-def test_what_is_said_of_neighbours_holds_of_every_generated_setting(seed: int) -> None:
+def test_facts_about_neighbours_hold_of_every_setting(seed: int) -> None:
     assert set(NEIGHBOURS) - held(formal_setting(seed)) == set()
 
 
-def test_a_seed_gives_the_same_setting_again_and_another_seed_another() -> None:
+def test_a_setting_depends_on_its_seed_alone() -> None:
     assert formal_setting(4, 0.02) == formal_setting(4, 0.02)
     assert formal_setting(4, 0.02) != formal_setting(5, 0.02)
     assert formal_setting(4) != formal_setting()
@@ -73,7 +73,7 @@ def test_the_standard_setting_does_not_move() -> None:
 
 
 @pytest.mark.parametrize("seed", range(5))
-def test_things_move_by_no_more_than_the_displacement_and_what_is_borne_moves_along(seed: int) -> None:
+def test_displacement_is_limited_and_moves_supported_things_too(seed: int) -> None:
     before, after = formal_setting(seed), formal_setting(seed, displacement=0.03)
     shift = {name: np.array(after[name].minimum) - np.array(before[name].minimum) for name in before.ids}
     assert all(np.abs(by).max() <= 0.03 + 2e-4 for by in shift.values())

@@ -1,4 +1,4 @@
-"""How far grounding reaches on the shipped scripts, over generated place settings."""
+"""Measure how much grounding recovers from the shipped scripts, over generated place settings."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def test_the_full_script_names_all_twelve(seed: int | None) -> None:
 
 
 @pytest.mark.parametrize("number", range(11))
-def test_with_one_fact_off_the_full_script_still_names_all_twelve(number: int) -> None:
+def test_one_wrong_fact_does_not_change_the_twelve_names(number: int) -> None:
     scene, script = formal_setting(), deixis.read_script(example("formal_dinner.layout"))
     evidence = evidence_of(script, scene.without_labels())
     said, relations = evidence.description, evidence.description.vocabulary
@@ -45,7 +45,7 @@ def test_with_one_fact_off_the_full_script_still_names_all_twelve(number: int) -
     found = exact(replace(evidence, description=description).problem)
     assert [scene.ids[thing] for thing in found.assignment] == list(said.nodes)
     held = evidence.degrees(found.assignment) > 0
-    assert held.all()  # of what was said before
+    assert held.all()  # of the facts stated before
 
 
 @pytest.mark.parametrize("scene", [deixis.read_scene(example("place_setting.scene.json")), formal_setting()])
@@ -55,7 +55,7 @@ def test_script2_drops_exactly_the_absent_glasses(scene: Scene) -> None:
     assert found.proved_best
 
 
-def test_how_large_things_are_settles_what_script1_leaves_open() -> None:
+def test_sizes_settle_the_matches_that_script1_leaves_open() -> None:
     scene = formal_setting()
     found = deixis.ground(example("script1.layout"), scene.without_labels())
     assert {name: match.perceived for name, match in found.matches.items()} == {id: id for id in scene.ids}

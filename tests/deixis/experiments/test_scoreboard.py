@@ -1,4 +1,4 @@
-"""The scoreboard on contestants whose worth is known, and the command on very little."""
+"""Test the scoreboard on contestants of known quality, and the command on few cases."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ SETTING = Setting(8, 0.1, 1.5, True)
 
 
 def _knowing(name: str) -> Contestant:
-    """Knows who is who by the boxes of the things, and is sure of it."""
+    """Return a contestant that finds the true map by the boxes of the things, with certainty."""
     truths = {tuple(case.description.nodes): case.truth for case in generated_cases([SETTING], 8, seed=1)}
 
     def solve(evidence: Evidence, deadline: Deadline) -> ContestantAnswer:
@@ -64,7 +64,7 @@ def _played(*contestants: Contestant) -> Board:
     return run_contestants(contestants, generated_cases([SETTING], 8, seed=1), 1.0, lambda _: None)
 
 
-def test_who_knows_is_right_and_who_is_silent_is_right_about_what_is_missing() -> None:
+def test_scores_of_a_perfect_and_of_a_silent_contestant() -> None:
     board = _played(_knowing("exact"), _silent("silent"))
     assert board.mean("exact", SETTING, "right").mean == board.mean("exact", SETTING, "grouped").mean == 1
     assert board.mean("silent", SETTING, "right").mean == pytest.approx(1 / 8)
@@ -72,7 +72,7 @@ def test_who_knows_is_right_and_who_is_silent_is_right_about_what_is_missing() -
     assert board.mean("exact", Group(8, 0.1), "facts").mean == 1
 
 
-def test_the_verdict_names_who_is_better_than_the_default() -> None:
+def test_the_verdict_names_contestants_better_than_the_default() -> None:
     good = _played(_knowing("exact"), _silent("silent")).comparisons("right", seed=1)
     assert [one.verdict for one in good] == ["better"]
     assert "not significantly worse" in verdict(good)
@@ -81,12 +81,12 @@ def test_the_verdict_names_who_is_better_than_the_default() -> None:
     assert verdict(bad) == "exact is significantly worse than: knowing (8 objects, 10 % off, -0.88)."
 
 
-def test_who_is_sure_and_right_is_calibrated() -> None:
+def test_a_certain_and_right_contestant_is_calibrated() -> None:
     found = calibration(_played(_knowing("exact")).forecasts)
     assert (found.count, found.error, found.decided, found.precision) == (8 * 7, 0.0, 1.0, 1.0)
 
 
-def test_who_is_too_small_or_not_there_is_left_out() -> None:
+def test_contestants_too_small_or_missing_are_left_out() -> None:
     small = Contestant("small", "", _silent("").solve, most=4)
     lacking = Contestant("lacking", "", _silent("").solve, lacking="not installed")
     board = _played(_knowing("exact"), small, lacking)
@@ -96,7 +96,7 @@ def test_who_is_too_small_or_not_there_is_left_out() -> None:
 
 @given(st.integers(0, 100))
 @settings(max_examples=10, deadline=None)
-def test_shuffling_keeps_what_the_truth_is_worth(seed: int) -> None:
+def test_shuffling_keeps_the_value_of_the_truth(seed: int) -> None:
     (case,) = generated_cases([SETTING], 1, seed)
     other = case.shuffled(np.random.default_rng(seed + 1))
     first, second = (one.evidence(SHIPPED) for one in (case, other))
@@ -104,7 +104,7 @@ def test_shuffling_keeps_what_the_truth_is_worth(seed: int) -> None:
     assert first.problem.value(case.truth) == pytest.approx(second.problem.value(other.truth), rel=1e-5)
 
 
-def test_kinds_make_sizes_speak() -> None:
+def test_kinds_make_sizes_count() -> None:
     (with_kinds,) = generated_cases([SETTING], 1, 1, kinds=True)
     (without,) = generated_cases([SETTING], 1, 1)
     assert with_kinds.evidence(SHIPPED).sizes.any()
@@ -128,18 +128,18 @@ def _forks() -> RelationGraph:
         ([UNMATCHED, 3, 1, 4], 0.5),
     ],
 )
-def test_right_up_to_interchangeability_matches_groups_one_to_one(assignment: Sequence[int], share: float) -> None:
+def test_right_up_to_interchangeability_counts_one_to_one(assignment: Sequence[int], share: float) -> None:
     alike = groups(_forks())
     assert [group.tolist() for group in alike] == [[1, 2, 3]]
     assert right_up_to_interchangeability(np.array(assignment), np.arange(4), alike) == share
 
 
-def test_a_missing_one_of_a_group_may_be_any_of_it() -> None:
+def test_any_missing_object_of_a_group_may_be_left_out() -> None:
     truth = np.array([0, UNMATCHED, 1, 2])
     assert right_up_to_interchangeability(np.array([0, 2, UNMATCHED, 1]), truth, groups(_forks())) == 1.0
 
 
-def test_relative_to_the_best() -> None:
+def test_values_are_relative_to_the_best() -> None:
     assert relative([1.0, 2.0, -1.0]) == [0.5, 1.0, -0.5]
     assert all(np.isnan(relative([0.0, -1.0])))
 
@@ -195,7 +195,7 @@ def test_the_same_seed_gives_the_same_figures(tiny: Scoreboard) -> None:
     assert _figures(run(TINY)) == _figures(tiny)
 
 
-def test_the_text_fits_and_says_what_was_skipped(tiny: Scoreboard) -> None:
+def test_the_text_fits_the_page_and_names_skipped_parts(tiny: Scoreboard) -> None:
     text = lines(tiny)
     assert max(map(len, text)) <= 120
     assert text[0] == "Scoreboard, seed 1, 1 s for a case"
@@ -204,7 +204,7 @@ def test_the_text_fits_and_says_what_was_skipped(tiny: Scoreboard) -> None:
         assert any(line.startswith(name) for line in text), name
 
 
-def test_somebody_reaches_the_best_on_every_case(tiny: Scoreboard) -> None:
+def test_one_contestant_reaches_the_best_on_every_case(tiny: Scoreboard) -> None:
     for score in tiny.main.scores:
         fellows = [one for one in tiny.main.scores if one.setting == score.setting and one.unit == score.unit]
         assert max(one.facts for one in fellows) == 1
@@ -212,7 +212,7 @@ def test_somebody_reaches_the_best_on_every_case(tiny: Scoreboard) -> None:
         assert score.right <= score.grouped
 
 
-def test_limits_stand_beside_the_same_tables(tiny: Scoreboard) -> None:
+def test_limits_use_the_tables_of_the_board(tiny: Scoreboard) -> None:
     assert [one.setting for one in tiny.limits] == [Setting(5, off, 1.5, False) for off in TINY.off]
     for one in tiny.limits:
         assert one.incomplete == 0
@@ -241,9 +241,7 @@ def test_the_command_prints_json_and_draws(monkeypatch: pytest.MonkeyPatch, tmp_
     assert data["limits"][0]["short"]["half"] is None  # of a single table
 
 
-def test_an_experiment_that_there_is_not_is_an_error(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_an_unknown_experiment_is_an_error(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     monkeypatch.setattr(sys, "argv", ["deixis", "experiment", "figure7"])
     with pytest.raises(SystemExit) as end:
         main()

@@ -1,4 +1,4 @@
-"""Eight cones of direction between centres."""
+"""Test the eight cones of direction between centres."""
 
 from __future__ import annotations
 
@@ -26,14 +26,14 @@ def squares(*centres: tuple[float, float], half: float = 1.0) -> NDArray[np.floa
 
 
 def direction(east: float, north: float) -> str:
-    """Of the first square to the second, when it lies that far east and north of it."""
+    """Return the direction of the first square from the second, by its offset east and north."""
     return str(cardinal_directions(squares((east, north), (0, 0)))[0, 1])
 
 
 @settings(max_examples=100, deadline=None)
 @given(st.lists(st.tuples(st.integers(-9, 9), st.integers(-9, 9)), min_size=2, max_size=6))
-def test_the_other_way_it_is_the_opposite_direction(centres: list[tuple[int, int]]) -> None:
-    """Whole offsets never lie on the border of two cones, whose tangent is irrational."""
+def test_the_converse_is_the_opposite_direction(centres: list[tuple[int, int]]) -> None:
+    """Use whole offsets, which never lie on the border of two cones, whose tangent is irrational."""
     found = cardinal_directions(squares(*centres)).tolist()
     for i in range(len(centres)):
         for j in range(len(centres)):
@@ -42,7 +42,7 @@ def test_the_other_way_it_is_the_opposite_direction(centres: list[tuple[int, int
 
 @settings(max_examples=150, deadline=None)
 @given(st.integers(-20, 20), st.integers(-20, 20))
-def test_the_cone_is_the_one_whose_axis_is_nearest(east: int, north: int) -> None:
+def test_the_cone_with_the_nearest_axis_is_chosen(east: int, north: int) -> None:
     if east == north == 0:
         assert direction(0, 0) == "eq"
         return
@@ -54,7 +54,7 @@ def test_the_cone_is_the_one_whose_axis_is_nearest(east: int, north: int) -> Non
     ("east", "north", "name"),
     [(0, 1, "n"), (1, 1, "ne"), (1, 0, "e"), (1, -1, "se"), (0, -1, "s"), (-1, -1, "sw"), (-1, 0, "w"), (-1, 1, "nw")],
 )
-def test_the_eight_directions_are_those_of_a_map(east: float, north: float, name: str) -> None:
+def test_the_eight_directions_match_a_map(east: float, north: float, name: str) -> None:
     assert direction(east, north) == name
 
 
@@ -72,7 +72,7 @@ def test_the_eight_directions_are_those_of_a_map(east: float, north: float, name
         (7, 3, "nw", "se"),  # 2 west, 2 north
     ],
 )
-def test_pairs_of_qsrlibs_tests_worked_out_by_hand(x: float, y: float, there: str, back: str) -> None:
+def test_pairs_of_qsrlibs_tests_match_hand_results(x: float, y: float, there: str, back: str) -> None:
     found = cardinal_directions(squares((5, 5), (x, y)))
     assert (found[0, 1], found[1, 0]) == (there, back)
 
@@ -92,7 +92,7 @@ def test_no_boxes_have_no_directions() -> None:
 
 
 @pytest.mark.skipif("DEIXIS_DATA" not in os.environ, reason="DEIXIS_DATA, the folder of reference data, is not set")
-def test_all_pairs_of_qsrlibs_gold_data_have_its_directions() -> None:
+def test_all_pairs_of_qsrlibs_gold_data_agree() -> None:
     folder = Path(os.environ["DEIXIS_DATA"]) / "qsrlib-gold"
     gold: dict[tuple[str, str], str] = {}
     for line in ast.literal_eval((folder / "data1_cardir_defaults.txt").read_text()):

@@ -1,4 +1,4 @@
-"""From boxes to atoms, against QSRlib's answers and against each calculus's own laws."""
+"""Compare the atoms of boxes with QSRlib's answers and with each calculus's own laws."""
 
 from __future__ import annotations
 
@@ -41,8 +41,8 @@ blocks = st.lists(st.tuples(sides(0, 5), sides(0, 5), sides(0, 3)), min_size=3, 
 @pytest.mark.parametrize("name", CALCULI)
 @settings(max_examples=40, deadline=None)
 @given(boxes=blocks)
-def test_what_boxes_bear_obeys_the_calculus(name: str, boxes: NDArray[np.float64]) -> None:
-    """Identity on the diagonal, converses across it, and the composition over the third."""
+def test_relations_of_boxes_obey_the_calculus(name: str, boxes: NDArray[np.float64]) -> None:
+    """Check identity on the diagonal, converses across it, and the composition over a third box."""
     found, codes = calculus(name), relate(boxes, name, reference=2.0)
     for i, j, k in np.ndindex(3, 3, 3):
         assert found.converse(1 << int(codes[i, j])) == 1 << int(codes[j, i])
@@ -52,7 +52,7 @@ def test_what_boxes_bear_obeys_the_calculus(name: str, boxes: NDArray[np.float64
 
 @settings(max_examples=40, deadline=None)
 @given(boxes=blocks)
-def test_rectangles_and_blocks_are_those_of_the_scenes(boxes: NDArray[np.float64]) -> None:
+def test_rectangles_and_blocks_agree_with_scenes(boxes: NDArray[np.float64]) -> None:
     seen = box_relations(boxes, default_ontology().relations)
     flat = box_relations(boxes[:, :, :2], default_ontology().relations)
     ra, ba = relate(boxes, "ra"), relate(boxes, "ba")
@@ -63,7 +63,7 @@ def test_rectangles_and_blocks_are_those_of_the_scenes(boxes: NDArray[np.float64
 
 @settings(max_examples=40, deadline=None)
 @given(boxes=blocks)
-def test_a_name_of_the_ten_is_the_scenes_where_the_plane_alone_gives_one(boxes: NDArray[np.float64]) -> None:
+def test_names_agree_with_scenes_where_the_plane_gives_one(boxes: NDArray[np.float64]) -> None:
     relations = default_ontology().relations
     seen = box_relations(boxes[:, :, :2], relations)
     codes = relate(boxes, "ten")
@@ -98,16 +98,16 @@ def test_a_name_of_the_ten_is_the_scenes_where_the_plane_alone_gives_one(boxes: 
         ("direction-distance", {"reference": 0.1, "tolerance": 0.02}, ("W,medium", "E,medium")),
     ],
 )
-def test_a_fork_beside_and_on_a_cloth_higher_than_a_plate_by_hand(
+def test_a_fork_on_a_cloth_and_a_plate_by_hand(
     name: str, options: dict[str, float | str], expected: tuple[str, str]
 ) -> None:
-    """Centres (0.01, 0.1) and (0.185, 0.115): 0.175 apart on x, 0.015 on y, 0.1756 in all."""
+    """Take centres (0.01, 0.1) and (0.185, 0.115): 0.175 apart on x, 0.015 on y, 0.1756 in all."""
     boxes = boxes_of(((0.0, 0.0, 0.03), (0.02, 0.2, 0.05)), ((0.05, -0.02, 0.0), (0.32, 0.25, 0.03)))
     codes = relate(boxes, name, **options)  # type: ignore[arg-type]
     assert (signs_of(name)[codes[0, 1]], signs_of(name)[codes[1, 0]]) == expected
 
 
-def test_a_distance_that_is_a_bound_lies_in_the_range_below() -> None:
+def test_a_distance_equal_to_a_bound_is_in_the_range_below() -> None:
     boxes = boxes_of(*(((x, 0.0), (x + 2.0, 2.0)) for x in (0.0, 1.0, 3.0, 3.5)))
     codes = relate(boxes, "distance", reference=1.0)
     assert [signs_of("distance")[code] for code in codes[0]] == ["same", "near", "medium", "far"]
@@ -115,7 +115,7 @@ def test_a_distance_that_is_a_bound_lies_in_the_range_below() -> None:
 
 @pytest.mark.skipif("DEIXIS_DATA" not in os.environ, reason="DEIXIS_DATA, the folder of reference data, is not set")
 @pytest.mark.parametrize("name", GOLD)
-def test_all_pairs_of_qsrlibs_gold_data_have_its_relations(name: str) -> None:
+def test_all_pairs_of_qsrlibs_gold_data_agree(name: str) -> None:
     folder = Path(os.environ["DEIXIS_DATA"]) / "qsrlib-gold"
     gold: dict[tuple[str, str, str], str] = {}
     for line in ast.literal_eval((folder / f"data1_{name}_defaults.txt").read_text()):
@@ -133,7 +133,7 @@ def test_all_pairs_of_qsrlibs_gold_data_have_its_relations(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", RELATED)
-def test_a_thousand_boxes_take_well_under_a_second(name: str) -> None:
+def test_a_thousand_boxes_take_less_than_a_second(name: str) -> None:
     rng = np.random.default_rng(3)
     low = rng.uniform(0, 10, (1000, 3))
     boxes = np.stack([low, low + rng.uniform(0.1, 3, (1000, 3))], axis=1)
@@ -155,16 +155,16 @@ def test_no_boxes_have_no_relations(name: str) -> None:
         ("zzz", {}, UnknownCalculusError, "there are point, allen"),
         ("ba", {}, GraphError, "no heights"),
         ("allen", {"axis": "z"}, GraphError, "no heights"),
-        ("allen", {"axis": "w"}, SettingError, "x, y or z, not 'w'"),
-        ("point", {"axis": "xy"}, SettingError, "x, y or z, not 'xy'"),
+        ("allen", {"axis": "w"}, SettingError, "x, y or z, got 'w'"),
+        ("point", {"axis": "xy"}, SettingError, "x, y or z, got 'xy'"),
         ("ra", {"tolerance": -1.0}, SettingError, "tolerance"),
         ("ra", {"tolerance": float("nan")}, SettingError, "tolerance"),
-        ("distance", {}, SettingError, "reference length"),
-        ("distance", {"reference": 0.0}, SettingError, "reference length"),
-        ("distance", {"reference": float("nan")}, SettingError, "reference length"),
+        ("distance", {}, SettingError, "`reference` must be a length"),
+        ("distance", {"reference": 0.0}, SettingError, "`reference` must be a length"),
+        ("distance", {"reference": float("nan")}, SettingError, "`reference` must be a length"),
     ],
 )
-def test_what_cannot_be_asked_is_refused(
+def test_invalid_arguments_are_refused(
     name: str, options: dict[str, float | str], kind: type[DeixisError], message: str
 ) -> None:
     with pytest.raises(kind, match=message):
@@ -172,12 +172,12 @@ def test_what_cannot_be_asked_is_refused(
 
 
 @pytest.mark.parametrize("boxes", [np.zeros((2, 3)), np.zeros((2, 2, 4)), np.array([[[1.0, 0], [0, 1]]])])
-def test_boxes_that_are_none_are_refused(boxes: NDArray[np.float64]) -> None:
+def test_invalid_boxes_are_refused(boxes: NDArray[np.float64]) -> None:
     with pytest.raises(GraphError):
         relate(boxes, "ra")
 
 
-def test_pairs_by_name() -> None:
+def test_pairs_are_selected_by_name() -> None:
     boxes = boxes_of(((0, 0), (1, 1)), ((2, 0), (3, 1)), ((5, 0), (6, 1)))
     related = Related("allen", ("fork", "plate", "knife"), relate(boxes, "allen"))
     assert list(related.pairs("fork")) == [("fork", "<", "plate"), ("fork", "<", "knife")]

@@ -1,4 +1,4 @@
-"""The reference of the commands has every command with all of its options, as ``--help`` has them."""
+"""Check that the reference of the commands has every command and option of ``--help``."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def section(command: str) -> str:
     return found[1]
 
 
-def test_all_commands_stand_in_the_order_of_the_help() -> None:
+def test_all_commands_are_in_the_order_of_the_help() -> None:
     assert re.findall(r"^## deixis (\S+)$", TEXT, re.M) == list(COMMANDS)
 
 

@@ -1,4 +1,4 @@
-"""Names in the Python reference: short ones get their modules, wrong ones are reported."""
+"""Check that short names in the Python reference get their modules, and that wrong names are reported."""
 
 from __future__ import annotations
 
@@ -33,6 +33,6 @@ def test_array_types_are_written_short() -> None:
     assert ARRAY.sub(r"NDArray[\1]", f"(points: {full})") == "(points: NDArray[float64])"
 
 
-def test_bars_in_code_are_kept_and_others_are_escaped() -> None:
+def test_bars_are_kept_in_code_and_escaped_elsewhere() -> None:
     escaped = LITERAL_OR_BAR.sub(lambda found: r"\|" if found[0] == "|" else found[0], "|a - b| is ``x | y``")
     assert escaped == r"\|a - b\| is ``x | y``"

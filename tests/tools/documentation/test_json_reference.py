@@ -1,4 +1,4 @@
-"""The tables of keys below JSON answers."""
+"""Test the tables of keys below JSON answers."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The Python reference has a page for each package, and a section for each module with a public name."""
+"""Check that the Python reference has a page per package, and a section per module with a public name."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def test_a_module_of_private_names_only_is_left_out(tmp_path: Path) -> None:
     assert has_public(tmp_path / "public.py")
 
 
-def test_pages_of_removed_packages_go_and_others_stay(tmp_path: Path) -> None:
+def test_pages_of_removed_packages_are_deleted(tmp_path: Path) -> None:
     (tmp_path / "deixis.gone.rst").write_text("old", encoding="utf-8")
     pages = write_package_pages(tmp_path)
     before = {page: page.stat().st_mtime_ns for page in pages}

@@ -1,4 +1,4 @@
-"""Examples of a page: commands with their output, files by caption, directives left out."""
+"""Test the examples of a page: commands with their output, files by caption, directives left out."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def page(tmp_path: Path) -> Path:
     return file
 
 
-def test_files_and_consoles_are_examples_and_directives_not(page: Path) -> None:
+def test_files_and_consoles_are_examples_but_not_directives(page: Path) -> None:
     file, console = examples(page)
     assert file == Example("layout", "fork left of plate\n", "tea.layout")
     assert console.commands() == [Command("deixis parse tea.layout   --json", ("…",)), Command("echo $?", ("0",))]

@@ -1,1 +1,1 @@
-"""Open-ended learning: learners are taught kind after kind by a simulated teacher, until they learn no more."""
+"""Open-ended learning: a simulated teacher teaches learners kind after kind, until they learn no more."""

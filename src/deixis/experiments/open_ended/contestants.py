@@ -1,4 +1,4 @@
-"""The learners that are compared, each made anew for every course."""
+"""List the learners to compare; each course makes new ones."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ SVDD = "SVDD"
 UPRIGHT = "upright"
 
 DRAWN = RecognitionSettings(shrinkage=5.0)
-"""ICD over things, drawn to the median one by five things: what docs/explanation/open_ended.md has figures of."""
+"""ICD over things, shrunk to the median by five things; docs/explanation/open_ended.md reports its results."""
 
 Contestants = Mapping[str, Callable[[], Learner]]
 
 
 def contestants(codebook: Codebook) -> Contestants:
-    """Return every learner by name, the paper's as it stands first, and then as it is by default."""
+    """Return every learner by name: the paper's as published, then its default settings, then the others."""
     return {
         EQUATIONS: lambda: InstanceBased(settings=PAPER, name=EQUATIONS),
         THINGS: lambda: InstanceBased(settings=DRAWN, name=THINGS),

@@ -1,9 +1,9 @@
-"""The tabletop meshes that are measured, frozen before the first measurement (docs/explanation/open_ended.md).
+"""List the corrections to the tabletop meshes, frozen before the first measurement (docs/explanation/open_ended.md).
 
 Meshes come in their makers' units and poses. Most scales follow from the rule of
 :func:`deixis.experiments.open_ended.things.in_metres`. Where that rule, or the source's axis, is plainly wrong and the
-truth is clear, the mesh is mended here. Where the truth is not clear, or a class holds things that share no form with
-the rest of it, the mesh is left out. Every entry says why.
+truth is clear, the mesh is corrected here. Where the truth is not clear, or a class holds things that share no form
+with the rest of it, the mesh is left out. Every entry says why.
 """
 
 from __future__ import annotations
@@ -14,24 +14,26 @@ from types import MappingProxyType
 
 
 @dataclass(frozen=True)
-class Mend:
-    """What is known of a mesh that the general rules get wrong: its longest side in metres, or that y points up."""
+class Correction:
+    """A correction of a mesh that the general rules get wrong: its longest side in metres, or that y points up."""
 
     why: str
     longest: float | None = None
     y_up: bool | None = None
 
 
-MENDED: Mapping[str, Mend] = MappingProxyType(
+CORRECTED: Mapping[str, Correction] = MappingProxyType(
     {
-        "carton/libero--orange_juice-obj.ply": Mend("a carton that lies on its side; its y axis is up", y_up=True),
-        "vase/sh3d-Scopia--vase3-obj.ply": Mend(
+        "carton/libero--orange_juice-obj.ply": Correction(
+            "a carton that lies on its side; its y axis is up", y_up=True
+        ),
+        "vase/sh3d-Scopia--vase3-obj.ply": Correction(
             "5 cm by the rule, as it measures 5.09 units; the unit of its maker's other vases is the decimetre", 0.509
         ),
-        "glass/sh3d-KatorLegaz--12-oz-glass-obj.ply": Mend(
+        "glass/sh3d-KatorLegaz--12-oz-glass-obj.ply": Correction(
             "7 cm by the rule; a glass of this form that holds the 12 fl oz of its name is 10 cm high", 0.10
         ),
-        "plate/sh3d-KatorLegaz--bread-plate-obj.ply": Mend(
+        "plate/sh3d-KatorLegaz--bread-plate-obj.ply": Correction(
             "10 cm by the rule; bread plates measure 13 to 18 cm", 0.155
         ),
     }

@@ -1,4 +1,4 @@
-"""The courses as a picture: a row of three panels for each set of things."""
+"""Plot the courses: a row of three panels for each set of things."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Curve = Callable[[Course], NDArray[np.float64]]
 
 
 def plot_open_ended(found: OpenEnded, path: str | Path) -> None:
-    """Draw it as PNG, SVG or PDF by the file's ending; raises DeixisError where the file cannot be written."""
+    """Draw the courses as PNG, SVG or PDF by the file's ending; raise DeixisError if the file cannot be written."""
     figure, axes = new_figure(12.0, 3.6 * len(found.findings) + 0.6, nrows=len(found.findings), ncols=3, squeeze=False)
     panels = (("categories known", known), ("share of all answers right", accuracy), ("instances a category", stored))
     for one, row in zip(found.findings, axes, strict=True):
@@ -41,23 +41,23 @@ def plot_open_ended(found: OpenEnded, path: str | Path) -> None:
 
 
 def known(course: Course) -> NDArray[np.float64]:
-    """Return how many categories were known at each answer."""
+    """Return the number of known categories at each answer."""
     return np.array([answer.known for answer in course.answers], np.float64)
 
 
 def accuracy(course: Course) -> NDArray[np.float64]:
-    """Return the share of answers so far that were right, at each answer."""
+    """Return the share of correct answers so far, at each answer."""
     right = np.array([answer.right for answer in course.answers], np.float64)
     return np.cumsum(right) / np.arange(1, len(right) + 1)
 
 
 def stored(course: Course) -> NDArray[np.float64]:
-    """Instances stored per known category, after each answer."""
+    """Return the stored instances per known category, after each answer."""
     return np.array([answer.stored / answer.known for answer in course.answers])
 
 
 def mean_curve(curves: Sequence[NDArray[np.float64]]) -> NDArray[np.float64]:
-    """Return the mean of the curves as far as the longest goes, each staying where it ended, as its course is over."""
+    """Return the mean of the curves up to the longest one; a shorter curve keeps its last value."""
     length = max(map(len, curves), default=0)
     held = [np.concatenate([curve, np.full(length - len(curve), curve[-1])]) for curve in curves if len(curve)]
     result: NDArray[np.float64] = np.mean(held, axis=0) if held else np.empty(0)

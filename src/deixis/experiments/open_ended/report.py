@@ -1,4 +1,4 @@
-"""The findings of open-ended learning as JSON and as text of at most 120 columns."""
+"""Report the findings of open-ended learning as JSON and as text of at most 120 columns."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
+from deixis.experiments.open_ended.described_views import DESCRIBERS
 from deixis.experiments.open_ended.run import NAMING_METHODS, SPLITS, CourseResult, Findings, OpenEnded, Ways
-from deixis.experiments.open_ended.shown import DESCRIBERS
 from deixis.perception.recognition.learners.teaching import End
 
 
@@ -68,7 +68,7 @@ MEASURES: dict[str, Callable[[CourseResult], float]] = {
 
 
 def lines(found: OpenEnded) -> list[str]:
-    """Everything, from what was run to the figures."""
+    """Return the lines of the text report, from the plan to the figures."""
     return [line.rstrip() for line in [*_head(found), *(line for one in found.findings for line in _set(found, one))]]
 
 
@@ -77,7 +77,7 @@ def _head(found: OpenEnded) -> Iterator[str]:
     seeds = plan.seeds()
     yield f"Open-ended learning in {plan.orders} random orders, seeds {seeds[0]} to {seeds[-1]}"
     yield (
-        f"Teacher: {teaching.first} views introduce a category, the next one comes when accuracy over the last"
+        f"Teacher: {teaching.first} views introduce a category; the next one follows when the accuracy over the last"
         f" {teaching.window}n answers is above {teaching.threshold:g};"
     )
     yield f"patience {teaching.patience} answers. Half of the things of a category are taught, the others are new."
@@ -86,9 +86,9 @@ def _head(found: OpenEnded) -> Iterator[str]:
     yield from (f"  skipped: {note}" for note in found.skipped)
     yield ""
     yield "Means and standard deviations over orders. QCI: question and correction iterations; ALC: categories learnt;"
-    yield "AIC: instances stored per category; GCA: share of right answers; APA: mean of what the teacher watched;"
-    yield "AUROC: views of a category about to be introduced, told by the learner's doubt from those it is asked about;"
-    yield "new: share right, in the end, on things never taught; least: the least GCA; all: orders that ended with all."
+    yield "AIC: instances stored per category; GCA: share of right answers; APA: mean accuracy in the teacher's window;"
+    yield "AUROC: how well the learner's doubt separates views of the next category from those of known categories;"
+    yield "new: final share right on things never taught; least: the least GCA; all: orders that ended with all."
 
 
 def _set(found: OpenEnded, one: Findings) -> Iterator[str]:
@@ -120,7 +120,7 @@ def _single_views(title: str, found: Ways) -> Iterator[str]:
 
 
 def spread(values: Sequence[float]) -> str:
-    """Mean and standard deviation (n - 1); the mean alone of one value.
+    """Format the mean and standard deviation (n - 1); the mean alone for one value.
 
     >>> spread([0.5, 0.7]), spread([12.0]), spread([171.0, 175.0])
     ('0.60 ± 0.14', '12', '173 ± 2.8')

@@ -1,4 +1,4 @@
-"""The whole experiment: what is run is stated in a plan, and the same plan gives the same figures."""
+"""Run the whole experiment from a plan; the same plan gives the same figures."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ from deixis.experiments.open_ended.contestants import (
     Contestants,
     contestants,
 )
-from deixis.experiments.open_ended.shown import Shown, cached_views, describe_views
+from deixis.experiments.open_ended.described_views import DescribedViews, cached_views, describe_views
 from deixis.experiments.open_ended.things import FOLDER, from_meshes, rows_of, simulated
 from deixis.extras import require
 from deixis.perception.recognition.learners.learner import Learner
@@ -44,7 +44,7 @@ from deixis.perception.simulator.tableware import FORMS
 
 Tick = Callable[[str], None]
 Stage = Callable[[int], AbstractContextManager[Tick]]
-"""Opens a stage of so many steps, and gives what is to be told after each."""
+"""Function that opens a stage of a number of steps, and gives the function to call after each."""
 
 NAMING_METHODS = (
     NamingMethod(NEAREST, SPIN, None),
@@ -56,16 +56,19 @@ NAMING_METHODS = (
 SPLITS = {"new things": by_things, "new views of things taught": by_views}
 
 Ways = dict[tuple[str, str], tuple[Scores, ...]]
-"""By (split, way): one for each order."""
+"""Scores of each order, by (split, way)."""
 
 QUICK_KINDS = ("Plate", "Bowl", "Mug", "WineGlass", "Fork", "Knife", "Spoon", "Napkin", "Bottle")
-"""The kinds of a quick run."""
+"""Kinds of a quick run."""
 
 
 @dataclass(frozen=True)
 class OpenEndedPlan:
-    """``instances`` of each of the simulator's ``kinds``, in ``views`` views each; ``mesh_views`` views of each
-    category of meshes. Each learner is taught in ``orders`` random orders, each with a split of its own."""
+    """The plan of a run of open-ended learning.
+
+    ``instances`` of each of the simulator's ``kinds`` are shown in ``views`` views each; each category of meshes in
+    ``mesh_views`` views. Each learner is taught in ``orders`` random orders, each with a split of its own.
+    """
 
     orders: int = 10
     seed: int = 1
@@ -73,7 +76,7 @@ class OpenEndedPlan:
     instances: int = 30
     views: int = 2
     mesh_views: int = 60
-    asked: int = 10  # views a category of things never taught, after each course
+    asked: int = 10  # views per category of things never taught, after each course
     teaching: Teaching = Teaching()  # noqa: RUF009 (frozen)
     meshes: Path | None = None
     cache: Path | None = None
@@ -83,13 +86,13 @@ class OpenEndedPlan:
         return replace(self, orders=min(self.orders, 3), kinds=QUICK_KINDS, meshes=None)
 
     def seeds(self) -> range:
-        """Those of the orders."""
+        """Return the seeds of the orders."""
         return range(self.seed, self.seed + self.orders)
 
 
 @dataclass(frozen=True)
 class CourseResult:
-    """A course, and the share of views of things never taught that the learner named rightly after it."""
+    """A course, and the share of views of never taught things that the learner named correctly after it."""
 
     contestant: str
     course: Course
@@ -98,9 +101,9 @@ class CourseResult:
 
 @dataclass(frozen=True, eq=False)
 class Findings:
-    """What was found over one set of things: courses, one for each contestant and order, and single views.
+    """The findings over one set of things: courses, one for each contestant and order, and single views.
 
-    ``kept_back`` are single views among those categories that nothing was chosen on, where others were chosen on.
+    ``kept_back`` are single views of the categories on which no setting was chosen, if settings were chosen on others.
     """
 
     name: str
@@ -118,7 +121,7 @@ class Findings:
 
 @dataclass(frozen=True, eq=False)
 class OpenEnded:
-    """The plan, what was found over each set of things, and what was left out."""
+    """The plan, the findings over each set of things, and a list of the parts left out."""
 
     plan: OpenEndedPlan
     findings: tuple[Findings, ...]
@@ -127,14 +130,30 @@ class OpenEnded:
 
 @contextmanager
 def silent(_: int) -> Iterator[Tick]:
-    """Yield a stage that shows nothing."""
+    """Yield a stage that shows no progress."""
     yield lambda _: None
 
 
 def run(plan: OpenEndedPlan, stage: Stage = silent, entered: Sequence[str] | None = None) -> OpenEnded:
-    """Run everything; ``entered`` are the contestants, all if None.
+    """Run the open-ended learning experiment of a plan.
 
-    Raises MissingExtraError, before any work, where the simulator or a contestant needs what is not installed.
+    Parameters
+    ----------
+    plan
+        The kinds, orders and seed of the run.
+    stage
+        Opens a stage with its number of steps, and gives the function to call after each step.
+    entered
+        The names of the contestants; all if None.
+
+    Returns
+    -------
+    The courses and the scores of single views, for each set of things, and a list of the skipped parts.
+
+    Raises
+    ------
+    MissingExtraError
+        Before any work, if the simulator or a contestant needs a package that is not installed.
     """
     if entered is None or SVDD in entered:
         require("sklearn", "the learner SVDD")
@@ -144,11 +163,11 @@ def run(plan: OpenEndedPlan, stage: Stage = silent, entered: Sequence[str] | Non
     findings = [_evaluate(plan, _simulated_views(plan, plan.instances, plan.seed, stage), able, stage)]
     skipped = []
     if plan.meshes is None:
-        skipped.append(f"meshes: a quick run has none, another those that DEIXIS_DATA leads to ({FOLDER}/)")
+        skipped.append(f"meshes: a full run shows those in $DEIXIS_DATA/{FOLDER}/; a quick run has none")
     else:
         folder = plan.meshes
 
-        def describe() -> Shown:
+        def describe() -> DescribedViews:
             with stage(len(rows_of(folder))) as tick:
                 return describe_views("meshes", from_meshes(folder, plan.mesh_views, plan.seed), tick)
 
@@ -157,55 +176,57 @@ def run(plan: OpenEndedPlan, stage: Stage = silent, entered: Sequence[str] | Non
     return OpenEnded(plan, tuple(findings), tuple(skipped))
 
 
-def _simulated_views(plan: OpenEndedPlan, instances: int, seed: int, stage: Stage) -> Shown:
-    def make() -> Shown:
+def _simulated_views(plan: OpenEndedPlan, instances: int, seed: int, stage: Stage) -> DescribedViews:
+    def make() -> DescribedViews:
         with stage(instances * len(plan.kinds)) as tick:
             return describe_views("simulator", simulated(plan.kinds, instances, plan.views, seed), tick)
 
     return cached_views(plan.cache, f"simulator {plan.kinds} {instances} {plan.views} {seed}", make)
 
 
-def _evaluate(plan: OpenEndedPlan, shown: Shown, able: Contestants, stage: Stage, keep_back: bool = False) -> Findings:
+def _evaluate(
+    plan: OpenEndedPlan, data: DescribedViews, able: Contestants, stage: Stage, keep_back: bool = False
+) -> Findings:
     with stage(len(able) * plan.orders) as tick:
         taught = tuple(
-            _run_course(plan, shown, name, make, seed, tick) for name, make in able.items() for seed in plan.seeds()
+            _run_course(plan, data, name, make, seed, tick) for name, make in able.items() for seed in plan.seeds()
         )
-    with stage(2 * len(shown.views)) as tick:
-        matrices = {D2: d2_distances(shown), **{name: view_matrix(shown, name, tick) for name in (SPIN, UPRIGHT)}}
-    nearest = _score_single_views(plan, shown, matrices)
-    places = np.concatenate([shown.of(kind) for kind in shown.kinds[1::2]])
+    with stage(2 * len(data.views)) as tick:
+        matrices = {D2: d2_distances(data), **{name: view_matrix(data, name, tick) for name in (SPIN, UPRIGHT)}}
+    nearest = _score_single_views(plan, data, matrices)
+    places = np.concatenate([data.of(kind) for kind in data.kinds[1::2]])
     part = {key: matrix[np.ix_(places, places)] for key, matrix in matrices.items()}
-    rest = _score_single_views(plan, shown.at(places), part) if keep_back else {}
-    things = len(np.unique(shown.instances))
-    return Findings(shown.name, shown.kinds, things, len(shown.views), taught, nearest, rest)
+    rest = _score_single_views(plan, data.at(places), part) if keep_back else {}
+    things = len(np.unique(data.instances))
+    return Findings(data.name, data.kinds, things, len(data.views), taught, nearest, rest)
 
 
 def _run_course(
-    plan: OpenEndedPlan, shown: Shown, name: str, make: Callable[[], Learner], seed: int, tick: Tick
+    plan: OpenEndedPlan, data: DescribedViews, name: str, make: Callable[[], Learner], seed: int, tick: Tick
 ) -> CourseResult:
-    """One course: everything about it follows from the seed, and is the same for every contestant."""
-    split, learner = by_things(shown, seed), make()
-    order = [str(kind) for kind in np.random.default_rng(seed).permutation(shown.kinds)]
-    course = teach(learner, _views(shown, split, None), order, plan.teaching, seed)
-    rest = _views(shown, split, plan.asked)
+    """Run one course, which depends on the seed alone and is the same for every contestant."""
+    split, learner = by_things(data, seed), make()
+    order = [str(kind) for kind in np.random.default_rng(seed).permutation(data.kinds)]
+    course = teach(learner, _views(data, split, None), order, plan.teaching, seed)
+    rest = _views(data, split, plan.asked)
     known = order[: len(course.introduced)]
     right = [learner.predict(view).best == kind for kind in known for view in rest[kind]]
-    tick(f"{shown.name}: {name}")
+    tick(f"{data.name}: {name}")
     return CourseResult(name, course, float(np.mean(right)))
 
 
-def _views(shown: Shown, split: Split, asked: int | None) -> dict[str, list[ViewFeatures]]:
+def _views(data: DescribedViews, split: Split, asked: int | None) -> dict[str, list[ViewFeatures]]:
     places = split.taught if asked is None else split.asked
-    found: dict[str, list[ViewFeatures]] = {kind: [] for kind in shown.kinds}
+    found: dict[str, list[ViewFeatures]] = {kind: [] for kind in data.kinds}
     for place in places:
-        found[shown.categories[place]].append(shown.views[place])
+        found[data.categories[place]].append(data.views[place])
     return {kind: views[:asked] for kind, views in found.items()}
 
 
-def _score_single_views(plan: OpenEndedPlan, shown: Shown, matrices: dict[str, Matrix]) -> Ways:
+def _score_single_views(plan: OpenEndedPlan, data: DescribedViews, matrices: dict[str, Matrix]) -> Ways:
     return {
         (title, way.name): tuple(
-            split_scores(shown, matrices[way.descriptor], cut(shown, seed), way.settings) for seed in plan.seeds()
+            split_scores(data, matrices[way.descriptor], cut(data, seed), way.settings) for seed in plan.seeds()
         )
         for title, cut in SPLITS.items()
         for way in NAMING_METHODS

@@ -1,4 +1,4 @@
-"""The things that learners look at: tableware of the simulator, and meshes of other people's."""
+"""Provide the things that learners look at: tableware of the simulator, and meshes by other makers."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from pathlib import Path
 import numpy as np
 
 from deixis.errors import DeixisError
-from deixis.experiments.open_ended.mesh_list import EXCLUDED, MENDED
-from deixis.experiments.open_ended.shown import ThingViews
+from deixis.experiments.open_ended.described_views import ThingViews
+from deixis.experiments.open_ended.mesh_list import CORRECTED, EXCLUDED
 from deixis.perception.clouds.mesh import Mesh
 from deixis.perception.clouds.mesh_file import read_mesh
 from deixis.perception.simulator.tableware import make
@@ -20,13 +20,13 @@ from deixis.perception.simulator.views import views_of
 
 FOLDER = "tabletop-meshes"
 SETTING = "place_setting"
-"""A whole table, not a thing."""
+"""Kind of the simulator that is a whole table, not a thing."""
 
 MAX_EXTENT = 0.5
-"""Metres that a thing on a table measures at most."""
+"""Greatest extent of a thing on a table, in metres."""
 
 Y_UP = "sweethome3d"
-"""Where the source says so, y points up; else z does."""
+"""Source whose y axis points up; z points up in all others."""
 
 
 class MeshListError(DeixisError, ValueError):
@@ -34,7 +34,7 @@ class MeshListError(DeixisError, ValueError):
 
 
 def simulated(kinds: Iterable[str], instances: int, views: int, seed: int) -> Iterator[ThingViews]:
-    """So many instances of each kind, in so many views each."""
+    """Yield ``instances`` things of each kind, each in ``views`` views."""
     for kind in kinds:
         for number in range(instances):
             one = 10_000 * seed + number
@@ -44,27 +44,30 @@ def simulated(kinds: Iterable[str], instances: int, views: int, seed: int) -> It
 
 
 def meshes_folder() -> Path | None:
-    """Return where the meshes are, or None where DEIXIS_DATA does not lead to them."""
+    """Return the folder of the meshes, or None if DEIXIS_DATA does not lead to them."""
     folder = Path(os.environ.get("DEIXIS_DATA") or ".") / FOLDER
     return folder if os.environ.get("DEIXIS_DATA") and (folder / "index.csv").is_file() else None
 
 
 def rows_of(folder: Path) -> list[tuple[str, Path, bool]]:
-    """Category, file and whether y is up, of every thing in the list; raises MeshListError where it is none."""
+    """Return category, file and True if y is up, for every thing in the list.
+
+    Raises MeshListError if the list cannot be read.
+    """
     try:
-        with open(folder / "index.csv", encoding="utf-8", newline="") as file:
+        with (folder / "index.csv").open(encoding="utf-8", newline="") as file:
             return [
                 (row["category"], folder / row["file"], Y_UP in row["source"])
                 for row in csv.DictReader(file)
                 if row["category"] != SETTING
             ]
     except (OSError, KeyError, TypeError, UnicodeDecodeError, csv.Error) as error:
-        columns = "columns category, file and source are wanted"
+        columns = "it must have the columns category, file and source"
         raise MeshListError(f"{folder / 'index.csv'}: this list of meshes cannot be read; {columns}") from error
 
 
 def from_meshes(folder: Path, views: int, seed: int) -> Iterator[ThingViews]:
-    """Yield every thing of each category that has two or more, in as many views as give ``views`` a category."""
+    """Yield every thing of each category with two or more, in enough views for ``views`` per category."""
     rows = rows_of(folder)
     counts = Counter(category for category, _, _ in rows)
     for number, (category, file, y_up) in enumerate(rows):
@@ -75,21 +78,25 @@ def from_meshes(folder: Path, views: int, seed: int) -> Iterator[ThingViews]:
 
 
 def listed_meshes(folder: Path) -> Iterator[tuple[str, str, Mesh]]:
-    """Yield category, file and mesh (metres, z up) of every thing that :mod:`.mesh_list` leaves in, mended by it."""
+    """Yield category, file and mesh (metres, z up) of every thing that :mod:`.mesh_list` keeps, corrected by it."""
     for category, file, y_up in rows_of(folder):
         name = file.relative_to(folder).as_posix()
         if name in EXCLUDED:
             continue
-        mend = MENDED.get(name)
-        mesh = upright(in_metres(read_mesh(file)), y_up if mend is None or mend.y_up is None else mend.y_up)
-        if mend is not None and mend.longest is not None:
-            mesh = Mesh(mesh.vertices * (mend.longest / np.ptp(mesh.vertices, axis=0).max()), mesh.faces)
+        correction = CORRECTED.get(name)
+        mesh = upright(
+            in_metres(read_mesh(file)), y_up if correction is None or correction.y_up is None else correction.y_up
+        )
+        if correction is not None and correction.longest is not None:
+            mesh = Mesh(mesh.vertices * (correction.longest / np.ptp(mesh.vertices, axis=0).max()), mesh.faces)
         yield category, name, mesh
 
 
 def in_metres(mesh: Mesh) -> Mesh:
-    """The mesh in metres: its unit is taken for the metre where it is then no larger than ``MAX_EXTENT``, and else for
-    the largest decimal part of a metre (decimetre, centimetre, millimetre and so on) in which it is.
+    """Return the mesh in metres.
+
+    The unit is taken to be the metre if the mesh is then no larger than ``MAX_EXTENT``, otherwise the largest decimal
+    part of a metre (decimetre, centimetre, millimetre and so on) for which it is.
 
     >>> cup = Mesh(np.diag([8.0, 8.0, 9.5]), np.array([[0, 1, 2]], np.int32))
     >>> in_metres(cup).vertices.max().round(3)

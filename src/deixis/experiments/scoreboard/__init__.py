@@ -1,1 +1,1 @@
-"""The scoreboard: every engine over the same generated tables and photographs, with intervals and paired tests."""
+"""Scoreboard: every engine over the same generated tables and photographs, with intervals and paired tests."""

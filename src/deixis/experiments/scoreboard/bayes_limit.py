@@ -1,13 +1,13 @@
-"""The exact Bayes limit of a generated table: what share of the objects anybody can expect to name right.
+"""Compute the exact Bayes limit of a generated table: the greatest expected share of objects named correctly.
 
-The likelihood is the generator's own. Of m facts a known number k is off, each choice of k as likely as the next, and
-what is said of a fact that is off is drawn evenly from the relations next to the true one. So the maps that are
-possible at all are those with exactly k facts off, each by a neighbouring relation; they are listed, all of them, and
-weighed by what was drawn. The best decision gives as many objects as can be expected the thing that is theirs: the
-assignment with the largest sum of marginals.
+The likelihood is the generator's own. Of m facts a known number k is wrong, every choice of k equally likely, and the
+word of a wrong fact is drawn evenly from the relations next to the true one. So the possible maps are those with
+exactly k wrong facts, each by a neighbouring relation; all of them are listed and weighted by their likelihood. The
+best decision maximises the expected number of objects given their own thing: the assignment with the largest sum of
+marginals.
 
-Whoever also knows how the generator draws pairs (half of them among near neighbours) can do better, since what was not
-said tells something too. Both limits are given.
+A decision that also uses how the generator draws pairs (half of them among near neighbours) can do better, since
+unstated facts carry information too. Both limits are given.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from deixis.reasoning.grounding.matching.exact import exact, maps_within
 from deixis.reasoning.grounding.matching.problem import Problem
 
 MAX_MAPS = 1_000_000
-IMPOSSIBLE_VALUE = -1e3  # value of a fact that cannot have been said
+IMPOSSIBLE_VALUE = -1e3  # value of an impossible fact
 UNMATCHED_VALUE = -1e6  # value of leaving an object out
 CHUNK = 50_000
 
@@ -37,21 +37,38 @@ Names = NDArray[np.integer]
 
 @dataclass(frozen=True, slots=True)
 class Limit:
-    """The expected share right of the best decision, ``maps`` possible maps considered.
+    """The expected share right of the best decision, over ``maps`` possible maps.
 
-    Where they could not all be listed (not ``complete``) the figures are those of the maps listed, and no limit.
+    If not all could be listed (not ``complete``), the figures are those of the listed maps, and not a limit.
     """
 
-    words: float  # by what was said of the pairs
-    words_and_pairs: float  # and by which pairs were spoken of
+    words: float  # given the words of the facts
+    words_and_pairs: float  # given also which pairs the facts relate
     maps: int
     complete: bool
 
 
 def bayes_limit(table: GeneratedTable, seconds: float = 30.0) -> Limit:
-    """Return the limit for a table on which nothing is missing or extra; raises ValueError for another."""
+    """Return the greatest expected share of objects named correctly on a table.
+
+    Parameters
+    ----------
+    table
+        A generated table on which every described piece is present, and no other.
+    seconds
+        The time limit of listing the possible maps.
+
+    Returns
+    -------
+    The limits given the words, and given also the pairs of the facts.
+
+    Raises
+    ------
+    ValueError
+        If pieces are missing or extra.
+    """
     if len(table.truth) != len(table.boxes) or (table.truth < 0).any():
-        raise ValueError("the limit is that of a table on which nothing is missing or extra")
+        raise ValueError("`table` must have no missing and no extra pieces")
     relations = default_ontology().relations
     said_off = np.zeros((len(relations), len(relations)))
     for relation in relations.of_reading(Reading.EXACT):
@@ -66,7 +83,7 @@ def bayes_limit(table: GeneratedTable, seconds: float = 30.0) -> Limit:
 
 
 def _possible(table: GeneratedTable, names: Names, said_off: Matrix, deadline: Deadline) -> tuple[Maps, bool]:
-    """Return the maps with exactly as many facts off as there are, shape (c, n), and whether these are all."""
+    """Return the maps with exactly the known number of wrong facts, shape (c, n), and True if they are all listed."""
     n, off = len(table.truth), int(table.off.sum())
     words, kinds = np.unique(table.words, return_inverse=True)
     tables = np.full((len(words), n, n), IMPOSSIBLE_VALUE, dtype=np.float32)
@@ -75,16 +92,16 @@ def _possible(table: GeneratedTable, names: Names, said_off: Matrix, deadline: D
         rows[names == word] = 0.0
     problem = Problem(table.ends, kinds.ravel().astype(np.int64), tables, np.zeros((n, n)), np.full(n, UNMATCHED_VALUE))
     best = exact(problem, deadline)
-    margin = max(0.0, off + best.value)  # from the fewest that can be off to as many as are
+    margin = max(0.0, off + best.value)  # from the fewest possible wrong facts up to the known number
     found = maps_within(problem, margin, deadline, limit=MAX_MAPS)
     possible = np.abs(found.values + off) < 0.5
-    if not possible.any():  # not one was found in time; the truth is possible for certain
+    if not possible.any():  # none was found in time; the truth is always possible
         return table.truth[None], False
     return found.assignments[possible], found.complete and best.proved
 
 
 def _word_likelihood(table: GeneratedTable, names: Names, said_off: Matrix, maps: Maps) -> Matrix:
-    """Return the logarithm of how probably what is off would have been said, for each of c maps, shape (c,)."""
+    """Return the logarithm of the probability of the words of the wrong facts for each of c maps, shape (c,)."""
     true = names[maps[:, table.ends[:, 0]], maps[:, table.ends[:, 1]]]
     said = np.where(true == table.words, 1.0, said_off[true, table.words])
     likelihood: Matrix = np.log(said).sum(axis=1)
@@ -92,10 +109,10 @@ def _word_likelihood(table: GeneratedTable, names: Names, said_off: Matrix, maps
 
 
 def _pair_likelihood(table: GeneratedTable, maps: Maps) -> Matrix:
-    """Return the logarithm of how probably these pairs were drawn, in this order, for each of c maps, shape (c,).
+    """Return the logarithm of the probability of drawing these pairs, in this order, for each of c maps, shape (c,).
 
-    A draw takes any subject, and evenly often one of its nearest or any object; it is repeated where the two are the
-    same or have been paired before, so that each draw is relative to the pairs that were left.
+    A draw takes any subject, and with equal probability one of its nearest objects or any object; it is repeated if the
+    two are the same or have been paired before, so that each draw is relative to the remaining pairs.
     """
     n = len(table.boxes)
     near = nearest(table.boxes)
@@ -111,7 +128,7 @@ def _pair_likelihood(table: GeneratedTable, maps: Maps) -> Matrix:
 
 
 def _expected(maps: Maps, likelihood: Matrix) -> float:
-    """Return the share right that the best decision can expect under the posterior over these maps."""
+    """Return the greatest expected share right under the posterior over these maps."""
     from scipy.optimize import linear_sum_assignment
 
     weights = np.exp(likelihood - likelihood.max())

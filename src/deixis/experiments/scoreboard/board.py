@@ -1,4 +1,4 @@
-"""Contestants over cases: a score for each, and the means and differences that are read off the scores."""
+"""Score contestants on cases, and derive means and differences from the scores."""
 
 from __future__ import annotations
 
@@ -29,22 +29,22 @@ Map = NDArray[np.int64]
 
 
 def right(assignment: Map, truth: Map) -> NDArray[np.bool_]:
-    """Return which objects (n1,) are given their own thing, or left out where they are missing."""
+    """Return True for each object (n1,) that is given its own thing, or left out if it is missing."""
     same: NDArray[np.bool_] = assignment == truth
     return same
 
 
 def groups(description: RelationGraph) -> list[NDArray[np.int64]]:
-    """The objects that the description (and their kinds) provably cannot tell apart, each group as node indices."""
+    """Return groups of objects that the description (with kinds) provably cannot distinguish, as node indices."""
     kinds = description.kinds or (None,) * len(description.nodes)
     found = interchangeable(description, kinds)
     return [np.array([description.index(name) for name in group], dtype=np.int64) for group in found]
 
 
 def right_up_to_interchangeability(assignment: Map, truth: Map, groups: Sequence[NDArray[np.int64]]) -> float:
-    """Return the share of objects that are right where the things of a group's objects may be exchanged among them.
+    """Return the share of correct objects when the things of a group may be exchanged among its objects.
 
-    Each thing counts once, and so does each missing object of a group for one that is left out.
+    Each thing counts once, and each missing object of a group counts for one that is left out.
 
     >>> truth, swapped = np.array([0, 1, 2]), np.array([1, 0, UNMATCHED])
     >>> round(right_up_to_interchangeability(swapped, truth, [np.array([0, 1])]), 2)
@@ -62,20 +62,22 @@ def right_up_to_interchangeability(assignment: Map, truth: Map, groups: Sequence
 
 
 def satisfied(evidence: Evidence, assignment: Map) -> int:
-    """Return how many stated facts hold of the things that their objects are given, at least in the wide reading."""
+    """Return the number of stated facts that hold for the assigned things, at least in the wide reading."""
     return int((evidence.degrees(assignment) > 0).sum())
 
 
 def relative(figures: Sequence[float]) -> list[float]:
-    """Return each figure over the greatest of them; nan where that is not above 0 (a share of nothing)."""
+    """Return each figure divided by the greatest; nan if that is not above 0."""
     best = max(figures, default=0.0)
     return [figure / best if best > 0 else float("nan") for figure in figures]
 
 
 @dataclass(frozen=True, slots=True)
 class Score:
-    """One contestant on one case: shares of objects right (and up to interchangeability), facts and value relative to
-    the best found by any contestant on the case (nan where that is not above 0), and seconds from evidence to answer.
+    """The scores of one contestant on one case.
+
+    Shares of objects right (and up to interchangeability), facts and value relative to the best found by any contestant
+    on the case (nan where that is not above 0), and seconds from evidence to answer.
     """
 
     setting: Setting
@@ -91,7 +93,7 @@ class Score:
 
 @dataclass(frozen=True, slots=True)
 class EngineComparison:
-    """How far the default is ahead of another contestant in a group, with p and p adjusted for all comparisons."""
+    """The lead of the default over another contestant in a group, with p and p adjusted for all comparisons."""
 
     group: Group
     other: str
@@ -102,7 +104,7 @@ class EngineComparison:
 
     @property
     def verdict(self) -> str:
-        """Whether the default is significantly ``better`` or ``worse``, or neither."""
+        """Verdict on the default: significantly ``better`` or ``worse``, or neither."""
         if not self.adjusted < ALPHA:
             return ""
         return "better" if self.difference.mean > 0 else "worse"
@@ -134,17 +136,18 @@ class Board:
         return self._by_place.get((contestant, group), [])
 
     def by_unit(self, contestant: str, group: Group | Setting, measure: str) -> dict[tuple[Setting, int], float]:
-        """Return the measure for every table or image, a mean over the orders in which it was given."""
+        """Return the measure for every table or image, averaged over its node orders."""
         found: dict[tuple[Setting, int], list[float]] = defaultdict(list)
         for score in self.of(contestant, group):
             found[score.setting, score.unit].append(getattr(score, measure))
         return {unit: float(np.mean(values)) for unit, values in found.items()}
 
     def mean(self, contestant: str, group: Group | Setting, measure: str) -> Interval:
+        """Return the mean of a measure in a group or setting, with its interval."""
         return interval(list(self.by_unit(contestant, group, measure).values()))
 
     def comparisons(self, measure: str, seed: int) -> list[EngineComparison]:
-        """The default against each other contestant in each group, over the same cases, adjusted together (Holm)."""
+        """Compare the default with each other contestant in each group, on the same cases; adjust by Holm."""
         default, *others = (contestant.name for contestant in self.contestants)
         found = []
         for group in self.groups:
@@ -162,14 +165,30 @@ class Board:
 
 
 def median_seconds(scores: Sequence[Score]) -> float:
-    """Of at least one score."""
+    """Return the median time of the scores, of which there must be at least one."""
     return float(np.median([score.seconds for score in scores]))
 
 
 def run_contestants(
     contestants: Sequence[Contestant], cases: Iterable[Case], seconds: float, tick: Callable[[str], None]
 ) -> Board:
-    """Every contestant on every case that is not too large for it; ``tick`` is told the group after each case."""
+    """Run every contestant on every case that is not too large for it.
+
+    Parameters
+    ----------
+    contestants
+        The contestants, the default engine first; those that lack a package are left out.
+    cases
+        The cases, each with its truth.
+    seconds
+        The time limit of a contestant for a case.
+    tick
+        Called with the name of the group after each case.
+
+    Returns
+    -------
+    The board of all scores.
+    """
     able = [contestant for contestant in contestants if not contestant.lacking]
     scores: list[Score] = []
     forecasts: list[Forecasts] = []
@@ -177,7 +196,7 @@ def run_contestants(
     for case in cases:
         entered = [contestant for contestant in able if contestant.enters(case)]
         for contestant in entered:
-            if contestant.name not in warm:  # compiled code is compiled or loaded once, which does not count
+            if contestant.name not in warm:  # compile or load compiled code once, outside the measured time
                 warm.add(_ask(contestant, case, seconds)[0])
         answers = [_ask(contestant, case, seconds) for contestant in entered]
         judge, alike = case.evidence(SHIPPED), groups(case.description)
@@ -207,7 +226,7 @@ _TimedAnswer = tuple[str, ContestantAnswer, float]
 
 
 def _ask(contestant: Contestant, case: Case, seconds: float) -> _TimedAnswer:
-    """The answer and the time from evidence to answer; each contestant gets evidence of its own, nothing computed."""
+    """Return the answer, and the time from evidence to answer; each contestant gets fresh evidence."""
     case.scene  # noqa: B018 - what was perceived is there before anybody is asked
     evidence = case.evidence(contestant.meaning, contestant.learned)
     started = time.perf_counter()

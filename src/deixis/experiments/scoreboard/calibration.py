@@ -1,4 +1,4 @@
-"""Are matches as often right as the answer says? Reliability, calibration error, and what is decided."""
+"""Measure calibration: are matches right as often as the answer says? Reliability, error, and decided matches."""
 
 from __future__ import annotations
 
@@ -18,17 +18,17 @@ BINS = 10
 
 @dataclass(frozen=True, eq=False)
 class Forecasts:
-    """The k matches of one answer: how probable it calls each, and whether it is right."""
+    """The k matches of one answer: their probabilities, and which are right."""
 
     contestant: str
     group: Group
     probability: NDArray[np.float64]  # (k,)
     right: NDArray[np.bool_]  # (k,)
-    error: float | NDArray[np.float64] = 0.0  # by how much the probabilities may be off, or (k,): each of them
+    error: float | NDArray[np.float64] = 0.0  # uncertainty of the probabilities, one number or (k,)
 
     @classmethod
     def of(cls, contestant: str, case: Case, answer: ContestantAnswer) -> Forecasts:
-        """Raise ValueError where the answer gives no probabilities."""
+        """Return the matches of an answer; raise ValueError if it gives no probabilities."""
         if answer.marginals is None:
             raise ValueError(f"{contestant} gives no probabilities")
         matched = np.flatnonzero(answer.assignment != UNMATCHED)
@@ -40,7 +40,7 @@ class Forecasts:
 
 @dataclass(frozen=True, slots=True)
 class Bin:
-    """Matches whose probability lies between two bounds; means are nan where there is none."""
+    """Matches with a probability between two bounds; means are nan for an empty bin."""
 
     least: float
     greatest: float
@@ -51,15 +51,17 @@ class Bin:
 
 @dataclass(frozen=True, slots=True)
 class Reliability:
-    """The reliability of ``count`` matches. ``error`` is the expected calibration error: the mean distance of the
-    share right from the mean probability over the bins, by how many they hold (Naeini, Cooper, Hauskrecht 2015).
+    """The reliability of ``count`` matches.
+
+    ``error`` is the expected calibration error: the mean distance of the share right from the mean probability over the
+    bins, weighted by their counts (Naeini, Cooper, Hauskrecht 2015).
     """
 
     bins: tuple[Bin, ...]
     count: int
     error: float
-    decided: float  # share of the matches that are called decided
-    precision: float  # share of those that are right; nan where there is none
+    decided: float  # share of the matches that are decided
+    precision: float  # share of those that are right; nan if no match is decided
 
 
 def calibration(forecasts: Sequence[Forecasts]) -> Reliability:

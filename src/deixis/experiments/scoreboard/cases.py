@@ -1,4 +1,4 @@
-"""The cases that engines are compared on: generated tables and photographs, each in a random order of both sides."""
+"""Provide the cases that engines are compared on: generated tables and photographs, in random orders of both sides."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from deixis.reasoning.grounding.evidence.evidence import Evidence, evidence_from
 from deixis.reasoning.grounding.evidence.meaning import Meaning
 
 PHOTOGRAPHS = 0
-"""The number of objects that stands for photographs, which have any number."""
+"""Number of objects that stands for photographs, which have any number."""
 
 
 LARGEST_PHOTOGRAPH = 12
@@ -29,26 +29,27 @@ LARGEST_PHOTOGRAPH = 12
 
 @dataclass(frozen=True, order=True, slots=True)
 class Setting:
-    """How a table is generated; of photographs all is 0."""
+    """The settings of a generated table; all 0 for photographs."""
 
     objects: int
     off: float
     facts_each: float
-    changed: bool  # a tenth of the described pieces is missing, and as many others were never described
+    changed: bool  # a tenth of the described pieces is missing, and as many undescribed ones are added
 
     @property
     def size(self) -> int:
-        """How many objects an engine must be able to take."""
+        """Number of objects that an engine must be able to take."""
         return self.objects if self.objects != PHOTOGRAPHS else LARGEST_PHOTOGRAPH
 
     @property
     def group(self) -> Group:
+        """The size and the noise."""
         return Group(self.objects, self.off)
 
 
 @dataclass(frozen=True, order=True, slots=True)
 class Group:
-    """A size and a noise: the cases that a mean is taken over and a difference tested on."""
+    """A size and a noise: the cases over which means are taken and differences tested."""
 
     objects: int
     off: float
@@ -59,26 +60,26 @@ class Group:
 
 @dataclass(frozen=True, eq=False)
 class Case:
-    """A description of n1 objects, n2 boxes, and the truth. Cases of the same unit differ in the order alone."""
+    """A description of n1 objects, n2 boxes, and the truth. Cases of the same unit differ only in the order."""
 
     setting: Setting
     unit: int
     description: RelationGraph
     boxes: NDArray[np.float64]  # (n2, 2, 2): least and greatest corner
-    things: tuple[str, ...]  # (n2,) their names, by which boxes that are alike are told apart in any order
-    truth: NDArray[np.int64]  # (n1,): which thing each object is, UNMATCHED where it is missing
-    metric: bool = True  # boxes are in metres
-    learned: Meaning | None = None  # from other cases
+    things: tuple[str, ...]  # (n2,): the names of the boxes, which distinguish equal boxes in any order
+    truth: NDArray[np.int64]  # (n1,): the thing of each object, UNMATCHED if it is missing
+    metric: bool = True  # True if boxes are in metres
+    learned: Meaning | None = None  # learned from other cases
 
     @cached_property
     def scene(self) -> SceneRelations:
-        """What was perceived: the exact name of every ordered pair."""
+        """The perceived scene: the exact relation of every ordered pair."""
         return scene_relations(self.things, self.boxes, self.description.vocabulary)
 
     def evidence(self, meaning: Meaning, learned: bool = False) -> Evidence:
-        """Return what an engine gets to see: facts, and sizes where the description tells kinds; nothing is labelled.
+        """Return the input of an engine: facts, and sizes if the description states kinds; without labels.
 
-        ``learned``: words and sizes are what was learned from other cases, by the weights of the meaning.
+        With ``learned``, words and sizes are those learned from other cases, by the weights of the meaning.
         """
         if learned and self.learned is not None:
             meaning = replace(self.learned, weights=meaning.weights)
@@ -96,7 +97,7 @@ class Case:
     def shuffled(self, rng: np.random.Generator) -> Case:
         """Return the same case in a random order of objects and of things."""
         rows, columns = rng.permutation(len(self.truth)), rng.permutation(len(self.boxes))
-        place = np.append(np.argsort(columns), -1)  # of each thing in the new order; the last is for UNMATCHED
+        place = np.append(np.argsort(columns), -1)  # position of each thing in the new order; the last is for UNMATCHED
         nodes = [self.description.nodes[i] for i in rows]
         return Case(
             self.setting,
@@ -115,7 +116,7 @@ def _names(count: int) -> tuple[str, ...]:
 
 
 def table(setting: Setting, number: int, seed: int) -> GeneratedTable:
-    """Return the table of that number in a setting. Tables of different settings are drawn independently."""
+    """Return table ``number`` of a setting; tables of different settings are drawn independently."""
     drawn = np.random.SeedSequence(
         [
             seed,
@@ -133,7 +134,7 @@ def table(setting: Setting, number: int, seed: int) -> GeneratedTable:
 
 
 def generated_cases(settings: Sequence[Setting], count: int, seed: int, *, kinds: bool = False) -> Iterator[Case]:
-    """``count`` tables of each setting; with ``kinds`` the descriptions say what kind of thing each object is."""
+    """Yield ``count`` tables of each setting; with ``kinds`` the descriptions state the kind of each object."""
     for setting in settings:
         for number in range(count):
             drawn = table(setting, number, seed)
@@ -143,7 +144,7 @@ def generated_cases(settings: Sequence[Setting], count: int, seed: int, *, kinds
 
 
 def photograph_cases(folder: Path, orders: int, most: int | None, seed: int, *, learn: bool = False) -> Iterator[Case]:
-    """Photographs (at most so many), each in so many random orders; with ``learn`` each with what the others teach."""
+    """Yield at most ``most`` photographs in ``orders`` random orders; with ``learn``, meanings come from the others."""
     setting = Setting(PHOTOGRAPHS, 0.0, 0.0, False)
     images = list(photographs(folder, default_ontology()))
     learned = learned_meanings(images, seed) if learn else [None] * len(images)

@@ -1,4 +1,4 @@
-"""Who is compared: the engines, and variants of the default one, each with its settings in words."""
+"""List the contestants: the engines, and variants of the default one, each with its settings in words."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ DEFAULT = EngineName.EXACT.value
 
 @dataclass(frozen=True, eq=False)
 class ContestantAnswer:
-    """What a contestant said: a map (n1,), whether it proved it the best, and its probabilities (n1, n2 + 1)."""
+    """An answer: a map (n1,), whether it is proved the best, and the probabilities (n1, n2 + 1)."""
 
     assignment: NDArray[np.int64]
     proved: bool = False
     marginals: NDArray[np.float64] | None = None
-    error: float | NDArray[np.float64] = 0.0  # by how much these may be off, or (n1,): those of each object
+    error: float | NDArray[np.float64] = 0.0  # uncertainty of the probabilities, one number or (n1,) per object
 
 
 @dataclass(frozen=True)
@@ -37,14 +37,14 @@ class Contestant:
     name: str
     settings: str
     solve: Callable[[Evidence, Deadline], ContestantAnswer]
-    most: int = 1000  # objects, beyond which it takes too long or too much memory
+    most: int = 1000  # maximum number of objects; more take too long or too much memory
     meaning: Meaning = SHIPPED
-    ablation: bool = False  # the default engine with something taken away
-    learned: bool = False  # words and sizes are learned from other cases; enters only where there are some
-    lacking: str = ""  # why it cannot be run at all
+    ablation: bool = False  # the default engine with a part removed
+    learned: bool = False  # words and sizes are learned from other cases; enters only cases that have learned ones
+    lacking: str = ""  # the reason why it cannot run at all
 
     def enters(self, case: Case) -> bool:
-        """Return whether the case is one for it."""
+        """Return True if the contestant can take the case."""
         return case.setting.size <= self.most and (case.learned is not None or not self.learned)
 
 
@@ -58,7 +58,7 @@ def engine(
     ablation: bool = False,
     learned: bool = False,
 ) -> Contestant:
-    """Return a shipped engine as a contestant, maybe under another name and meaning."""
+    """Return a shipped engine as a contestant, optionally under another name and with another meaning."""
 
     def solve(evidence: Evidence, deadline: Deadline) -> ContestantAnswer:
         found = engine_named(name).align(evidence, deadline)
@@ -72,7 +72,7 @@ def engine(
 def peer(
     name: str, settings: str, solve: Callable[[Problem, float], ContestantAnswer], *, most: int, lacking: str = ""
 ) -> Contestant:
-    """Another solver for the same problem (graded meaning); it gets the seconds that are left."""
+    """Return another solver of the problem (graded meaning) as a contestant; it receives the remaining seconds."""
     return Contestant(
         name,
         settings,

@@ -1,4 +1,4 @@
-"""The scoreboard as a picture of nine panels."""
+"""Plot the scoreboard in nine panels."""
 
 from __future__ import annotations
 
@@ -23,17 +23,17 @@ COLOURS = (
 )  # fmt: skip
 MARKERS = "osD^vPX<>*hd"
 MIN_VALUE_SHOWN = -0.25
-"""Shares of the best likelihood below that are not shown."""
+"""Least relative log-likelihood shown."""
 
 SHADES = ("#1f4e79", "#6d93b8", "#b9cbdc", "#d9d2c3", "#8a7f5c", "#4f7d4c")
 DODGE = 1.008
-"""Lines stand that much beside each other, so that their intervals can be told apart."""
+"""Factor by which lines are set apart, so that their intervals do not overlap."""
 
 NOISES = ("#1f4e79", "#e0a02c", "#c0392b")
 
 
 def plot_scoreboard(found: Scoreboard, path: str | Path) -> None:
-    """Draw it as PNG, SVG or PDF by the file's ending; raises DeixisError where the file cannot be written."""
+    """Draw the scoreboard as PNG, SVG or PDF by the file's ending; raise DeixisError if the file cannot be written."""
     figure, axes = new_figure(12.0, 10.2, nrows=3, ncols=3)
     panels = iter(axes.ravel())
     offs = found.plan.off[:3]
@@ -78,7 +78,7 @@ def _style(number: int) -> dict[str, Any]:
 
 
 def _by_size(axes: Axes, board: Board, off: float, measure: str, title: str) -> None:
-    """A line for every contestant, with its intervals."""
+    """Draw a line for every contestant, with its intervals."""
     sizes = sorted({group.objects for group in board.groups if group.objects != PHOTOGRAPHS})
     for number, one in enumerate(board.contestants):
         there = [size for size in sizes if board.of(one.name, Group(size, off))]
@@ -99,7 +99,7 @@ def _by_size(axes: Axes, board: Board, off: float, measure: str, title: str) -> 
 
 
 def _times(axes: Axes, board: Board) -> None:
-    """The median over all noises."""
+    """Draw the median times over all noises."""
     sizes = sorted({group.objects for group in board.groups if group.objects != PHOTOGRAPHS})
     for number, one in enumerate(board.contestants):
         scores = [score for group in board.groups for score in board.of(one.name, group)]
@@ -113,7 +113,7 @@ def _times(axes: Axes, board: Board) -> None:
 
 
 def _limits(axes: Axes, found: Scoreboard) -> None:
-    """The default engine (solid) below the exact limit (dashed) on the largest tables that have one."""
+    """Draw the default engine (solid) and the exact limit (dashed) on the largest tables that have one."""
     largest = max((one.setting.objects for one in found.limits), default=0)
     for off, colour in zip(found.plan.off, NOISES, strict=False):
         some = [one for one in found.limits if one.setting.objects == largest and one.setting.off == off]
@@ -139,7 +139,7 @@ def _limits(axes: Axes, found: Scoreboard) -> None:
 
 
 def _reliability(axes: Axes, found: Scoreboard) -> None:
-    """How often matches are right against how probable the answer calls them; the area of a point is its share."""
+    """Draw the share of right matches against their stated probability; the area of a point is its share."""
     axes.plot([0, 1], [0, 1], color=QUIET, linewidth=1, linestyle=":")
     for (name, one), colour in zip(found.calibrations().items(), (*NOISES, *COLOURS[3:]), strict=False):
         bins = [each for each in one.bins if each.count]
@@ -152,13 +152,13 @@ def _reliability(axes: Axes, found: Scoreboard) -> None:
     axes.legend(fontsize=6.5, loc="upper left", title=title, title_fontsize=7, **look)
     axes.set_ylabel("share right", color=INK, fontsize=9)
     _dress(axes, f"calibration of {DEFAULT}", "probability that the answer gives")
-    rows = 1 + (len(found.calibrations()) + 1) // 2  # of the legend, above the curves
+    rows = 1 + (len(found.calibrations()) + 1) // 2  # room for the legend, above the curves
     axes.set_ylim(-0.05, 1.05 + 0.11 * rows)
     axes.set_yticks(np.linspace(0.0, 1.0, 6))
 
 
 def _bars(axes: Axes, found: Scoreboard) -> None:
-    """What each ablation costs: all noises of the largest ablated size, and photographs."""
+    """Draw the cost of each ablation: all noises of the largest ablated size, and photographs."""
     board = found.ablations
     largest = max((group.objects for group in board.groups), default=0)
     shown = [group for group in board.groups if group.objects in (largest, PHOTOGRAPHS)]

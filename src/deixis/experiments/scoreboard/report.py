@@ -1,4 +1,4 @@
-"""The scoreboard as JSON and as text of at most 120 columns."""
+"""Report the scoreboard as JSON and as text of at most 120 columns."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from deixis.experiments.scoreboard.run import Scoreboard
 
 
 def to_dict(found: Scoreboard) -> dict[str, Any]:
-    """Return everything that the text says, and the means of every single setting."""
+    """Return the contents of the text, and the means of every single setting."""
     plan = found.plan
     comparisons = {measure: found.main.comparisons(measure, plan.seed) for measure in ("right", "grouped")}
     data = {
@@ -67,7 +67,7 @@ def _flat(entry: dict[str, Any], part: str) -> dict[str, Any]:
 
 
 def _known(value: Any) -> Any:
-    """Return the same with null for every number that is none."""
+    """Return a value with every nan replaced by null."""
     if isinstance(value, dict):
         return {key: _known(inner) for key, inner in value.items()}
     if isinstance(value, list | tuple):
@@ -78,11 +78,11 @@ def _known(value: Any) -> Any:
 WIDTH = 120
 NAME = 13
 ACROSS = 6
-"""Comparisons with so many others stand side by side."""
+"""Number of comparisons side by side."""
 
 
 def lines(found: Scoreboard) -> list[str]:
-    """Everything, from what was run to what follows from it."""
+    """Return the lines of the text report, from the plan to the conclusions."""
     return [
         *_head(found),
         "",
@@ -93,7 +93,7 @@ def lines(found: Scoreboard) -> list[str]:
         *_board(found.main),
         "",
         "Ablations: descriptions say what kind of thing each object is, so that sizes count. On photographs, 'learned",
-        "words' and 'learned, all' (words and sizes) are cross-validated: what is grounded has taught nothing.",
+        "words' and 'learned, all' (words and sizes) are cross-validated: no case is grounded by its own data.",
         *_board(found.ablations),
         "",
         *_limits(found),
@@ -111,7 +111,7 @@ def _head(found: Scoreboard) -> Iterator[str]:
     yield f"Tables of each setting, by objects: {counts}."
     facts_each = ", ".join(f"{value:g}" for value in plan.facts_each)
     off = ", ".join(f"{100 * value:.0f}" for value in plan.off) + " %"
-    yield (f"Settings: {facts_each} facts an object; {off} of them off; nothing changed, or a tenth missing and extra.")
+    yield (f"Settings: {facts_each} facts per object; {off} of them off; no changes, or a tenth missing and extra.")
     if plan.photographs is not None:
         units = len({score.unit for score in found.main.scores if score.setting.objects == PHOTOGRAPHS})
         yield f"{units} photographs, each in {plan.orders} node order{'s' if plan.orders > 1 else ''}."
@@ -154,7 +154,7 @@ def _row(board: Board, name: str, columns: Sequence[Group]) -> str:
 def _limits(found: Scoreboard) -> Iterator[str]:
     if not found.limits:
         return
-    yield "The exact Bayes limit of the share right, nothing missing or extra: by the words that were said, and knowing"
+    yield "The exact Bayes limit of the share right, nothing missing or extra: given the words of the facts, and given"
     yield "also how the generator draws pairs. Positive 'short': the default engine is below the first limit."
     yield f"  objects  facts each   off  tables  {DEFAULT:<10} limit      short         pairs known  most maps   listed"
     for one in found.limits:
@@ -167,8 +167,8 @@ def _limits(found: Scoreboard) -> Iterator[str]:
 
 
 def _calibration(found: Scoreboard) -> Iterator[str]:
-    yield "Calibration of the default engine's matches: expected calibration error, the share called decided and its"
-    yield "precision, and the share right (n) where the answer said so many tenths or more, but less than the next."
+    yield "Calibration of the default engine's matches: expected calibration error, the share decided and its"
+    yield "precision, and the share right (n) by tenths of the stated probability."
     calibrations = found.calibrations()
     yield f"  {'':<18}  matches  error  decided  precision"
     for name, one in calibrations.items():
@@ -212,7 +212,7 @@ def _cell(one: EngineComparison | None) -> str:
 
 
 def verdict(comparisons: Sequence[EngineComparison]) -> str:
-    """In a sentence: where the default is significantly worse than anybody, or that it is nowhere."""
+    """Return a sentence: where the default is significantly worse than another, or that it is nowhere."""
     worse = [one for one in comparisons if one.verdict == "worse"]
     if worse:
         where = "; ".join(f"{one.other} ({one.group}, {one.difference.mean:+.2f})" for one in worse)

@@ -1,4 +1,4 @@
-"""The whole scoreboard: what is run is stated in a plan, and the same plan gives the same figures, times aside."""
+"""Run the whole scoreboard from a plan; the same plan gives the same figures, except times."""
 
 from __future__ import annotations
 
@@ -26,23 +26,23 @@ from deixis.experiments.scoreboard.contestants import DEFAULT, Contestant, ablat
 from deixis.experiments.scoreboard.statistics import Interval, interval
 
 SHARES = {100: 0.5, 300: 0.2, 1000: 0.1}
-"""Of the cases of a setting, how many there are of that many objects: each takes so much longer."""
+"""Share of a setting's cases for large numbers of objects, which take longer."""
 
 MIN_CASES = 2
 SMALL = 30
-"""Objects up to which calibration is one pool; larger tables, of which probabilities are sampled, are another."""
+"""Maximum number of objects in the small pool for calibration; probabilities of larger tables are sampled."""
 
 
 @dataclass(frozen=True)
 class ScoreboardPlan:
-    """What is run: every combination of sizes, facts an object, share off, and without and with changes.
+    """The plan of a scoreboard: every combination of sizes, facts per object and wrong share, with and without changes.
 
     ``cases`` is the number of tables of a setting (fewer of large ones), ``most_photographs`` None for all of them.
     """
 
     cases: int = 10
     seed: int = 1
-    time_limit: float = 5.0  # seconds of an engine for a case
+    time_limit: float = 5.0  # time limit of an engine for a case
     sizes: tuple[int, ...] = (8, 12, 15, 30, 100, 300, 1000)
     facts_each: tuple[float, ...] = (1.0, 1.5, 2.5)
     off: tuple[float, ...] = (0.0, 0.1, 0.2)
@@ -66,29 +66,32 @@ class ScoreboardPlan:
         )
 
     def only(self, sizes: Sequence[int]) -> ScoreboardPlan:
-        """Return the same with tables of these sizes alone; the photographs stay."""
+        """Return the plan with tables of these sizes alone; the photographs stay."""
         chosen = tuple(sorted(set(sizes)))
         ablated = tuple(size for size in self.ablated_sizes if size in chosen)
         return replace(self, sizes=chosen, ablated_sizes=ablated)
 
     def count(self, objects: int) -> int:
-        """Tables of each setting of that size."""
+        """Return the number of tables of each setting of a size."""
         least = min(self.cases, MIN_CASES)
         share = next((share for size, share in SHARES.items() if objects <= size), min(SHARES.values()))
         return max(least, round(self.cases * (1.0 if objects <= SMALL else share)))
 
     def settings(self, objects: int) -> list[Setting]:
+        """Return the settings of tables of that many objects."""
         return [
             Setting(objects, off, facts, changed)
             for off, facts, changed in product(self.off, self.facts_each, (False, True))
         ]
 
     def generated(self, sizes: Sequence[int], *, kinds: bool = False) -> Iterator[Case]:
+        """Yield the generated cases of these sizes."""
         return chain.from_iterable(
             generated_cases(self.settings(size), self.count(size), self.seed, kinds=kinds) for size in sizes
         )
 
     def photographed(self, *, learn: bool = False) -> Iterator[Case]:
+        """Yield the cases from photographs, if the plan has a folder of them."""
         if self.photographs is None:
             return iter(())
         return photograph_cases(self.photographs, self.orders, self.most_photographs, self.seed, learn=learn)
@@ -96,20 +99,20 @@ class ScoreboardPlan:
 
 @dataclass(frozen=True, slots=True)
 class Limited:
-    """The default engine beside the Bayes limits in a setting; ``short`` is by how much it misses the first."""
+    """The default engine and the Bayes limits in a setting; ``short`` is its distance below the first limit."""
 
     setting: Setting
     right: Interval
     words: Interval
     words_and_pairs: Interval
     short: Interval
-    maps: int  # the most that were possible on one table
+    maps: int  # greatest number of possible maps of one table
     incomplete: int  # tables whose maps could not all be listed
 
 
 @dataclass(frozen=True, eq=False)
 class Scoreboard:
-    """The main board, the ablations (kinds are told), the limits, and what was left out."""
+    """The main board, the ablations (with kinds), the limits, and a list of the parts left out."""
 
     plan: ScoreboardPlan
     main: Board
@@ -118,7 +121,7 @@ class Scoreboard:
     skipped: tuple[str, ...]
 
     def calibrations(self) -> dict[str, Reliability]:
-        """Of the default engine: by noise, small tables and large ones apart, and of photographs."""
+        """Return the calibration of the default engine: by noise, small and large tables apart, and of photographs."""
         pools = {f"up to {SMALL}, {100 * off:.0f} % off": (off, 1, SMALL) for off in self.plan.off}
         pools |= {f"larger, {100 * off:.0f} % off": (off, SMALL + 1, max(self.plan.sizes)) for off in self.plan.off}
         pools["photographs"] = (0.0, PHOTOGRAPHS, PHOTOGRAPHS)
@@ -139,9 +142,20 @@ def run(
     contestants: Sequence[Contestant] | None = None,
     tick: Callable[[str], None] = lambda _: None,
 ) -> Scoreboard:
-    """Run everything; ``contestants`` (default: the shipped engines) begin with the default engine.
+    """Run the scoreboard of a plan.
 
-    ``tick`` is told what has just been done, ``steps(plan)`` times.
+    Parameters
+    ----------
+    plan
+        The sizes, settings and seed of the run.
+    contestants
+        The contestants of the main board, the default engine first; the shipped engines if None.
+    tick
+        Called after each of ``steps(plan)`` steps with a description of it.
+
+    Returns
+    -------
+    The scores of the main board and of the ablations, the Bayes limits, and a list of the skipped parts.
     """
     entered = engines() if contestants is None else list(contestants)
     main = run_contestants(entered, chain(plan.generated(plan.sizes), plan.photographed()), plan.time_limit, tick)
@@ -172,7 +186,7 @@ def run(
 
 
 def steps(plan: ScoreboardPlan) -> int:
-    """Return how often a run ticks."""
+    """Return the number of ticks of a run."""
     tables = sum(plan.count(size) * len(plan.settings(size)) for size in (*plan.sizes, *plan.ablated_sizes))
     limits = sum(len(plan.settings(size)) // 2 for size in plan.limited_sizes if size in plan.sizes)
     return tables + limits + 2 * sum(1 for _ in plan.photographed())

@@ -1,4 +1,4 @@
-"""Means with their intervals, and differences over the same cases with their significance."""
+"""Compute means with intervals, and the significance of differences over the same cases."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class Interval:
 
 
 def interval(values: Sequence[float] | NDArray[np.float64]) -> Interval:
-    """Return the mean of what is known (not nan), with its 95 per cent interval by Student's t.
+    """Return the mean of the known values (not nan), with its 95 per cent interval by Student's t.
 
     >>> found = interval([0.0, 1.0, 1.0])
     >>> round(found.mean, 3), round(found.half, 3), found.count
@@ -44,9 +44,9 @@ def interval(values: Sequence[float] | NDArray[np.float64]) -> Interval:
 
 
 def paired_p(differences: Sequence[float] | NDArray[np.float64], seed: int) -> float:
-    """Return the two-sided p of a paired permutation test: how often random signs make a mean as far from 0.
+    """Return the two-sided p of a paired permutation test: how often random signs give a mean as far from 0.
 
-    All signs are tried where there are few of them, else 9,999 random ones.
+    All signs are tried if there are few of them, otherwise 9,999 random ones.
 
     >>> paired_p([0.1] * 6, seed=0)
     0.03125
@@ -54,7 +54,7 @@ def paired_p(differences: Sequence[float] | NDArray[np.float64], seed: int) -> f
     from scipy.stats import permutation_test
 
     known = np.asarray(differences, dtype=float)
-    known = known[np.abs(known) > 1e-12]  # a sign changes nothing of 0
+    known = known[np.abs(known) > 1e-12]  # a sign does not change 0
     if len(known) < 2:
         return 1.0
     found = permutation_test(
@@ -70,7 +70,7 @@ def paired_p(differences: Sequence[float] | NDArray[np.float64], seed: int) -> f
 
 
 def holm(ps: Sequence[float]) -> list[float]:
-    """Return the p values adjusted for being so many (Holm 1979), in the order given.
+    """Return the p values adjusted for their number (Holm 1979), in the order given.
 
     >>> [round(p, 3) for p in holm([0.01, 0.04, 0.03])]
     [0.03, 0.06, 0.06]

@@ -1,4 +1,4 @@
-"""Bridges, each against boxes or regions that are looked at directly."""
+"""Compare each bridge with boxes or regions that are examined directly."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def boxes() -> NDArray[np.int64]:
 
 
 def rectangle_codes(low: NDArray[np.int64], high: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Of all pairs, from corners (n, 2)."""
+    """Return the codes of all pairs, from corners (n, 2)."""
     a, b = low.astype(float), high.astype(float)
     x, y = (allen_relations(a[:, None, i], b[:, None, i], a[None, :, i], b[None, :, i]).astype(int) for i in (0, 1))
     codes: NDArray[np.int64] = x * 13 + y
@@ -42,13 +42,13 @@ def rectangle_codes(low: NDArray[np.int64], high: NDArray[np.int64]) -> NDArray[
 
 
 def shown(bridge: Bridge, source: NDArray[np.int64], target: NDArray[np.int64]) -> list[int]:
-    """For each atom of the source the atoms of the target that pairs show together with it."""
+    """Return, for each atom of the source, the target atoms that occur together with it in the pairs."""
     seen = np.zeros((len(bridge.source.atoms), len(bridge.target.atoms)), dtype=bool)
     seen[source, target] = True
     return [sum(1 << int(code) for code in np.flatnonzero(row)) for row in seen]
 
 
-def test_centres_lie_just_where_the_bridge_says(boxes: NDArray[np.int64]) -> None:
+def test_centres_agree_with_the_bridge_from_boxes(boxes: NDArray[np.int64]) -> None:
     bridge = bridges.boxes_to_directions()
     low, high = boxes[:, 0], boxes[:, 1]
     centres = low + high
@@ -59,7 +59,7 @@ def test_centres_lie_just_where_the_bridge_says(boxes: NDArray[np.int64]) -> Non
     assert shown(bridge, rectangle_codes(low, high), codes) == list(bridge.admits)
 
 
-def test_boxes_as_regions_connect_just_as_the_bridge_says(boxes: NDArray[np.int64]) -> None:
+def test_regions_that_are_boxes_agree_with_the_bridge(boxes: NDArray[np.int64]) -> None:
     bridge = bridges.boxes_to_regions()
     low, high = boxes[:, 0], boxes[:, 1]
     a_low, a_high, b_low, b_high = low[:, None], high[:, None], low[None, :], high[None, :]
@@ -77,7 +77,7 @@ def test_boxes_as_regions_connect_just_as_the_bridge_says(boxes: NDArray[np.int6
 
 
 def widened(cells: NDArray[np.uint64]) -> NDArray[np.uint64]:
-    """Sets of cells of an 8 by 8 board (a bit each) with all their neighbours; the outermost cells are left free."""
+    """Return sets of cells of an 8 by 8 board (a bit each) with all their neighbours; the outermost cells stay free."""
     one, row = np.uint64(1), np.uint64(8)
     beside: NDArray[np.uint64] = cells | cells << one | cells >> one
     around: NDArray[np.uint64] = beside | beside << row | beside >> row
@@ -85,7 +85,7 @@ def widened(cells: NDArray[np.uint64]) -> NDArray[np.uint64]:
 
 
 def grown(rng: np.random.Generator) -> int:
-    """A set of cells of the inner 6 by 6 in one piece, corners counting as touch, within a random box."""
+    """Return a connected set of cells of the inner 6 by 6, corners counting as contact, within a random box."""
     (x0, x1), (y0, y1) = np.sort(rng.integers(1, 7, (2, 2)), axis=1).tolist()
     box = sum(1 << (8 * y + x) for y in range(y0, y1 + 1) for x in range(x0, x1 + 1))
     cells = 1 << int(8 * rng.integers(y0, y1 + 1) + rng.integers(x0, x1 + 1))
@@ -98,7 +98,7 @@ def grown(rng: np.random.Generator) -> int:
     return cells
 
 
-def test_regions_in_one_piece_connect_just_as_the_bridge_from_their_bounds_says() -> None:
+def test_connected_regions_agree_with_the_bridge_from_bounds() -> None:
     rng = np.random.default_rng(5)
     cells = np.unique(np.array([grown(rng) for _ in range(7_000)], dtype=np.uint64))
     board = (cells[:, None] >> np.arange(64, dtype=np.uint64) & np.uint64(1)).astype(bool).reshape(-1, 8, 8)
@@ -117,7 +117,7 @@ def test_regions_in_one_piece_connect_just_as_the_bridge_from_their_bounds_says(
 @pytest.mark.parametrize("make", ALL)
 @settings(max_examples=40, deadline=None)
 @given(data=st.data())
-def test_a_bridge_loses_no_possibility_and_agrees_with_its_inverse(make: object, data: st.DataObject) -> None:
+def test_a_bridge_is_sound_and_agrees_with_its_inverse(make: object, data: st.DataObject) -> None:
     assert callable(make)
     bridge = make()
     r = data.draw(st.sets(st.integers(0, len(bridge.source.atoms) - 1), max_size=4).map(mask))
@@ -134,7 +134,7 @@ def mask(codes: set[int]) -> int:
 
 
 @pytest.mark.parametrize("make", ALL)
-def test_no_atom_is_cut_off_on_either_side(make: object) -> None:
+def test_every_atom_is_reached_on_both_sides(make: object) -> None:
     assert callable(make)
     bridge = make()
     assert all(bridge.admits)
@@ -142,9 +142,9 @@ def test_no_atom_is_cut_off_on_either_side(make: object) -> None:
     assert bridge.forward(1 << bridge.source.identity) >> bridge.target.identity & 1
 
 
-def test_regions_say_of_boxes_what_topology_leaves() -> None:
+def test_regions_restrict_boxes_as_topology_requires() -> None:
     back = bridges.boxes_to_regions().inverse
     rcc8, ra = back.source, back.target
     assert ra.members(back.forward(rcc8.relation(["EQ"]))) == ("=,=",)
     assert ra.members(back.forward(rcc8.relation(["NTPP"]))) == ("d,d",)
-    assert len(ra.members(back.forward(rcc8.relation(["TPP"])))) == 14  # of {s, =, d, f} twice, all but d,d and =,=
+    assert len(ra.members(back.forward(rcc8.relation(["TPP"])))) == 14  # of {s, =, d, f} twice, except d,d and =,=

@@ -1,4 +1,4 @@
-"""docs/reference/calculi.md: every example is run, and its table of calculi is in step."""
+"""Run every example of docs/reference/calculi.md, and compare its table of calculi with the code."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ TEXT = PAGE.read_text(encoding="utf-8")
 CONSOLE = re.findall(r"^\$ deixis (.*)\n((?:[^$`].*\n)*)", TEXT, re.MULTILINE)
 
 
-def test_the_examples_in_python_give_what_the_page_says() -> None:
-    """All in one go, as later ones build on earlier ones."""
+def test_python_examples_give_the_results_on_the_page() -> None:
+    """Run them together, as later ones build on earlier ones."""
     blocks = "\n".join(re.findall(r"^```python\n(.*?)^```$", TEXT, re.MULTILINE | re.DOTALL))
     page = doctest.DocTestParser().get_doctest(blocks, {}, PAGE.name, str(PAGE), 0)
     assert len(page.examples) > 30
@@ -29,7 +29,7 @@ def test_the_examples_in_python_give_what_the_page_says() -> None:
 
 
 @pytest.mark.parametrize(("command", "expected"), CONSOLE, ids=[command for command, _ in CONSOLE])
-def test_the_commands_print_what_the_page_says(command: str, expected: str) -> None:
+def test_commands_print_the_output_on_the_page(command: str, expected: str) -> None:
     words = [example(Path(word).name) if word.startswith("examples/") else word for word in shlex.split(command)]
     assert deixis(*words) == (0, expected, "")
 
@@ -47,5 +47,5 @@ def test_the_table_names_every_calculus_with_its_number_of_atoms() -> None:
 ORDER = ("point", "allen", "ra", "ba", "cd", "rcc5", "rcc8", "ten", "distance", "direction-distance")
 
 
-def test_all_that_boxes_are_related_in_is_described() -> None:
+def test_every_relatable_calculus_is_described() -> None:
     assert all(f"`{name}`" in TEXT for name in RELATED)

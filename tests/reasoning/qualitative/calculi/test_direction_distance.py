@@ -1,4 +1,4 @@
-"""Direction and distance together: exact against vectors of the plane, and tighter than each by itself."""
+"""Compare direction with distance with vectors of the plane, exactly, and with each calculus by itself."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ TILES = ((5, 4, 3), (6, 0, 2), (7, 0, 1))  # eighths of a turn from east, by the
 
 
 def codes_of(vectors: NDArray[np.int64], bounds: tuple[float, ...]) -> NDArray[np.int64]:
-    """Atoms of vectors, shape (..., 2), in UNIT-ths of the reference length; exact in whole numbers."""
+    """Return the atoms of vectors, shape (..., 2), in UNIT-ths of the reference length; exact in whole numbers."""
     x, y = vectors[..., 0], vectors[..., 1]
     squared = x * x + y * y
     reach = sum((squared > int(bound * UNIT) ** 2).astype(np.int64) for bound in bounds)
@@ -28,7 +28,7 @@ def codes_of(vectors: NDArray[np.int64], bounds: tuple[float, ...]) -> NDArray[n
 
 
 def probes(bounds: tuple[float, ...]) -> NDArray[np.int64]:
-    """Vectors of a lattice, and of lengths close to the bounds in many directions."""
+    """Return vectors of a lattice, and vectors of lengths close to the bounds in many directions."""
     lengths = {bound * part for bound in bounds for part in (0.05, 0.6, 0.9, 0.99, 0.998, 1, 1.002, 1.01, 1.2, 1.6)}
     lengths |= {bounds[-1] * part for part in (1.9, 3, 3.02, 3.2, 4.2)}
     turns = np.radians([90 * quarter + turn for quarter in range(4) for turn in (0, 1, 8, 12, 20, 45, 70, 78, 82, 89)])
@@ -39,7 +39,7 @@ def probes(bounds: tuple[float, ...]) -> NDArray[np.int64]:
 
 
 def shown(bounds: tuple[float, ...]) -> NDArray[np.bool_]:
-    """Which atoms p, q and p + q show, shape (m, m, m), for probes p and q, and for probes p and p + q."""
+    """Return the occurring atoms of p, q and p + q, shape (m, m, m), for probes p, q and for probes p, p + q."""
     vectors = probes(bounds)
     codes = codes_of(vectors, bounds)
     m = 8 * (len(bounds) + 1) + 1
@@ -53,7 +53,7 @@ def shown(bounds: tuple[float, ...]) -> NDArray[np.bool_]:
 
 
 @pytest.mark.parametrize("bounds", [(1.0, 3.0), (1.0,), (0.5, 1.0, 3.0), (3.0, 4.0, 5.0)])
-def test_compositions_are_just_what_vectors_show(bounds: tuple[float, ...]) -> None:
+def test_compositions_agree_with_vectors(bounds: tuple[float, ...]) -> None:
     names = ("a", "b", "c", "d")[: len(bounds) + 1]
     joint = direction_distance_calculus(Ranges(names, bounds))
     table = (joint.composition[:, :, None] >> np.arange(len(joint.atoms), dtype=np.uint64) & 1).astype(bool)
@@ -63,7 +63,7 @@ def test_compositions_are_just_what_vectors_show(bounds: tuple[float, ...]) -> N
     assert missed == []
 
 
-def test_it_never_says_less_than_direction_and_distance_apart_and_mostly_more() -> None:
+def test_joint_composition_is_tighter_than_the_two_apart() -> None:
     joint, directions, distances = calculus("direction-distance"), joint_to_directions(), joint_to_distances()
     tighter = 0
     for i, j in product(range(len(joint.atoms)), repeat=2):
@@ -84,7 +84,7 @@ def test_it_never_says_less_than_direction_and_distance_apart_and_mostly_more() 
         ("N,near", "E,near", {"NE,near", "NE,medium"}),  # at most √2
         ("N,medium", "E,medium", {"NE,medium", "NE,far"}),  # more than √2, at most √18
         ("N,near", "S,far", {"S,medium", "S,far"}),  # more than 2
-        ("N,medium", "SE,near", {"NE,near", "NE,medium", "NE,far"}),  # not so far south as it is north
+        ("N,medium", "SE,near", {"NE,near", "NE,medium", "NE,far"}),  # less far south than it is north
     ],
 )  # fmt: skip
 def test_compositions_by_hand(first: str, second: str, expected: set[str]) -> None:
@@ -93,7 +93,7 @@ def test_compositions_by_hand(first: str, second: str, expected: set[str]) -> No
     assert found == expected
 
 
-def test_as_many_ranges_as_64_bits_hold_and_no_more() -> None:
+def test_the_number_of_ranges_is_limited_by_64_bits() -> None:
     names = tuple(f"r{i}" for i in range(8))
     seven = direction_distance_calculus(Ranges(names[:7], tuple(float(2**i) for i in range(6))))
     assert (len(seven.atoms), seven.universal.bit_length()) == (57, 57)

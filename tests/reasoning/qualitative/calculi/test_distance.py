@@ -1,4 +1,4 @@
-"""Distance composed by the triangle inequality: against triangles whose sides are whole numbers."""
+"""Compare the composition of distances with triangles whose sides are whole numbers."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from deixis.reasoning.qualitative.calculi.distance import DEFAULT_RANGES, Ranges
 
 
 def shown(ranges: Ranges, unit: int) -> dict[tuple[int, int], int]:
-    """Compositions that triangles with sides of whole ``unit``-ths show; each side up to beyond the last range."""
+    """Return the compositions in triangles with sides of whole ``unit``-ths; each side up to beyond the last range."""
     bounds = [bound * unit for bound in ranges.bounds]
     sides = range(int(2 * bounds[-1]) + 2 * unit)
     code = {side: 0 if side == 0 else 1 + bisect_left(bounds, side) for side in range(2 * len(sides))}
@@ -36,7 +36,7 @@ def shown(ranges: Ranges, unit: int) -> dict[tuple[int, int], int]:
     ],
     ids=lambda ranges: "-".join(ranges.names),
 )
-def test_compositions_are_just_what_triangles_show(ranges: Ranges) -> None:
+def test_compositions_agree_with_triangles(ranges: Ranges) -> None:
     calculus = distance_calculus(ranges)
     n = len(calculus.atoms)
     expected = {(i, j): calculus.compose(1 << i, 1 << j) for i, j in product(range(n), repeat=2)}
@@ -44,7 +44,7 @@ def test_compositions_are_just_what_triangles_show(ranges: Ranges) -> None:
 
 
 def test_the_default_table_by_hand() -> None:
-    """Up to 1, up to 3, beyond. Two near steps lead at most 2 away; a medium and a near one more than 0, at most 4."""
+    """Check bounds 1 and 3: two near steps lead at most 2 away; a medium and a near one more than 0, at most 4."""
     distance = distance_calculus()
     table = {
         ("near", "near"): ("same", "near", "medium"),
@@ -62,7 +62,7 @@ def test_the_default_table_by_hand() -> None:
 
 @settings(max_examples=200, deadline=None)
 @given(st.lists(st.tuples(st.integers(-40, 40), st.integers(-40, 40)), min_size=3, max_size=3))
-def test_points_of_the_plane_never_show_more(points: list[tuple[int, int]]) -> None:
+def test_points_of_the_plane_show_only_listed_compositions(points: list[tuple[int, int]]) -> None:
     distance = distance_calculus()
 
     def code(i: int, j: int) -> int:
@@ -73,7 +73,7 @@ def test_points_of_the_plane_never_show_more(points: list[tuple[int, int]]) -> N
 
 
 def test_closure_does_not_decide_distances() -> None:
-    """25 points, any two more than 1 and at most 3 apart: closed, and too many for a plane.
+    """Give 25 points, any two more than 1 and at most 3 apart: the network is closed, and the plane too small.
 
     Jung: they lie in a disc of radius √3; discs of radius ½ around them would be disjoint, 25 · π/4 = 19.6 in area,
     within a disc of radius √3 + ½, which has 15.7.
@@ -88,8 +88,8 @@ def test_closure_does_not_decide_distances() -> None:
 @pytest.mark.parametrize(
     ("names", "bounds", "message"),
     [
-        ((), (), "1 to 63 ranges"),
-        (tuple(map(str, range(64))), tuple(map(float, range(1, 64))), "1 to 63 ranges"),
+        ((), (), "must be 1 to 63, got 0"),
+        (tuple(map(str, range(64))), tuple(map(float, range(1, 64))), "must be 1 to 63, got 64"),
         (("near", "far"), (), "2 ranges of distance need 1 bounds"),
         (("near", "mid", "far"), (2.0, 1.0), "must rise"),
         (("near", "mid", "far"), (1.0, 1.0), "must rise"),
@@ -97,10 +97,10 @@ def test_closure_does_not_decide_distances() -> None:
         (("near", "far"), (-1.0,), "must rise"),
         (("near", "far"), (float("nan"),), "must rise"),
         (("near", "far"), (float("inf"),), "must rise"),
-        (("same", "far"), (1.0,), "none may be 'same'"),
-        (("near", "near"), (1.0,), "names of their own"),
+        (("same", "far"), (1.0,), "must differ from one another and from 'same'"),
+        (("near", "near"), (1.0,), "must differ from one another"),
     ],
 )
-def test_ranges_that_are_none_are_refused(names: tuple[str, ...], bounds: tuple[float, ...], message: str) -> None:
+def test_invalid_ranges_are_refused(names: tuple[str, ...], bounds: tuple[float, ...], message: str) -> None:
     with pytest.raises(SettingError, match=message):
         Ranges(names, bounds)

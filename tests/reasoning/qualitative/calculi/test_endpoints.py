@@ -1,4 +1,4 @@
-"""What follows from the order of numbers, against the published table and against numbers themselves."""
+"""Compare the calculi of ordered numbers with the published table and with numbers themselves."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ ROWS = {
 }
 
 
-def test_allens_compositions_are_the_published_ones() -> None:
+def test_allen_compositions_are_the_published_ones() -> None:
     allen = calculus("allen")
     for first, row in ROWS.items():
         for second, entry in zip(LETTERS, row.split(), strict=True):
@@ -42,7 +42,7 @@ def test_allens_compositions_are_the_published_ones() -> None:
             assert set(allen.members(found)) == set(expected), (first, second)
 
 
-def test_the_point_algebras_compositions_are_those_of_numbers() -> None:
+def test_point_compositions_are_those_of_numbers() -> None:
     point = calculus("point")
     expected = {"<<": "<", "<=": "<", "<>": "<=>", "=<": "<", "==": "=", "=>": ">", "><": "<=>", ">=": ">", ">>": ">"}
     for signs, entry in expected.items():
@@ -50,8 +50,8 @@ def test_the_point_algebras_compositions_are_those_of_numbers() -> None:
         assert "".join(point.members(composed)) == entry
 
 
-def test_an_allen_composition_holds_whatever_intervals_of_any_size_show() -> None:
-    """Random intervals with ends far from the six numbers that the table was read off."""
+def test_allen_compositions_hold_for_random_intervals() -> None:
+    """Draw intervals with ends far from the six numbers from which the table was derived."""
     allen, rng = calculus("allen"), np.random.default_rng(7)
     ends = np.sort(rng.integers(0, 9, (3, 60_000, 2)), axis=2)
     a, b, c = ends[:, (ends[:, :, 0] < ends[:, :, 1]).all(axis=0)]
@@ -64,7 +64,7 @@ def test_an_allen_composition_holds_whatever_intervals_of_any_size_show() -> Non
 def _allen(
     a: np.ndarray[tuple[int, int], np.dtype[np.int64]], b: np.ndarray[tuple[int, int], np.dtype[np.int64]]
 ) -> list[int]:
-    """By the signs of the four differences, written out once more."""
+    """Return the atoms by the signs of the four differences, written out independently."""
     by_signs = {
         (-1, -1, -1, -1): "<", (-1, -1, 0, -1): "m", (-1, -1, 1, -1): "o", (-1, 0, 1, -1): "fi", (-1, 1, 1, -1): "di",
         (0, -1, 1, -1): "s", (0, 0, 1, -1): "=", (0, 1, 1, -1): "si", (1, -1, 1, -1): "d", (1, 0, 1, -1): "f",
@@ -75,7 +75,7 @@ def _allen(
     return [SYMBOLS.index(by_signs[tuple(row)]) for row in signs]
 
 
-def test_directions_are_composed_as_points_of_a_grid_show() -> None:
+def test_directions_compose_like_points_of_a_grid() -> None:
     cd = calculus("cd")
     step = {"N": (0, 1), "NE": (1, 1), "E": (1, 0), "SE": (1, -1), "S": (0, -1), "SW": (-1, -1), "W": (-1, 0)}
     tile = {signs: name for name, signs in (step | {"NW": (-1, 1), "EQ": (0, 0)}).items()}
@@ -92,8 +92,8 @@ def test_directions_are_composed_as_points_of_a_grid_show() -> None:
 
 @settings(max_examples=25, deadline=None)
 @given(st.data())
-def test_a_product_composes_and_turns_round_atom_by_atom(data: st.DataObject) -> None:
-    """The grouping into products must not be told from composing single atoms."""
+def test_products_compose_and_convert_atom_by_atom(data: st.DataObject) -> None:
+    """Compare composition by groups of products with composition of single atoms."""
     ra = cast(ProductCalculus, calculus("ra"))
     x, y = ra.axes
     codes = st.lists(st.tuples(st.integers(0, 12), st.integers(0, 12)), max_size=8)
@@ -108,5 +108,5 @@ def test_a_product_composes_and_turns_round_atom_by_atom(data: st.DataObject) ->
     assert ra.converse(r) == sum(1 << ra.code_of((12 - i, 12 - j)) for i, j in set(first))
 
 
-def test_sizes_of_the_products() -> None:
+def test_numbers_of_atoms_of_the_products() -> None:
     assert [len(calculus(name).atoms) for name in ("cd", "ra", "ba")] == [9, 169, 2197]

@@ -1,4 +1,4 @@
-"""What every calculus obeys, and which of them are relation algebras."""
+"""Check the laws that every calculus obeys, and which calculi are relation algebras."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ SMALL = ("point", "allen", "rcc5", "rcc8", "cd", "ten", "distance", "direction-d
 
 
 def relations(name: str, most: int = 4) -> st.SearchStrategy[int]:
-    """Of few atoms, so that a wrong entry is not drowned in a union; and now and then nothing, or everything."""
+    """Draw relations of few atoms, so that unions do not hide wrong entries; sometimes the empty or universal one."""
     count = len(calculus(name).atoms)
     few = st.sets(st.integers(0, count - 1), max_size=most).map(lambda codes: sum(1 << code for code in codes))
     return st.one_of(few, few, few, st.just(calculus(name).universal))
@@ -33,7 +33,7 @@ def atoms(found: Calculus) -> Iterator[int]:
 @pytest.mark.parametrize("name", CALCULI)
 @settings(max_examples=25, deadline=None)
 @given(data=st.data())
-def test_the_converse_turns_compositions_round(name: str, data: st.DataObject) -> None:
+def test_the_converse_reverses_compositions(name: str, data: st.DataObject) -> None:
     found = calculus(name)
     r, s = data.draw(relations(name)), data.draw(relations(name))
     assert found.converse(found.converse(r)) == r
@@ -44,8 +44,8 @@ def test_the_converse_turns_compositions_round(name: str, data: st.DataObject) -
 @pytest.mark.parametrize("name", CALCULI)
 @settings(max_examples=25, deadline=None)
 @given(data=st.data())
-def test_a_triangle_is_possible_from_all_its_sides_or_from_none(name: str, data: st.DataObject) -> None:
-    """The cycle law, in both of its turns."""
+def test_all_readings_of_a_triangle_agree(name: str, data: st.DataObject) -> None:
+    """Check both forms of the cycle law."""
     found = calculus(name)
     r, s, t = (data.draw(relations(name)) for _ in range(3))
     possible = bool(found.compose(r, s) & t)
@@ -65,7 +65,7 @@ def test_composition_distributes_over_union(name: str, data: st.DataObject) -> N
 
 
 @pytest.mark.parametrize("name", CALCULI)
-def test_a_thing_may_come_back_to_itself(name: str) -> None:
+def test_a_composition_with_the_converse_has_the_identity(name: str) -> None:
     found = calculus(name)
     itself = 1 << found.identity
     for atom in list(atoms(found))[:200]:
@@ -76,21 +76,21 @@ def test_a_thing_may_come_back_to_itself(name: str) -> None:
 @pytest.mark.parametrize("name", [name for name in CALCULI if name != "ten"])
 @settings(max_examples=25, deadline=None)
 @given(data=st.data())
-def test_the_identity_changes_nothing(name: str, data: st.DataObject) -> None:
+def test_the_identity_is_neutral(name: str, data: st.DataObject) -> None:
     found = calculus(name)
     r = data.draw(relations(name))
     assert found.compose(1 << found.identity, r) == r == found.compose(r, 1 << found.identity)
 
 
-def test_what_a_thing_bears_to_itself_is_not_neutral_among_the_ten() -> None:
-    """Boxes that overlap in part bear it too."""
+def test_the_identity_of_the_ten_names_is_not_neutral() -> None:
+    """Check the atom of identity, which also holds of boxes that overlap in part."""
     ten = calculus("ten")
     assert ten.members(1 << ten.identity) == ("overlap",)
     assert ten.compose(1 << ten.identity, ten.relation(["left"])) != ten.relation(["left"])
 
 
 @pytest.mark.parametrize("name", SMALL)
-def test_which_compositions_are_associative_for_all_atoms(name: str) -> None:
+def test_composition_of_atoms_is_associative_where_stated(name: str) -> None:
     found = calculus(name)
     same = all(
         found.compose(found.compose(a, b), c) == found.compose(a, found.compose(b, c))
@@ -100,7 +100,7 @@ def test_which_compositions_are_associative_for_all_atoms(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", SMALL)
-def test_tables_that_obey_the_laws_are_left_as_they_are(name: str) -> None:
+def test_lawful_tables_are_left_unchanged(name: str) -> None:
     found = calculus(name)
     atoms_ = range(len(found.atoms))
     table = np.array([[found.compose(1 << i, 1 << j) for j in atoms_] for i in atoms_], dtype=np.uint64)
@@ -112,7 +112,7 @@ def test_tables_that_obey_the_laws_are_left_as_they_are(name: str) -> None:
 
 @settings(max_examples=50, deadline=None)
 @given(st.sampled_from(["point", "allen", "rcc8"]), st.data())
-def test_what_is_added_to_one_entry_alone_is_taken_back(name: str, data: st.DataObject) -> None:
+def test_an_addition_to_a_single_entry_is_removed(name: str, data: st.DataObject) -> None:
     found = calculus(name)
     assert isinstance(found, TableCalculus)
     size = len(found.atoms)
@@ -126,7 +126,7 @@ def test_what_is_added_to_one_entry_alone_is_taken_back(name: str, data: st.Data
         assert bool(violations) == bool((table != found.composition).any())
 
 
-def test_converses_that_do_not_come_back_are_refused() -> None:
+def test_converses_that_are_not_involutions_are_refused() -> None:
     with pytest.raises(CalculusError, match="atom itself"):
         lawful(np.array([1, 2, 0]), np.full((3, 3), 7, dtype=np.uint64), 0)
 
@@ -143,7 +143,7 @@ def test_composition_of_products_is_associative(name: str, data: st.DataObject) 
 @pytest.mark.parametrize("name", CALCULI)
 @settings(max_examples=25, deadline=None)
 @given(data=st.data())
-def test_the_pieces_of_a_relation_are_disjoint_and_make_it_up(name: str, data: st.DataObject) -> None:
+def test_the_pieces_of_a_relation_partition_it(name: str, data: st.DataObject) -> None:
     found = calculus(name)
     r = data.draw(relations(name, most=7))
     pieces = found.pieces(r)

@@ -1,4 +1,4 @@
-"""RCC-8's stated table against regions: every composition that a line shows is in it, and it has no other."""
+"""Compare RCC-8's stated table with regions: it has exactly the compositions that regions of a line show."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ DC, EC, PO, TPP, NTPP, TPPI, NTPPI, EQ = range(8)
 def connections(
     common: NDArray[np.bool_], touch: NDArray[np.bool_], part: NDArray[np.bool_], deep: NDArray[np.bool_]
 ) -> NDArray[np.int64]:
-    """Atoms of all pairs from: share inner points; share points; first within second; and within its interior."""
+    """Return the atoms of pairs that share inner points; share points; are first within second; within its interior."""
     conditions = [part & part.T, deep, part, deep.T, part.T, common, touch]
     return np.select(conditions, [EQ, NTPP, TPP, NTPPI, TPPI, PO, EC], default=DC)
 
@@ -37,8 +37,8 @@ def on_a_line() -> NDArray[np.int64]:
     )
 
 
-def test_regions_of_a_line_show_all_compositions_and_no_other(on_a_line: NDArray[np.int64]) -> None:
-    """RCC-8 can be realised in any dimension if regions may have several pieces (Renz 1998)."""
+def test_regions_of_a_line_show_exactly_the_compositions(on_a_line: NDArray[np.int64]) -> None:
+    """Use regions of several pieces, which realise RCC-8 in any dimension (Renz 1998)."""
     rcc8 = calculus("rcc8")
     shown = composition_in(on_a_line, 8)
     assert shown.tolist() == [[rcc8.compose(1 << i, 1 << j) for j in range(8)] for i in range(8)]
@@ -46,7 +46,7 @@ def test_regions_of_a_line_show_all_compositions_and_no_other(on_a_line: NDArray
 
 
 def test_discs_show_no_other_compositions() -> None:
-    """Centres and radii are whole numbers, so that touching is exact."""
+    """Use whole centres and radii, so that contact is exact."""
     rcc8 = calculus("rcc8")
     discs = np.array([(x, y, r) for x, y in product(range(0, 9, 2), range(0, 9, 2)) for r in range(1, 6)])
     x, y, r = discs.T
@@ -61,7 +61,7 @@ def test_discs_show_no_other_compositions() -> None:
     table = np.array([[rcc8.compose(1 << i, 1 << j) for j in range(8)] for i in range(8)], dtype=np.uint64)
     shown = composition_in(codes, 8)
     assert not (shown & ~table).any()
-    assert np.bitwise_count(shown).sum() > 150  # of 193; the rest asks for regions of other shapes
+    assert np.bitwise_count(shown).sum() > 150  # of 193; the others need regions of other shapes
 
 
 @pytest.mark.parametrize(
@@ -74,6 +74,6 @@ def test_discs_show_no_other_compositions() -> None:
         "disjoint meet overlap coveredBy inside covers contains equal",  # Egenhofer
     ],
 )
-def test_an_atom_is_written_as_in_other_places(signs: str) -> None:
+def test_atoms_have_the_names_of_other_reasoners(signs: str) -> None:
     assert [calculus("rcc8").code(sign) for sign in signs.split()] == list(range(8))
     assert calculus("rcc8").atoms == RCC8_ATOMS

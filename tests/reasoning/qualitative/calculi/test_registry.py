@@ -1,4 +1,4 @@
-"""Calculi by name, and atoms as users of other reasoners write them."""
+"""Test calculi by name, and atoms as users of other reasoners write them."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from deixis.reasoning.errors import UnknownAtomError, UnknownCalculusError
 from deixis.reasoning.qualitative.calculi.registry import CALCULI, calculus
 
 
-def test_a_calculus_is_built_once_and_bears_its_name() -> None:
+def test_a_calculus_is_built_once_and_has_its_name() -> None:
     for name in CALCULI:
         assert calculus(name) is calculus(name)
         assert calculus(name).name == name
@@ -17,7 +17,7 @@ def test_a_calculus_is_built_once_and_bears_its_name() -> None:
 
 
 @pytest.mark.parametrize(("name", "hint"), [("alen", "'allen'"), ("RCC8", "rcc8"), ("", "point, allen"), ("zzz", "ra")])
-def test_an_unknown_calculus_is_told_with_the_nearest_or_all(name: str, hint: str) -> None:
+def test_an_unknown_calculus_is_reported_with_the_nearest_or_all(name: str, hint: str) -> None:
     with pytest.raises(UnknownCalculusError, match=hint):
         calculus(name)
 
@@ -35,9 +35,7 @@ def test_allens_signs_in_the_usual_notations(signs: str) -> None:
     assert [calculus("allen").code(sign) for sign in signs.split()] == list(range(len(SYMBOLS)))
 
 
-def test_a_capital_is_no_sign_of_allens_as_it_stands_for_a_relation_in_one_notation_and_its_converse_in_another() -> (
-    None
-):
+def test_ambiguous_capitals_are_not_signs_of_allen_relations() -> None:
     for capital in "MOSDF":
         with pytest.raises(UnknownAtomError, match="allen has no relation"):
             calculus("allen").code(capital)
@@ -50,7 +48,7 @@ def test_tiles_in_any_case(signs: str) -> None:
     assert [cd.code(sign) for sign in signs.split()] == [cd.code(sign) for sign in plain]
 
 
-def test_a_tile_is_the_order_on_x_and_that_on_y() -> None:
+def test_a_tile_is_the_order_on_x_and_on_y() -> None:
     cd = calculus("cd")
     assert cd.members(cd.relation(["<,>", "=,>", ">,="])) == ("NW", "N", "E")
 
@@ -69,12 +67,12 @@ def test_a_tile_is_the_order_on_x_and_that_on_y() -> None:
         ("direction-distance", "N,nearr", "did you mean 'N,near'"),
     ],
 )
-def test_an_unknown_atom_is_told_with_what_may_be_meant(name: str, atom: str, message: str) -> None:
+def test_an_unknown_atom_is_reported_with_a_suggestion(name: str, atom: str, message: str) -> None:
     with pytest.raises(UnknownAtomError, match=message):
         calculus(name).code(atom)
 
 
-def test_only_where_atoms_decide_does_closure() -> None:
+def test_closure_decides_only_where_atoms_do() -> None:
     assert [name for name in CALCULI if not calculus(name).decided_by_closure] == [
         "ten",
         "distance",

@@ -1,4 +1,4 @@
-"""The ten names as a calculus: they part the rectangle algebra, and compose as boxes do."""
+"""Test the calculus of the ten names: they partition the rectangle algebra, and compose as boxes do."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def test_every_rectangle_atom_has_one_of_the_eleven_names() -> None:
     assert (set(ten.atoms[:10]), ten.atoms[10]) == (words, "overlap")
 
 
-def test_a_name_admits_what_the_ontology_says_and_shares_only_equal_boxes() -> None:
+def test_names_match_the_ontology_and_share_only_equal_boxes() -> None:
     relations: Relations = default_ontology().relations
     ten, equal = calculus("ten"), calculus("ra").relation(["=,="])
     for relation in relations.of_reading(Reading.EXACT):
@@ -37,8 +37,8 @@ def test_converses_are_the_inverses_of_the_ontology() -> None:
         assert ten.members(ten.converse(ten.relation([relation.word]))) == (inverse,)
 
 
-def test_compositions_are_just_what_boxes_show() -> None:
-    """All triples of intervals between six points on x and the same on y show every triple of boxes."""
+def test_compositions_agree_with_boxes() -> None:
+    """Combine all triples of intervals between six points on x and on y, which give every triple of boxes."""
     ten = calculus("ten")
     ends = np.array(list(combinations(range(6), 2)), dtype=float)
     low, high = ends.T
@@ -60,7 +60,7 @@ def _triples(n: int) -> list[tuple[np.ndarray[tuple[int, ...], np.dtype[np.intp]
 
 
 def test_a_closed_network_of_names_may_be_inconsistent() -> None:
-    """On y, c ends before b begins, b begins before d ends, and d ends before a begins: c and a cannot overlap."""
+    """Let, on y, c end before b begins, b begin before d ends, and d end before a begins: c and a cannot overlap."""
     ten = calculus("ten")
     stated = {"ab": "left", "ac": "overlap", "ad": "top_left", "bc": "top", "bd": "right", "cd": "overlap"}
     between = {pair: ten.relation([word]) for pair, word in stated.items()}

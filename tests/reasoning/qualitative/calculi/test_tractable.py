@@ -1,4 +1,4 @@
-"""The tractable subclasses: their published sizes, that they are closed, and that their definitions agree."""
+"""Check that the tractable subclasses have their published sizes, are closed, and match their definitions."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ RCC8_CLASSES = (RCC8_HORN, RCC8_C8, RCC8_Q8)
     [
         (ORD_HORN, 868),  # Nebel and Bürckert 1995
         (POINTIZABLE, 188),  # Ladkin and Maddux 1988
-        (CONVEX, 83),  # the 82 of the literature and the empty relation
+        (CONVEX, 83),  # the 82 of the literature, and the empty relation
         (RCC5_HORN, 28),  # Renz and Nebel 1999
         (RCC8_HORN, 148),  # Renz and Nebel 1999
         (RCC8_C8, 158),  # Renz 1999
@@ -36,22 +36,22 @@ RCC8_CLASSES = (RCC8_HORN, RCC8_C8, RCC8_Q8)
     ],
     ids=lambda value: getattr(value, "name", str(value)),
 )
-def test_the_sizes_are_the_published_ones_the_empty_relation_included(subclass: Subclass, size: int) -> None:
+def test_subclasses_have_the_published_sizes(subclass: Subclass, size: int) -> None:
     assert len(subclass.relations) == size
     assert {0, (1 << subclass.atoms) - 1} <= subclass.relations
     assert all(1 << code in subclass.relations for code in range(subclass.atoms))
 
 
-def test_76_relations_of_rcc8_are_in_no_maximal_tractable_subclass() -> None:
+def test_76_rcc8_relations_are_in_no_maximal_tractable_subclass() -> None:
     assert 256 - len(frozenset[int]().union(*(subclass.relations for subclass in RCC8_CLASSES))) == 76  # Renz 1999
 
 
-def test_convex_relations_are_pointizable_and_these_are_in_ord_horn() -> None:
+def test_convex_is_within_pointizable_within_ord_horn() -> None:
     assert CONVEX.relations < POINTIZABLE.relations < ORD_HORN.relations
 
 
 @pytest.mark.parametrize("subclass", [*RCC8_CLASSES, RCC5_HORN, CONVEX, POINTIZABLE, ORD_HORN], ids=lambda s: s.name)
-def test_a_subclass_is_closed_under_what_closure_does(subclass: Subclass) -> None:
+def test_a_subclass_is_closed_under_the_operations_of_closure(subclass: Subclass) -> None:
     found = calculus({5: "rcc5", 8: "rcc8", 13: "allen"}[subclass.atoms])
     members = subclass.relations
     assert all(found.converse(r) in members for r in members)
@@ -61,21 +61,21 @@ def test_a_subclass_is_closed_under_what_closure_does(subclass: Subclass) -> Non
 
 
 @pytest.mark.parametrize("subclass", [RCC5_HORN, RCC8_HORN, ORD_HORN], ids=lambda s: s.name)
-def test_a_hull_is_the_least_member_that_holds_a_relation(subclass: Subclass) -> None:
+def test_a_hull_is_the_least_member_above_a_relation(subclass: Subclass) -> None:
     for relation in range(1, 1 << subclass.atoms, 1 if subclass.atoms < 10 else 37):
         hull = int(subclass.hulls[relation])
         assert hull in subclass.relations and not relation & ~hull
         assert all(not hull & ~member for member in subclass.relations if not relation & ~member)
 
 
-def test_rcc5_composes_as_the_same_relations_of_rcc8_do() -> None:
+def test_rcc5_composes_like_its_relations_in_rcc8() -> None:
     rcc5, rcc8 = calculus("rcc5"), calculus("rcc8")
     for r, s in product(range(1, 32), repeat=2):
         assert rcc8_of_rcc5(rcc5.compose(r, s)) == rcc8.compose(rcc8_of_rcc5(r), rcc8_of_rcc5(s))
 
 
-def test_pre_convex_relations_are_those_that_ord_horn_clauses_state() -> None:
-    """Conjunctions of clauses over end points with at most one literal that is no inequality (Nebel and Bürckert)."""
+def test_pre_convex_relations_are_those_of_ord_horn_clauses() -> None:
+    """Conjoin clauses over end points with at most one literal that is not an inequality (Nebel and Bürckert)."""
     holds = []  # for each pair of an end of a and an end of b: masks of <, =, >
     places = ((0, 0), (0, 1), (0, 2), (0, 3), (0, 4), (1, 2), (1, 3), (1, 4), (2, 2), (2, 3), (2, 4), (3, 4), (4, 4))
     for end, other in product((0, 1), (1, 3)):
@@ -100,7 +100,7 @@ def sum_of(masks: tuple[int, ...]) -> int:
     return union
 
 
-def test_a_split_takes_the_largest_piece_first_and_needs_few() -> None:
+def test_a_split_takes_the_largest_piece_first_and_few_pieces() -> None:
     sizes = []
     for relation in range(1, 1 << 13, 5):
         pieces = ORD_HORN.split(relation)

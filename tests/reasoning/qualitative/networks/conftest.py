@@ -1,4 +1,4 @@
-"""What the tests of networks share: every way for four intervals to lie, found by trying them all."""
+"""Share a fixture among the tests of networks: every arrangement of four intervals, found by trying them all."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ PAIRS = list(combinations(range(4), 2))
 
 @pytest.fixture(scope="session")
 def four_intervals() -> NDArray[np.uint64]:
-    """Shape (ways, 6): one bit for the Allen atom of each of PAIRS. Eight end points need no more than eight places."""
+    """Atoms of four intervals, shape (ways, 6): a bit for the Allen atom of each of PAIRS; eight places suffice."""
     ends = np.array(list(combinations(range(8), 2)), dtype=np.float64)
     way = np.indices((len(ends),) * 4).reshape(4, -1)
     code = allen_relations(ends[:, None, 0], ends[:, None, 1], ends[None, :, 0], ends[None, :, 1]).astype(np.int64)

@@ -1,4 +1,4 @@
-"""Boxes as the proof that networks in several calculi are consistent: found where there are some, verified always."""
+"""Test boxes as the proof that networks in several calculi are consistent: found if there are any, always verified."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from deixis.deadline import Deadline
 from deixis.reasoning.qualitative.calculi.bridges import links_between, to_ra
 from deixis.reasoning.qualitative.calculi.registry import calculus
-from deixis.reasoning.qualitative.networks.boxes import bears, find_boxes
+from deixis.reasoning.qualitative.networks.boxes import find_boxes, satisfies
 from deixis.reasoning.qualitative.networks.closure import close
 from deixis.reasoning.qualitative.networks.combination import close_jointly, joint_conflict, solve_jointly
 from deixis.reasoning.qualitative.networks.network import Constraint, Network
@@ -27,7 +27,7 @@ Boxes = NDArray[np.float64]
 
 
 def networks_of(names: str, boxes: Boxes, rng: np.random.Generator, share: float, others: float) -> list[Network]:
-    """What boxes bear of a share of the pairs in each calculus, with other atoms beside it."""
+    """Return the relations of boxes for a share of the pairs in each calculus, with other atoms beside them."""
     found, n = [], len(boxes)
     for name in names.split("+"):
         codes, atoms = relate(boxes, name, reference=1.0), len(calculus(name).atoms)
@@ -92,7 +92,7 @@ def atom_by_hand(name: str, a: list[list[Fraction]], b: list[list[Fraction]]) ->
 
 
 def holds_by_hand(boxes: Boxes, network: Network) -> bool:
-    """Return whether boxes bear a network, worked out in exact numbers without what is tested."""
+    """Return True if boxes satisfy a network, computed in exact numbers by independent code."""
     exact = [[[Fraction(value) for value in corner] for corner in box] for box in boxes.tolist()]
     chosen, ra = network.calculus, calculus("ra")
     for c in network.constraints:
@@ -104,7 +104,7 @@ def holds_by_hand(boxes: Boxes, network: Network) -> bool:
 
 
 @pytest.mark.parametrize("names", NAMES)
-def test_what_boxes_bear_is_borne_by_boxes_again(names: str) -> None:
+def test_relations_of_boxes_are_satisfied_by_found_boxes(names: str) -> None:
     for seed, (share, others) in enumerate([(1.0, 0.0), (0.6, 0.2), (0.3, 0.4), (0.2, 0.05)]):
         rng = np.random.default_rng([seed, len(names)])
         networks = networks_of(names, random_boxes(7, rng), rng, share, others)
@@ -115,8 +115,8 @@ def test_what_boxes_bear_is_borne_by_boxes_again(names: str) -> None:
 
 @settings(max_examples=60)
 @given(st.integers(0, 2**32 - 1), st.sampled_from(NAMES), st.integers(1, 4))
-def test_verdicts_on_random_networks_agree_with_boxes_at_hand(seed: int, names: str, n: int) -> None:
-    """Random relations: what sampled boxes bear is never refuted, and what is called consistent has boxes."""
+def test_verdicts_on_random_networks_agree_with_sampled_boxes(seed: int, names: str, n: int) -> None:
+    """Check that networks of sampled boxes are never refuted, and that consistent ones have boxes."""
     rng = np.random.default_rng(seed)
     networks = []
     for name in names.split("+")[:3]:
@@ -131,11 +131,11 @@ def test_verdicts_on_random_networks_agree_with_boxes_at_hand(seed: int, names: 
         assert all(holds_by_hand(found, network) for network in networks)
     some = (random_boxes(n, rng) for _ in range(20))
     if verdict is Verdict.INCONSISTENT:
-        assert not any(all(bears(boxes, network) for network in networks) for boxes in some)
+        assert not any(all(satisfies(boxes, network) for network in networks) for boxes in some)
 
 
 def test_a_contradiction_is_never_called_consistent() -> None:
-    """An atom of one calculus that contradicts what follows in another, for a pair of which nothing is stated there."""
+    """Contradict in one calculus what follows in another, for a pair without a stated relation."""
     for seed in range(25):
         rng = np.random.default_rng(seed)
         names = COMBINATIONS[seed % 4]
@@ -155,8 +155,8 @@ def test_a_contradiction_is_never_called_consistent() -> None:
             assert solved([first, contrary])[0] is not Verdict.CONSISTENT
 
 
-def test_only_boxes_refute_what_closing_lets_pass() -> None:
-    """The centre of a lies left of that of b and b's of c's, by sides that only search rules out."""
+def test_only_boxes_refute_what_closure_accepts() -> None:
+    """Put a's centre left of b's and b's left of c's, with sides that only search excludes."""
     lines = [(3, 0, "m s"), (3, 1, "o"), (3, 2, "m s"), (0, 1, "d di"), (1, 2, "d di"), (0, 2, "f fi")]
     ra, cd = calculus("ra"), calculus("cd")
     boxes = Network(
@@ -174,8 +174,8 @@ def test_only_boxes_refute_what_closing_lets_pass() -> None:
     assert conflict is not None and {name for name, _ in conflict.constraints} == {"ra", "cd"}
 
 
-def test_regions_that_are_no_boxes_stay_undecided() -> None:
-    """An L beside a box in its notch: apart, though the one bounding box is within the other."""
+def test_regions_other_than_boxes_stay_undecided() -> None:
+    """Give an L beside a box in its notch: apart, although one bounding box is within the other."""
     ra, rcc8 = calculus("ra"), calculus("rcc8")
     networks = [
         Network(ra, 2, (Constraint(0, 1, ra.relation(["d,d"])),)),
@@ -186,7 +186,7 @@ def test_regions_that_are_no_boxes_stay_undecided() -> None:
     assert "regions of other shapes may" in solution.reason
 
 
-def test_points_for_which_the_plane_has_no_room_stay_undecided() -> None:
+def test_points_that_do_not_fit_the_plane_stay_undecided() -> None:
     distance = calculus("distance")
     medium = distance.relation(["medium"])
     pairs = tuple(Constraint(i, j, medium) for i in range(25) for j in range(i))
@@ -213,7 +213,7 @@ def test_the_same_seed_finds_the_same_boxes() -> None:
     assert (first.boxes == second.boxes).all()
 
 
-def test_calculi_of_no_boxes_in_the_plane_are_named() -> None:
+def test_calculi_without_boxes_are_reported() -> None:
     point = calculus("point")
     found = find_boxes([Network(point, 1, ())], lambda name, i, j: point.universal)
     assert found.boxes is None and "point" in found.reason

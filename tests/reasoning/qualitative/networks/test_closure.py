@@ -1,4 +1,4 @@
-"""Algebraic closure: its laws, an independent slow closure, sampled geometry, and the limits it keeps."""
+"""Test algebraic closure: its laws, a slow independent closure, sampled geometry, and its limits."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def atom_table(chosen: Calculus) -> list[list[int]]:
 
 
 def slow_closure(network: Network) -> dict[tuple[int, int], int] | None:
-    """Path consistency as the textbooks have it, atom by atom; None where a pair is left with nothing."""
+    """Compute path consistency as in textbooks, atom by atom; return None if a pair is emptied."""
     chosen, things = network.calculus, range(network.size)
     table = atom_table(chosen)
     relation = {(i, j): network.stated(i, j) for i, j in product(things, repeat=2)}
@@ -65,7 +65,7 @@ def slow_closure(network: Network) -> dict[tuple[int, int], int] | None:
 
 @SMALL
 @given(networks())
-def test_it_is_what_a_slow_closure_gives(network: Network) -> None:
+def test_closure_agrees_with_a_slow_closure(network: Network) -> None:
     closed, slow = close(network), slow_closure(network)
     assert closed.complete
     assert closed.consistent == (slow is not None)
@@ -75,7 +75,7 @@ def test_it_is_what_a_slow_closure_gives(network: Network) -> None:
 
 @settings(SMALL, max_examples=10)
 @given(networks(("ra",), most=3))
-def test_relations_that_are_no_products_close_as_the_slow_closure_closes_them(network: Network) -> None:
+def test_relations_that_are_not_products_agree_with_slow_closure(network: Network) -> None:
     closed, slow = close(network), slow_closure(network)
     assert closed.consistent == (slow is not None)
     if slow is not None:
@@ -99,7 +99,7 @@ def products(draw: st.DrawFn, name: str) -> Network:
 
 @settings(SMALL, max_examples=25)
 @given(st.sampled_from(["ra", "cd", "ba"]).flatmap(products))
-def test_products_close_axis_by_axis_to_what_they_close_to_at_once(network: Network) -> None:
+def test_closing_by_axis_agrees_with_closing_the_whole_product(network: Network) -> None:
     apart, joint = close(network), close(network, joint=True)
     assert len(apart.parts) > len(joint.parts) == 1
     assert apart.consistent == joint.consistent
@@ -110,7 +110,7 @@ def test_products_close_axis_by_axis_to_what_they_close_to_at_once(network: Netw
 
 @SMALL
 @given(networks(), st.randoms(use_true_random=False))
-def test_it_does_not_depend_on_the_order_of_things(network: Network, random: object) -> None:
+def test_closure_does_not_depend_on_the_order_of_things(network: Network, random: object) -> None:
     order = list(range(network.size))
     random.shuffle(order)  # type: ignore[attr-defined]
     renamed = network.only(Constraint(order[c.first], order[c.second], c.relation) for c in network.constraints)
@@ -123,7 +123,7 @@ def test_it_does_not_depend_on_the_order_of_things(network: Network, random: obj
 
 @SMALL
 @given(networks())
-def test_what_is_closed_stays_as_it_is(network: Network) -> None:
+def test_closing_a_closed_network_changes_nothing(network: Network) -> None:
     closed = close(network)
     if closed.consistent:
         pairs = list(product(range(network.size), repeat=2))
@@ -133,7 +133,7 @@ def test_what_is_closed_stays_as_it_is(network: Network) -> None:
 
 
 @pytest.mark.parametrize("name", ["point", "allen", "ra", "rcc8", "cd"])
-def test_nothing_follows_from_nothing(name: str) -> None:
+def test_an_empty_network_stays_universal(name: str) -> None:
     closed = close(Network(calculus(name), 5, ()))
     assert closed.narrowed == 0
     assert closed.relation(0, 4) == calculus(name).universal
@@ -150,7 +150,7 @@ def test_a_chain_closes_at_every_size_of_a_word(size: int) -> None:
 
 
 @pytest.mark.parametrize("seed", range(5))
-def test_what_holds_of_sampled_intervals_is_never_ruled_out(seed: int) -> None:
+def test_relations_of_sampled_intervals_are_never_excluded(seed: int) -> None:
     rng = np.random.default_rng(seed)
     low = rng.integers(0, 9, 40).astype(np.float64)
     high = low + rng.integers(1, 5, 40).astype(np.float64)
@@ -162,23 +162,23 @@ def test_what_holds_of_sampled_intervals_is_never_ruled_out(seed: int) -> None:
     assert (relations >> codes.astype(np.uint64) & np.uint64(1)).all()
 
 
-def test_a_thing_must_be_able_to_be_itself() -> None:
+def test_a_thing_must_be_identical_to_itself() -> None:
     assert close(Network(POINT, 1, (Constraint(0, 0, POINT.relation(["=", "<"])),))).consistent
     closed = close(Network(POINT, 2, (Constraint(1, 1, POINT.relation(["<"])),)))
     assert closed.emptied == (1, 1)
 
 
-def test_constraints_on_one_pair_hold_together_whichever_way_they_are_written() -> None:
+def test_constraints_on_one_pair_are_intersected_both_ways() -> None:
     stated = (Constraint(0, 1, POINT.relation(["<", "="])), Constraint(1, 0, POINT.relation(["=", "<"])))
     assert POINT.members(close(Network(POINT, 2, stated)).relation(0, 1)) == ("=",)
 
 
-def test_the_pair_of_which_nothing_is_left_is_named() -> None:
+def test_the_emptied_pair_is_reported() -> None:
     before = POINT.relation(["<"])
     assert close(Network(POINT, 2, (Constraint(0, 1, before), Constraint(1, 0, before)))).emptied == (1, 0)
 
 
-def test_time_runs_out_honestly_and_progress_is_told() -> None:
+def test_closure_stops_in_time_and_reports_progress() -> None:
     before = ALLEN.relation(["<", "m", "o"])
     network = Network(ALLEN, 700, tuple(Constraint(i, i + 1, before) for i in range(699)))
     told: list[tuple[int, int]] = []
@@ -196,13 +196,13 @@ def test_an_interruption_from_progress_gets_through() -> None:
         close(network, progress=interrupt)
 
 
-def test_what_does_not_fit_is_refused_before_it_is_tried() -> None:
+def test_a_network_too_large_for_memory_is_refused() -> None:
     with pytest.raises(LimitError, match=r"up to 10,922 things"):
         close(Network(ALLEN, 10**9, ()))
 
 
 @pytest.mark.parametrize(("name", "bits"), [("allen", 16), ("ra", 169)])
-def test_memory_grows_with_the_square_and_no_more(name: str, bits: int) -> None:
+def test_memory_grows_only_with_the_square(name: str, bits: int) -> None:
     tracemalloc.start()
     kept = NetworkState(calculus(name), 1024)
     _, peak = tracemalloc.get_traced_memory()
@@ -211,14 +211,14 @@ def test_memory_grows_with_the_square_and_no_more(name: str, bits: int) -> None:
     assert peak < 1.2 * 1024 * 1024 * (bits + 1) / 8
 
 
-def test_constraints_about_nothing_are_refused() -> None:
+def test_constraints_on_unknown_things_are_refused() -> None:
     with pytest.raises(NetworkError, match="0 to 1"):
         Network(POINT, 2, (Constraint(0, 2, 1),))
     with pytest.raises(NetworkError, match="3 atoms"):
         Network(POINT, 2, (Constraint(0, 1, 8),))
 
 
-def test_a_choice_between_axes_is_no_product() -> None:
+def test_a_choice_between_axes_is_not_a_product() -> None:
     assert isinstance(RA, ProductCalculus)
     x, y = (axis.relation(["<"]) for axis in RA.axes)
     left, below = RA.of_axes([x, RA.axes[1].universal]), RA.of_axes([RA.axes[0].universal, y])

@@ -1,4 +1,4 @@
-"""Calculi closed together: what neither finds alone, who found it, and honesty about what stays open."""
+"""Test calculi closed together: contradictions that neither finds alone, contributions, and undecided cases."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ def network(name: str, size: int, *lines: tuple[int, int, str]) -> Network:
     return Network(chosen, size, tuple(Constraint(i, j, chosen.relation(signs.split())) for i, j, signs in lines))
 
 
-# a lies left of b as boxes; as regions a is part of c, and c part of b: fine each, and not together
+# a lies left of b as boxes; as regions a is part of c, and c part of b: each is consistent, both together are not
 BOXES = network("ra", 3, (0, 1, "<,="))
 REGIONS = network("rcc8", 3, (0, 2, "NTPP"), (2, 1, "NTPP"))
 
 
-def test_a_contradiction_of_the_whole_that_is_none_of_a_part() -> None:
+def test_a_contradiction_that_no_single_network_has() -> None:
     assert solve(BOXES).verdict is solve(REGIONS).verdict is Verdict.CONSISTENT
     links = links_between([RA, RCC8])
     solution = solve_jointly([BOXES, REGIONS], links)
@@ -51,14 +51,14 @@ def test_what_each_contributes_is_reported() -> None:
     assert RCC8.members(closed.relation("rcc8", 0, 2)) == ("DC",)
 
 
-def test_without_bridges_it_is_what_each_calculus_closes_to() -> None:
+def test_without_bridges_each_calculus_closes_by_itself() -> None:
     boxes = network("ra", 3, (0, 1, "<,m"), (1, 2, "<,s"))
     closed = close_jointly([boxes, REGIONS], [])
     assert all(closed.relation("ra", i, j) == close(boxes).relation(i, j) for i in range(3) for j in range(3))
     assert all(closed.relation("rcc8", i, j) == close(REGIONS).relation(i, j) for i in range(3) for j in range(3))
 
 
-def test_boxes_prove_what_is_said_in_several_calculi() -> None:
+def test_boxes_prove_consistency_in_several_calculi() -> None:
     links = links_between([RA, RCC8])
     fine = network("rcc8", 3, (0, 1, "DC"))
     solution = solve_jointly([BOXES, fine], links)
@@ -68,24 +68,24 @@ def test_boxes_prove_what_is_said_in_several_calculi() -> None:
     assert solve_jointly([network("ra", 3), network("rcc8", 3)], links).verdict is Verdict.CONSISTENT
 
 
-def test_a_chain_of_bridges_carries_on() -> None:
-    """Equal boxes have one centre (cd), so that they are no distance apart."""
+def test_bridges_propagate_along_a_chain() -> None:
+    """Give equal boxes, which have one centre (cd), so that their distance is 0."""
     networks = [network("ra", 2, (0, 1, "=,=")), network("cd", 2), network("distance", 2)]
     closed = close_jointly(networks, links_between([RA, CD, DISTANCE]))
     assert CD.members(closed.relation("cd", 0, 1)) == ("EQ",)
     assert DISTANCE.members(closed.relation("distance", 0, 1)) == ("same",)
 
 
-def test_networks_that_do_not_fit_together_are_refused() -> None:
+def test_networks_over_different_things_are_refused() -> None:
     with pytest.raises(NetworkError, match="same things"):
         close_jointly([BOXES, network("rcc8", 4)], [])
-    with pytest.raises(NetworkError, match="a calculus each"):
+    with pytest.raises(NetworkError, match="a calculus of their own"):
         close_jointly([BOXES, BOXES], [])
     with pytest.raises(NetworkError, match="no network here is in cd"):
         close_jointly([BOXES], []).relation("cd", 0, 1)
 
 
-def test_time_runs_out_honestly() -> None:
+def test_joint_closure_reports_that_time_ran_out() -> None:
     solution = solve_jointly(
         [BOXES, network("rcc8", 3, (0, 1, "DC"))], links_between([RA, RCC8]), deadline=Deadline.after(-1.0)
     )

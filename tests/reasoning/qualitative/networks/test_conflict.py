@@ -1,4 +1,4 @@
-"""Minimal conflicts: inconsistent, nothing dispensable, and found in bounded time among thousands of constraints."""
+"""Check that conflicts are inconsistent, minimal, and found in bounded time among thousands of constraints."""
 
 from __future__ import annotations
 
@@ -49,12 +49,12 @@ def test_a_conflict_that_only_search_finds_is_minimal_too() -> None:
     assert_minimal(Network(ALLEN, 7, constraints), conflict)
 
 
-# Allen's (1983) Figure 5, which only search finds inconsistent, and one of its pairs once more
+# Allen's (1983) Figure 5, which only search finds inconsistent, with one of its pairs repeated
 FIGURE_5 = ((3, 0, "m s"), (3, 1, "o"), (3, 2, "m s"), (0, 1, "d di"), (1, 2, "d di"), (0, 2, "f fi"))
 STATED = tuple(Constraint(i, j, ALLEN.relation(signs.split())) for i, j, signs in FIGURE_5)
 
 
-def test_what_closure_refutes_is_thinned_out_by_search() -> None:
+def test_a_conflict_found_by_closure_is_minimised_by_search() -> None:
     network = Network(ALLEN, 4, (*STATED, Constraint(0, 1, ALLEN.relation(["o", "di"]))))
     assert solve(network).refuted
     conflict = minimal_conflict(network)
@@ -64,17 +64,17 @@ def test_what_closure_refutes_is_thinned_out_by_search() -> None:
 
 @settings(max_examples=60, deadline=None)
 @given(st.lists(st.tuples(st.integers(0, 4), st.integers(0, 4), st.integers(0, ALLEN.universal)), max_size=4))
-def test_conflicts_around_one_that_closure_misses_are_minimal_by_search(more: list[tuple[int, int, int]]) -> None:
+def test_conflicts_that_closure_misses_are_minimal_by_search(more: list[tuple[int, int, int]]) -> None:
     network = Network(ALLEN, 5, STATED + tuple(Constraint(i, j, r) for i, j, r in more if i != j))
     assert_minimal(network, minimal_conflict(network))
 
 
-def test_a_conflict_that_is_known_to_be_there_is_named_however_little_time_there_is() -> None:
+def test_a_known_conflict_is_returned_even_without_time() -> None:
     conflict = minimal_conflict(Network(ALLEN, 4, STATED), deadline=Deadline.after(0.0), inconsistent=True)
     assert conflict == NetworkConflict(STATED, False)
 
 
-def test_the_ten_names_are_thinned_out_in_the_calculus_that_decides_them() -> None:
+def test_conflicts_of_the_ten_names_are_minimised_by_rectangles() -> None:
     ten = calculus("ten")
     circle = [(0, 1), (1, 2), (2, 0), (0, 3)]
     network = Network(ten, 4, tuple(Constraint(i, j, ten.relation(["left"])) for i, j in circle))
@@ -82,7 +82,7 @@ def test_the_ten_names_are_thinned_out_in_the_calculus_that_decides_them() -> No
 
 
 @pytest.mark.parametrize("things", [2, 150, 2000])
-def test_ten_thousand_contradictory_constraints_take_bounded_time(things: int) -> None:
+def test_ten_thousand_constraints_take_bounded_time(things: int) -> None:
     rng = np.random.default_rng(things)
     ends = [(int(i), int(j)) for i, j in rng.integers(0, things, (10_000, 2)) if i != j]
     network = Network(POINT, things, tuple(Constraint(i, j, POINT.relation(["<"])) for i, j in ends))
@@ -102,13 +102,13 @@ def test_a_constraint_can_contradict_itself() -> None:
         assert conflict == NetworkConflict((wrong,), True)
 
 
-def test_when_time_runs_out_it_does_not_claim_to_be_minimal() -> None:
+def test_without_time_a_conflict_is_not_called_minimal() -> None:
     circle = tuple(Constraint(i, (i + 1) % 3, 1) for i in range(3))
     conflict = minimal_conflict(Network(POINT, 3, circle), deadline=Deadline.after(-1.0))
     assert conflict is None or not conflict.minimal
 
 
-def test_dead_ends_are_left_out_and_circles_are_not() -> None:
+def test_dead_ends_are_removed_and_cycles_are_kept() -> None:
     tree = tuple(Constraint(i, i + 1, 1) for i in range(5))
     assert without_leaves(Network(POINT, 6, tree)) == ()
     circle = (*tree, Constraint(4, 2, 1))

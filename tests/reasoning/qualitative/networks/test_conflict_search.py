@@ -1,4 +1,4 @@
-"""The conflict-driven search: verdicts against orders of end points, the proofs it leaves, and how far it reaches."""
+"""Test the conflict-driven search: verdicts against orders of end points, its proofs, and its reach."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ ALLEN, RA = calculus("allen"), calculus("ra")
 
 
 def random_network(chosen: Calculus, things: int, degree: float, atoms: float, seed: int) -> Network:
-    """Each pair is constrained with the probability that gives the degree, each atom is in with that of the label."""
+    """Return a network of random constraints: ``degree`` per thing on average, of ``atoms`` atoms on average."""
     rng, size = np.random.default_rng(seed), len(chosen.atoms)
     constraints = []
     for i, j in combinations(range(things), 2):
@@ -34,13 +34,13 @@ def random_network(chosen: Calculus, things: int, degree: float, atoms: float, s
 
 
 def placeable(network: Network) -> bool:
-    """Whether intervals with end points among 2n numbers, which are enough for n of them, can be placed as stated."""
+    """Return True if n intervals satisfy the network; end points among 2n numbers are enough for that."""
     ends = np.array(list(combinations(range(2 * network.size), 2)), dtype=np.float64)
     low, high = ends.T
     atoms = 1 << allen_relations(low[:, None], high[:, None], low, high).astype(np.int64)
 
     def place(thing: int, left: list[NDArray[np.int64]]) -> bool:
-        """Try each place that is left for a thing, and keep of the later things' places what agrees with it."""
+        """Try each remaining place of a thing, and keep the compatible places of the later things."""
         if thing == network.size:
             return True
         for spot in left[thing]:
@@ -53,13 +53,13 @@ def placeable(network: Network) -> bool:
 
 
 @pytest.mark.parametrize("seed", range(8))
-def test_verdicts_are_those_of_placing_intervals(seed: int) -> None:
+def test_verdicts_agree_with_placing_intervals(seed: int) -> None:
     network = random_network(ALLEN, 6, 5.0, 4.5, seed)
     assert solve(network).verdict is (Verdict.CONSISTENT if placeable(network) else Verdict.INCONSISTENT)
 
 
 def backtracking(network: Network) -> bool:
-    """Whether some choice of atoms is closed, by trying them pair after pair."""
+    """Return True if some choice of atoms is closed, by trying them pair after pair."""
     chosen, size = network.calculus, network.size
     table: NDArray[np.object_] = np.array([[network.stated(i, j) for j in range(size)] for i in range(size)], object)
 
@@ -98,14 +98,14 @@ def backtracking(network: Network) -> bool:
 def test_closed_networks_are_found_where_backtracking_finds_one(
     name: str, degree: float, atoms: float, seed: int
 ) -> None:
-    """Closed networks of atoms decide rcc8; in the other calculus they are what an undecided verdict promises."""
+    """Check that the search agrees: closed atoms decide rcc8; in the other calculus they make a verdict undecided."""
     network = random_network(calculus(name), 6, degree, atoms, seed)
     assert (solve(network).verdict is Verdict.INCONSISTENT) != backtracking(network)
 
 
 @pytest.fixture(scope="module")
 def wide() -> TableCalculus:
-    """Intervals with an order of points beside, as one table of 39 atoms, of which no tractable subclass is known."""
+    """Intervals with an order of points beside, as one table of 39 atoms without a known tractable subclass."""
     both = ProductCalculus("both", (*ALLEN.factors, *calculus("point").factors))
     atoms = range(len(both.atoms))
     table = [[both.compose(1 << i, 1 << j) for j in atoms] for i in atoms]
@@ -114,7 +114,7 @@ def wide() -> TableCalculus:
 
 
 @pytest.mark.parametrize("seed", range(6))
-def test_many_atoms_without_a_subclass_give_the_same_verdict(wide: TableCalculus, seed: int) -> None:
+def test_a_wide_table_gives_the_verdict_of_its_intervals(wide: TableCalculus, seed: int) -> None:
     network = random_network(ALLEN, 11, 8.0, 5.5, seed)
     widened = (
         Constraint(c.first, c.second, sum(0b111 << 3 * code for code in bits(c.relation))) for c in network.constraints
@@ -126,8 +126,8 @@ def test_many_atoms_without_a_subclass_give_the_same_verdict(wide: TableCalculus
 
 
 @pytest.mark.parametrize("seed", range(8))
-def test_rectangles_with_alternatives_are_decided_as_by_their_closure(seed: int) -> None:
-    """Atoms of rectangles that closure leaves are consistent, so that a scenario proves it and none refutes it."""
+def test_rectangle_alternatives_agree_with_their_closure(seed: int) -> None:
+    """Check closed atoms of rectangles, which are consistent, so that a scenario proves it and none refutes it."""
     assert isinstance(RA, ProductCalculus)
     network = random_network(RA, 5, 4.0, 6.0, seed)
     solution = solve(network, scenario=True)
@@ -153,7 +153,7 @@ def test_hard_networks_leave_a_scenario_that_closure_confirms(name: str, degree:
     assert Verdict.UNDECIDED not in verdicts
 
 
-def test_what_is_left_of_a_stated_pair_is_within_a_tractable_part_of_it() -> None:
+def test_remaining_relations_are_within_a_tractable_relation() -> None:
     assert ALLEN.factors[0].tractable is not None
     network = random_network(ALLEN, 40, 8.0, 6.5, 3)
     closed = close(network).parts[0][None, :, :, 0]
@@ -167,16 +167,16 @@ def test_what_is_left_of_a_stated_pair_is_within_a_tractable_part_of_it() -> Non
         assert not hull & ~int(closed[0, i, j]) and int(search.masks[0, i, j])
 
 
-def test_eight_networks_at_the_phase_transition_take_a_moment() -> None:
+def test_eight_networks_at_the_phase_transition_are_fast() -> None:
     networks = [random_network(ALLEN, 60, 9.5, 6.5, seed) for seed in range(8)]
-    solve(networks[0])  # compiles
+    solve(networks[0])  # compile
     started = time.process_time()
     verdicts = {solve(network, Deadline.after(30.0)).verdict for network in networks}
     assert verdicts == {Verdict.CONSISTENT, Verdict.INCONSISTENT}
     assert time.process_time() - started < 3.0
 
 
-def test_verdicts_stay_the_same_where_room_is_short_and_much_is_forgotten(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_verdicts_do_not_depend_on_room_and_forgetting(monkeypatch: pytest.MonkeyPatch) -> None:
     networks = [random_network(ALLEN, 45, 9.5, 6.5, seed) for seed in range(12)]
     verdicts = [solve(network).verdict for network in networks]
     monkeypatch.setattr(conflict_search, "FIRST_NOGOODS", 2)
@@ -185,4 +185,4 @@ def test_verdicts_stay_the_same_where_room_is_short_and_much_is_forgotten(monkey
     monkeypatch.setattr(conflict_search, "NOGOODS_KEPT", 4)
     again = [solve(network) for network in networks]
     assert [solution.verdict for solution in again] == verdicts
-    assert max(solution.dead_ends for solution in again) > 64  # and so it began again
+    assert max(solution.dead_ends for solution in again) > 64  # so the search restarted

@@ -1,4 +1,4 @@
-"""Derivations: every step follows from its premises, the leaves were stated, and nothing in them is dispensable."""
+"""Check that every step of a derivation follows, its leaves are stated, and nothing in it is dispensable."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def networks(draw: st.DrawFn) -> Network:
 
 @settings(max_examples=60, deadline=None)
 @given(networks(), st.integers(0, 4), st.integers(0, 4))
-def test_what_closure_leaves_of_a_pair_is_derived_soundly(network: Network, i: int, j: int) -> None:
+def test_closed_relations_are_derived_soundly(network: Network, i: int, j: int) -> None:
     closed, step = close(network), explain(network, i, j)
     if not closed.consistent or i == j or closed.relation(i, j) == network.calculus.universal:
         assert step is None
@@ -66,20 +66,20 @@ def test_what_closure_leaves_of_a_pair_is_derived_soundly(network: Network, i: i
 
 @settings(max_examples=60, deadline=None)
 @given(networks())
-def test_every_minimal_conflict_that_closure_finds_is_derived_to_nothing(network: Network) -> None:
+def test_minimal_conflicts_of_closure_are_derived(network: Network) -> None:
     if not close(network).consistent:
         conflict = minimal_conflict(network)
         assert conflict is not None
         thinned = network.only(conflict.constraints)
         step = contradiction(thinned)
-        if close(thinned).consistent:  # search left out what closure needs
+        if close(thinned).consistent:  # search left out constraints that closure needs
             assert step is None
             return
         assert step is not None and step.claim.relation == 0
         assert_sound(step, network)
 
 
-def test_the_shorter_of_two_ways_is_taken() -> None:
+def test_the_shorter_of_two_derivations_is_chosen() -> None:
     before = POINT.relation(["<"])
     ends = [(0, 1), (1, 2), (2, 3), (3, 4), (0, 5), (5, 4)]
     stated = tuple(Constraint(i, j, before, Source("f", k, 1, k, 9)) for k, (i, j) in enumerate(ends, start=1))
@@ -89,7 +89,7 @@ def test_the_shorter_of_two_ways_is_taken() -> None:
     assert_sound(step, Network(POINT, 6, stated))
 
 
-def test_a_wide_goal_needs_no_more_than_what_gives_it() -> None:
+def test_a_wide_goal_needs_no_more_than_its_premises() -> None:
     assert isinstance(RA, ProductCalculus)
     x = RA.axes[0]
     left = RA.of_axes([x.relation(["<", "m"]), RA.axes[1].universal])

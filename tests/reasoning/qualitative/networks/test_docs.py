@@ -1,4 +1,4 @@
-"""The Python in docs/reference/networks.md runs as it stands."""
+"""Run the Python of docs/reference/networks.md."""
 
 from __future__ import annotations
 

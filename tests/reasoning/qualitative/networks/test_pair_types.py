@@ -1,4 +1,4 @@
-"""Types of pairs of boxes: they are what boxes bear, and pieces of them hold nothing that is not permitted."""
+"""Check that every pair of boxes has one type, and that pieces contain only permitted types."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ TYPES = pair_types()
 
 
 @given(tables(least=2, most=2), st.sampled_from([1.0, 4.0, 10.0]))
-def test_boxes_are_of_the_one_type_that_bears_their_atoms(boxes: np.ndarray, reference: float) -> None:
+def test_boxes_have_the_one_type_with_their_atoms(boxes: np.ndarray, reference: float) -> None:
     boxes[:, 1] += 1  # no box without an extent
     said = {name: 1 << int(relate(boxes, name, reference=reference)[0, 1]) for name in TYPES.atoms}
     differences = COMPARED @ boxes.reshape(4, 2)  # (5, 2)
@@ -26,7 +26,7 @@ def test_boxes_are_of_the_one_type_that_bears_their_atoms(boxes: np.ndarray, ref
     assert (TYPES.axes[left] == TYPES.axes[mine[left[mine]][0]]).all(axis=1).any()
 
 
-def test_every_atom_is_borne_by_some_type() -> None:
+def test_every_atom_occurs_in_a_type() -> None:
     for name, codes in TYPES.atoms.items():
         assert set(codes.tolist()) == set(range(len(calculus(name).atoms)))
 
@@ -37,7 +37,7 @@ def test_every_atom_is_borne_by_some_type() -> None:
     st.permutations(range(11)),
     st.integers(0, 10**6),
 )
-def test_a_piece_holds_its_type_and_nothing_forbidden(
+def test_a_piece_contains_its_type_and_only_permitted_ones(
     rectangles: set[int], distances: set[int], order: list[int], pick: int
 ) -> None:
     permitted = TYPES.permitted(
@@ -54,7 +54,7 @@ def test_a_piece_holds_its_type_and_nothing_forbidden(
     assert not (within & ~permitted).any()
 
 
-def test_ranges_of_distance_follow_one_another() -> None:
+def test_distance_ranges_are_in_order() -> None:
     assert BOUNDS.tolist() == [0.0, 0.0, 1.0, 3.0, np.inf]
     piece = piece_around(TYPES.permitted({"distance": 1}), int(np.flatnonzero(TYPES.reaches == 0)[0]), np.arange(11))
     assert (piece.signs[:, -1] == EQUAL).all()

@@ -1,4 +1,4 @@
-"""Placing boxes by linear programming, and rounding them so that equations hold exactly."""
+"""Test placing boxes by linear programming, and rounding them so that equations hold exactly."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def test_boxes_move_into_their_piece() -> None:
     assert (exact[:, 1] > exact[:, 0]).all()
 
 
-def test_distances_stay_within_and_beyond_their_bounds() -> None:
+def test_distances_respect_their_bounds() -> None:
     for reach, least, most in ((1, 0.0, 1.0), (2, 1.0, 3.0), (3, 3.0, np.inf)):
         placement = place(TWO, PAIR, [piece(nearest=reach, farthest=reach)], np.ones(1), 2.0**-5)
         assert placement is not None and placement.fits
@@ -42,7 +42,7 @@ def test_distances_stay_within_and_beyond_their_bounds() -> None:
         assert least < distance < most
 
 
-def test_what_cannot_be_is_slack_and_no_time_is_none() -> None:
+def test_impossible_pieces_give_slack_and_no_time_gives_none() -> None:
     pieces = [piece((0, 2, LESS)), piece((0, 2, LESS))]
     placement = place(TWO, np.array([[0, 1], [1, 0]]), pieces, np.ones(2), 1.0)
     assert placement is not None and not placement.fits
@@ -56,7 +56,7 @@ def test_what_cannot_be_is_slack_and_no_time_is_none() -> None:
 def test_rounding_solves_equations_exactly(equations: list[dict[int, int]], seed: int) -> None:
     boxes = np.random.default_rng(seed).uniform(0, 10, (3, 2, 2))
     exact = rounded(Placement(boxes, np.zeros(0), tuple(equations)), whole=False)
-    if exact is None:  # of too large numbers
+    if exact is None:  # numbers that are too large
         return
     values = [Fraction(value) for value in exact.transpose(2, 0, 1).ravel().tolist()]
     assert all(sum(factor * values[k] for k, factor in equation.items()) == 0 for equation in equations)

@@ -1,4 +1,4 @@
-"""Search: every verdict against all ways to lie, the networks that closure lets pass, scenarios, and honest limits."""
+"""Test search: verdicts against all arrangements, networks that closure misses, scenarios, and undecided cases."""
 
 from __future__ import annotations
 
@@ -33,15 +33,15 @@ def stated(network: Network, *lines: str) -> Network:
     return network.only(constraints)
 
 
-# Four intervals, path-consistent and still inconsistent, as Allen's (1983) Figure 5 shows that there are
+# Four intervals, path-consistent and still inconsistent, from Allen's (1983) Figure 5
 FIGURE_5 = stated(Network(ALLEN, 4, ()), "3 0 m s", "3 1 o", "3 2 m s", "0 1 d di", "1 2 d di", "0 2 f fi")
 
 
-def test_a_closed_network_that_is_inconsistent_is_caught(four_intervals: NDArray[np.uint64]) -> None:
+def test_an_inconsistent_closed_network_is_refuted(four_intervals: NDArray[np.uint64]) -> None:
     closed = close(FIGURE_5)
     assert closed.consistent and closed.narrowed == 0
     relations = np.array([closed.relation(i, j) for i, j in PAIRS], dtype=np.uint64)
-    assert not ((four_intervals & relations) > 0).all(axis=1).any()  # no four intervals are like that
+    assert not ((four_intervals & relations) > 0).all(axis=1).any()  # no four intervals satisfy it
     solution = solve(FIGURE_5)
     assert solution.verdict is Verdict.INCONSISTENT and not solution.refuted and solution.dead_ends > 0
 
@@ -54,7 +54,7 @@ ANY = st.integers(1, ALLEN.universal)
 
 @MANY
 @given(relations=st.tuples(*[HARD | ANY] * 6))
-def test_the_verdict_on_four_intervals_is_that_of_trying_all(
+def test_verdicts_on_four_intervals_agree_with_trying_all(
     four_intervals: NDArray[np.uint64], relations: tuple[int, ...]
 ) -> None:
     ways = ((four_intervals & np.array(relations, dtype=np.uint64)) > 0).all(axis=1)
@@ -67,8 +67,8 @@ def test_the_verdict_on_four_intervals_is_that_of_trying_all(
 
 @MANY
 @given(st.lists(st.sets(st.integers(0, 7), min_size=1, max_size=3), min_size=6, max_size=6))
-def test_the_verdict_on_four_regions_is_that_of_all_closed_scenarios(choices: list[set[int]]) -> None:
-    """Closed networks of RCC-8 atoms are consistent (Nebel 1995), so that the closed scenarios are all there are."""
+def test_verdicts_on_four_regions_agree_with_closed_scenarios(choices: list[set[int]]) -> None:
+    """Try all closed scenarios, since closed networks of RCC-8 atoms are consistent (Nebel 1995)."""
     relations = [sum(1 << code for code in codes) for codes in choices]
     network = Network(RCC8, 4, tuple(Constraint(i, j, r) for (i, j), r in zip(PAIRS, relations, strict=True)))
     some = any(_closed_atoms(dict(zip(PAIRS, atoms, strict=True))) for atoms in product(*map(atoms_of, relations)))
@@ -84,7 +84,7 @@ def _closed_atoms(atoms: dict[tuple[int, int], int]) -> bool:
 
 @settings(MANY, max_examples=25)
 @given(st.data())
-def test_choices_between_axes_are_searched_through(data: st.DataObject) -> None:
+def test_choices_between_axes_are_searched(data: st.DataObject) -> None:
     assert isinstance(RA, ProductCalculus)
     codes = st.sets(st.integers(0, 168), min_size=1, max_size=3)
     triangle = [(0, 1), (1, 2), (0, 2)]
@@ -96,7 +96,7 @@ def test_choices_between_axes_are_searched_through(data: st.DataObject) -> None:
 
 
 @pytest.mark.parametrize("name", ["point", "allen", "ra", "ba", "rcc8", "cd"])
-def test_a_scenario_has_one_stated_atom_a_pair_and_is_consistent(name: str) -> None:
+def test_a_scenario_has_one_stated_atom_per_pair(name: str) -> None:
     chosen, rng = calculus(name), np.random.default_rng(3)
     identity = 1 << chosen.identity
     codes = [(int(i), int(j), int(rng.integers(len(chosen.atoms)))) for i, j in rng.integers(0, 7, (9, 2)) if i != j]
@@ -109,11 +109,11 @@ def test_a_scenario_has_one_stated_atom_a_pair_and_is_consistent(name: str) -> N
     assert solve(found).verdict is Verdict.CONSISTENT
 
 
-def test_no_scenario_of_what_is_inconsistent() -> None:
+def test_an_inconsistent_network_has_no_scenario() -> None:
     assert scenario(FIGURE_5) is None
 
 
-def test_where_closure_proves_nothing_the_verdict_says_so() -> None:
+def test_the_verdict_is_undecided_where_closure_proves_nothing() -> None:
     distance = calculus("distance")
     solution = solve(Network(distance, 3, (Constraint(0, 1, 2), Constraint(1, 2, 2))), scenario=True)
     assert solution.verdict is Verdict.UNDECIDED
@@ -133,16 +133,16 @@ def test_the_ten_names_are_decided_in_the_rectangle_algebra() -> None:
 
 @pytest.mark.parametrize("scenario", [False, True])
 def test_a_large_network_keeps_to_its_time_limit(scenario: bool) -> None:
-    """Sparse, and half of all relations are outside the tractable class, so that choices abound."""
+    """Use a sparse network with half of all relations outside the tractable class, so that there are many choices."""
     rng = np.random.default_rng(3)
     pairs = [(int(i), int(j)) for i, j in rng.integers(0, 1500, (4000, 2)) if i != j]
     stated = tuple(Constraint(i, j, int(rng.integers(1, ALLEN.universal)) | 0x111) for i, j in pairs)
-    solve(FIGURE_5)  # compiles
+    solve(FIGURE_5)  # compile
     started = time.perf_counter()
     solve(Network(ALLEN, 1500, stated), deadline=Deadline.after(1.0), scenario=scenario)
     assert time.perf_counter() - started < 3.0
 
 
-def test_a_time_limit_of_nothing_leaves_it_undecided() -> None:
+def test_a_time_limit_of_zero_leaves_it_undecided() -> None:
     solution = solve(FIGURE_5, deadline=Deadline.after(0.0))
     assert solution.verdict is Verdict.UNDECIDED and "time" in solution.reason

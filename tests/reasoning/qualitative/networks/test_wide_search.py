@@ -1,4 +1,4 @@
-"""Calculi whose relations take several words: closure and search agree with the same calculus in small."""
+"""Compare calculi whose relations take several words with the same calculus in a small table."""
 
 from __future__ import annotations
 
@@ -45,19 +45,19 @@ def random_network(chosen: Calculus, things: int, degree: float, atoms: float, s
 
 
 def widened(network: Network, wide: TableCalculus) -> Network:
-    """The same network of intervals, with any regions beside."""
+    """Return the same network of intervals, with any regions beside."""
     stated = tuple(replace(c, relation=with_regions(c.relation)) for c in network.constraints)
     return Network(wide, network.size, stated)
 
 
 def with_regions(relation: int) -> int:
-    """A relation of intervals with any of regions."""
+    """Return a relation of intervals with any relation of regions."""
     return sum(0xFF << 8 * code for code in bits(relation))
 
 
 @pytest.mark.parametrize("seed", range(6))
-def test_closure_of_a_wide_calculus_is_that_of_its_part(wide: TableCalculus, seed: int) -> None:
-    network = random_network(ALLEN, 70, 6.0, 6.5, seed)  # more than 64 things: two words of these as well
+def test_closure_of_a_wide_calculus_agrees_with_its_part(wide: TableCalculus, seed: int) -> None:
+    network = random_network(ALLEN, 70, 6.0, 6.5, seed)  # more than 64 things, so that these take two words too
     small, large = close(network), close(widened(network, wide))
     assert small.consistent == large.consistent
     if small.consistent:
@@ -66,7 +66,7 @@ def test_closure_of_a_wide_calculus_is_that_of_its_part(wide: TableCalculus, see
 
 
 @pytest.mark.parametrize("seed", range(8))
-def test_a_wide_search_gives_the_verdict_of_the_small_one(wide: TableCalculus, seed: int) -> None:
+def test_a_wide_search_agrees_with_the_small_one(wide: TableCalculus, seed: int) -> None:
     network = random_network(ALLEN, 14, 9.0, 5.5, seed)
     large = widened(network, wide)
     solution = solve(large, scenario=True)

@@ -1,4 +1,4 @@
-"""Described views of things, with what they are and which things they are, kept on disk between runs."""
+"""Describe views of things, with their categories and instances, and keep them on disk between runs."""
 
 from __future__ import annotations
 
@@ -27,12 +27,14 @@ DESCRIBERS: tuple[Describer, ...] = (
     D2ExtentsDescriber(),
     UprightDescriber(),
 )
-"""Settings are the same for all data. Those of the first and the last were chosen beforehand
-(docs/explanation/open_ended.md)."""
+"""Describers, with the same settings for all data.
+
+The settings of the first and the last were chosen beforehand (docs/explanation/open_ended.md).
+"""
 
 
 class ThingViews(NamedTuple):
-    """A thing and views of it; ``instance`` tells things of a category apart."""
+    """A thing and views of it; ``instance`` distinguishes things of a category."""
 
     category: str
     instance: str
@@ -40,8 +42,8 @@ class ThingViews(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Shown:
-    """n described views; ``instances`` are numbers, no two categories having one in common."""
+class DescribedViews:
+    """A set of n described views; ``instances`` are numbers, unique across categories."""
 
     name: str
     categories: tuple[str, ...]  # (n,)
@@ -54,24 +56,26 @@ class Shown:
         return tuple(sorted(set(self.categories)))
 
     def of(self, category: str, instances: Iterable[int] | None = None) -> NDArray[np.int64]:
-        """Return the places of a category's views, of some of its instances only if these are given."""
+        """Return the positions of a category's views, or of the given instances only."""
         chosen = np.array(self.categories) == category
         if instances is not None:
             chosen &= np.isin(self.instances, list(instances))
         return np.flatnonzero(chosen)
 
-    def at(self, places: NDArray[np.int64]) -> Shown:
-        """Return the views in these places only."""
+    def at(self, places: NDArray[np.int64]) -> DescribedViews:
+        """Return the views at these positions only."""
         categories, views = (tuple(each[place] for place in places) for each in (self.categories, self.views))
-        return Shown(self.name, categories, self.instances[places], views)
+        return DescribedViews(self.name, categories, self.instances[places], views)
 
     def instances_of(self, category: str) -> NDArray[np.int64]:
         """Return the numbers of a category's instances."""
         return np.unique(self.instances[self.of(category)])
 
 
-def describe_views(name: str, things: Iterable[ThingViews], tick: Callable[[str], None] = lambda _: None) -> Shown:
-    """Describe all views; those that a describer finds nothing in are left out. ``tick`` is called for each thing."""
+def describe_views(
+    name: str, things: Iterable[ThingViews], tick: Callable[[str], None] = lambda _: None
+) -> DescribedViews:
+    """Describe all views, except those in which a describer finds nothing; call ``tick`` for each thing."""
     categories: list[str] = []
     instances: list[int] = []
     views: list[ViewFeatures] = []
@@ -82,17 +86,18 @@ def describe_views(name: str, things: Iterable[ThingViews], tick: Callable[[str]
         categories += [thing.category] * len(usable)
         instances += [number] * len(usable)
         tick(f"{name}: {thing.category}")
-    return Shown(name, tuple(categories), np.array(instances, np.int64), tuple(views))
+    return DescribedViews(name, tuple(categories), np.array(instances, np.int64), tuple(views))
 
 
 class CacheError(DeixisError, OSError):
     """A folder in which views cannot be kept."""
 
 
-def cached_views(folder: Path | None, key: str, make: Callable[[], Shown]) -> Shown:
-    """Return what ``make`` gives, or what it gave before: the file is named after ``key`` and the describers' settings.
+def cached_views(folder: Path | None, key: str, make: Callable[[], DescribedViews]) -> DescribedViews:
+    """Return the result of ``make``, read from the file of an earlier call if there is one.
 
-    A file that cannot be read is made again. Raises CacheError where none can be written.
+    The file is named after ``key`` and the describers' settings. A file that cannot be read is made again. Raises
+    CacheError if none can be written.
     """
     if folder is None:
         return make()
@@ -101,16 +106,16 @@ def cached_views(folder: Path | None, key: str, make: Callable[[], Shown]) -> Sh
     try:
         return _read(file)
     except (OSError, ValueError, KeyError, BadZipFile):
-        shown = make()
+        data = make()
     try:
         folder.mkdir(parents=True, exist_ok=True)
         arrays: dict[str, NDArray[np.generic]] = {
-            "name": np.array(shown.name),
-            "categories": np.array(shown.categories),
-            "instances": shown.instances,
+            "name": np.array(data.name),
+            "categories": np.array(data.categories),
+            "instances": data.instances,
         }
         for describer in DESCRIBERS:
-            parts = [view[describer.name] for view in shown.views]
+            parts = [view[describer.name] for view in data.views]
             arrays[f"{describer.name} lengths"] = np.array([len(part) for part in parts])
             arrays[describer.name] = np.concatenate(parts)
         unfinished = file.with_suffix(".part.npz")
@@ -118,11 +123,11 @@ def cached_views(folder: Path | None, key: str, make: Callable[[], Shown]) -> Sh
         unfinished.replace(file)
     except OSError as error:
         raise CacheError(f"{folder}: views cannot be kept here ({error.strerror}); choose another folder") from error
-    return shown
+    return data
 
 
-def _read(file: Path) -> Shown:
-    with open(file, "rb") as stream, np.load(stream, allow_pickle=False) as stored:
+def _read(file: Path) -> DescribedViews:
+    with file.open("rb") as stream, np.load(stream, allow_pickle=False) as stored:
         split = {
             describer.name: np.split(stored[describer.name], np.cumsum(stored[f"{describer.name} lengths"])[:-1])
             for describer in DESCRIBERS
@@ -132,4 +137,4 @@ def _read(file: Path) -> Shown:
             ViewFeatures(dict(zip(split, row, strict=True)), str(thing))
             for row, thing in zip(rows, things, strict=True)
         ]
-        return Shown(str(stored["name"]), tuple(map(str, stored["categories"])), things, tuple(views))
+        return DescribedViews(str(stored["name"]), tuple(map(str, stored["categories"])), things, tuple(views))
