@@ -1,0 +1,94 @@
+"""Validate answers against the published JSON Schemas."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+from source_tree import ROOT
+
+import deixis
+
+jsonschema = pytest.importorskip("jsonschema")
+referencing = pytest.importorskip("referencing")
+
+SCHEMAS = {path.name.removesuffix(".schema.json"): path for path in sorted((ROOT / "docs" / "schema").glob("*.json"))}
+EXAMPLES = ROOT / "examples"
+
+
+def contents(name: str) -> dict[str, Any]:
+    loaded: dict[str, Any] = json.loads(SCHEMAS[name].read_text(encoding="utf-8"))
+    return loaded
+
+
+def validator(name: str) -> Any:
+    registry = referencing.Registry().with_resources(
+        (contents(other)["$id"], referencing.Resource.from_contents(contents(other))) for other in SCHEMAS
+    )
+    return jsonschema.Draft202012Validator(contents(name), registry=registry)
+
+
+def errors(name: str, answer: deixis.Scene | Any) -> list[str]:
+    data = json.loads(answer.to_json())
+    return [f"{error.json_path}: {error.message}" for error in validator(name).iter_errors(data)]
+
+
+@pytest.fixture(scope="module")
+def scene() -> deixis.Scene:
+    return deixis.read_scene(EXAMPLES / "place_setting.scene.json")
+
+
+@pytest.mark.parametrize("name", SCHEMAS)
+def test_a_schema_is_valid_and_named_by_its_file(name: str) -> None:
+    jsonschema.Draft202012Validator.check_schema(contents(name))
+    assert contents(name)["$id"] == f"https://w3id.org/deixis/schema/{name}.schema.json"
+    assert contents(name)["title"]
+
+
+@pytest.mark.parametrize("script", ["formal_dinner", "script1", "script2", "contradiction"])
+def test_scripts_and_what_follows_have_their_schema(script: str) -> None:
+    read = deixis.read_script(EXAMPLES / f"{script}.layout")
+    assert errors("script", read) == []
+    assert errors("inference", deixis.infer(read)) == []
+    assert errors("imagination", deixis.imagine(read)) == []
+
+
+@pytest.mark.parametrize(
+    "options",
+    [{}, {"sizes": False}, {"engine": "similarity"}, {"viewpoint": "quarter"}, {"ask": {"napkin": "o2"}}],
+    ids=["default", "words", "similarity", "viewpoint", "questions"],
+)
+def test_groundings_have_their_schema(scene: deixis.Scene, options: dict[str, Any]) -> None:
+    assert errors("grounding", deixis.ground(EXAMPLES / "script1.layout", scene, **options)) == []
+
+
+def test_checks_and_retrievals_have_their_schema(scene: deixis.Scene) -> None:
+    for table in ("second_table", "place_setting"):
+        assert errors("check", deixis.check(EXAMPLES / "formal_dinner.layout", EXAMPLES / f"{table}.scene.json")) == []
+    assert errors("retrieval", deixis.retrieve(scene, EXAMPLES)) == []
+
+
+@pytest.mark.parametrize("file", sorted(EXAMPLES.glob("*.scene.json")), ids=lambda path: path.name)
+def test_scenes_have_their_schema(file: Path) -> None:
+    assert errors("scene", deixis.read_scene(file)) == []
+    assert list(validator("scene").iter_errors(json.loads(file.read_text(encoding="utf-8")))) == []
+
+
+def test_what_is_seen_and_learned_has_its_schema(tmp_path: Path) -> None:
+    pytest.importorskip("open3d")
+    from deixis.report.json_answers import learned_to_dict
+
+    script = deixis.read_script(EXAMPLES / "formal_dinner.layout")
+    seen = deixis.perceive(deixis.simulate(script, seed=7).cloud)
+    assert errors("scene", seen) == []
+    with deixis.Session(tmp_path / "memory") as session:
+        learned = json.loads(json.dumps(learned_to_dict(session.learn(script, seen))))
+        assert list(validator("learned").iter_errors(learned)) == []
+        assert errors("recognised", session.recognise(seen)) == []
+
+
+def test_an_answer_with_another_key_is_refused() -> None:
+    data = deixis.read_script(text="fork left of plate").to_dict() | {"colour": "red"}
+    assert list(validator("script").iter_errors(data))
