@@ -19,6 +19,9 @@ PYTHON_FOLDERS = (
     "ontology", "reasoning", "grammar", "perception", "memory", "src/deixis", "tests", "benchmarks", "tools",
 )  # fmt: skip
 TEXT_FILES = ("*.md", "docs/**/*.md", "examples/**/*.md", ".github/**/*.md")
+UNCHECKED = ("style.md", "check_style.py", "test_check_style.py")
+"""Files that quote what is to be avoided."""
+
 MAX_TEST_NAME = 60
 """Maximum number of characters in the name of a test function."""
 
@@ -36,7 +39,7 @@ PHRASES = {
     r"so many as": "as many as, or a bound in symbols",
     r"(?:is|are|be|was|were|being) told": "name who reports what: 'the message names …'",
     r"anew": "again, or re- before the verb",
-    r"(?-i:(?:is|are|was|were) none)": "there is no …",
+    r"(?<!there )(?-i:(?:is|are|was|were) none)": "there is no …",
     r"(?<!teddy )(?<!the )(?<!a )bears?(?! in mind)": "has, carries, or supports",
     r"in the place of": "instead of",
     r"who is who": "which object each name refers to",
